@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use franka_async::Robot;
 use franka_async::connection::CancellationToken;
+use futures::FutureExt;
+use futures::future::BoxFuture;
 use pyo3::prelude::*;
 use tokio_util::task::TaskTracker;
 
@@ -65,23 +67,25 @@ fn shut_down(py: Python<'_>) {
     py.detach(|| {
         LIVE.exit.cancel();
         LIVE.robots.close();
-        let close = tokio::task::spawn_blocking;
-        let closed = runtime.block_on(tokio::time::timeout(LONGEST, async {
-            LIVE.robots.wait().await;
-            // Whoever has the interpreter now gives it back first.
-            let closed = close(|| {
-                *LIVE
-                    .interpreter
-                    .write()
-                    .unwrap_or_else(PoisonError::into_inner) = false
+        let within = |what: &'static str, time, step: BoxFuture<'static, ()>| {
+            runtime.block_on(async move {
+                if tokio::time::timeout(time, step).await.is_err() {
+                    eprintln!("franka_async: {what} did not end within {time:?}");
+                }
             });
-            closed.await
-        }));
-        if closed.is_err() {
-            eprintln!("franka_async: a robot or a thread did not end within {LONGEST:?}");
-        }
+        };
+        within("a robot", BRAKED, Box::pin(LIVE.robots.wait()));
+        // Whoever has the interpreter now gives it back first.
+        let closed = runtime.spawn_blocking(|| {
+            let is_open = LIVE.interpreter.write();
+            *is_open.unwrap_or_else(PoisonError::into_inner) = false;
+        });
+        within("a thread", GIVEN_BACK, Box::pin(closed.map(drop)));
     });
 }
 
 /// A motion brakes within a quarter of a second; a robot that does not answer is given up after two.
-const LONGEST: Duration = Duration::from_secs(4);
+const BRAKED: Duration = Duration::from_secs(4);
+
+/// What has the interpreter then delivers a result, or is code of the program that may take any time.
+const GIVEN_BACK: Duration = Duration::from_secs(1);

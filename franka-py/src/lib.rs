@@ -15,6 +15,7 @@ mod batch;
 mod chunk;
 mod condition;
 mod destination;
+mod disturbance;
 mod errors;
 mod exit;
 mod follow;
@@ -31,6 +32,8 @@ mod runtime;
 mod simulator;
 mod state;
 mod state_views;
+mod states;
+mod stream;
 mod virtual_robots;
 
 use pyo3::prelude::*;
@@ -49,6 +52,8 @@ mod _native {
         force_y, force_z, joint_contact, joint_position, joint_torque, joint_torques,
         joint_velocity, torque,
     };
+    #[pymodule_export]
+    use crate::disturbance::Touch;
     #[pymodule_export]
     use crate::follow::Latest;
     #[pymodule_export]
@@ -69,6 +74,8 @@ mod _native {
     use crate::simulator::Sim;
     #[pymodule_export]
     use crate::state::{_state_of_json, RobotState};
+    #[pymodule_export]
+    use crate::stream::Source;
     #[pymodule_export]
     use crate::virtual_robots::VirtualRobots;
 

@@ -4,11 +4,18 @@ use std::sync::Arc;
 
 use franka_async::connection::Version;
 use franka_async::record;
+use pyo3::IntoPyObjectExt;
+use pyo3::exceptions::{PyAttributeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyList;
 
+use crate::arrays::{array, columns};
 use crate::state::RobotState;
 
 /// The last cycles of a motion, oldest first: what the robot said, and what it had been sent.
+///
+/// Every field of `RobotState` is here as one array over the cycles: `log.q` is `(N, 7)`, `log.O_T_EE` is
+/// `(N, 4, 4)`, `log.time` is `(N,)`. What was sent before each state is `log.sent("tau_J_d")`.
 #[pyclass(frozen, sequence, module = "franka_async")]
 pub(crate) struct ControlLog {
     log: Arc<record::ControlLog>,
@@ -29,6 +36,55 @@ impl ControlLog {
         entries
             .map(|entry| RobotState::new(entry.state, self.version))
             .collect()
+    }
+
+    fn __getattr__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let class = py.get_type::<RobotState>();
+        let is_field = class.getattr_opt(name)?.is_some_and(|it| !it.is_callable());
+        if name.starts_with('_') || !is_field {
+            let text = format!("'ControlLog' object has no attribute {name:?}");
+            return Err(PyAttributeError::new_err(text));
+        }
+        let states = self.states();
+        let values: PyResult<Vec<_>> = states
+            .into_iter()
+            .map(|state| Bound::new(py, state)?.getattr(name))
+            .collect();
+        let values = values?;
+        match values.first() {
+            // Names of errors: as many as there are.
+            Some(first) if first.is_instance_of::<PyList>() => values.into_bound_py_any(py),
+            _ => py.import("numpy")?.call_method1("array", (values,)),
+        }
+    }
+
+    /// What had been sent before each state, `(N, ...)`; zeros before the first. `name` is `tau_J_d`, `q_c`,
+    /// `dq_c`, `O_T_EE_c` or `O_dP_EE_c`.
+    fn sent<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let commands = self.log.iter().map(|entry| &entry.command);
+        let values: Vec<Bound<'py, PyAny>> = match name {
+            "tau_J_d" => commands
+                .map(|sent| array(py, &sent.tau_J_d).into_any())
+                .collect(),
+            "q_c" => commands
+                .map(|sent| array(py, &sent.q_c).into_any())
+                .collect(),
+            "dq_c" => commands
+                .map(|sent| array(py, &sent.dq_c).into_any())
+                .collect(),
+            "O_dP_EE_c" => commands
+                .map(|sent| array(py, &sent.O_dP_EE_c).into_any())
+                .collect(),
+            "O_T_EE_c" => commands
+                .map(|sent| columns::<4, 4>(py, &sent.O_T_EE_c).into_any())
+                .collect(),
+            _ => {
+                let expected = "'tau_J_d', 'q_c', 'dq_c', 'O_T_EE_c' or 'O_dP_EE_c'";
+                let text = format!("name is {name:?}, expected {expected}");
+                return Err(PyValueError::new_err(text));
+            }
+        };
+        py.import("numpy")?.call_method1("array", (values,))
     }
 
     /// Comma-separated values, a line for each cycle; columns are named as by libfranka.

@@ -46,10 +46,14 @@ impl<'py> Keywords<'py> {
         Ok(value)
     }
 
-    /// The argument of this name as a number.
-    fn number(&mut self, name: &str) -> PyResult<Option<f64>> {
+    /// The argument of this name, if it is given and not `None`, as a plain value.
+    pub(crate) fn value<T>(&mut self, name: &str) -> PyResult<Option<T>>
+    where
+        T: for<'a> FromPyObject<'a, 'py, Error: Into<PyErr>>,
+    {
         let value = self.take(name)?;
-        value.map(|value| value.extract()).transpose()
+        let value = value.map(|value| value.extract().map_err(Into::into));
+        value.transpose()
     }
 
     /// Refuses what nobody took.
@@ -83,7 +87,7 @@ impl Options {
     /// Takes the options of a session: `speed`, and those of [`Self::tuning`].
     pub(crate) fn of_session(keywords: &mut Keywords<'_>, model: &Model) -> PyResult<Self> {
         Ok(Self {
-            speed: keywords.number("speed")?,
+            speed: keywords.value("speed")?,
             tuning: tuning(keywords, model)?,
             ..Self::default()
         })

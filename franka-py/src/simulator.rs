@@ -1,40 +1,62 @@
 //! A simulated robot in the process.
 
-use std::sync::{Mutex, PoisonError};
+use std::net::SocketAddr;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use franka_sim::Running;
-use pyo3::exceptions::PyOSError;
+use franka_async::model::{Load, RobotKind};
+use franka_sim::arm::{Arm, Family};
+use franka_sim::network::{Conditions, Loss, Network, Stalls};
+use franka_sim::{Fingers, Running, Stopped, Suction, Tool};
+use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyAny;
+use pyo3::types::{PyAny, PyDict};
 
-use crate::runtime;
+use crate::arrays::{pose, vector};
+use crate::model::arguments;
+use crate::operation::{Operation, seconds};
+use crate::options::Keywords;
+use crate::runtime::{self, Threaded};
+use crate::state::RobotState;
 
 /// A simulated robot on a free port of this host, from the call on until `stop()` or the end of the
-/// `with` block.
+/// `with` or `async with` block. Its methods release the interpreter, and act between two of its
+/// milliseconds.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Sim {
     /// `None` once it has been stopped.
-    running: Mutex<Option<Running>>,
+    running: Threaded<Mutex<Option<Running>>>,
+    kind: RobotKind,
     address: String,
+    hand_address: Option<String>,
+    vacuum_gripper_address: Option<String>,
 }
 
 #[pymethods]
 impl Sim {
-    /// Starts a Franka Research 3 with an arm that sticks and flexes like real ones, in the ready
-    /// pose. With `virtual_time` its next millisecond begins with the command, however long that
-    /// takes up to half a second: for tests, and for programs that learn.
+    /// Starts a Franka Research 3 in the ready pose, with an arm that sticks, flexes and lags like real ones.
+    ///
+    /// Options: `virtual_time`, whether its next millisecond begins with the command, however long that takes
+    /// up to `patience` seconds (0.5): for tests, and for programs that learn. `arm`, `ideal`, `nominal`,
+    /// `realistic` or `bad`: a good arm for tests that need exactness, or worse ones; with `arm_seed`, one that
+    /// is drawn at random from such arms; `ideal=True` is `arm="ideal"`. `seed` of all other randomness. `q`,
+    /// joint positions at the start, 7 numbers, rad. `tool`, `hand` or a tuple of its frame on the flange (a
+    /// pose), its mass, kg, and its centre of mass in the flange frame, m: what the robot knows of. `load`, a
+    /// tuple of mass and centre: what it does not know of. `hand` serves a Franka Hand and mounts it,
+    /// `vacuum_gripper` a vacuum gripper, each at an address of its own. `network`, a `Network` between robot
+    /// and clients. `address`, where to listen. `enforce_limits`, whether commands outside the limits end in a
+    /// reflex.
     #[staticmethod]
-    #[pyo3(signature = (*, ideal = false, virtual_time = false, seed = 0))]
-    fn fr3(py: Python<'_>, ideal: bool, virtual_time: bool, seed: u64) -> PyResult<Self> {
-        Self::start(py, franka_sim::Sim::fr3(), ideal, virtual_time, seed)
+    #[pyo3(signature = (**options))]
+    fn fr3(py: Python<'_>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        Self::start(py, "Sim.fr3", RobotKind::Fr3, options)
     }
 
     /// Starts a Franka Emika Robot (Panda); otherwise like `fr3`.
     #[staticmethod]
-    #[pyo3(signature = (*, ideal = false, virtual_time = false, seed = 0))]
-    fn fer(py: Python<'_>, ideal: bool, virtual_time: bool, seed: u64) -> PyResult<Self> {
-        Self::start(py, franka_sim::Sim::fer(), ideal, virtual_time, seed)
+    #[pyo3(signature = (**options))]
+    fn fer(py: Python<'_>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
+        Self::start(py, "Sim.fer", RobotKind::Fer, options)
     }
 
     /// Where to connect to: `host:port`.
@@ -43,17 +65,34 @@ impl Sim {
         &self.address
     }
 
+    /// Where the Hand is; `None` without one.
+    #[getter]
+    fn hand_address(&self) -> Option<&str> {
+        self.hand_address.as_deref()
+    }
+
+    /// Where the vacuum gripper is; `None` without one.
+    #[getter]
+    fn vacuum_gripper_address(&self) -> Option<&str> {
+        self.vacuum_gripper_address.as_deref()
+    }
+
+    /// The newest state, in full precision.
+    fn state(&self, py: Python<'_>) -> PyResult<RobotState> {
+        let (state, version) = self.robot(py, |robot| (*robot.state(), robot.version()))?;
+        Ok(RobotState::new(state, version))
+    }
+
     /// Stops the simulation. Connections to it are lost. Without effect if it has stopped.
     fn stop(&self, py: Python<'_>) -> PyResult<()> {
-        let running = self
-            .running
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .take();
-        match running {
-            Some(running) => runtime::blocking(py, running.stop()),
-            None => Ok(()),
-        }
+        let runtime = runtime::runtime()?;
+        py.detach(|| {
+            let running = self.running().take();
+            if let Some(running) = running {
+                runtime.block_on(running.stop());
+            }
+        });
+        Ok(())
     }
 
     fn __enter__(this: Py<Self>) -> Py<Self> {
@@ -65,31 +104,228 @@ impl Sim {
         self.stop(py)
     }
 
+    fn __aenter__(this: Py<Self>) -> Operation {
+        Operation::infallible("Sim", async move { this })
+    }
+
+    #[pyo3(signature = (*_exception))]
+    fn __aexit__(&self, _exception: &Bound<'_, PyAny>) -> PyResult<Operation> {
+        runtime::runtime()?;
+        let running = self.running().take();
+        Ok(Operation::infallible("Sim.stop", async move {
+            if let Some(running) = running {
+                running.stop().await;
+            }
+        }))
+    }
+
     fn __repr__(&self) -> String {
-        format!("<Sim at {}>", self.address)
+        format!("<Sim of the {:?} at {}>", self.kind, self.address)
     }
 }
 
 impl Sim {
     fn start(
         py: Python<'_>,
-        sim: franka_sim::Sim,
-        ideal: bool,
-        virtual_time: bool,
-        seed: u64,
+        name: &'static str,
+        kind: RobotKind,
+        options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        let sim = if ideal { sim.ideal() } else { sim };
-        let sim = if virtual_time {
-            sim.virtual_time(PATIENCE)
-        } else {
-            sim
-        };
-        let sim = sim.configure(|config| config.seed = seed);
+        let mut keywords = Keywords::new(name, options)?;
+        let sim = configured(kind, &mut keywords)?;
+        keywords.end()?;
         let running = runtime::blocking(py, sim.start())?.map_err(PyOSError::new_err)?;
-        let address = running.addr().to_string();
-        let running = Mutex::new(Some(running));
-        Ok(Self { running, address })
+        let hand = running.hand().map(|hand| hand.addr().to_string());
+        let gripper = running.vacuum_gripper();
+        Ok(Self {
+            kind,
+            address: running.addr().to_string(),
+            hand_address: hand,
+            vacuum_gripper_address: gripper.map(|gripper| gripper.addr().to_string()),
+            running: Threaded::new(Mutex::new(Some(running))),
+        })
     }
+
+    fn running(&self) -> MutexGuard<'_, Option<Running>> {
+        self.running.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Does something with the simulation, with the interpreter released.
+    ///
+    /// # Errors
+    /// `OSError` if it has stopped.
+    pub(crate) fn with<R: Send>(
+        &self,
+        py: Python<'_>,
+        act: impl AsyncFnOnce(&Running) -> Result<R, Stopped> + Send,
+    ) -> PyResult<R> {
+        let runtime = runtime::runtime()?;
+        py.detach(|| match &*self.running() {
+            Some(running) => runtime.block_on(act(running)),
+            None => Err(Stopped),
+        })
+        .map_err(|Stopped| PyOSError::new_err("the simulation has stopped"))
+    }
+
+    /// Does something with the robot between two of its milliseconds.
+    ///
+    /// # Errors
+    /// As [`Self::with`].
+    pub(crate) fn robot<R: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        act: impl FnOnce(&mut franka_sim::Robot) -> R + Send + 'static,
+    ) -> PyResult<R> {
+        self.with(py, async |running| running.with(act).await)
+    }
+}
+
+/// The robot that the keyword arguments describe.
+fn configured(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<franka_sim::Sim> {
+    let mut sim = match kind {
+        RobotKind::Fer => franka_sim::Sim::fer(),
+        _ => franka_sim::Sim::fr3(),
+    };
+    sim = sim.arm(arm(kind, keywords)?);
+    let seed: Option<u64> = keywords.value("seed")?;
+    let q = keywords.take("q")?;
+    let q: Option<[f64; 7]> = q.map(|q| vector("q", &q)).transpose()?;
+    let load = keywords
+        .take("load")?
+        .map(|load| self::load(&load))
+        .transpose()?;
+    let enforce_limits: Option<bool> = keywords.value("enforce_limits")?;
+    sim = sim.configure(|config| {
+        config.seed = seed.unwrap_or(config.seed);
+        config.q = q.map_or(config.q, Into::into);
+        config.payload = load.unwrap_or(config.payload);
+        config.enforce_limits = enforce_limits.unwrap_or(config.enforce_limits);
+    });
+    if keywords.value("hand")?.unwrap_or(false) {
+        sim = sim.tool(Tool::hand()).hand(Fingers::new(), 0);
+    }
+    if let Some(tool) = keywords.take("tool")? {
+        sim = sim.tool(self::tool(&tool)?);
+    }
+    if keywords.value("vacuum_gripper")?.unwrap_or(false) {
+        sim = sim.vacuum_gripper(Suction::new(), 0);
+    }
+    let patience: Option<f64> = keywords.value("patience")?;
+    let patience = patience.map_or(Ok(PATIENCE), seconds)?;
+    if keywords.value("virtual_time")?.unwrap_or(false) {
+        sim = sim.virtual_time(patience);
+    }
+    if let Some(network) = keywords.take("network")? {
+        sim = sim.network(self::network(&network)?);
+    }
+    if let Some(address) = keywords.value::<String>("address")? {
+        let address: SocketAddr = address.parse().map_err(|_| {
+            let text = format!("address is {address:?}, expected an IP address and a port");
+            PyValueError::new_err(text)
+        })?;
+        sim = sim.bind(address);
+    }
+    Ok(sim)
+}
+
+/// The arm that `arm`, `arm_seed` and `ideal` choose.
+fn arm(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<Arm> {
+    let arm: Option<String> = keywords.value("arm")?;
+    let seed: Option<u64> = keywords.value("arm_seed")?;
+    let is_ideal = keywords.value("ideal")?.unwrap_or(false);
+    let name = match arm.as_deref() {
+        Some(name) if is_ideal && name != "ideal" => {
+            let text = format!("arm is {name:?} and ideal is True: expected one of them");
+            return Err(PyValueError::new_err(text));
+        }
+        _ if is_ideal => "ideal",
+        name => name.unwrap_or("realistic"),
+    };
+    let family = match name {
+        "ideal" if seed.is_none() => return Ok(Arm::ideal(kind)),
+        "nominal" => Family::nominal(),
+        "realistic" => Family::realistic(),
+        "bad" => Family::bad(),
+        _ => {
+            let expected = "'ideal' (without arm_seed), 'nominal', 'realistic' or 'bad'";
+            let text = format!("arm is {name:?}, expected {expected}");
+            return Err(PyValueError::new_err(text));
+        }
+    };
+    Ok(match seed {
+        Some(seed) => Arm::sample(kind, seed, &family),
+        None => Arm::central(kind, &family),
+    })
+}
+
+/// Reads a load: a tuple of mass, kg, and centre of mass in the flange frame, m; or with its inertia.
+fn load(load: &Bound<'_, PyAny>) -> PyResult<Load> {
+    let (mass, center, inertia) = match load.extract::<(f64, Bound<'_, PyAny>)>() {
+        Ok((mass, center)) => (mass, center, None),
+        Err(_) => {
+            let (mass, center, inertia): (f64, Bound<'_, PyAny>, Bound<'_, PyAny>) =
+                load.extract()?;
+            (mass, center, Some(inertia))
+        }
+    };
+    arguments::load(inertia.as_ref(), mass, Some(&center))
+}
+
+/// Reads a tool: `hand`, or a tuple of its frame on the flange, its mass and its centre of mass.
+fn tool(tool: &Bound<'_, PyAny>) -> PyResult<Tool> {
+    if let Ok(name) = tool.extract::<String>() {
+        if name == "hand" {
+            return Ok(Tool::hand());
+        }
+        let text = format!("tool is {name:?}, expected 'hand' or a tuple (frame, mass, center)");
+        return Err(PyValueError::new_err(text));
+    }
+    let (frame, mass, center): (Bound<'_, PyAny>, f64, Bound<'_, PyAny>) = tool.extract()?;
+    Ok(Tool {
+        f_t_ne: pose("the frame of tool", &frame)?.to_homogeneous(),
+        load: arguments::load(None, mass, Some(&center))?,
+        has_hand_shape: false,
+    })
+}
+
+/// `franka_async.simulation.Network`.
+#[derive(FromPyObject)]
+struct NetworkFields {
+    loss: f64,
+    delay: f64,
+    jitter: f64,
+    duplication: f64,
+    stalls: bool,
+    cuts: Vec<(f64, f64)>,
+    seed: u64,
+}
+
+fn network(network: &Bound<'_, PyAny>) -> PyResult<Network> {
+    let fields: NetworkFields = network.extract()?;
+    for (name, share) in [("loss", fields.loss), ("duplication", fields.duplication)] {
+        if !(0.0..=1.0).contains(&share) {
+            let text = format!("{name} is {share}, expected a share from 0 to 1");
+            return Err(PyValueError::new_err(text));
+        }
+    }
+    let conditions = Conditions {
+        loss: Loss::Independent(fields.loss),
+        delay: seconds(fields.delay)?,
+        jitter: seconds(fields.jitter)?,
+        duplication: fields.duplication,
+        ..Conditions::default()
+    };
+    let to_client = Conditions {
+        stalls: fields.stalls.then_some(Stalls::FER),
+        ..conditions
+    };
+    let mut network = Network::new(fields.seed, to_client, conditions);
+    for (from, to) in fields.cuts {
+        let time = seconds(from)?..seconds(to)?;
+        network.to_client.cut(time.clone());
+        network.to_robot.cut(time);
+    }
+    Ok(network)
 }
 
 /// How long a simulated robot in virtual time waits for a command.

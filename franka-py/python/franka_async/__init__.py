@@ -21,6 +21,7 @@ from ._native import (
     RobotState,
     Sim,
     VirtualRobots,
+    Touch,
 )
 from .errors import (
     ActionError,
@@ -57,6 +58,8 @@ from .motion import (
     Reacted,
     Reference,
 )
+from .simulation import Network
+from .streams import Reading, Stream
 
 __all__ = [
     "ActionError",
@@ -92,6 +95,7 @@ __all__ = [
     "MotionHandle",
     "MotionLimits",
     "MotionReport",
+    "Network",
     "Offset",
     "Operation",
     "Plane",
@@ -99,12 +103,15 @@ __all__ = [
     "Progress",
     "Reacted",
     "ReadError",
+    "Reading",
     "Reference",
     "Robot",
     "RobotState",
     "Settling",
     "Sim",
+    "Stream",
     "Tolerance",
+    "Touch",
     "VirtualRobots",
     "Waypoint",
     "condition",

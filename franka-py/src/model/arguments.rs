@@ -12,7 +12,7 @@ use crate::arrays::{Numbers, check_finite, pose_of, unexpected_shape, vector};
 ///
 /// # Errors
 /// `ValueError` with all names.
-pub(super) fn frame(name: &str) -> PyResult<Frame> {
+pub(crate) fn frame(name: &str) -> PyResult<Frame> {
     let known = FRAMES.iter().zip(Frame::ALL);
     let mut frames = known.filter(|(known, _)| **known == name);
     frames.next().map(|(_, frame)| frame).ok_or_else(|| {
@@ -70,7 +70,7 @@ fn transformation(name: &str, argument: Option<&Bound<'_, PyAny>>) -> PyResult<M
 /// # Errors
 /// `ValueError` for a mass below zero or shapes other than `(3,)` and `(3, 3)`.
 #[allow(non_snake_case)]
-pub(super) fn load(
+pub(crate) fn load(
     I_total: Option<&Bound<'_, PyAny>>,
     m_total: f64,
     F_x_Ctotal: Option<&Bound<'_, PyAny>>,

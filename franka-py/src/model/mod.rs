@@ -9,7 +9,7 @@
 //! | `limits` | limits of the joints and of Cartesian motions |
 //! | `clearance` | distances of the arm to itself |
 
-mod arguments;
+pub(crate) mod arguments;
 mod clearance;
 mod dynamics;
 mod ik;

@@ -1,0 +1,34 @@
+"""What is between a simulated robot and its clients."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+__all__ = ["Network"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Network:
+    """A network with faults, for datagrams both ways. The command connection is not affected."""
+
+    loss: float = 0.0
+    """Probability that a datagram is lost, 0 to 1."""
+
+    delay: float = 0.0
+    """How long the way takes, s."""
+
+    jitter: float = 0.0
+    """Up to this much later a datagram leaves, s; the order stays."""
+
+    duplication: float = 0.0
+    """Probability that a datagram arrives twice, 0 to 1."""
+
+    stalls: bool = False
+    """Whether states stall as in the network interface of a Franka Emika Robot: 2 to 7 ms, seven times a second."""
+
+    cuts: Sequence[tuple[float, float]] = ()
+    """When nothing arrives: from and to, s since the robot's start."""
+
+    seed: int = 1
+    """Seed of all this."""

@@ -1,0 +1,258 @@
+//! What people and objects do to a simulated robot.
+
+use franka_async::model::Frame;
+use franka_async::nalgebra::{UnitVector3, Vector3};
+use franka_async::state::RobotError;
+use franka_sim::TouchId;
+use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyAny;
+
+use crate::arrays::{array, pose_array, vector};
+use crate::model::arguments;
+use crate::operation::seconds;
+use crate::simulator::Sim;
+
+/// Something that acts on the arm of a simulated robot, made by the methods of `Sim`.
+#[pyclass(frozen, module = "franka_async")]
+pub(crate) struct Touch {
+    sim: Py<Sim>,
+    id: TouchId,
+}
+
+#[pymethods]
+impl Touch {
+    /// Ends it. Returns whether it was still there.
+    fn release(&self, py: Python<'_>) -> PyResult<bool> {
+        let id = self.id;
+        self.sim.get().robot(py, move |robot| robot.release(id))
+    }
+
+    /// The wrench that it exerts on the arm now, base axes, `(6,)` N and N m; `None` if it is over, or acts on
+    /// joints.
+    fn felt<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
+        let id = self.id;
+        let felt = self.sim.get().robot(py, move |robot| robot.felt(id))?;
+        Ok(felt.map(|wrench| array(py, wrench.as_slice())))
+    }
+}
+
+/// Lets `touch` act on the arm.
+fn touch(
+    sim: &Bound<'_, Sim>,
+    touch: franka_sim::Touch,
+    at: Option<(&str, Option<&Bound<'_, PyAny>>)>,
+    duration: Option<f64>,
+) -> PyResult<Touch> {
+    let mut touch = touch;
+    if let Some((frame, offset)) = at {
+        let frame: Frame = arguments::frame(frame)?;
+        let offset = offset.map_or(Ok([0.0; 3]), |offset| vector("offset", offset))?;
+        touch = touch.at(frame).offset(offset.into());
+    }
+    if let Some(duration) = duration {
+        let time = seconds(duration)?.as_millis();
+        touch = touch.lasting(u64::try_from(time).unwrap_or(u64::MAX));
+    }
+    let id = sim.get().robot(sim.py(), move |robot| robot.touch(touch))?;
+    let sim = sim.clone().unbind();
+    Ok(Touch { sim, id })
+}
+
+#[pymethods]
+impl Sim {
+    /// Pushes the arm `at` a frame (`ee`, `flange`, `joint4`, ...), `offset` from its origin in its axes, m, with
+    /// a force, base axes, N, and a torque, N m, for `duration` seconds of its own clock; until it is released if
+    /// `None`.
+    #[pyo3(signature = (force, torque = None, *, duration = None, at = "ee", offset = None))]
+    fn push(
+        this: &Bound<'_, Self>,
+        force: &Bound<'_, PyAny>,
+        torque: Option<&Bound<'_, PyAny>>,
+        duration: Option<f64>,
+        at: &str,
+        offset: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Touch> {
+        let [x, y, z] = vector("force", force)?;
+        let [a, b, c] = torque.map_or(Ok([0.0; 3]), |torque| vector("torque", torque))?;
+        let wrench = franka_sim::Touch::wrench([x, y, z, a, b, c].into());
+        touch(this, wrench, Some((at, offset)), duration)
+    }
+
+    /// Pushes the joints with torques, 7 numbers, N m; otherwise like `push`.
+    #[pyo3(signature = (torques, *, duration = None))]
+    fn push_joints(
+        this: &Bound<'_, Self>,
+        torques: &Bound<'_, PyAny>,
+        duration: Option<f64>,
+    ) -> PyResult<Touch> {
+        let torques = franka_sim::Touch::torque(vector::<7>("torques", torques)?.into());
+        touch(this, torques, None, duration)
+    }
+
+    /// Pulls the arm to the point `to`, base frame, m, by a spring of this stiffness, N/m; otherwise like `push`.
+    #[pyo3(signature = (to, stiffness, *, duration = None, at = "ee", offset = None))]
+    fn pull(
+        this: &Bound<'_, Self>,
+        to: &Bound<'_, PyAny>,
+        stiffness: f64,
+        duration: Option<f64>,
+        at: &str,
+        offset: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Touch> {
+        let to = Vector3::from(vector::<3>("to", to)?);
+        let spring = franka_sim::Touch::spring(to, positive("stiffness", stiffness)?);
+        touch(this, spring, Some((at, offset)), duration)
+    }
+
+    /// Grips the arm firmly where it is now; otherwise like `push`.
+    #[pyo3(signature = (*, duration = None, at = "ee", offset = None))]
+    fn hold(
+        this: &Bound<'_, Self>,
+        duration: Option<f64>,
+        at: &str,
+        offset: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Touch> {
+        touch(
+            this,
+            franka_sim::Touch::hold(),
+            Some((at, offset)),
+            duration,
+        )
+    }
+
+    /// Blocks a joint, 1 to 7, at its angle of now.
+    #[pyo3(signature = (joint, *, duration = None))]
+    fn block(this: &Bound<'_, Self>, joint: usize, duration: Option<f64>) -> PyResult<Touch> {
+        if !(1..=7).contains(&joint) {
+            let text = format!("joint is {joint}, expected 1 to 7");
+            return Err(PyValueError::new_err(text));
+        }
+        touch(this, franka_sim::Touch::block(joint - 1), None, duration)
+    }
+
+    /// Puts a wall in the way of the end effector: through `point`, base frame, m, with a `normal` out of it.
+    #[pyo3(signature = (point, normal, *, duration = None, at = "ee", offset = None))]
+    fn wall(
+        this: &Bound<'_, Self>,
+        point: &Bound<'_, PyAny>,
+        normal: &Bound<'_, PyAny>,
+        duration: Option<f64>,
+        at: &str,
+        offset: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Touch> {
+        let point = Vector3::from(vector::<3>("point", point)?);
+        let normal = UnitVector3::try_new(vector::<3>("normal", normal)?.into(), 1e-9)
+            .ok_or_else(|| PyValueError::new_err("normal has no length"))?;
+        let wall = franka_sim::Touch::wall(point, normal.into_inner());
+        touch(this, wall, Some((at, offset)), duration)
+    }
+
+    /// Ends every touch.
+    fn let_go(&self, py: Python<'_>) -> PyResult<()> {
+        self.robot(py, |robot| robot.let_go())
+    }
+
+    /// Presses the user stop, or releases it.
+    #[pyo3(signature = (pressed = true))]
+    fn press_user_stop(&self, py: Python<'_>, pressed: bool) -> PyResult<()> {
+        self.robot(py, move |robot| robot.press_user_stop(pressed))
+    }
+
+    /// Activates a safety function that forbids motion, as set up in Desk, or deactivates it.
+    #[pyo3(signature = (active = true))]
+    fn activate_safety_function(&self, py: Python<'_>, active: bool) -> PyResult<()> {
+        self.robot(py, move |robot| robot.activate_safety_function(active))
+    }
+
+    /// Presses the guiding buttons, or lets go of them. Returns whether the arm is guided then.
+    #[pyo3(signature = (pressed = true))]
+    fn guide(&self, py: Python<'_>, pressed: bool) -> PyResult<bool> {
+        self.robot(py, move |robot| robot.guide(pressed))
+    }
+
+    /// Closes the brakes of the joints, or opens them: as Desk locks and unlocks a robot.
+    #[pyo3(signature = (closed = true))]
+    fn lock(&self, py: Python<'_>, closed: bool) -> PyResult<()> {
+        self.robot(py, move |robot| match closed {
+            true => robot.close_brakes(),
+            false => robot.open_brakes(),
+        })
+    }
+
+    /// Raises an error of the robot, by the vendor's name, such as `cartesian_reflex`: it stops itself.
+    fn trip(&self, py: Python<'_>, error: &str) -> PyResult<()> {
+        let found = RobotError::from_name(error).ok_or_else(|| {
+            PyValueError::new_err(format!("error is {error:?}, which no error is called"))
+        })?;
+        self.robot(py, move |robot| robot.trip(found))
+    }
+
+    /// Performs the recovery that takes a person.
+    fn recover_manually(&self, py: Python<'_>) -> PyResult<()> {
+        self.robot(py, |robot| robot.recover_manually())
+    }
+
+    /// Puts the arm to joint positions, 7 numbers, rad, at rest.
+    fn place(&self, py: Python<'_>, q: &Bound<'_, PyAny>) -> PyResult<()> {
+        let q = vector::<7>("q", q)?.into();
+        self.robot(py, move |robot| robot.place(&q))
+    }
+
+    /// Attaches a body to the flange that the robot does not know of, in the place of the one before: mass,
+    /// kg, centre of mass in the flange frame, m, and inertia about it, `(3, 3)` kg m^2.
+    #[pyo3(signature = (mass, center, inertia = None))]
+    fn attach(
+        &self,
+        py: Python<'_>,
+        mass: f64,
+        center: &Bound<'_, PyAny>,
+        inertia: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let body = arguments::load(inertia, mass, Some(center))?;
+        self.robot(py, move |robot| robot.attach(body))
+    }
+
+    /// Where the end effector really is, base frame, `(4, 4)`: the robot's own joint sensors may be off.
+    fn true_pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let pose = self.robot(py, |robot| robot.true_pose())?;
+        Ok(pose_array(py, &pose))
+    }
+
+    /// Puts an object of this width, m, between the fingers of the Hand. Raises `ValueError` if it does not
+    /// fit, and without a Hand.
+    fn place_object(&self, py: Python<'_>, width: f64) -> PyResult<()> {
+        let place = move |hand: &mut franka_sim::Hand| hand.mechanism_mut().place_object(width);
+        let placed = self.with(py, async |sim| match sim.hand() {
+            Some(hand) => hand.with(place).await.map(Some),
+            None => Ok(None),
+        })?;
+        let problem = match placed {
+            Some(true) => return Ok(()),
+            Some(false) => format!("an object of {width} m does not fit between the fingers"),
+            None => "this robot has no Hand: start it with hand=True".into(),
+        };
+        Err(PyValueError::new_err(problem))
+    }
+
+    /// Puts a part in front of the vacuum gripper. Raises `ValueError` without one.
+    fn place_part(&self, py: Python<'_>) -> PyResult<()> {
+        let place =
+            |gripper: &mut franka_sim::VacuumGripper| gripper.mechanism_mut().place_object();
+        let placed = self.with(py, async |sim| match sim.vacuum_gripper() {
+            Some(gripper) => gripper.with(place).await.map(Some),
+            None => Ok(None),
+        })?;
+        let without = "this robot has no vacuum gripper: start it with vacuum_gripper=True";
+        placed.ok_or_else(|| PyValueError::new_err(without))
+    }
+}
+
+fn positive(name: &str, value: f64) -> PyResult<f64> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(value);
+    }
+    let text = format!("{name} is {value}, expected a number above 0");
+    Err(PyValueError::new_err(text))
+}

@@ -1,0 +1,61 @@
+//! States as they come.
+
+use franka_async::state::Reading;
+use futures::{StreamExt, future};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyAny;
+
+use crate::robot::Robot;
+use crate::state::RobotState;
+use crate::stream::stream;
+
+#[pymethods]
+impl Robot {
+    /// The newest state as it changes, for `async for` or `for`; at most `rate` of them per second, by the
+    /// robot's clock, if that is given. States that come while the program does something else are skipped
+    /// for the newest. Ends when the connection does.
+    #[pyo3(signature = (rate = None))]
+    fn states<'py>(&self, py: Python<'py>, rate: Option<f64>) -> PyResult<Bound<'py, PyAny>> {
+        let robot = self.connected()?;
+        let version = robot.version();
+        let period = match rate {
+            None => 0.0,
+            Some(rate) if rate.is_finite() && rate > 0.0 => 1000.0 / rate,
+            Some(rate) => {
+                let text = format!("rate is {rate}, expected a number above 0, in 1/s");
+                return Err(PyValueError::new_err(text));
+            }
+        };
+        let mut due = 0.0;
+        let states = robot.states().filter(move |state| {
+            let now = state.message_id as f64;
+            let is_due = now >= due;
+            if is_due {
+                // Late ones do not make the later ones come closer together.
+                due = f64::max(due + period, now + period - 1.0);
+            }
+            future::ready(is_due)
+        });
+        stream(py, states, move |py, state| {
+            Ok(Py::new(py, RobotState::new(state, version))?.into_any())
+        })
+    }
+
+    /// Every state from now on, each once and in order, for `async for` or `for`: pairs of the state and how
+    /// many are `missed` before it. A program may lag about a second behind before it misses any. Ends when
+    /// the connection does.
+    fn state_stream<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let robot = self.connected()?;
+        let version = robot.version();
+        let class = py
+            .import("franka_async.streams")?
+            .getattr("Reading")?
+            .unbind();
+        let class = std::sync::Arc::new(class);
+        stream(py, robot.state_stream(), move |py, reading| {
+            let Reading { state, missed, .. } = reading;
+            class.call1(py, (RobotState::new(state, version), missed))
+        })
+    }
+}
