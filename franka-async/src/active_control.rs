@@ -190,15 +190,18 @@ impl<C> Active<C> {
     }
 
     /// Sends a command; the last one also waits until the robot has ended the motion.
-    fn write(
-        &mut self,
-        command: &Command,
-        finished: bool,
-    ) -> Result<Option<MotionReport>, ActiveError> {
+    fn write(&mut self, next: Next<Command>) -> Result<Option<MotionReport>, ActiveError> {
         if self.outcome.is_none() {
             return Err(ActiveError::Finished);
         }
-        self.lease()?.write(command, finished)?;
+        let (command, finished) = match next.into_parts() {
+            Ok(parts) => parts,
+            Err(code) => {
+                self.stop();
+                return Err(MotionError::GivenUp { code }.into());
+            }
+        };
+        self.lease()?.write(&command, finished)?;
         if finished {
             return Ok(Some(self.end()?));
         }
@@ -210,6 +213,17 @@ impl<C> Active<C> {
         match &mut self.lease {
             Some(lease) => Ok(lease),
             none => Ok(none.insert(self.lender.borrow()?)),
+        }
+    }
+
+    /// Gives the cycle back and has the robot stop, unless the motion has ended.
+    fn stop(&mut self) {
+        // The cycle goes back first, so that the thread ends the motion.
+        self.lease = None;
+        if let Some(outcome) = self.outcome.take()
+            && outcome.now_or_never().is_none()
+        {
+            self.robot.cancel(self.id);
         }
     }
 
@@ -234,9 +248,9 @@ impl Active<Torques> {
         &mut self,
         torques: impl Into<Next<Torques>>,
     ) -> Result<Option<MotionReport>, ActiveError> {
-        let (torques, finished) = torques.into().into_parts();
-        let command = Command::torques(self.robot.version(), torques);
-        self.write(&command, finished)
+        let version = self.robot.version();
+        let command = |torques| Command::torques(version, torques);
+        self.write(torques.into().map(command))
     }
 }
 
@@ -252,12 +266,10 @@ impl<C: GeneratorCommand> Active<C> {
         &mut self,
         motion: impl Into<Next<C>>,
     ) -> Result<Option<MotionReport>, ActiveError> {
-        let (motion, finished) = motion.into().into_parts();
-        let command = Command {
+        self.write(motion.into().map(|motion| Command {
             motion: Some(motion.into()),
             torques: None,
-        };
-        self.write(&command, finished)
+        }))
     }
 
     /// Sends a command to the motion generator and torques beside it, under an external controller.
@@ -271,24 +283,16 @@ impl<C: GeneratorCommand> Active<C> {
         motion: impl Into<Next<C>>,
         torques: impl Into<Next<Torques>>,
     ) -> Result<Option<MotionReport>, ActiveError> {
-        let (motion, finished) = motion.into().into_parts();
-        let (torques, last) = torques.into().into_parts();
-        let command = Command {
+        let next = motion.into().zip(torques.into());
+        self.write(next.map(|(motion, torques)| Command {
             motion: Some(motion.into()),
             torques: Some(torques),
-        };
-        self.write(&command, finished || last)
+        }))
     }
 }
 
 impl<C> Drop for Active<C> {
     fn drop(&mut self) {
-        // The cycle goes back first, so that the thread ends the motion.
-        self.lease = None;
-        if let Some(outcome) = self.outcome.take()
-            && outcome.now_or_never().is_none()
-        {
-            self.robot.cancel(self.id);
-        }
+        self.stop();
     }
 }

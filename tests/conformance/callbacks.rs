@@ -66,6 +66,27 @@ fn scenario_15_a_panic_in_a_control_function_stops_the_robot() {
     });
 }
 
+#[test]
+fn a_control_function_that_gives_up_stops_the_robot_and_its_code_is_the_error() {
+    for_each_version(|version| {
+        let mut pair = Pair::connected(version);
+        let mut cycle = 0;
+        let (program, request) = torques(version, move |_, _| {
+            cycle += 1;
+            match cycle {
+                3 => Next::GiveUp(-7),
+                _ => Next::Continue(Torques([0.0; 7])),
+            }
+        });
+        let motion = pair.begin(program, request);
+        assert!(motion.first.is_some());
+        assert!(pair.step().is_some());
+        assert_eq!(pair.step(), None);
+        let error = assert_stopped(&mut pair, &motion);
+        assert_eq!(error, MotionError::GivenUp { code: -7 });
+    });
+}
+
 /// The outcome is the panic, which caused everything else.
 #[test]
 fn scenario_15_a_panic_is_reported_even_if_the_robot_does_not_stop() {

@@ -184,7 +184,8 @@ impl<T> Source<T> {
         // A function that has panicked is never called again, so nothing reads what it left half
         // done.
         let called = catch_unwind(AssertUnwindSafe(|| (self.function)(state, step)));
-        called.map(Next::into_parts).map_err(Failure::Panicked)
+        let next = called.map_err(Failure::Panicked)?;
+        next.into_parts().map_err(Failure::GivenUp)
     }
 }
 

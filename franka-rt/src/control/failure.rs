@@ -10,6 +10,8 @@ use crate::shaping::InvalidCommand;
 pub enum Failure {
     /// Its command cannot be sent.
     Invalid(InvalidCommand),
+    /// It gave up, with a code of its own.
+    GivenUp(i32),
     /// It panicked. The payload leaves with the failure, to be freed outside the thread.
     Panicked(Box<dyn Any + Send>),
 }

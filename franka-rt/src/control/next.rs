@@ -12,14 +12,21 @@ pub enum Next<T> {
     /// Send it, repeated until the robot has ended the motion; the function is not called again.
     /// The robot refuses to end a motion that still moves.
     Finish(T),
+    /// Send nothing more, and have the robot stop: the motion fails with this code, which is the
+    /// function's own.
+    GiveUp(i32),
 }
 
 impl<T> Next<T> {
     /// The command, and whether it is the last.
-    pub fn into_parts(self) -> (T, bool) {
+    ///
+    /// # Errors
+    /// The code of [`Self::GiveUp`].
+    pub fn into_parts(self) -> Result<(T, bool), i32> {
         match self {
-            Self::Continue(command) => (command, false),
-            Self::Finish(command) => (command, true),
+            Self::Continue(command) => Ok((command, false)),
+            Self::Finish(command) => Ok((command, true)),
+            Self::GiveUp(code) => Err(code),
         }
     }
 
@@ -28,6 +35,17 @@ impl<T> Next<T> {
         match self {
             Self::Continue(command) => Next::Continue(change(command)),
             Self::Finish(command) => Next::Finish(change(command)),
+            Self::GiveUp(code) => Next::GiveUp(code),
+        }
+    }
+
+    /// Both commands: the last ones if either is, given up if either is.
+    pub fn zip<U>(self, other: Next<U>) -> Next<(T, U)> {
+        match (self.into_parts(), other.into_parts()) {
+            (Ok((first, last)), Ok((second, also_last))) => {
+                (first, second).finish_if(last || also_last)
+            }
+            (Err(code), _) | (_, Err(code)) => Next::GiveUp(code),
         }
     }
 }
@@ -55,6 +73,7 @@ pub trait Finish: Sized {
     }
 }
 
+impl<T, U> Finish for (T, U) {}
 impl Finish for Torques {}
 impl Finish for JointPositions {}
 impl Finish for JointVelocities {}

@@ -24,10 +24,6 @@ pub enum Program {
 }
 
 /// What is sent in answer to a state.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "one per cycle, and a box would allocate on the thread"
-)]
 pub(super) enum CycleOutcome {
     /// This command; the last one if it says so.
     Command { command: Command, finished: bool },

@@ -205,6 +205,7 @@ impl From<Failure> for MotionError {
     fn from(failure: Failure) -> Self {
         match failure {
             Failure::Invalid(invalid) => Self::Invalid(invalid),
+            Failure::GivenUp(code) => Self::GivenUp { code },
             Failure::Panicked(payload) => Self::Panicked {
                 message: panic::message(&*payload),
             },

@@ -146,6 +146,12 @@ pub enum MotionError {
     /// from a state or a goal with non-finite numbers. The robot was told to stop.
     #[error(transparent)]
     Invalid(#[from] InvalidCommand),
+    /// Caller: a control function gave up. The robot was told to stop.
+    #[error("the control function gave up with code {code}")]
+    GivenUp {
+        /// The function's own code.
+        code: i32,
+    },
     /// Caller: a control function panicked. The robot was told to stop.
     #[error("the control function panicked: {message}")]
     Panicked {
@@ -281,6 +287,7 @@ impl MotionError {
             | Self::Start(_)
             | Self::Unsupported(_)
             | Self::Invalid(_)
+            | Self::GivenUp { .. }
             | Self::Panicked { .. }
             | Self::Stalled { .. } => Party::Caller,
             Self::TargetNotReached(short) if short.limited.is_some() => Party::Caller,

@@ -95,7 +95,7 @@ impl CourseFollower {
                 motion(self.next(state, step, cartesian_velocities), torques)
             }
             MoveGeneratorMode::None => {
-                let (torques, finished) = self.next(state, step, course::torques).into_parts();
+                let (torques, finished) = parts(self.next(state, step, course::torques));
                 (Command::torques(version, torques), finished)
             }
         }
@@ -143,7 +143,7 @@ fn leading<C: GeneratorCommand + WithNan + Finish>(
 
 /// A command to a generator, with torques if there are any.
 fn motion<C: GeneratorCommand>(next: Next<C>, torques: Option<Torques>) -> (Command, bool) {
-    let (motion, finished) = next.into_parts();
+    let (motion, finished) = parts(next);
     let motion = Some(motion.into());
     (Command { motion, torques }, finished)
 }
@@ -186,4 +186,9 @@ impl WithNan for CartesianVelocities {
         self.O_dP_EE[5] = f64::NAN;
         self
     }
+}
+
+fn parts<C>(next: Next<C>) -> (C, bool) {
+    let parts = next.into_parts();
+    parts.unwrap_or_else(|code| panic!("no follower gives up, this one with {code}"))
 }
