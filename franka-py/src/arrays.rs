@@ -128,6 +128,19 @@ pub(crate) fn pose_of(name: &str, shape: &[usize], values: &[f64]) -> PyResult<O
     }
 }
 
+/// Reads a pose as [`pose`] does, but takes a `(4, 4)` matrix as it is.
+///
+/// # Errors
+/// As [`pose`], but for a matrix that is not rigid.
+pub(crate) fn pose_matrix(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Matrix4<f64>> {
+    let Numbers { shape, values } = Numbers::read(name, argument)?;
+    check_finite(name, &values)?;
+    match *shape {
+        [4, 4] => Ok(Matrix4::from_row_slice(&values)),
+        _ => pose(name, argument).map(|pose| pose.to_homogeneous()),
+    }
+}
+
 /// The error for an argument of the wrong shape.
 pub(crate) fn unexpected_shape(name: &str, got: &[usize], expected: &str) -> PyErr {
     PyValueError::new_err(format!("{name} has the shape {got:?}, expected {expected}"))

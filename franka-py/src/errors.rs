@@ -85,7 +85,10 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     exception.setattr("party", variant(&error.party()))?;
     match error {
         Error::Motion(motion) => {
-            exception.setattr("is_ready_for_more", motion.is_ready_for_more())?
+            exception.setattr("is_ready_for_more", motion.is_ready_for_more())?;
+            if let MotionError::GivenUp { code } = motion {
+                exception.setattr("code", code)?;
+            }
         }
         Error::Control(control) => {
             exception.setattr("is_ready_for_more", !control.is_reflex())?;

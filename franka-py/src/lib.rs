@@ -9,11 +9,14 @@
 //! No thread that a motion waits for takes the interpreter's lock: tasks run on the runtime, and
 //! results become Python objects where they are awaited.
 
+mod active;
 mod arm;
 mod arrays;
+mod asynchronous;
 mod batch;
 mod chunk;
 mod condition;
+mod control;
 mod destination;
 mod disturbance;
 mod errors;
@@ -21,6 +24,7 @@ mod exit;
 mod follow;
 mod gains;
 mod goals;
+mod law;
 mod log;
 mod model;
 mod motion;
@@ -43,9 +47,13 @@ mod _native {
     use super::*;
 
     #[pymodule_export]
+    use crate::active::ActiveControl;
+    #[pymodule_export]
     use crate::arm::{Arm, Deadman, Engagement};
     #[pymodule_export]
     use crate::arrays::_row;
+    #[pymodule_export]
+    use crate::asynchronous::AsynchronousControl;
     #[pymodule_export]
     use crate::condition::{
         Condition, Quantity, Then, cartesian_contact, collision, contact, elapsed, force, force_x,
@@ -58,6 +66,8 @@ mod _native {
     use crate::follow::Latest;
     #[pymodule_export]
     use crate::gains::{_gains, _softened};
+    #[pymodule_export]
+    use crate::law::{_law_layout, Law};
     #[pymodule_export]
     use crate::log::ControlLog;
     #[pymodule_export]

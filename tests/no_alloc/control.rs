@@ -79,7 +79,7 @@ fn a_hundred_thousand_cycles_to_targets_that_are_reached_allocate_and_free_nothi
 
 /// Lets `program` answer states of the motion of `request`, and returns the number of calls of the
 /// allocator meanwhile. `before` is called ahead of each state, outside the cycle.
-fn calls_of(
+pub(crate) fn calls_of(
     version: Version,
     program: Program,
     request: &MoveRequest,

@@ -6,6 +6,7 @@ mod endings;
 mod engaged;
 mod generator;
 mod guards;
+mod laws;
 mod team;
 mod thread;
 

@@ -1,9 +1,11 @@
 """Driver for Franka robots: motions are awaitables, states are numpy arrays, control stays on a real-time thread."""
 
-from . import condition, otg
+from . import condition, laws, otg
 from ._native import (
     FLAT_LAYOUT,
+    ActiveControl,
     Arm,
+    AsynchronousControl,
     CartesianLimits,
     Clearance,
     ControlLog,
@@ -12,6 +14,7 @@ from ._native import (
     Engagement,
     JointLimits,
     Latest,
+    Law,
     Model,
     Motion,
     MotionHandle,
@@ -63,8 +66,10 @@ from .streams import Reading, Stream
 
 __all__ = [
     "ActionError",
+    "ActiveControl",
     "ActiveError",
     "Arm",
+    "AsynchronousControl",
     "Box",
     "Budget",
     "CartesianLimits",
@@ -85,6 +90,7 @@ __all__ = [
     "JointLimits",
     "Joints",
     "Latest",
+    "Law",
     "Lead",
     "Leash",
     "Limits",
@@ -115,5 +121,6 @@ __all__ = [
     "VirtualRobots",
     "Waypoint",
     "condition",
+    "laws",
     "otg",
 ]

@@ -60,6 +60,9 @@ class MotionError(FrankaError):
     is_ready_for_more: bool
     """Whether the robot takes a new motion without help from outside."""
 
+    code: int | None = None
+    """What a control law returned that gave up, below 0; `None` unless the kind is ``given_up``."""
+
 
 class ActiveError(MotionError):
     """Active control could not go on."""

@@ -1,0 +1,329 @@
+//! Control laws that run without the interpreter: a C function in the control cycle.
+//!
+//! | module | content |
+//! |---|---|
+//! | this | the class, and how a robot runs a law |
+//! | `function` | what the function gets in a cycle, and how it is called |
+
+mod function;
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use franka_async::connection::Version;
+use franka_async::control::slot::{Read, SlotReader, SlotWriter, slot};
+use franka_async::control::{
+    CartesianPose, CartesianVelocities, Control, JointPositions, JointVelocities, Torques,
+};
+use franka_async::model::{Model, RobotKind};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyAny;
+
+use crate::arrays::{Numbers as Argument, array, check_finite, unexpected_shape};
+use crate::control::{CommandKind, controller};
+use crate::motion::Report;
+use crate::operation::{Operation, seconds};
+use crate::robot::Robot;
+use crate::state::RobotState;
+use function::{Code, MOST, Numbers, Output, Running, Setup};
+
+/// A control law: a C function that the real-time thread calls with every state, without the
+/// interpreter. `include/franka_async_law.h` says what the function gets and returns.
+///
+/// `code` is a `numba.cfunc`, what `franka_async.laws.compiled` makes, a function of a library that
+/// `ctypes` or `cffi` has loaded, or an address as an integer, whose code the program then has to
+/// keep. `command` is what the law's output is: `torques`, `joint_positions`, `joint_velocities`,
+/// `cartesian_pose` or `cartesian_velocities`. `parameters` and `memory`, `(n,)` with 256 numbers at
+/// most, are what the law finds in its first cycle.
+///
+/// The function runs on the real-time thread, with some 300 us to answer: it must not lock, allocate,
+/// print or wait, and nothing guards against code that writes where it should not.
+#[pyclass(frozen, module = "franka_async")]
+pub(crate) struct Law {
+    code: Arc<Code>,
+    command: CommandKind,
+    parameters: Mutex<Parameters>,
+    memory: Vec<f64>,
+    /// The memory of the newest run.
+    remembered: Mutex<(SlotReader<Numbers>, Box<Numbers>)>,
+    /// The cycles that `step` makes.
+    dry_run: Mutex<Option<Running>>,
+}
+
+struct Parameters {
+    newest: Vec<f64>,
+    writer: SlotWriter<Numbers>,
+    /// Never read from: every clone of it gets the newest.
+    reader: SlotReader<Numbers>,
+}
+
+#[pymethods]
+impl Law {
+    #[new]
+    #[pyo3(signature = (code, *, command = "torques", parameters = None, memory = None))]
+    fn new(
+        py: Python<'_>,
+        code: &Bound<'_, PyAny>,
+        command: &str,
+        parameters: Option<&Bound<'_, PyAny>>,
+        memory: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let command = CommandKind::of(command)?;
+        let parameters = numbers("parameters", parameters)?;
+        let memory = numbers("memory", memory)?;
+        let laws = py.import("franka_async.laws")?;
+        let address = laws.call_method1("address_of", (code,))?.extract()?;
+        // SAFETY: what the class asks of its caller; the object that owns the code goes with it.
+        let code = unsafe { Code::new(address, Box::new(code.clone().unbind())) };
+        let code = code.ok_or_else(|| PyValueError::new_err("code is the null pointer"))?;
+        let (writer, reader) = slot();
+        let (_, nothing) = slot();
+        Ok(Self {
+            code: Arc::new(code),
+            command,
+            parameters: Mutex::new(Parameters {
+                newest: parameters,
+                writer,
+                reader,
+            }),
+            remembered: Mutex::new((nothing, Box::new(function::padded(&memory)))),
+            memory,
+            dry_run: Mutex::new(None),
+        })
+    }
+
+    /// What the law's output is.
+    #[getter]
+    fn command(&self) -> &'static str {
+        self.command.name()
+    }
+
+    /// The newest parameters, `(n,)`. Setting them reaches a law that runs with its next cycle, all
+    /// of them at once; their number stays. Raises `ValueError`.
+    #[getter]
+    fn parameters<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        array(py, &lock(&self.parameters).newest)
+    }
+
+    #[setter]
+    fn set_parameters(&self, parameters: &Bound<'_, PyAny>) -> PyResult<()> {
+        let values = numbers("parameters", Some(parameters))?;
+        let mut parameters = lock(&self.parameters);
+        if values.len() != parameters.newest.len() {
+            let expected = format!("({},)", parameters.newest.len());
+            return Err(unexpected_shape("parameters", &[values.len()], &expected));
+        }
+        parameters.writer.write(&function::padded(&values));
+        parameters.newest = values;
+        Ok(())
+    }
+
+    /// The memory after the newest cycle of the newest run, `(n,)`; before the first one, what the law
+    /// was made with.
+    #[getter]
+    fn memory<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let mut remembered = lock(&self.remembered);
+        let (reader, newest) = &mut *remembered;
+        if let Read::Newer(memory) = reader.read_retry(ATTEMPTS) {
+            **newest = memory;
+        }
+        array(py, &newest[..self.memory.len()])
+    }
+
+    /// Calls the law once, with `state` and `dt` seconds after the state before, without a robot.
+    /// Returns its output, `(7,)`, `(4, 4)` or `(6,)`, and what it returned. Numbers that it did not
+    /// write are NaN. Time and memory go on from call to call; `reset()` begins anew. Model terms are
+    /// those of the vendor's constants for the kind of robot that the state is from.
+    #[pyo3(signature = (state, dt = 0.001))]
+    fn step<'py>(
+        &self,
+        py: Python<'py>,
+        state: &RobotState,
+        dt: f64,
+    ) -> PyResult<(Bound<'py, PyArrayDyn<f64>>, i32)> {
+        let dt = seconds(dt)?;
+        let mut dry_run = lock(&self.dry_run);
+        let running = dry_run.get_or_insert_with(|| {
+            let kind = match state.version {
+                Version::V5 => RobotKind::Fer,
+                Version::V10 => RobotKind::Fr3,
+            };
+            self.running(Arc::new(Model::of(kind).clone()), state.version)
+        });
+        let (output, code) = running.call(&state.state, dt);
+        Ok((shaped(py, self.command, &output)?, code))
+    }
+
+    /// Has the next `step` begin with time 0 and the memory that the law was made with.
+    fn reset(&self) {
+        *lock(&self.dry_run) = None;
+    }
+
+    fn __repr__(&self) -> String {
+        let parameters = lock(&self.parameters).newest.len();
+        let memory = self.memory.len();
+        let command = self.command.name();
+        format!("<Law for {command}, {parameters} parameters, memory of {memory}>")
+    }
+}
+
+impl Law {
+    /// The law before the first cycle of a run, whose memory is the one that is shown from now on.
+    fn running(&self, model: Arc<Model>, version: Version) -> Running {
+        let (remembered, reader) = slot();
+        *lock(&self.remembered) = (reader, Box::new(function::padded(&self.memory)));
+        let parameters = lock(&self.parameters);
+        let setup = Setup {
+            model,
+            version,
+            parameters: &parameters.newest,
+            arriving: parameters.reader.clone(),
+            memory: &self.memory,
+            remembered,
+        };
+        Running::new(self.code.clone(), setup)
+    }
+
+    /// The control function that calls the law.
+    fn control(&self, robot: &franka_async::Robot) -> Control {
+        let model = Arc::new(robot.model().clone());
+        let mut law = self.running(model, robot.version());
+        match self.command {
+            CommandKind::Torques => {
+                robot.control_torques(move |s, dt| law.next(s, dt, |o| Torques(first(o))))
+            }
+            CommandKind::JointPositions => robot.control_joint_positions(move |s, dt| {
+                law.next(s, dt, |o| JointPositions(first(o)))
+            }),
+            CommandKind::JointVelocities => robot.control_joint_velocities(move |s, dt| {
+                law.next(s, dt, |o| JointVelocities(first(o)))
+            }),
+            CommandKind::CartesianPose => robot.control_cartesian_pose(move |s, dt| {
+                law.next(s, dt, |o| CartesianPose {
+                    O_T_EE: transposed(o),
+                    elbow: None,
+                })
+            }),
+            CommandKind::CartesianVelocities => robot.control_cartesian_velocities(move |s, dt| {
+                law.next(s, dt, |o| CartesianVelocities {
+                    O_dP_EE: first(o),
+                    elbow: None,
+                })
+            }),
+        }
+    }
+}
+
+#[pymethods]
+impl Robot {
+    /// Control by a law that needs no interpreter in the cycle, a `Law`, or code that one is made
+    /// of with `command`, `parameters` and `memory`. Resolves with a `MotionReport` when the law has
+    /// returned a positive number and the robot has ended the motion.
+    ///
+    /// `controller` is which of the robot's own controllers follows, where no torques are
+    /// commanded. `limit_rate` is whether commands pass the limiter: by default on a Franka Emika
+    /// Robot and not on a Franka Research 3, as with the vendor's library. `cutoff_frequency` is that
+    /// of the low-pass filter, Hz; 1000 switches it off.
+    ///
+    /// Raises `MotionError` of the kind `given_up` if the law returned a negative number, which is
+    /// its `code`, of the kind `invalid` for output that is not finite, and `busy` while anything
+    /// else controls the arm. Cancelling has the robot stop.
+    #[pyo3(signature = (
+        law, *, command = None, parameters = None, memory = None, controller = "joint_impedance",
+        limit_rate = None, cutoff_frequency = None,
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "keywords")]
+    fn run_law(
+        &self,
+        py: Python<'_>,
+        law: &Bound<'_, PyAny>,
+        command: Option<&str>,
+        parameters: Option<&Bound<'_, PyAny>>,
+        memory: Option<&Bound<'_, PyAny>>,
+        controller: &str,
+        limit_rate: Option<bool>,
+        cutoff_frequency: Option<f64>,
+    ) -> PyResult<Operation> {
+        let controller = self::controller(controller)?;
+        let law = match law.cast::<Law>() {
+            Ok(_) if command.is_some() || parameters.is_some() || memory.is_some() => {
+                return Err(PyValueError::new_err(
+                    "command, parameters and memory belong to the Law that was given",
+                ));
+            }
+            Ok(law) => law.clone(),
+            Err(_) => {
+                let command = command.unwrap_or("torques");
+                Bound::new(py, Law::new(py, law, command, parameters, memory)?)?
+            }
+        };
+        let robot = self.connected()?;
+        let mut control = law.get().control(&robot).controller(controller);
+        if let Some(limit) = limit_rate {
+            control = control.limit_rate(limit);
+        }
+        if let Some(frequency) = cutoff_frequency {
+            if !(frequency > 0.0 && frequency.is_finite()) {
+                let text = format!("cutoff_frequency is {frequency}, expected a positive number");
+                return Err(PyValueError::new_err(text));
+            }
+            control = control.cutoff_frequency(frequency);
+        }
+        Ok(Operation::new("Robot.run_law", async move {
+            control.await.map(Report)
+        }))
+    }
+}
+
+/// Where each field of what a law gets is: name, offset in bytes, shape, numpy format; and the size of
+/// it all.
+#[pyfunction]
+pub(crate) fn _law_layout() -> (Vec<function::Place>, usize) {
+    (function::layout(), size_of::<function::Cycle>())
+}
+
+/// Reads up to [`MOST`] numbers.
+fn numbers(name: &str, argument: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>> {
+    let Some(argument) = argument else {
+        return Ok(Vec::new());
+    };
+    let Argument { shape, values } = Argument::read(name, argument)?;
+    if shape.len() != 1 || values.len() > MOST {
+        let expected = format!("(n,) with n up to {MOST}");
+        return Err(unexpected_shape(name, &shape, &expected));
+    }
+    check_finite(name, &values)?;
+    Ok(values)
+}
+
+/// The output as an array of the command's shape.
+fn shaped<'py>(
+    py: Python<'py>,
+    command: CommandKind,
+    output: &Output,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let shape: &[usize] = match command {
+        CommandKind::CartesianPose => &[4, 4],
+        CommandKind::CartesianVelocities => &[6],
+        _ => &[7],
+    };
+    array(py, &output[..shape.iter().product()]).reshape(shape)
+}
+
+fn first<const N: usize>(output: &Output) -> [f64; N] {
+    std::array::from_fn(|i| output[i])
+}
+
+/// A pose column by column, as commands have it, from one row by row.
+fn transposed(output: &Output) -> [f64; 16] {
+    std::array::from_fn(|i| output[i % 4 * 4 + i / 4])
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    // Nothing in here can be half done.
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Reads of a memory that is written every millisecond, in some 100 ns.
+const ATTEMPTS: usize = 100;
