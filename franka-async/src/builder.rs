@@ -193,10 +193,11 @@ impl Builder {
 
     /// Asks `agrees` before each recovery that the policy allows, with the reflex and, if it ended
     /// a motion of this program, its log and [diagnosis](crate::diagnosis::Diagnose). Implies
-    /// [`Policy::ask_first`](crate::supervision::Policy::ask_first). It runs in the task that
-    /// supervises, and holds it up: one that asks a person leaves this away, waits for
-    /// [`Unready::AgreementAwaited`](crate::error::Unready::AgreementAwaited) and calls
-    /// [`Robot::agree`]. One that panics does not agree.
+    /// [`Policy::ask_first`](crate::supervision::Policy::ask_first). It runs on a thread for what
+    /// blocks ([`spawn_blocking`](tokio::task::spawn_blocking)) and may take its time: the robot
+    /// waits for its answer, and nothing else does, but for a runtime that is dropped. An answer
+    /// that comes too late, as [`Robot::agree`] has it, has no effect. One that panics does not
+    /// agree.
     pub fn ask_before_recovery(
         mut self,
         agrees: impl Fn(&Reflex) -> bool + Send + Sync + 'static,

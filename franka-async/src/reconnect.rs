@@ -114,7 +114,7 @@ impl Reconnector {
                 }
             }
             Job::Recover { reflex } => self.recover(reflex),
-            Job::Ask(reflex) => self.ask(&reflex),
+            Job::Ask(reflex) => self.ask(reflex),
         }
     }
 
@@ -188,17 +188,22 @@ impl Reconnector {
         self.supervisor.on_recovery(reflex, answer);
     }
 
-    /// Asks the function of the program. Without one, somebody calls [`Robot::agree`].
-    fn ask(&mut self, reflex: &Reflex) {
+    /// Asks the function of the program, which may take its time. Without one, somebody calls
+    /// [`Robot::agree`].
+    fn ask(&mut self, reflex: Reflex) {
         let Some(ask) = self.builder.ask.clone() else {
             return;
         };
-        let agreed = catch_unwind(AssertUnwindSafe(|| (ask.0)(reflex)));
-        let agreed = agreed.unwrap_or_else(|_| {
-            tracing::error!("the function that was asked to agree to a recovery panicked");
-            false
+        let supervisor = self.supervisor.clone();
+        // An answer that comes too late has no effect.
+        tokio::task::spawn_blocking(move || {
+            let agreed = catch_unwind(AssertUnwindSafe(|| (ask.0)(&reflex)));
+            let agreed = agreed.unwrap_or_else(|_| {
+                tracing::error!("the function that was asked to agree to a recovery panicked");
+                false
+            });
+            supervisor.agree(reflex.number, agreed);
         });
-        self.supervisor.agree(reflex.number, agreed);
     }
 
     /// Has this program's connection closed, if there is one.
