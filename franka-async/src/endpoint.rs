@@ -110,6 +110,13 @@ pub enum EndpointError {
 }
 
 impl Endpoint {
+    /// Returns the same host at another port: that of an end effector beside a robot.
+    #[must_use]
+    pub fn at_port(mut self, port: u16) -> Self {
+        self.set_port(port);
+        self
+    }
+
     /// The host, or what is wrong with the text that this was made from.
     pub(crate) fn host(&self) -> Result<&Host, EndpointError> {
         self.host.as_ref().map_err(Clone::clone)
