@@ -18,12 +18,15 @@ mod chunk;
 mod condition;
 mod control;
 mod destination;
+mod device;
 mod disturbance;
 mod errors;
 mod exit;
 mod follow;
 mod gains;
 mod goals;
+mod gripper;
+mod identify;
 mod law;
 mod log;
 mod model;
@@ -33,11 +36,15 @@ mod options;
 mod otg;
 mod robot;
 mod runtime;
+mod settings;
 mod simulator;
 mod state;
 mod state_views;
 mod states;
+mod stats;
 mod stream;
+mod supervision;
+mod vacuum_gripper;
 mod virtual_robots;
 
 use pyo3::prelude::*;
@@ -67,6 +74,10 @@ mod _native {
     #[pymodule_export]
     use crate::gains::{_gains, _softened};
     #[pymodule_export]
+    use crate::gripper::{Gripper, GripperState};
+    #[pymodule_export]
+    use crate::identify::{IdentificationPlan, PyIdentified};
+    #[pymodule_export]
     use crate::law::{_law_layout, Law};
     #[pymodule_export]
     use crate::log::ControlLog;
@@ -87,6 +98,10 @@ mod _native {
     #[pymodule_export]
     use crate::stream::Source;
     #[pymodule_export]
+    use crate::supervision::_check_policy;
+    #[pymodule_export]
+    use crate::vacuum_gripper::{VacuumGripper, VacuumGripperState};
+    #[pymodule_export]
     use crate::virtual_robots::VirtualRobots;
 
     #[pymodule_init]
@@ -95,6 +110,8 @@ mod _native {
         crate::gains::add_defaults(module)?;
         crate::exit::register(module.py())?;
         module.add("FLAT_LAYOUT", crate::state_views::FLAT_LAYOUT)?;
+        let thresholds = crate::settings::COLLISION_THRESHOLDS;
+        module.add("COLLISION_THRESHOLDS", thresholds)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -3,8 +3,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use franka_async::Realtime;
-use franka_async::connection::{Builder, Version, VersionPolicy};
-use franka_async::supervision::Policy;
+use franka_async::connection::{Builder, Endpoint, Version, VersionPolicy};
 use futures::FutureExt;
 use numpy::PyArray2;
 use pyo3::exceptions::PyValueError;
@@ -14,9 +13,11 @@ use pyo3::types::PyAny;
 use crate::arrays::{pose_array, vector};
 use crate::errors::misuse;
 use crate::exit;
+use crate::identify::PyIdentified;
 use crate::operation::{Operation, seconds};
 use crate::runtime::{self, Threaded};
 use crate::state::RobotState;
+use crate::supervision::supervise_by;
 
 /// A robot at an address. `async with Robot(address) as robot:` connects, and shuts down at the end:
 /// what moves is braked. Its methods may be called from any thread.
@@ -40,14 +41,17 @@ impl Robot {
     /// version, 5 or 10; negotiated if `None`. `connect_timeout` is for each step of connecting, and
     /// `link_timeout` the silence of the robot after which a motion fails with `link_lost`, 0.02 to 1 s.
     /// `log_size` is how many cycles an error carries, 10000 at most. `nominal_model` computes with the
-    /// vendor's constants whatever the robot says of itself. `known` is what an identification found before.
-    /// `supervise` is `True` or a policy: lost connections are made again.
+    /// vendor's constants whatever the robot says of itself. `known` is an `Identified` of this arm.
+    /// `supervise` is a `Policy`, or `True` for the default one: lost connections are made again, and the
+    /// robot is recovered as the policy says. `ask_before_recovery` is called with the `Reflex` before each
+    /// recovery, on a thread of its own, and has to return whether it may be; it implies `ask_first`.
     ///
     /// Raises `ValueError` for options that make no sense.
     #[new]
     #[pyo3(signature = (
         address, *, realtime = None, priority = None, cpu = None, version = None, connect_timeout = None,
-        link_timeout = None, log_size = None, nominal_model = false, known = None, supervise = false,
+        link_timeout = None, log_size = None, nominal_model = false, known = None, supervise = None,
+        ask_before_recovery = None,
     ))]
     #[expect(clippy::too_many_arguments, reason = "keywords")]
     fn new(
@@ -60,8 +64,9 @@ impl Robot {
         link_timeout: Option<f64>,
         log_size: Option<usize>,
         nominal_model: bool,
-        known: Option<&str>,
-        supervise: bool,
+        known: Option<&PyIdentified>,
+        supervise: Option<&Bound<'_, PyAny>>,
+        ask_before_recovery: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let mut builder = franka_async::Robot::builder(&address)
             .realtime(self::realtime(realtime)?)
@@ -88,15 +93,10 @@ impl Robot {
         if let Some(cycles) = log_size {
             builder = builder.log_size(cycles);
         }
-        if let Some(json) = known {
-            let found = serde_json::from_str(json).map_err(|error| {
-                PyValueError::new_err(format!("known is no identification: {error}"))
-            })?;
-            builder = builder.known(found);
+        if let Some(PyIdentified(found)) = known {
+            builder = builder.known(*found);
         }
-        if supervise {
-            builder = builder.supervise(Policy::default());
-        }
+        builder = supervise_by(builder, supervise, ask_before_recovery)?;
         Ok(Self {
             builder,
             address,
@@ -222,6 +222,11 @@ impl Robot {
             );
             Python::attach(|py| misuse(py, "not_connected", &text))
         })
+    }
+
+    /// The robot's host at another port.
+    pub(crate) fn beside(&self, port: u16) -> Endpoint {
+        Endpoint::from(&self.address).at_port(port)
     }
 
     /// The connected robot, unless its connection has ended for good.

@@ -2,6 +2,7 @@
 
 from . import condition, laws, otg
 from ._native import (
+    COLLISION_THRESHOLDS,
     FLAT_LAYOUT,
     ActiveControl,
     Arm,
@@ -12,6 +13,10 @@ from ._native import (
     Deadman,
     Dynamics,
     Engagement,
+    Gripper,
+    GripperState,
+    IdentificationPlan,
+    Identified,
     JointLimits,
     Latest,
     Law,
@@ -23,8 +28,10 @@ from ._native import (
     Robot,
     RobotState,
     Sim,
-    VirtualRobots,
     Touch,
+    VacuumGripper,
+    VacuumGripperState,
+    VirtualRobots,
 )
 from .errors import (
     ActionError,
@@ -63,6 +70,9 @@ from .motion import (
 )
 from .simulation import Network
 from .streams import Reading, Stream
+from .settings import VirtualWall
+from .streams import Stream
+from .supervision import Backoff, CloseReason, Event, Health, Policy, Reflex
 
 __all__ = [
     "ActionError",
@@ -70,11 +80,14 @@ __all__ = [
     "ActiveError",
     "Arm",
     "AsynchronousControl",
+    "Backoff",
     "Box",
     "Budget",
+    "COLLISION_THRESHOLDS",
     "CartesianLimits",
     "Chunk",
     "Clearance",
+    "CloseReason",
     "CommandError",
     "ConnectError",
     "ControlError",
@@ -83,9 +96,15 @@ __all__ = [
     "Deviation",
     "Dynamics",
     "Engagement",
+    "Event",
     "FLAT_LAYOUT",
     "FrankaError",
     "Gains",
+    "Gripper",
+    "GripperState",
+    "Health",
+    "IdentificationPlan",
+    "Identified",
     "IdentifyError",
     "JointLimits",
     "Joints",
@@ -105,12 +124,14 @@ __all__ = [
     "Offset",
     "Operation",
     "Plane",
+    "Policy",
     "PoseError",
     "Progress",
     "Reacted",
     "ReadError",
     "Reading",
     "Reference",
+    "Reflex",
     "Robot",
     "RobotState",
     "Settling",
@@ -118,7 +139,10 @@ __all__ = [
     "Stream",
     "Tolerance",
     "Touch",
+    "VacuumGripper",
+    "VacuumGripperState",
     "VirtualRobots",
+    "VirtualWall",
     "Waypoint",
     "condition",
     "laws",

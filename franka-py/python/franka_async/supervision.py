@@ -1,0 +1,212 @@
+"""Supervised robots: what a supervisor may do, what happens to a robot, and how it is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from . import _native
+
+__all__ = ["Backoff", "CloseReason", "Condition", "Event", "EventKind", "Health", "Policy", "Reflex"]
+
+Condition = Literal[
+    "ready",
+    "disconnected",
+    "silent",
+    "recovering",
+    "agreement_awaited",
+    "reflex",
+    "user_stopped",
+    "guided",
+    "braked",
+    "closed",
+]
+
+EventKind = Literal[
+    "connected",
+    "realtime_refused",
+    "lost",
+    "silent",
+    "resumed",
+    "reflex",
+    "not_recovered",
+    "recovered",
+    "user_stop",
+    "guiding",
+    "brakes",
+    "motion_begun",
+    "motion_ended",
+    "load_changed",
+    "closed",
+]
+
+
+@dataclass(frozen=True)
+class Backoff:
+    """How long to wait between two attempts: after the first one ``first`` seconds, after each other one twice as long as before.
+
+    The first attempt is made at once.
+    """
+
+    first: float = 0.1
+    """The first pause, s."""
+
+    most: float = 5.0
+    """The longest pause, s."""
+
+    jitter: float = 0.3
+    """Share of each pause that is left to chance, 0 to 1: a pause is shorter by up to so much."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Policy:
+    """What the supervisor of a robot does when the connection or the robot fails.
+
+    The default reconnects for as long as it takes, never recovers from a reflex, and refuses motions meanwhile. Whatever it does,
+    nothing moves that was begun before: motions and sessions end with the mishap.
+
+    Raises ``ValueError`` for values that make no sense.
+    """
+
+    recover: tuple[int, float] | None = None
+    """Recovers from reflexes by itself, so many times within any window of so many seconds, attempts that fail included."""
+
+    only: Iterable[str] | None = None
+    """Recovers from those reflexes only whose errors are all among these, by the vendor's names. Needs ``recover``."""
+
+    ask_first: bool = False
+    """Recovers only after somebody has agreed: by ``robot.agree(reflex)``, or a function ``ask_before_recovery``."""
+
+    reconnect: Backoff | None = field(default_factory=Backoff)
+    """Pauses between two attempts to connect, and between two to recover; ``None`` makes no new connection."""
+
+    give_up_after: float | None = None
+    """Gives up when a lost connection has not come back for so many seconds; ``None``: never."""
+
+    silence: float = 3.0
+    """Seconds that the robot may be silent, on a connection that looks alive, before that is closed and a new one made."""
+
+    motions_wait: float | None = None
+    """Lets a motion that comes while the supervisor reconnects or recovers wait for so many seconds; ``None`` refuses it at once."""
+
+    seed: int | None = None
+    """Seed of what is left to chance; ``None``: each robot draws its own."""
+
+    def __post_init__(self) -> None:
+        if self.only is not None:
+            names = [self.only] if isinstance(self.only, str) else self.only
+            object.__setattr__(self, "only", tuple(names))
+        _native._check_policy(self)
+
+
+@dataclass(frozen=True)
+class Reflex:
+    """The robot stopped itself."""
+
+    number: int
+    """Its number, from 1 on: what ``robot.agree(number)`` takes."""
+
+    errors: list[str]
+    """The errors that hold the robot, by the vendor's names."""
+
+    error: Exception | None
+    """The ``ControlError`` that ended the motion that ran, with its log and diagnosis; ``None`` if no motion of this program did."""
+
+
+@dataclass(frozen=True)
+class CloseReason:
+    """Why a connection has ended."""
+
+    kind: str
+    """``closed_by_us``, ``closed_by_peer``, ``io``, ``protocol``, ``thread_ended``, ``silent``, ``given_up``, ``another_robot``
+    or ``runtime_ended``."""
+
+    text: str
+    """The reason in words."""
+
+    party: str
+    """Who can act on it: ``caller``, ``robot``, ``link``, ``host`` or ``peer``."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened to a robot. Each kind has fields of its own, which are attributes as well:
+
+    ==================  ==============================================================================================
+    ``kind``            fields
+    ==================  ==============================================================================================
+    connected           ``attempts``; ``after``: seconds since the loss, ``None`` for the first connection
+    realtime_refused    ``refusals``: what the operating system refused the control thread, as texts
+    lost                ``reason``: a ``CloseReason``
+    silent              ``silence``: seconds without a state, on a connection that still stands
+    resumed             ``after``: seconds since the silence was noticed
+    reflex              ``reflex``: a ``Reflex``
+    not_recovered       ``number`` of the reflex; ``why``: ``never``, ``other_error``, ``too_often``, ``declined``, ``by_hand``
+    recovered           ``number`` of the reflex; ``after``: seconds since it was noticed; ``by_supervisor``
+    user_stop           ``pressed``
+    guiding             ``active``
+    brakes              ``closed``
+    motion_begun        ``goal``: its name, as in the log
+    motion_ended        ``goal``; ``error``: why, ``None`` if it arrived
+    load_changed        ``mass``, kg; ``center`` in the flange frame, ``(3,)`` m; ``inertia`` about it, ``(3, 3)`` kg m^2
+    closed              ``reason``: a ``CloseReason``; there will be no other event
+    ==================  ==============================================================================================
+    """
+
+    kind: EventKind
+    """What happened."""
+
+    at: float
+    """When, by this computer's clock: seconds since the robot was first connected to."""
+
+    robot_time: float | None
+    """When, by the robot's clock, s; ``None`` without a connection."""
+
+    lost: int
+    """How many events are missing before this one, because nobody took them: a listener may lag 256 behind."""
+
+    fields: Mapping[str, Any]
+    """What belongs to this kind."""
+
+    def __getattr__(self, name: str) -> Any:
+        # Only for names that are no attributes otherwise; `fields` itself is missing while an event is unpickled.
+        fields = self.__dict__.get("fields", {})
+        if name in fields:
+            return fields[name]
+        kind = self.__dict__.get("kind")
+        raise AttributeError(f"an event of the kind {kind!r} has no {name!r}, but {sorted(fields)}")
+
+
+@dataclass(frozen=True)
+class Health:
+    """How a robot is."""
+
+    condition: Condition
+    """Whether it takes motions: ``ready`` if so, or a motion runs; otherwise why not."""
+
+    since: float
+    """Since when, seconds after the robot was first connected to."""
+
+    reflex: int | None
+    """Number of the reflex that holds it, if one does."""
+
+    attempts: int
+    """Attempts to connect since the connection was lost; 0 while there is one."""
+
+    reconnects: int
+    """Connections made after the first one."""
+
+    recoveries: int
+    """Recoveries by the supervisor."""
+
+    last_reconnect: float | None
+    """Seconds that the newest reconnect took, from the loss on."""
+
+    last_recovery: float | None
+    """Seconds that the newest recovery by the supervisor took, from when the reflex was noticed."""
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether the robot takes motions, or one runs."""
+        return self.condition == "ready"

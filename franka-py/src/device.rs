@@ -1,0 +1,142 @@
+//! End effectors: each has a connection of its own, and one object of Python for it.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use franka_async::connection::Endpoint;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::errors::misuse;
+use crate::runtime::{self, Threaded};
+
+/// An end effector at an address, and the connection to it while there is one.
+pub(crate) struct Device<D> {
+    name: &'static str,
+    endpoint: Endpoint,
+    connection: Threaded<Mutex<Option<D>>>,
+}
+
+impl<D: Clone> Device<D> {
+    pub(crate) fn new(name: &'static str, endpoint: Endpoint) -> Self {
+        Self {
+            name,
+            endpoint,
+            connection: Threaded::new(Mutex::new(None)),
+        }
+    }
+
+    pub(crate) fn endpoint(&self) -> &Endpoint {
+        &self.endpoint
+    }
+
+    /// The connected device.
+    ///
+    /// # Errors
+    /// `FrankaError` of the kind `not_connected`; `RuntimeError` in a forked child.
+    pub(crate) fn connected(&self) -> PyResult<D> {
+        runtime::runtime()?;
+        self.open().ok_or_else(|| {
+            let text = format!(
+                "not connected to the {} at {}: use 'async with', or await connect() before",
+                self.name, self.endpoint
+            );
+            Python::attach(|py| misuse(py, "not_connected", &text))
+        })
+    }
+
+    pub(crate) fn open(&self) -> Option<D> {
+        self.connection().clone()
+    }
+
+    pub(crate) fn set(&self, connected: Option<D>) {
+        // The one before is dropped without the lock.
+        let before = std::mem::replace(&mut *self.connection(), connected);
+        drop(before);
+    }
+
+    pub(crate) fn repr(&self) -> String {
+        let state = match &*self.connection() {
+            Some(_) => "",
+            None => ", not connected",
+        };
+        format!("<{} at {}{state}>", self.name, self.endpoint)
+    }
+
+    fn connection(&self) -> MutexGuard<'_, Option<D>> {
+        // Nothing can panic while it is held.
+        self.connection
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The methods that every end effector has, for the class `$class` with the driver's `$device`.
+macro_rules! device_methods {
+    ($class:ty, $device:ty, $connect:literal) => {
+        #[pymethods]
+        impl $class {
+            /// Connects, and returns this object; without effect while it is connected. Raises
+            /// `ConnectError`. Cancelling gives it up.
+            fn connect(this: &Bound<'_, Self>) -> Operation {
+                let this = this.clone().unbind();
+                Operation::new($connect, async move {
+                    let device = &this.get().0;
+                    if device.open().is_none() {
+                        let endpoint = device.endpoint().clone();
+                        device.set(Some(<$device>::connect(endpoint).await?));
+                    }
+                    Ok::<_, franka_async::Error>(this)
+                })
+            }
+
+            /// Closes the connection, without waiting. An action under way is stopped. Without
+            /// effect if there is no connection.
+            fn disconnect(&self) {
+                self.0.set(None);
+            }
+
+            /// Whether there is a connection. One that was lost counts until `disconnect()`.
+            #[getter]
+            fn is_connected(&self) -> bool {
+                self.0.open().is_some()
+            }
+
+            /// Where it is: as given, and resolved once it is connected.
+            #[getter]
+            fn address(&self) -> String {
+                match self.0.open() {
+                    Some(device) => device.address().to_string(),
+                    None => self.0.endpoint().to_string(),
+                }
+            }
+
+            fn __aenter__(this: &Bound<'_, Self>) -> Operation {
+                Self::connect(this)
+            }
+
+            #[pyo3(signature = (*_exception))]
+            fn __aexit__(&self, _exception: &Bound<'_, PyAny>) -> Operation {
+                self.disconnect();
+                Operation::infallible("disconnect", async {})
+            }
+
+            fn __repr__(&self) -> String {
+                self.0.repr()
+            }
+        }
+    };
+}
+
+pub(crate) use device_methods;
+
+/// Checks the argument called `name`, which has a unit.
+///
+/// # Errors
+/// `ValueError` unless it is finite and not negative.
+pub(crate) fn at_least_zero(name: &str, got: f64) -> PyResult<f64> {
+    if got.is_finite() && got >= 0.0 {
+        return Ok(got);
+    }
+    let text = format!("{name} is {got}, expected a finite number from 0 on");
+    Err(PyValueError::new_err(text))
+}

@@ -1,0 +1,314 @@
+//! Supervised robots: the policy, events and health.
+
+use std::time::Duration;
+
+use franka_async::connection::Builder;
+use franka_async::error::CloseReason;
+use franka_async::state::RobotError;
+use franka_async::supervision::{
+    Backoff, Condition, Event, EventKind, Health, Notification, Policy, Reflex,
+};
+use franka_async::{Error, MotionError};
+use futures::StreamExt;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict};
+
+use crate::arrays::{array, columns};
+use crate::device::at_least_zero;
+use crate::errors::{Raise, variant};
+use crate::operation::{Operation, seconds};
+use crate::robot::Robot;
+use crate::state::names;
+use crate::stream::stream;
+
+/// `franka_async.supervision.Policy`.
+#[derive(FromPyObject)]
+struct PolicyFields {
+    recover: Option<(u32, f64)>,
+    only: Option<Vec<String>>,
+    ask_first: bool,
+    reconnect: Option<BackoffFields>,
+    give_up_after: Option<f64>,
+    silence: f64,
+    motions_wait: Option<f64>,
+    seed: Option<u64>,
+}
+
+/// `franka_async.supervision.Backoff`.
+#[derive(FromPyObject)]
+struct BackoffFields {
+    first: f64,
+    most: f64,
+    jitter: f64,
+}
+
+/// Reads a `franka_async.supervision.Policy`.
+///
+/// # Errors
+/// `TypeError` for another object, `ValueError` for values that make no sense.
+pub(crate) fn policy(policy: &Bound<'_, PyAny>) -> PyResult<Policy> {
+    let fields: PolicyFields = policy.extract()?;
+    let mut policy = Policy::default().silence(named("silence", fields.silence)?);
+    match (fields.recover, &fields.only) {
+        (Some((times, window)), _) => {
+            policy = policy.recover(times, named("the window of recover", window)?);
+        }
+        (None, Some(_)) => {
+            let text =
+                "only names errors to recover from, but recover is None: expected (times, seconds)";
+            return Err(PyValueError::new_err(text));
+        }
+        (None, None) => {}
+    }
+    if let Some(only) = fields.only {
+        let errors: PyResult<Vec<_>> = only.iter().map(|name| error_called("only", name)).collect();
+        policy = policy.only(errors?);
+    }
+    if fields.ask_first {
+        policy = policy.ask_first();
+    }
+    policy = match fields.reconnect {
+        None => policy.without_reconnecting(),
+        Some(BackoffFields {
+            first,
+            most,
+            jitter,
+        }) => {
+            if !(0.0..=1.0).contains(&jitter) {
+                let text = format!("jitter is {jitter}, expected a number from 0 to 1");
+                return Err(PyValueError::new_err(text));
+            }
+            policy.reconnect(Backoff {
+                first: named("first", first)?,
+                most: named("most", most)?,
+                jitter,
+            })
+        }
+    };
+    if let Some(time) = fields.give_up_after {
+        policy = policy.give_up_after(named("give_up_after", time)?);
+    }
+    if let Some(most) = fields.motions_wait {
+        policy = policy.motions_wait(named("motions_wait", most)?);
+    }
+    if let Some(seed) = fields.seed {
+        policy = policy.seed(seed);
+    }
+    Ok(policy)
+}
+
+/// The argument called `name` as a duration, s.
+fn named(name: &str, time: f64) -> PyResult<Duration> {
+    seconds(at_least_zero(name, time)?)
+}
+
+/// The robot's error that the argument called `argument` names.
+///
+/// # Errors
+/// `ValueError` with all names.
+pub(crate) fn error_called(argument: &str, name: &str) -> PyResult<RobotError> {
+    let all = RobotError::ALL.into_iter();
+    let found = all.clone().find(|error| error.to_string() == name);
+    found.ok_or_else(|| {
+        let known: Vec<String> = all.map(|error| error.to_string()).collect();
+        let known = known.join(", ");
+        PyValueError::new_err(format!(
+            "{argument} names {name:?}, expected one of {known}"
+        ))
+    })
+}
+
+/// Raises `ValueError` for a policy that makes no sense.
+#[pyfunction]
+pub(crate) fn _check_policy(policy: &Bound<'_, PyAny>) -> PyResult<()> {
+    self::policy(policy).map(drop)
+}
+
+/// Has a robot supervised by `policy`, or `True` for the default one, and `ask` called with the reflex
+/// before each recovery.
+///
+/// # Errors
+/// As [`policy`]; `ValueError` for a function without a policy.
+pub(crate) fn supervise_by(
+    builder: Builder,
+    policy: Option<&Bound<'_, PyAny>>,
+    ask: Option<Py<PyAny>>,
+) -> PyResult<Builder> {
+    let flag = |policy: &Bound<'_, PyAny>| policy.cast::<PyBool>().ok().map(|flag| flag.is_true());
+    let policy = match policy.map(|policy| (policy, flag(policy))) {
+        None | Some((_, Some(false))) if ask.is_some() => {
+            let text =
+                "ask_before_recovery is given, but the robot is not supervised: expected a Policy";
+            return Err(PyValueError::new_err(text));
+        }
+        None | Some((_, Some(false))) => return Ok(builder),
+        Some((_, Some(true))) => Policy::default(),
+        Some((policy, None)) => self::policy(policy)?,
+    };
+    let builder = builder.supervise(policy);
+    let Some(ask) = ask else {
+        return Ok(builder);
+    };
+    Ok(builder.ask_before_recovery(move |reflex| {
+        // On a thread for what blocks. No answer where the interpreter exits.
+        let agreed = Python::try_attach(|py| {
+            let answer = self::reflex(py, reflex)
+                .and_then(|reflex| ask.bind(py).call1((reflex,)))
+                .and_then(|answer| answer.is_truthy());
+            answer.unwrap_or_else(|error| {
+                error.write_unraisable(py, Some(ask.bind(py)));
+                false
+            })
+        });
+        agreed.unwrap_or(false)
+    }))
+}
+
+#[pymethods]
+impl Robot {
+    /// What happens to the robot from now on, for `async for`: connections lost and made, reflexes,
+    /// recoveries, user stop, guiding, brakes, motions, loads; see `Event`. It is there for a robot that is
+    /// not supervised, too. Ends when there is no connection and will be none.
+    fn events<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        stream(py, self.connected()?.events(), |py, notification| {
+            Ok(event(py, notification)?.unbind())
+        })
+    }
+
+    /// How the robot is now: whether it takes motions, why not, how often it was reconnected and recovered.
+    fn health<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        health(py, self.connected()?.health().newest())
+    }
+
+    /// How the robot is, now and as it changes, for `async for`. Ends as `events()` does.
+    fn health_changes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let changes = self.connected()?.health();
+        let now = futures::stream::iter([changes.newest()]);
+        stream(py, now.chain(changes), |py, newest| {
+            Ok(health(py, newest)?.unbind())
+        })
+    }
+
+    /// Agrees, or not, to the recovery from the reflex of this number: for a `Policy` that asks first.
+    /// Returns whether that was awaited. The number is that of the event or of `health().reflex`.
+    #[pyo3(signature = (reflex, yes = true))]
+    fn agree(&self, reflex: u64, yes: bool) -> PyResult<bool> {
+        Ok(self.connected()?.agree(reflex, yes))
+    }
+
+    /// Waits until there is no connection and will be none, and returns why: a `CloseReason`.
+    /// Cancelling has no effect on the robot.
+    fn closed(&self) -> PyResult<Operation> {
+        let robot = self.connected()?;
+        Ok(Operation::infallible("Robot.closed", async move {
+            Closed(robot.closed().await)
+        }))
+    }
+}
+
+/// A reason, made into a `franka_async.supervision.CloseReason`.
+struct Closed(CloseReason);
+
+impl<'py> IntoPyObject<'py> for Closed {
+    type Target = PyAny;
+    type Output = Bound<'py, PyAny>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let Self(reason) = &self;
+        let fields = (
+            variant(reason),
+            reason.to_string(),
+            variant(&reason.party()),
+        );
+        class(py, "CloseReason")?.call1(fields)
+    }
+}
+
+fn class<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    py.import("franka_async.supervision")?.getattr(name)
+}
+
+fn health(py: Python<'_>, health: Health) -> PyResult<Bound<'_, PyAny>> {
+    let condition = match &health.condition {
+        Condition::Unready(why) => variant(why),
+        condition => variant(condition),
+    };
+    class(py, "Health")?.call1((
+        condition,
+        health.since.as_secs_f64(),
+        health.reflex,
+        health.attempts,
+        health.reconnects,
+        health.recoveries,
+        health.last_reconnect.map(|time| time.as_secs_f64()),
+        health.last_recovery.map(|time| time.as_secs_f64()),
+    ))
+}
+
+fn reflex<'py>(py: Python<'py>, reflex: &Reflex) -> PyResult<Bound<'py, PyAny>> {
+    let error = reflex.error.as_ref().map(|error| {
+        let error = Error::Control(Box::new((**error).clone()));
+        error.raise(py).into_value(py)
+    });
+    class(py, "Reflex")?.call1((reflex.number, names(reflex.errors), error))
+}
+
+fn event(py: Python<'_>, notification: Notification) -> PyResult<Bound<'_, PyAny>> {
+    let Notification { event, missed, .. } = notification;
+    let Event {
+        at,
+        robot_time,
+        kind,
+        ..
+    } = event;
+    let fields = PyDict::new(py);
+    let set_reason = |reason: CloseReason| fields.set_item("reason", Closed(reason));
+    match &kind {
+        EventKind::Connected { attempts, after } => {
+            fields.set_item("attempts", attempts)?;
+            fields.set_item("after", after.map(|after| after.as_secs_f64()))?;
+        }
+        EventKind::RealtimeRefused { refusals } => {
+            let texts: Vec<String> = refusals.iter().map(ToString::to_string).collect();
+            fields.set_item("refusals", texts)?;
+        }
+        EventKind::Lost { reason } | EventKind::Closed { reason } => set_reason(reason.clone())?,
+        EventKind::Silent { silence } => fields.set_item("silence", silence.as_secs_f64())?,
+        EventKind::Resumed { after } => fields.set_item("after", after.as_secs_f64())?,
+        EventKind::Reflex(reflex) => fields.set_item("reflex", self::reflex(py, reflex)?)?,
+        EventKind::NotRecovered { reflex, why } => {
+            fields.set_item("number", reflex)?;
+            fields.set_item("why", variant(why))?;
+        }
+        EventKind::Recovered {
+            reflex,
+            after,
+            by_supervisor,
+        } => {
+            fields.set_item("number", reflex)?;
+            fields.set_item("after", after.as_secs_f64())?;
+            fields.set_item("by_supervisor", by_supervisor)?;
+        }
+        EventKind::UserStop { pressed } => fields.set_item("pressed", pressed)?,
+        EventKind::Guiding { active } => fields.set_item("active", active)?,
+        EventKind::Brakes { closed } => fields.set_item("closed", closed)?,
+        EventKind::MotionBegun { goal } => fields.set_item("goal", goal)?,
+        EventKind::MotionEnded { goal, outcome } => {
+            fields.set_item("goal", goal)?;
+            let error: Option<&MotionError> = outcome.as_ref().as_ref().err();
+            let error = error.map(|error| error.clone().raise(py).into_value(py));
+            fields.set_item("error", error)?;
+        }
+        EventKind::LoadChanged { load } => {
+            fields.set_item("mass", load.m_load)?;
+            fields.set_item("center", array(py, &load.F_x_Cload))?;
+            fields.set_item("inertia", columns::<3, 3>(py, &load.I_load))?;
+        }
+        // Kinds that this package does not know have no fields.
+        _ => {}
+    }
+    let robot_time = robot_time.map(|time| time as f64 / 1000.0);
+    class(py, "Event")?.call1((variant(&kind), at.as_secs_f64(), robot_time, missed, fields))
+}
