@@ -34,6 +34,7 @@ mod motion;
 mod operation;
 mod options;
 mod otg;
+mod record;
 mod robot;
 mod runtime;
 mod settings;
@@ -89,6 +90,8 @@ mod _native {
     use crate::operation::{_complete, Operation};
     #[pymodule_export]
     use crate::otg::{AxisLimits, Trajectory, plan_trajectory};
+    #[pymodule_export]
+    use crate::record::{Recording, record_columns};
     #[pymodule_export]
     use crate::robot::Robot;
     #[pymodule_export]

@@ -25,6 +25,7 @@ from ._native import (
     MotionHandle,
     MotionLimits,
     Operation,
+    Recording,
     Robot,
     RobotState,
     Sim,
@@ -32,6 +33,7 @@ from ._native import (
     VacuumGripper,
     VacuumGripperState,
     VirtualRobots,
+    record_columns,
 )
 from .errors import (
     ActionError,
@@ -130,6 +132,7 @@ __all__ = [
     "Reacted",
     "ReadError",
     "Reading",
+    "Recording",
     "Reference",
     "Reflex",
     "Robot",
@@ -147,4 +150,5 @@ __all__ = [
     "condition",
     "laws",
     "otg",
+    "record_columns",
 ]

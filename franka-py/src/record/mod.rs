@@ -1,0 +1,429 @@
+//! Chosen columns of every cycle, collected beside the interpreter.
+//!
+//! ```text
+//!  Robot::state_stream --task--> Table of states --+
+//!                                                  +-- rows of the same time --> numpy
+//!  Robot::records ------task--> Table of cycles ---+
+//! ```
+
+mod columns;
+mod table;
+
+use std::cmp::Ordering;
+use std::pin::pin;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use franka_async::record::Record;
+use futures::{Stream, StreamExt};
+use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use tokio::sync::broadcast::error::RecvError;
+use tokio::sync::{broadcast, watch};
+
+use crate::arrays::array;
+use crate::device::at_least_zero;
+use crate::operation::Operation;
+use crate::robot::Robot;
+use crate::runtime;
+use columns::{COLUMNS, Column, Kind, Seen, Source, find};
+use table::Table;
+
+#[pymethods]
+impl Robot {
+    /// Records these columns of every cycle, of `record_columns()`, while a `with` or `async with` block
+    /// runs: see `Recording`. It keeps the first `longest` seconds. Raises `ValueError` for a column that is
+    /// not known.
+    #[pyo3(signature = (columns, *, longest = LONGEST))]
+    fn record(&self, columns: Vec<String>, longest: f64) -> PyResult<Recording> {
+        let mut chosen = Vec::with_capacity(columns.len());
+        for name in &columns {
+            let column = find(name).ok_or_else(|| {
+                let known: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
+                let known = known.join(", ");
+                PyValueError::new_err(format!("got the column {name:?}, expected some of {known}"))
+            })?;
+            if !chosen.iter().any(|it: &&Column| it.name == column.name) {
+                chosen.push(column);
+            }
+        }
+        let most = at_least_zero("longest", longest)? * 1000.0;
+        Ok(Recording {
+            robot: Mutex::new(Some(self.connected()?)),
+            columns: chosen,
+            most: most as usize,
+            begun: Mutex::new(None),
+        })
+    }
+}
+
+/// What can be recorded: a `dict` of each column's name to its unit and shape in one cycle.
+#[pyfunction]
+pub(crate) fn record_columns(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let all = PyDict::new(py);
+    all.set_item("time", ("s", PyTuple::empty(py)))?;
+    for column in &COLUMNS {
+        let shape = PyTuple::new(py, column.shape)?;
+        all.set_item(column.name, (column.unit, shape))?;
+    }
+    Ok(all)
+}
+
+/// Columns of every cycle: `with robot.record(["q", "tau_c"]) as recording:` begins, the end of the block
+/// ends it, and `recording["q"]` is an array of one row for each cycle, `recording["time"]` its time, s.
+///
+/// It is collected beside the interpreter: however long Python is busy, nothing is lost by that. The columns
+/// of a state and those of the control thread that belong to the same cycle are in the same row. Reading it
+/// is possible while it goes on.
+#[pyclass(frozen, module = "franka_async")]
+pub(crate) struct Recording {
+    /// Until it has ended: a recording that is read does not keep the connection.
+    robot: Mutex<Option<franka_async::Robot>>,
+    columns: Vec<&'static Column>,
+    /// Rows that are kept.
+    most: usize,
+    begun: Mutex<Option<Begun>>,
+}
+
+#[derive(Clone)]
+struct Begun {
+    shared: Arc<Shared>,
+    end: Arc<watch::Sender<Option<u64>>>,
+}
+
+struct Shared {
+    begin: u64,
+    tables: Mutex<Tables>,
+    completed: Condvar,
+}
+
+/// That of the states, and that of the control thread's cycles.
+struct Tables([Table; 2]);
+
+#[pymethods]
+impl Recording {
+    fn __enter__(this: &Bound<'_, Self>) -> PyResult<Py<Self>> {
+        this.get().begin()?;
+        Ok(this.clone().unbind())
+    }
+
+    #[pyo3(signature = (*_exception))]
+    fn __exit__(&self, _exception: &Bound<'_, PyAny>) {
+        self.end();
+    }
+
+    fn __aenter__(this: &Bound<'_, Self>) -> PyResult<Operation> {
+        let recording = Self::__enter__(this)?;
+        Ok(Operation::infallible("record", async move { recording }))
+    }
+
+    #[pyo3(signature = (*_exception))]
+    fn __aexit__(&self, _exception: &Bound<'_, PyAny>) -> Operation {
+        self.end();
+        Operation::infallible("record", async {})
+    }
+
+    /// The names of the columns, `time` first.
+    fn keys(&self) -> Vec<&'static str> {
+        let names = self.columns.iter().map(|column| column.name);
+        std::iter::once("time").chain(names).collect()
+    }
+
+    /// The column of this name, a new array with one row for each cycle. Raises `KeyError`.
+    fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        self.begun()?.cut(py).column(py, &self.columns, name)
+    }
+
+    /// All columns, a new `dict` of arrays.
+    fn arrays<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let begun = self.begun()?;
+        let cut = begun.cut(py);
+        let all = PyDict::new(py);
+        for name in self.keys() {
+            all.set_item(name, cut.column(py, &self.columns, name)?)?;
+        }
+        Ok(all)
+    }
+
+    /// How many cycles are recorded.
+    fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
+        Ok(self.begun()?.cut(py).len())
+    }
+
+    /// How many cycles of the robot since the begin are missing: their states did not arrive, were skipped
+    /// by the control thread for a newer one, or came after the longest time.
+    #[getter]
+    fn lost(&self, py: Python<'_>) -> PyResult<u64> {
+        let begun = self.begun()?;
+        Ok(begun.cut(py).lost(begun.shared.begin))
+    }
+
+    /// Writes all columns into a file, `.npz`: `numpy.load(path)["q"]`.
+    fn save(&self, py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<()> {
+        let arrays = self.arrays(py)?;
+        py.import("numpy")?
+            .call_method("savez", (path,), Some(&arrays))?;
+        Ok(())
+    }
+
+    fn __repr__(&self) -> String {
+        let names = self.keys().join(", ");
+        let begun = self.begun.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*begun {
+            None => format!("<Recording of {names}, not begun>"),
+            Some(begun) => {
+                let is_over = begun.end.borrow().is_some();
+                let state = if is_over { "over" } else { "under way" };
+                format!("<Recording of {names}, {state}>")
+            }
+        }
+    }
+}
+
+impl Recording {
+    fn begin(&self) -> PyResult<()> {
+        let mut begun = self.begun.lock().unwrap_or_else(PoisonError::into_inner);
+        if begun.is_some() {
+            let text = "this recording has begun already: call record() for another";
+            return Err(PyRuntimeError::new_err(text));
+        }
+        let robot = self.robot().clone().expect("taken at the end only");
+        let begin = robot.state().message_id;
+        let of = |source: Source| {
+            let columns = self.columns.iter().copied();
+            columns
+                .filter(|column| column.source() == source)
+                .collect::<Vec<_>>()
+        };
+        let (of_state, of_cycle) = (of(Source::State), of(Source::Cycle));
+        // Something has to show which cycles there were.
+        let uses_states = !of_state.is_empty() || of_cycle.is_empty();
+        let uses_cycles = !of_cycle.is_empty();
+        let shared = Arc::new(Shared {
+            begin,
+            tables: Mutex::new(Tables([
+                Table::new(of_state, begin, uses_states),
+                Table::new(of_cycle, begin, uses_cycles),
+            ])),
+            completed: Condvar::new(),
+        });
+        let (end, ended) = watch::channel(None);
+        let (runtime, most) = (runtime::runtime()?, self.most);
+        if uses_states {
+            let states = robot.state_stream();
+            let states = states.map(|reading| Seen::State(Box::new(reading.state)));
+            let (shared, ended) = (shared.clone(), ended.clone());
+            runtime.spawn(collect(states, Source::State, shared, ended, most));
+        }
+        if uses_cycles {
+            let cycles = cycles(robot.records());
+            runtime.spawn(collect(cycles, Source::Cycle, shared.clone(), ended, most));
+        }
+        let end = Arc::new(end);
+        *begun = Some(Begun { shared, end });
+        Ok(())
+    }
+
+    /// Ends with the newest state. What has not come yet is awaited where it is read.
+    fn end(&self) {
+        let robot = self.robot().take();
+        let begun = self.begun.lock().unwrap_or_else(PoisonError::into_inner);
+        if let (Some(begun), Some(robot)) = (&*begun, &robot) {
+            begun.end.send_replace(Some(robot.state().message_id));
+        }
+    }
+
+    fn robot(&self) -> MutexGuard<'_, Option<franka_async::Robot>> {
+        self.robot.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn begun(&self) -> PyResult<Begun> {
+        let begun = self.begun.lock().unwrap_or_else(PoisonError::into_inner);
+        begun.clone().ok_or_else(|| {
+            PyRuntimeError::new_err("this recording has not begun: use 'with' or 'async with'")
+        })
+    }
+}
+
+impl Begun {
+    /// Time of the last cycle that belongs to it.
+    fn last(&self) -> u64 {
+        self.end.borrow().unwrap_or(u64::MAX)
+    }
+
+    /// What there is to read.
+    fn cut(&self, py: Python<'_>) -> Cut<'_> {
+        if self.end.borrow().is_some() {
+            self.shared.wait(py);
+        }
+        let (tables, last) = (self.shared.tables(), self.last());
+        Cut {
+            rows: tables.rows(last),
+            tables,
+            last,
+        }
+    }
+}
+
+/// Fills a table until it has the cycle in which the recording ends, or nobody has the recording.
+async fn collect(
+    items: impl Stream<Item = Seen>,
+    source: Source,
+    shared: Arc<Shared>,
+    mut ended: watch::Receiver<Option<u64>>,
+    most: usize,
+) {
+    let mut items = pin!(items);
+    loop {
+        tokio::select! {
+            seen = items.next() => match seen {
+                Some(seen) => shared.tables().of(source).push(&seen, most),
+                None => break,
+            },
+            is_kept = ended.changed() => if is_kept.is_err() { break },
+        }
+        let end = *ended.borrow();
+        if end.is_some_and(|end| shared.tables().of(source).newest >= end) {
+            break;
+        }
+    }
+    shared.tables().of(source).is_complete = true;
+    shared.completed.notify_all();
+}
+
+/// The records of the control thread.
+fn cycles(records: broadcast::Receiver<Record>) -> impl Stream<Item = Seen> {
+    futures::stream::unfold(records, async |mut records| {
+        loop {
+            match records.recv().await {
+                Ok(record) => return Some((Seen::Cycle(Box::new(record)), records)),
+                // The times of the rows show how many.
+                Err(RecvError::Lagged(_)) => {}
+                Err(RecvError::Closed) => return None,
+            }
+        }
+    })
+}
+
+impl Shared {
+    fn tables(&self) -> MutexGuard<'_, Tables> {
+        self.tables.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits until the tables have all that belongs to a recording that is over. Of a robot that sends
+    /// nothing any more, what there is has to do.
+    fn wait(&self, py: Python<'_>) {
+        py.detach(|| {
+            let is_incomplete =
+                |tables: &mut Tables| !tables.0.iter().all(|table| table.is_complete);
+            let waited = self
+                .completed
+                .wait_timeout_while(self.tables(), PATIENCE, is_incomplete);
+            drop(waited.unwrap_or_else(PoisonError::into_inner));
+        });
+    }
+}
+
+impl Tables {
+    fn of(&mut self, source: Source) -> &mut Table {
+        &mut self.0[source as usize]
+    }
+
+    /// Rows of each table up to `last` that belong to the same cycles, of all tables that are in use.
+    fn rows(&self, last: u64) -> [Vec<usize>; 2] {
+        let [states, cycles] = &self.0;
+        let until = |table: &Table| table.times.partition_point(|time| *time <= last);
+        let (n, m) = (until(states), until(cycles));
+        match (states.is_used, cycles.is_used) {
+            (_, false) => [(0..n).collect(), Vec::new()],
+            (false, true) => [Vec::new(), (0..m).collect()],
+            (true, true) => {
+                let mut rows = [Vec::new(), Vec::new()];
+                let (mut i, mut j) = (0, 0);
+                while i < n && j < m {
+                    match states.times[i].cmp(&cycles.times[j]) {
+                        Ordering::Less => i += 1,
+                        Ordering::Greater => j += 1,
+                        Ordering::Equal => {
+                            rows[0].push(i);
+                            rows[1].push(j);
+                            (i, j) = (i + 1, j + 1);
+                        }
+                    }
+                }
+                rows
+            }
+        }
+    }
+
+    /// Time of the newest cycle that all tables in use have been offered.
+    fn newest(&self) -> u64 {
+        let used = self.0.iter().filter(|table| table.is_used);
+        used.map(|table| table.newest).min().unwrap_or_default()
+    }
+}
+
+/// Rows of the cycles that a recording has so far, and all that lies behind them.
+struct Cut<'a> {
+    tables: MutexGuard<'a, Tables>,
+    rows: [Vec<usize>; 2],
+    last: u64,
+}
+
+impl Cut<'_> {
+    fn len(&self) -> usize {
+        self.rows[0].len().max(self.rows[1].len())
+    }
+
+    fn lost(&self, begin: u64) -> u64 {
+        let last = self.last.min(self.tables.newest());
+        last.saturating_sub(begin).saturating_sub(self.len() as u64)
+    }
+
+    fn column<'py>(
+        &self,
+        py: Python<'py>,
+        columns: &[&'static Column],
+        name: &str,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if name == "time" {
+            let source = usize::from(!self.tables.0[0].is_used);
+            let times = &self.tables.0[source].times;
+            let rows = self.rows[source].iter();
+            let seconds: Vec<f64> = rows.map(|row| times[*row] as f64 / 1000.0).collect();
+            return Ok(array(py, &seconds).into_any());
+        }
+        let column = columns.iter().find(|column| column.name == name);
+        let column = column.ok_or_else(|| {
+            let names: Vec<&str> = columns.iter().map(|column| column.name).collect();
+            let names = names.join(", ");
+            PyKeyError::new_err(format!("{name:?} is not recorded, but time, {names}"))
+        })?;
+        let source = column.source() as usize;
+        let values = self.tables.0[source].values(column, &self.rows[source]);
+        let mut shape = vec![self.len()];
+        shape.extend(column.shape);
+        let shaped = |array: Bound<'py, PyAny>| array.call_method1("reshape", (shape,));
+        match column.kind {
+            Kind::Float => shaped(array(py, &values).into_any()),
+            Kind::Count => shaped(array(py, &values).call_method1("astype", ("int64",))?),
+            Kind::Flag => shaped(array(py, &values).call_method1("astype", ("bool",))?),
+            Kind::Name(named) => {
+                let names = values.iter().map(|value| named(*value as usize));
+                let names: Vec<String> = names.collect();
+                let options = PyDict::new(py);
+                options.set_item("dtype", "U")?;
+                py.import("numpy")?
+                    .call_method("array", (names,), Some(&options))
+            }
+        }
+    }
+}
+
+/// How long a recording that is over waits for its last cycles, where it is read: the control thread hands
+/// them on within 50 ms.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Seconds that are recorded at most, unless given.
+const LONGEST: f64 = 3600.0;

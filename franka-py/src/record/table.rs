@@ -1,0 +1,68 @@
+//! Rows of numbers by the robot's time, as they come.
+
+use super::columns::{Column, Seen};
+
+/// Rows of some columns, each with the `message_id` of its state; in the order of time.
+pub(super) struct Table {
+    pub(super) columns: Vec<&'static Column>,
+    width: usize,
+    pub(super) times: Vec<u64>,
+    /// Rows one after the other. In blocks: none is copied when there are more.
+    blocks: Vec<Vec<f64>>,
+    /// Time of the newest row that was offered.
+    pub(super) newest: u64,
+    /// Whether rows are put into it at all.
+    pub(super) is_used: bool,
+    /// Whether no more rows come.
+    pub(super) is_complete: bool,
+}
+
+impl Table {
+    /// An empty table for rows after `begin`.
+    pub(super) fn new(columns: Vec<&'static Column>, begin: u64, is_used: bool) -> Self {
+        Self {
+            width: columns.iter().map(|column| column.width()).sum(),
+            is_used,
+            is_complete: !is_used,
+            columns,
+            times: Vec::new(),
+            blocks: Vec::new(),
+            newest: begin,
+        }
+    }
+
+    /// Appends a row of this cycle, unless it is an old one or there are `most` already.
+    pub(super) fn push(&mut self, seen: &Seen, most: usize) {
+        let time = seen.time();
+        if time <= self.newest {
+            return;
+        }
+        self.newest = time;
+        if self.times.len() == most {
+            return;
+        }
+        if self.times.len().is_multiple_of(BLOCK) {
+            self.blocks.push(Vec::with_capacity(BLOCK * self.width));
+        }
+        self.times.push(time);
+        let block = self.blocks.last_mut().expect("just made");
+        for column in &self.columns {
+            column.append(seen, block);
+        }
+    }
+
+    /// The numbers of a column in these rows.
+    pub(super) fn values(&self, column: &Column, rows: &[usize]) -> Vec<f64> {
+        let before = self.columns.iter().take_while(|it| it.name != column.name);
+        let offset: usize = before.map(|column| column.width()).sum();
+        let mut values = Vec::with_capacity(rows.len() * column.width());
+        for row in rows {
+            let begin = row % BLOCK * self.width + offset;
+            values.extend_from_slice(&self.blocks[row / BLOCK][begin..begin + column.width()]);
+        }
+        values
+    }
+}
+
+/// Rows of a block.
+const BLOCK: usize = 1024;
