@@ -29,6 +29,7 @@ mod gripper;
 mod identify;
 mod law;
 mod log;
+mod logging;
 mod model;
 mod motion;
 mod operation;
@@ -82,6 +83,8 @@ mod _native {
     use crate::law::{_law_layout, Law};
     #[pymodule_export]
     use crate::log::ControlLog;
+    #[pymodule_export]
+    use crate::logging::enable_logging;
     #[pymodule_export]
     use crate::model::{CartesianLimits, Clearance, Dynamics, JointLimits, Model, MotionLimits};
     #[pymodule_export]

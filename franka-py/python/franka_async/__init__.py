@@ -33,6 +33,7 @@ from ._native import (
     VacuumGripper,
     VacuumGripperState,
     VirtualRobots,
+    enable_logging,
     record_columns,
 )
 from .errors import (
@@ -148,6 +149,7 @@ __all__ = [
     "VirtualWall",
     "Waypoint",
     "condition",
+    "enable_logging",
     "laws",
     "otg",
     "record_columns",
