@@ -277,7 +277,7 @@ fn leave(arm: franka_async::Arm, raised: Option<&Bound<'_, PyAny>>) -> Operation
 }
 
 /// A session that begins when it is awaited, or entered by `async with`, and is then an `Arm`.
-#[pyclass(frozen, generic, extends = Operation, module = "franka_async")]
+#[pyclass(frozen, extends = Operation, module = "franka_async")]
 pub(crate) struct Engagement {
     entered: Arc<Entered>,
 }

@@ -20,7 +20,7 @@ use crate::options::{Bounds, Keywords, Options, watchdog, with_options};
 
 /// The newest target of a program: `set` it from any thread, at any rate, and `follow` it. When it is
 /// closed, or nobody holds it any more, the motion ends at the target that was set last.
-#[pyclass(frozen, generic, module = "franka_async")]
+#[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Latest(Mutex<Option<watch::Sender<Option<Target>>>>);
 
 #[pymethods]

@@ -7,7 +7,7 @@ use franka_async::record;
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::{PyAttributeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyList;
+use pyo3::types::{PyList, PySlice};
 
 use crate::arrays::{array, columns};
 use crate::state::RobotState;
@@ -45,16 +45,20 @@ impl ControlLog {
             let text = format!("'ControlLog' object has no attribute {name:?}");
             return Err(PyAttributeError::new_err(text));
         }
-        let states = self.states();
-        let values: PyResult<Vec<_>> = states
-            .into_iter()
-            .map(|state| Bound::new(py, state)?.getattr(name))
-            .collect();
-        let values = values?;
-        match values.first() {
-            // Names of errors: as many as there are.
-            Some(first) if first.is_instance_of::<PyList>() => values.into_bound_py_any(py),
-            _ => py.import("numpy")?.call_method1("array", (values,)),
+        // One that shows the shape where there are no cycles.
+        let shape = RobotState::new(Default::default(), self.version);
+        let field = |state: RobotState| Bound::new(py, state)?.getattr(name);
+        let values: PyResult<Vec<_>> = self.states().into_iter().map(field).collect();
+        let (values, shape) = (values?, field(shape)?);
+        // Names of errors: as many as there are.
+        if shape.is_instance_of::<PyList>() {
+            return values.into_bound_py_any(py);
+        }
+        let numpy = py.import("numpy")?;
+        let none = numpy.call_method1("array", (vec![shape],))?;
+        match values.is_empty() {
+            true => none.get_item(PySlice::new(py, 0, 0, 1)),
+            false => numpy.call_method1("array", (values,)),
         }
     }
 

@@ -14,7 +14,7 @@ use crate::operation::Operation;
 
 /// A motion: it begins when it is awaited, and then arrives, with a `MotionReport`, or raises `MotionError`.
 /// Cancelling it brakes the arm.
-#[pyclass(frozen, generic, extends = Operation, module = "franka_async")]
+#[pyclass(frozen, extends = Operation, module = "franka_async")]
 pub(crate) struct Motion {
     handle: Handle,
 }

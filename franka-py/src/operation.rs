@@ -248,10 +248,6 @@ impl Operation {
         this
     }
 
-    fn __iter__(this: Py<Self>) -> Py<Self> {
-        this
-    }
-
     fn __next__(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         self.send(py, py.None())
     }

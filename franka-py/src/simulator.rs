@@ -37,7 +37,8 @@ impl Sim {
     /// Starts a Franka Research 3 in the ready pose, with an arm that sticks, flexes and lags like real ones.
     ///
     /// Options: `virtual_time`, whether its next millisecond begins with the command, however long that takes
-    /// up to `patience` seconds (0.5): for tests, and for programs that learn. `arm`, `ideal`, `nominal`,
+    /// up to `patience` seconds (0.5): for tests, and for programs that learn. `patience` alone waits for
+    /// commands that come late, but is never faster than the clock on the wall. `arm`, `ideal`, `nominal`,
     /// `realistic` or `bad`: a good arm for tests that need exactness, or worse ones; with `arm_seed`, one that
     /// is drawn at random from such arms; `ideal=True` is `arm="ideal"`. `seed` of all other randomness. `q`,
     /// joint positions at the start, 7 numbers, rad. `tool`, `hand` or a tuple of its frame on the flange (a
@@ -211,9 +212,11 @@ fn configured(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<franka_s
         sim = sim.vacuum_gripper(Suction::new(), 0);
     }
     let patience: Option<f64> = keywords.value("patience")?;
-    let patience = patience.map_or(Ok(PATIENCE), seconds)?;
+    let patience = patience.map(seconds).transpose()?;
     if keywords.value("virtual_time")?.unwrap_or(false) {
-        sim = sim.virtual_time(patience);
+        sim = sim.virtual_time(patience.unwrap_or(PATIENCE));
+    } else if let Some(patience) = patience {
+        sim = sim.wait_for_commands(patience);
     }
     if let Some(network) = keywords.take("network")? {
         sim = sim.network(self::network(&network)?);

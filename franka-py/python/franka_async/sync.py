@@ -1,0 +1,79 @@
+"""The same classes for programs without an event loop: what is awaited elsewhere waits here, with the interpreter released.
+
+::
+
+    from franka_async import sync
+
+    with sync.Robot("172.16.0.2") as robot:
+        report = robot.move_by([0.0, 0.0, 0.05])
+        with robot.engage() as arm:
+            arm.move_by([0.0, 0.1, 0.0])
+
+Ctrl-C brakes the arm and raises ``KeyboardInterrupt``. Other threads run meanwhile, and may call ``robot.stop()``. Names, arguments
+and exceptions are those of ``franka_async``; so are the classes that are not here.
+"""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+from . import _native
+
+__all__ = ["Arm", "Robot"]
+
+_waiting: dict[type, type] = {}
+"""The class of this module for a class of the package."""
+
+
+class _Waiting:
+    """An object whose methods wait."""
+
+    __slots__ = ("_awaiting", "__weakref__")
+
+    def __repr__(self) -> str:
+        return repr(self._awaiting)
+
+
+def _result(result: Any) -> Any:
+    """What a method returns here for what it returns there."""
+    if isinstance(result, _native.Operation):
+        result = result.wait()
+    if type(result) not in _waiting:
+        return result
+    waiting = object.__new__(_waiting[type(result)])
+    waiting._awaiting = result
+    return waiting
+
+
+def _class(of: type) -> Any:
+    """A class whose methods are those of a class of the package, and wait."""
+
+    def method(name: str, there: Any) -> Any:
+        @functools.wraps(there)
+        def call(self: Any, *arguments: Any, **keywords: Any) -> Any:
+            result = _result(getattr(self._awaiting, name)(*arguments, **keywords))
+            return self if result.__class__ is self.__class__ and result._awaiting is self._awaiting else result
+
+        return call
+
+    def field(name: str, there: Any) -> Any:
+        return property(lambda self: getattr(self._awaiting, name), doc=there.__doc__)
+
+    def __init__(self: Any, *arguments: Any, **keywords: Any) -> None:
+        self._awaiting = of(*arguments, **keywords)
+
+    members: dict[str, Any] = {"__doc__": of.__doc__, "__module__": __name__, "__slots__": ()}
+    if "__new__" in vars(of):
+        members["__init__"] = __init__
+    for name, there in vars(of).items():
+        if name in ("__aenter__", "__aexit__"):
+            members[name.replace("a", "", 1)] = method(name, there)
+        elif not name.startswith("_"):
+            members[name] = method(name, there) if callable(there) else field(name, there)
+    _waiting[of] = type(of.__name__, (_Waiting,), members)
+    return _waiting[of]
+
+
+Arm = _class(_native.Arm)
+Robot = _class(_native.Robot)

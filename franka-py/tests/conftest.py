@@ -1,0 +1,89 @@
+"""Simulated robots in virtual time, and programs in a process of their own."""
+
+from __future__ import annotations
+
+import asyncio
+import subprocess
+import sys
+from collections.abc import Awaitable, Callable, Iterator
+from typing import TypeVar
+
+import pytest
+
+from franka_async import Robot, Sim
+
+T = TypeVar("T")
+
+
+@pytest.fixture(params=["fr3", "fer"])
+def sim(request: pytest.FixtureRequest) -> Iterator[Sim]:
+    """A simulated robot of each kind, with an arm as real ones are."""
+    kind: str = request.param
+    # Two states that a busy machine reads at once cost this time each, and a second is a lost link.
+    with getattr(Sim, kind)(virtual_time=True, patience=0.25) as sim:
+        yield sim
+
+
+@pytest.fixture
+def robot(sim: Sim) -> Iterator[Robot]:
+    """A connection to the simulated robot, for programs without an event loop."""
+    robot = connection(sim)
+    robot.connect().wait()
+    try:
+        yield robot
+    finally:
+        robot.shutdown().wait()
+
+
+def connection(sim: Sim) -> Robot:
+    """A robot that is not connected yet."""
+    return Robot(sim.address, realtime="ignore")
+
+
+def at_rest(robot: Robot) -> bool:
+    """Whether no joint moves."""
+    return bool(abs(robot.state().dq).max() < 0.02)
+
+
+def until(condition: Callable[[], bool], *, longest: float = 20.0) -> None:
+    """Waits for something that has to come, however long the machine takes."""
+    import time
+
+    end = time.monotonic() + longest
+    while not condition():
+        assert time.monotonic() < end, "it never came"
+        time.sleep(0.002)
+
+
+@pytest.fixture(params=["fr3", "fer"])
+def live(request: pytest.FixtureRequest) -> Iterator[Sim]:
+    """A simulated robot of each kind that is no faster than the clock on the wall, and waits for commands that come late: for tests
+    that act while a motion is under way.
+    """
+    kind: str = request.param
+    with getattr(Sim, kind)(patience=5.0) as sim:
+        yield sim
+
+
+async def begun(robot: Robot) -> None:
+    """Waits until target control moves the arm."""
+    while True:
+        reference = robot.reference()
+        if reference is not None and abs(reference.dq).max() > 0.005:
+            return
+        await asyncio.sleep(0.001)
+
+
+async def outcome(work: Awaitable[T]) -> T | BaseException:
+    """What it returns or raises."""
+    try:
+        return await work
+    except BaseException as error:
+        return error
+
+
+def program(text: str, *, expect: int = 0) -> str:
+    """Runs a Python program in a process of its own, with the interpreter's own checks, and returns what it printed."""
+    done = subprocess.run([sys.executable, "-X", "dev", "-c", text], capture_output=True, text=True, timeout=60)
+    assert done.returncode == expect, f"{done.returncode}\n{done.stdout}\n{done.stderr}"
+    return done.stdout + done.stderr

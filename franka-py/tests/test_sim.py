@@ -1,0 +1,157 @@
+"""The simulated robot: what it is like, and what people and objects do to it."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import connection, outcome, until
+
+from franka_async import ControlError, FrankaError, MotionError, Network, Robot, Sim
+
+
+def test_it_runs_in_both_kinds_of_blocks() -> None:
+    with Sim.fr3(virtual_time=True) as sim:
+        assert sim.address in repr(sim) and sim.hand_address is None and sim.vacuum_gripper_address is None
+        assert sim.state().robot_mode == "idle"
+    with pytest.raises(OSError, match="stopped"):
+        sim.state()
+    sim.stop()
+
+    async def main() -> None:
+        async with Sim.fer(virtual_time=True) as sim:
+            assert sim.state().time_ms > 0
+        with pytest.raises(OSError, match="stopped"):
+            sim.state()
+
+    asyncio.run(main())
+
+
+def test_it_is_as_its_options_say() -> None:
+    q = [0.1, -0.6, 0.2, -2.2, 0.1, 1.6, 0.6]
+    with Sim.fr3(virtual_time=True, ideal=True, q=q, hand=True, vacuum_gripper=True) as sim:
+        np.testing.assert_allclose(sim.state().q, q, atol=1e-3)
+        assert sim.state().m_ee == 0.73 and sim.hand_address and sim.vacuum_gripper_address
+        sim.place_object(0.03)
+        sim.place_part()
+        with pytest.raises(ValueError, match="does not fit"):
+            sim.place_object(0.2)
+    frame = np.eye(4)
+    frame[2, 3] = 0.1
+    with Sim.fer(virtual_time=True, tool=(frame, 0.4, [0.0, 0.0, 0.05]), load=(0.5, [0.0, 0.0, 0.1])) as sim:
+        assert sim.state().m_ee == 0.4 and sim.state().m_load == 0.0
+        np.testing.assert_allclose(sim.state().F_T_NE, frame)
+        with pytest.raises(ValueError, match="no Hand"):
+            sim.place_object(0.01)
+
+    def rest(**options: Any) -> np.ndarray:
+        """Where an arm of these options is really, and says it is."""
+        with Sim.fr3(virtual_time=True, **options) as sim:
+            return np.asarray(sim.true_pose() - sim.state().O_T_EE)
+
+    assert abs(rest(arm="ideal")).max() < 1e-6
+    assert abs(rest(arm="bad", arm_seed=3)).max() > 1e-5
+    np.testing.assert_allclose(rest(arm="realistic", arm_seed=7), rest(arm="realistic", arm_seed=7), atol=1e-4)
+    assert abs(rest(arm="realistic", arm_seed=7) - rest(arm="realistic", arm_seed=8)).max() > 1e-5
+
+
+def test_options_that_make_no_sense_are_refused() -> None:
+    for options, kind, text in [
+        ({"arm": "new"}, ValueError, "arm is .new."),
+        ({"arm": "ideal", "arm_seed": 1}, ValueError, "without arm_seed"),
+        ({"arm": "bad", "ideal": True}, ValueError, "one of them"),
+        ({"tool": "claw"}, ValueError, "'hand' or a tuple"),
+        ({"q": [0.0]}, ValueError, r"q has the shape \[1\]"),
+        ({"network": Network(loss=2.0)}, ValueError, "loss is 2"),
+        ({"address": "here"}, ValueError, "IP address"),
+        ({"virtual": True}, TypeError, "unexpected keyword argument 'virtual'"),
+        ({"load": (-1.0, [0.0, 0.0, 0.0])}, ValueError, "-1"),
+    ]:
+        with pytest.raises(kind, match=text):
+            Sim.fr3(**options)  # type: ignore[arg-type]
+
+
+def test_touches_act_until_they_are_released() -> None:
+    with Sim.fr3(virtual_time=True, ideal=True) as sim:
+        push = sim.push([0.0, 0.0, 8.0])
+        until(lambda: abs(sim.state().O_F_ext_hat_K[2] + 8.0) < 1.0 or abs(sim.state().O_F_ext_hat_K[2] - 8.0) < 1.0)
+        felt = push.felt()
+        assert felt is not None
+        np.testing.assert_allclose(felt, [0, 0, 8, 0, 0, 0], atol=1e-9)
+        assert push.release() and push.felt() is None
+        for touch in [
+            sim.push([0.0, 1.0, 0.0], [0.0, 0.0, 0.1], at="joint4", offset=[0.0, 0.0, 0.05], duration=0.05),
+            sim.push_joints([0.5] * 7, duration=0.05),
+            sim.pull(sim.true_pose()[:3, 3], 100.0, duration=0.05),
+            sim.hold(duration=0.05),
+            sim.block(4, duration=0.05),
+            sim.wall([0.0, 0.0, -1.0], [0.0, 0.0, 1.0], duration=0.05),
+        ]:
+            until(lambda touch=touch: not touch.release())  # type: ignore[misc]
+        sim.hold()
+        sim.let_go()
+        wrong: Any
+        for wrong in [
+            lambda: sim.push([1.0, 2.0]),
+            lambda: sim.push([0.0, 0.0, 1.0], at="elbow"),  # type: ignore[arg-type]
+            lambda: sim.block(0),
+            lambda: sim.pull([0.0, 0.0, 0.0], -5.0),
+            lambda: sim.wall([0.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
+            lambda: sim.trip("no_such_error"),
+        ]:
+            with pytest.raises(ValueError):
+                wrong()
+
+
+def test_people_at_the_robot(sim: Sim, robot: Robot) -> None:
+    assert sim.guide() and robot.state().robot_mode in ("guiding", "idle")
+    until(lambda: robot.state().robot_mode == "guiding")
+    assert not sim.guide(False)
+    sim.press_user_stop()
+    until(lambda: robot.state().robot_mode == "user_stopped")
+    with pytest.raises(MotionError):
+        robot.move_by([0.0, 0.0, 0.02]).wait()
+    sim.press_user_stop(False)
+    until(lambda: robot.state().robot_mode == "idle")
+    sim.trip("joint_reflex")
+    until(lambda: robot.state().robot_mode == "reflex")
+    assert robot.state().current_errors == ["joint_reflex"]
+    robot.recover().wait()
+    sim.lock()
+    with pytest.raises(FrankaError):
+        robot.move_by([0.0, 0.0, 0.02]).wait()
+    sim.lock(False)
+    sim.recover_manually()
+    q = robot.state().q + 0.1
+    sim.place(q)
+    until(lambda: bool(abs(robot.state().q - q).max() < 0.01))
+    sim.attach(0.1, [0.0, 0.0, 0.02])
+
+
+def test_a_network_that_fails_is_noticed() -> None:
+    async def main() -> None:
+        lossy = Network(loss=0.02, delay=0.0002, jitter=0.0001, duplication=0.01, seed=3)
+        async with Sim.fr3(virtual_time=True, patience=0.25, network=lossy) as sim, connection(sim) as robot:
+            report = await robot.move_by([0.0, 0.0, 0.03])
+            assert report.lost_states > 0
+        cut = Network(cuts=[(1.0, 1e6)])
+        async with Sim.fr3(patience=0.05, network=cut) as sim, connection(sim) as robot:
+            ended = await outcome(robot.move_by([0.0, 0.0, 0.2], speed=0.1))
+            assert isinstance(ended, MotionError) and not isinstance(ended, ControlError), repr(ended)
+            assert ended.party == "link"
+
+    asyncio.run(asyncio.wait_for(main(), 60))
+
+
+def test_methods_release_the_interpreter(sim: Sim) -> None:
+    """Threads that ask at the same time all get answers, though each waits for the simulation."""
+    answers: list[int] = []
+    threads = [threading.Thread(target=lambda: answers.extend(sim.state().time_ms for _ in range(20))) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(20.0)
+    assert len(answers) == 80
