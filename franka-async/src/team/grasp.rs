@@ -49,12 +49,23 @@ impl<const N: usize> Team<N> {
         for ((hand, arm), base) in hands.iter_mut().zip(&self.arms).zip(&bases) {
             *hand = (base * arm.held_pose()?).inverse() * object;
         }
+        Ok(self.grasp_at(bases, hands))
+    }
+
+    /// Takes an object as held by all arms, each of whose end effectors has it at this pose in its own
+    /// frame: of an earlier [`Grasp::hands`], or one that is known from elsewhere. Nothing moves.
+    pub fn grasp_at(&self, bases: [Pose; N], hands: [Pose; N]) -> Grasp<'_, N> {
         let team = self;
-        Ok(Grasp { team, bases, hands })
+        Grasp { team, bases, hands }
     }
 }
 
 impl<const N: usize> Grasp<'_, N> {
+    /// The object in the frame of each end effector.
+    pub fn hands(&self) -> &[Pose; N] {
+        &self.hands
+    }
+
     /// A motion of the object to this pose, in the frame of the bases: a straight line and a
     /// rotation about one axis, if it begins at rest. See [`Team::run`] for how it begins and ends.
     pub fn move_to(&self, object: Pose) -> TeamMotion<N> {
