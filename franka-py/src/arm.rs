@@ -1,6 +1,6 @@
 //! An engaged arm: one session, many goals.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use franka_async::goal::{Backend, Controller, Deadman as Token, DeadmanMonitor, Free, Setpoints};
@@ -31,12 +31,17 @@ use crate::runtime::{self, Threaded};
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Arm {
     arm: Threaded<franka_async::Arm>,
+    /// By which its motions know it.
+    pub(crate) id: u64,
 }
 
 impl Arm {
-    fn new(arm: franka_async::Arm) -> Self {
-        let arm = Threaded::new(arm);
-        Self { arm }
+    pub(crate) fn new(arm: franka_async::Arm) -> Self {
+        static ARMS: AtomicU64 = AtomicU64::new(0);
+        Self {
+            arm: Threaded::new(arm),
+            id: ARMS.fetch_add(1, Ordering::Relaxed),
+        }
     }
 
     /// The session.
@@ -55,7 +60,10 @@ impl Arm {
         options: Option<&Bound<'_, PyDict>>,
         begun: franka_async::Motion,
     ) -> PyResult<Py<Motion>> {
-        motion(py, name, self.arm.robot(), options, begun)
+        let motion = motion(py, name, self.arm.robot(), options, begun)?;
+        // Just made: nobody else has set it.
+        let _ = motion.get().arm.set(self.id);
+        Ok(motion)
     }
 }
 

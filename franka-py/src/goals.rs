@@ -11,6 +11,7 @@ use crate::motion::{Motion, reference};
 use crate::operation::Operation;
 use crate::options::{Keywords, Options, budget_object, with_options};
 use crate::robot::Robot;
+use crate::start::StartTicket;
 
 /// Makes the motion `begun` of `robot` with the options of the call `name`.
 pub(crate) fn motion(
@@ -22,8 +23,14 @@ pub(crate) fn motion(
 ) -> PyResult<Py<Motion>> {
     let mut keywords = Keywords::new(name, options)?;
     let options = Options::of_goal(&mut keywords, robot.model())?;
+    let ticket = keywords.take("start_with")?;
     keywords.end()?;
-    Motion::new(py, name, with_options!(begun, options))
+    let begun = with_options!(begun, options);
+    let begun = match ticket {
+        Some(ticket) => begun.start_with(ticket.cast::<StartTicket>()?.get().take()?),
+        None => begun,
+    };
+    Motion::new(py, name, begun)
 }
 
 #[pymethods]
@@ -34,7 +41,8 @@ impl Robot {
     ///
     /// Options of every motion: `speed`, a factor; `limits`, a `Budget`; `gains`, `Gains`; `stiffness` at the
     /// end effector, 6 numbers; `force_cap`, N, or `None` for off; `leash`, `deviation`, `tolerance`,
-    /// `settling`; `posture`, 7 joint positions; and `until`, a condition. Raises `ValueError` for arguments
+    /// `settling`; `posture`, 7 joint positions; `until`, a condition; and `start_with`, a `StartTicket`.
+    /// Raises `ValueError` for arguments
     /// that make no sense, and `MotionError` when it is awaited.
     #[pyo3(signature = (target, **options))]
     fn move_to(

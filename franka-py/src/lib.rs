@@ -40,12 +40,14 @@ mod robot;
 mod runtime;
 mod settings;
 mod simulator;
+mod start;
 mod state;
 mod state_views;
 mod states;
 mod stats;
 mod stream;
 mod supervision;
+mod team;
 mod vacuum_gripper;
 mod virtual_robots;
 
@@ -100,11 +102,15 @@ mod _native {
     #[pymodule_export]
     use crate::simulator::Sim;
     #[pymodule_export]
+    use crate::start::{StartTicket, start_tickets};
+    #[pymodule_export]
     use crate::state::{_state_of_json, RobotState};
     #[pymodule_export]
     use crate::stream::Source;
     #[pymodule_export]
     use crate::supervision::_check_policy;
+    #[pymodule_export]
+    use crate::team::{Team, TeamGrasp};
     #[pymodule_export]
     use crate::vacuum_gripper::{VacuumGripper, VacuumGripperState};
     #[pymodule_export]

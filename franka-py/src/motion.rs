@@ -1,5 +1,6 @@
 //! Motions: awaitables with a handle, and what they report.
 
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
 use franka_async::condition::Reacted;
@@ -17,6 +18,10 @@ use crate::operation::Operation;
 #[pyclass(frozen, extends = Operation, module = "franka_async")]
 pub(crate) struct Motion {
     handle: Handle,
+    /// Until it begins, on its own or as a part of a joint motion.
+    waiting: Arc<Mutex<Option<franka_async::Motion>>>,
+    /// Which `Arm` has made it.
+    pub(crate) arm: OnceLock<u64>,
 }
 
 impl Motion {
@@ -27,13 +32,38 @@ impl Motion {
         motion: franka_async::Motion,
     ) -> PyResult<Py<Self>> {
         let handle = motion.handle();
-        let work = async move { motion.await.map(Report) };
+        let waiting = Arc::new(Mutex::new(Some(motion)));
+        let taken = waiting.clone();
+        let work = async move {
+            // An operation that was taken apart never begins.
+            let motion = take(&taken).ok_or(MotionError::Stopped)?;
+            motion.await.map(Report)
+        };
         let operation = Operation::new::<Report, MotionError>(name, work);
-        Py::new(
-            py,
-            PyClassInitializer::from(operation).add_subclass(Self { handle }),
-        )
+        let motion = Self {
+            handle,
+            waiting,
+            arm: OnceLock::new(),
+        };
+        Py::new(py, PyClassInitializer::from(operation).add_subclass(motion))
     }
+
+    /// Takes the driver's motion out, for a joint motion to begin it; `None` if it has begun.
+    pub(crate) fn take(this: &Bound<'_, Self>) -> PyResult<Option<franka_async::Motion>> {
+        let motion = take(&this.get().waiting);
+        // It is awaited as a part of the joint motion.
+        if motion.is_some() {
+            this.call_method0("close")?;
+        }
+        Ok(motion)
+    }
+}
+
+fn take(waiting: &Mutex<Option<franka_async::Motion>>) -> Option<franka_async::Motion> {
+    waiting
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .take()
 }
 
 #[pymethods]

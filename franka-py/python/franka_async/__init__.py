@@ -32,7 +32,11 @@ from ._native import (
     Touch,
     VacuumGripper,
     VacuumGripperState,
+    StartTicket,
+    Team,
+    TeamGrasp,
     VirtualRobots,
+    start_tickets,
     enable_logging,
     record_columns,
 )
@@ -46,6 +50,7 @@ from .errors import (
     IdentifyError,
     MotionError,
     ReadError,
+    TeamError,
 )
 from .goal import (
     Box,
@@ -140,7 +145,11 @@ __all__ = [
     "RobotState",
     "Settling",
     "Sim",
+    "StartTicket",
     "Stream",
+    "Team",
+    "TeamError",
+    "TeamGrasp",
     "Tolerance",
     "Touch",
     "VacuumGripper",
@@ -153,4 +162,5 @@ __all__ = [
     "laws",
     "otg",
     "record_columns",
+    "start_tickets",
 ]

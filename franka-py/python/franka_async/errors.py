@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ._native import ControlLog
+    from .motion import MotionReport
 
 __all__ = [
     "ActionError",
@@ -21,6 +22,7 @@ __all__ = [
     "IdentifyError",
     "MotionError",
     "ReadError",
+    "TeamError",
 ]
 
 
@@ -62,6 +64,16 @@ class MotionError(FrankaError):
 
     code: int | None = None
     """What a control law returned that gave up, below 0; `None` unless the kind is ``given_up``."""
+
+
+class TeamError(MotionError):
+    """A joint motion ended short of its goal. Its text, ``kind`` and ``party`` are those of the arm at fault."""
+
+    member: int
+    """Number of the arm at fault, in the order of the team."""
+
+    outcomes: list[MotionReport | MotionError]
+    """How the motion of each arm ended: a ``MotionReport`` if it arrived."""
 
 
 class ActiveError(MotionError):

@@ -1,0 +1,398 @@
+//! Several arms as one: motions that begin together, one stop.
+
+use std::future::Future;
+use std::pin::Pin;
+use std::sync::Arc;
+use std::time::Duration;
+
+use franka_async::error::Lapse;
+use franka_async::motion::Outcome;
+use franka_async::team::{MEMBERS_MAX, SILENCE, Team as Joint, TeamStop};
+use franka_async::{Engage, MotionError, Pose};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyAny, PyDict, PyList, PyTuple};
+
+use crate::arm::Arm;
+use crate::arrays::{pose, pose_array};
+use crate::destination::destination;
+use crate::errors::{Raise, variant};
+use crate::motion::{Motion, Report};
+use crate::operation::{Operation, seconds};
+use crate::options::{Keywords, Options, with_options};
+use crate::robot::Robot;
+use crate::runtime::Threaded;
+
+/// A team of any size.
+enum Members {
+    Two(Joint<2>),
+    Three(Joint<3>),
+    Four(Joint<4>),
+}
+
+/// Does the same with a team of any size.
+macro_rules! with_team {
+    ($members:expr, $team:ident => $act:expr) => {
+        match $members {
+            Members::Two($team) => $act,
+            Members::Three($team) => $act,
+            Members::Four($team) => $act,
+        }
+    };
+}
+
+type Outcomes = Pin<Box<dyn Future<Output = Vec<Outcome>> + Send>>;
+
+/// Two to four arms as one: `async with await Team.engage(left, right) as team:`. Their motions begin within a
+/// millisecond of each other, and the fault of one brakes the others within two cycles of their control
+/// threads, whatever Python is busy with.
+///
+/// A joint motion returns a list of one `MotionReport` for each arm. If one of them has not arrived, it
+/// raises `TeamError` with `outcomes`, one for each arm, of which the error of the arm at fault is the cause.
+/// Cancelling a joint motion brakes all arms. When the last reference to the team and its arms goes, all brake
+/// and their sessions end.
+#[pyclass(frozen, module = "franka_async")]
+pub(crate) struct Team {
+    members: Threaded<Arc<Members>>,
+    arms: Vec<Py<Arm>>,
+}
+
+#[pymethods]
+impl Team {
+    /// Begins a session for each robot, as `Robot.engage` does, with the same options for all: `speed`,
+    /// `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture`; returns a `Team`. A robot that is
+    /// silent for `silence` seconds brakes the others. Raises `MotionError` of the first arm that is not
+    /// engaged; the others are then let go. Cancelling ends all sessions.
+    #[staticmethod]
+    #[pyo3(signature = (*robots, silence = SILENCE.as_secs_f64(), **options))]
+    fn engage(
+        robots: &Bound<'_, PyTuple>,
+        silence: f64,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Operation> {
+        let silence = seconds(silence)?;
+        let mut engaged = Vec::with_capacity(robots.len());
+        for robot in robots.iter() {
+            let robot = robot.cast::<Robot>()?.get().connected()?;
+            let mut keywords = Keywords::new("Team.engage", options)?;
+            let common = Options::of_session(&mut keywords, robot.model())?;
+            keywords.end()?;
+            let engage = with_options!(Engage::default(), common, session);
+            engaged.push((robot, engage));
+        }
+        if !(2..=MEMBERS_MAX.min(4)).contains(&engaged.len()) {
+            let text = format!("got {} robots, expected 2 to 4", engaged.len());
+            return Err(PyValueError::new_err(text));
+        }
+        Ok(Operation::new("Team.engage", async move {
+            let members = match engaged.len() {
+                2 => Members::Two(begin(engaged, silence).await?),
+                3 => Members::Three(begin(engaged, silence).await?),
+                _ => Members::Four(begin(engaged, silence).await?),
+            };
+            Ok::<_, franka_async::Error>(Engaged(members))
+        }))
+    }
+
+    /// The arms, in the order of the robots.
+    #[getter]
+    fn arms(&self, py: Python<'_>) -> Vec<Py<Arm>> {
+        self.arms.iter().map(|arm| arm.clone_ref(py)).collect()
+    }
+
+    /// A motion of all arms, each to its target, which `Arm.move_to` takes; with the same options for all.
+    #[pyo3(signature = (targets, **options))]
+    fn move_to(
+        &self,
+        targets: Vec<Bound<'_, PyAny>>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Operation> {
+        self.check_count("targets", targets.len())?;
+        let mut motions = Vec::with_capacity(targets.len());
+        for (arm, target) in self.arms.iter().zip(&targets) {
+            let arm = arm.get().session()?;
+            let mut keywords = Keywords::new("Team.move_to", options)?;
+            let options = Options::of_goal(&mut keywords, arm.robot().model())?;
+            keywords.end()?;
+            let target = destination("targets", target)?;
+            motions.push(with_options!(arm.move_to(target), options));
+        }
+        Ok(self.joint("Team.move_to", motions))
+    }
+
+    /// A motion of all arms: `motions` are one of each arm, in their order, `[team.arms[0].move_to(a),
+    /// team.arms[1].move_by(b)]`, which are then not to be awaited themselves. All begin together.
+    fn run(&self, motions: Vec<Bound<'_, Motion>>) -> PyResult<Operation> {
+        self.check_count("motions", motions.len())?;
+        for (member, (arm, motion)) in self.arms.iter().zip(&motions).enumerate() {
+            if motion.get().arm.get() != Some(&arm.get().id) {
+                let text = format!("motion {member} is not one of arms[{member}] of this team");
+                return Err(PyValueError::new_err(text));
+            }
+        }
+        let taken: PyResult<Option<Vec<_>>> = motions.iter().map(Motion::take).collect();
+        let begun = "a motion has begun already: it takes one that was not awaited";
+        let motions = taken?.ok_or_else(|| PyValueError::new_err(begun))?;
+        Ok(self.joint("Team.run", motions))
+    }
+
+    /// Brakes all arms, each within two of its cycles. Never waits, fit for any thread. Motions raise, the
+    /// sessions go on and hold the arms.
+    fn stop(&self) {
+        with_team!(&**self.members, team => team.stop());
+    }
+
+    /// Why the newest joint motion, or what came after it, has stopped: `requested`, or the name of what
+    /// happened with the number of the arm, `("robot_stopped", 1)`; `None` if nothing has.
+    fn stopped<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let stopped = with_team!(&**self.members, team => team.stopped());
+        Ok(match stopped {
+            None => None,
+            Some(TeamStop::Member { member, fault }) => {
+                Some((variant(&fault), member).into_pyobject(py)?.into_any())
+            }
+            Some(other) => Some(variant(&other).into_pyobject(py)?.into_any()),
+        })
+    }
+
+    /// Takes an object as held by all arms from now on, where it is: `bases` are the robots' base frames and
+    /// `object` is the object's, poses in one frame of the program's choice. Nothing moves. Raises
+    /// `MotionError` if a session has ended.
+    fn grasp(
+        this: &Bound<'_, Self>,
+        bases: Vec<Bound<'_, PyAny>>,
+        object: &Bound<'_, PyAny>,
+    ) -> PyResult<TeamGrasp> {
+        let team = this.get();
+        team.check_count("bases", bases.len())?;
+        let bases: PyResult<Vec<Pose>> = bases.iter().map(|base| pose("bases", base)).collect();
+        let (bases, object) = (bases?, pose("object", object)?);
+        let hands = with_team!(&**team.members, joint => {
+            joint.grasp(sized(&bases), object).map(|grasp| grasp.hands().to_vec())
+        });
+        Ok(TeamGrasp {
+            hands: hands.map_err(|error| error.raise(this.py()))?,
+            team: this.clone().unbind(),
+            bases,
+        })
+    }
+
+    /// Brakes all arms, lets them go and ends their sessions. Raises `TeamError` if one ended otherwise.
+    fn disengage(&self) -> PyResult<Operation> {
+        let arms: PyResult<Vec<_>> = self.arms.iter().map(|arm| arm.get().session()).collect();
+        let ending = arms?.into_iter().map(franka_async::Arm::disengage);
+        let ended = futures::future::join_all(ending);
+        Ok(Operation::new("Team.disengage", async move {
+            judge(ended.await)
+        }))
+    }
+
+    fn __aenter__(this: Py<Self>) -> Operation {
+        Operation::infallible("Team", async move { this })
+    }
+
+    #[pyo3(signature = (kind = None, *_rest))]
+    fn __aexit__(
+        &self,
+        kind: Option<&Bound<'_, PyAny>>,
+        _rest: &Bound<'_, PyAny>,
+    ) -> PyResult<Operation> {
+        let raised = kind.is_some_and(|kind| !kind.is_none());
+        let arms: PyResult<Vec<_>> = self.arms.iter().map(|arm| arm.get().session()).collect();
+        let ending = arms?.into_iter().map(franka_async::Arm::disengage);
+        let ended = futures::future::join_all(ending);
+        Ok(Operation::new("Team.disengage", async move {
+            match judge(ended.await) {
+                // What the block raised is not replaced.
+                Err(error) if !raised => Err(error),
+                _ => Ok(()),
+            }
+        }))
+    }
+
+    fn __len__(&self) -> usize {
+        self.arms.len()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Team of {} arms>", self.arms.len())
+    }
+}
+
+impl Team {
+    fn check_count(&self, name: &str, got: usize) -> PyResult<()> {
+        let expected = self.arms.len();
+        if got == expected {
+            return Ok(());
+        }
+        let text = format!("got {got} {name}, expected {expected}: one for each arm");
+        Err(PyTypeError::new_err(text))
+    }
+
+    fn joint(&self, name: &'static str, motions: Vec<franka_async::Motion>) -> Operation {
+        let members = Arc::clone(&self.members);
+        Operation::new(name, async move {
+            let running: Outcomes = with_team!(&*members, team => {
+                let mut motions = motions.into_iter();
+                let motion = team.run(|_, _| motions.next().expect("one for each arm"));
+                Box::pin(async move { motion.await.into() })
+            });
+            judge(running.await)
+        })
+    }
+}
+
+/// An object that all arms of a team hold: made by `Team.grasp`.
+#[pyclass(frozen, module = "franka_async")]
+pub(crate) struct TeamGrasp {
+    team: Py<Team>,
+    bases: Vec<Pose>,
+    /// The object in the frame of each end effector.
+    hands: Vec<Pose>,
+}
+
+#[pymethods]
+impl TeamGrasp {
+    /// A motion of the object to this pose, in the frame of the bases, on a straight line; with options of
+    /// `Arm.move_to` other than `limits`, the same for all arms. An arm that is held back holds up the others.
+    #[pyo3(signature = (object, **options))]
+    fn move_to(
+        &self,
+        object: &Bound<'_, PyAny>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Operation> {
+        let object = pose("object", object)?;
+        let team = self.team.get();
+        let mut chosen = Vec::with_capacity(team.arms.len());
+        for arm in &team.arms {
+            let mut keywords = Keywords::new("TeamGrasp.move_to", options)?;
+            let model = arm.get().session()?;
+            chosen.push(Options::of_goal(&mut keywords, model.robot().model())?);
+            keywords.end()?;
+        }
+        let members = Arc::clone(&team.members);
+        let (bases, hands) = (self.bases.clone(), self.hands.clone());
+        Ok(Operation::new("TeamGrasp.move_to", async move {
+            let running: Outcomes = with_team!(&*members, team => {
+                let grasp = team.grasp_at(sized(&bases), sized(&hands));
+                // The options of the members come in their order.
+                let chosen = std::cell::RefCell::new(chosen.into_iter());
+                let motion = grasp.move_with(object, |motion| {
+                    let options = chosen.borrow_mut().next().expect("one for each arm");
+                    with_options!(motion, options)
+                });
+                Box::pin(async move { motion.await.into() })
+            });
+            judge(running.await)
+        }))
+    }
+
+    /// Where the object is by the newest state of each arm, in the frame of the bases: a list of `(4, 4)`.
+    fn measured<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let measured: Vec<Pose> = with_team!(&**self.team.get().members, team => {
+            team.grasp_at(sized(&self.bases), sized(&self.hands)).measured().into()
+        });
+        PyList::new(py, measured.iter().map(|pose| pose_array(py, pose)))
+    }
+}
+
+/// As many as there are members, which was checked.
+fn sized<const N: usize>(poses: &[Pose]) -> [Pose; N] {
+    poses.try_into().expect("one for each arm")
+}
+
+async fn begin<const N: usize>(
+    robots: Vec<(franka_async::Robot, Engage)>,
+    silence: Duration,
+) -> Result<Joint<N>, franka_async::Error> {
+    let (robots, engages): (Vec<_>, Vec<_>) = robots.into_iter().unzip();
+    let mut engages = engages.into_iter();
+    let members: [_; N] =
+        core::array::from_fn(|i| (&robots[i], engages.next().expect("one for each robot")));
+    Ok(Joint::engage_tolerating(silence, members).await?)
+}
+
+/// A team that has just begun, made into a `Team`.
+struct Engaged(Members);
+
+impl<'py> IntoPyObject<'py> for Engaged {
+    type Target = Team;
+    type Output = Bound<'py, Team>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, Team>> {
+        let arms: Vec<franka_async::Arm> = with_team!(&self.0, team => team.arms().to_vec());
+        let arms: PyResult<Vec<_>> = arms
+            .into_iter()
+            .map(|arm| Py::new(py, Arm::new(arm)))
+            .collect();
+        let team = Team {
+            members: Threaded::new(Arc::new(self.0)),
+            arms: arms?,
+        };
+        Bound::new(py, team)
+    }
+}
+
+/// The reports of all members, if all have arrived.
+struct Reports(Vec<Report>);
+
+impl<'py> IntoPyObject<'py> for Reports {
+    type Target = PyList;
+    type Output = Bound<'py, PyList>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let reports: PyResult<Vec<_>> = self
+            .0
+            .into_iter()
+            .map(|report| report.into_pyobject(py))
+            .collect();
+        PyList::new(py, reports?)
+    }
+}
+
+/// The outcomes of a motion of which a member has not arrived.
+struct Failed(Vec<Outcome>);
+
+fn judge(outcomes: Vec<Outcome>) -> Result<Reports, Failed> {
+    if outcomes.iter().any(Result::is_err) {
+        return Err(Failed(outcomes));
+    }
+    let reports = outcomes.into_iter().flatten().map(Report);
+    Ok(Reports(reports.collect()))
+}
+
+impl Raise for Failed {
+    fn raise(self, py: Python<'_>) -> PyErr {
+        raised(py, self.0).unwrap_or_else(|broken| broken)
+    }
+}
+
+fn raised(py: Python<'_>, outcomes: Vec<Outcome>) -> PyResult<PyErr> {
+    // The arm at fault, rather than those that were braked for it.
+    let follows = |error: &MotionError| matches!(error, MotionError::Braked(Lapse::Team(_)));
+    let failed = |outcome: &Outcome| outcome.is_err();
+    let at_fault = |outcome: &Outcome| outcome.as_ref().is_err_and(|error| !follows(error));
+    let member = outcomes.iter().position(at_fault);
+    let member = member
+        .or_else(|| outcomes.iter().position(failed))
+        .unwrap_or_default();
+    let all = PyList::empty(py);
+    for outcome in outcomes {
+        match outcome {
+            Ok(report) => all.append(Report(report).into_pyobject(py)?)?,
+            Err(error) => all.append(error.raise(py).into_value(py))?,
+        }
+    }
+    let cause = all.get_item(member)?;
+    let class = py.import("franka_async.errors")?.getattr("TeamError")?;
+    let error = class.call1((format!("arm {member}: {}", cause.str()?),))?;
+    for name in ["kind", "party", "is_ready_for_more"] {
+        error.setattr(name, cause.getattr(name)?)?;
+    }
+    error.setattr("member", member)?;
+    error.setattr("outcomes", all)?;
+    error.setattr("__cause__", cause)?;
+    Ok(PyErr::from_value(error))
+}
