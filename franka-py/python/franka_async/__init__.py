@@ -1,6 +1,6 @@
 """Driver for Franka robots: motions are awaitables, states are numpy arrays, control stays on a real-time thread."""
 
-from . import condition, laws, otg
+from . import condition, laws, otg, tools
 from ._native import (
     COLLISION_THRESHOLDS,
     FLAT_LAYOUT,
@@ -163,4 +163,5 @@ __all__ = [
     "otg",
     "record_columns",
     "start_tickets",
+    "tools",
 ]

@@ -1,0 +1,203 @@
+"""What is on the flange, by name: tools that are saved in a file and declared to a robot.
+
+    tool = await tools.identify(robot)            # a minute of small motions, with the tool on
+    tools.save("screwdriver", tool)
+    await tools.load(robot, "screwdriver")        # in this or a later program
+    await tools.unload(robot)                     # the flange is bare again
+
+The file is ``franka_async/tools.json`` in the user's configuration directory, ``$XDG_CONFIG_HOME`` or ``~/.config``; the variable
+``FRANKA_TOOLS`` names another one. It is written as a whole or not at all: a program that reads it meanwhile finds the one before.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import tempfile
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._native import Robot
+
+__all__ = ["Tool", "ToolFileError", "delete", "get", "identify", "load", "names", "path", "save", "unload"]
+
+_VERSION = 1
+
+
+class ToolFileError(ValueError):
+    """The file of tools cannot be used as it is. Nothing in it was changed."""
+
+
+def _matrix(name: str, value: ArrayLike, shape: tuple[int, ...]) -> tuple[Any, ...]:
+    array = np.asarray(value, dtype=np.float64)
+    if array.shape != shape:
+        raise ValueError(f"{name} has the shape {array.shape}, expected {shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} holds {array[~np.isfinite(array)][0]}, expected finite numbers")
+    rows = array.tolist()
+    return tuple(tuple(row) if isinstance(row, list) else row for row in rows)
+
+
+_IDENTITY = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (0.0, 0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tool:
+    """What is on the flange beside the end effector that the robot is configured with. Raises ``ValueError`` for values that no tool has."""
+
+    mass: float = 0.0
+    """Mass, kg."""
+
+    center: tuple[float, ...] = (0.0, 0.0, 0.0)
+    """Centre of mass in the flange frame, 3 numbers, m."""
+
+    inertia: tuple[tuple[float, ...], ...] = ((0.0,) * 3,) * 3
+    """Inertia about the centre of mass, 3 x 3, kg m^2."""
+
+    frame: tuple[tuple[float, ...], ...] = field(default=_IDENTITY)
+    """``NE_T_EE``: the pose of the end effector in the nominal end effector's frame, 4 x 4."""
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.mass) and 0.0 <= self.mass):
+            raise ValueError(f"mass is {self.mass}, expected a finite number from 0 on")
+        for name, shape in (("center", (3,)), ("inertia", (3, 3)), ("frame", (4, 4))):
+            object.__setattr__(self, name, _matrix(name, getattr(self, name), shape))
+        object.__setattr__(self, "mass", float(self.mass))
+        if not np.array_equal(np.transpose(self.inertia), self.inertia):
+            raise ValueError(f"inertia is {self.inertia}, expected a symmetric matrix")
+        rotation = self.pose[:3, :3]
+        if not (np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-6) and np.linalg.det(rotation) > 0):
+            raise ValueError(f"frame is {self.frame}, expected a rigid transformation")
+        if self.frame[3] != (0.0, 0.0, 0.0, 1.0):
+            raise ValueError(f"frame ends with the row {self.frame[3]}, expected (0, 0, 0, 1)")
+
+    @property
+    def pose(self) -> NDArray[np.float64]:
+        """``frame`` as a new array, ``(4, 4)``."""
+        return np.array(self.frame)
+
+
+def path() -> Path:
+    """Returns where the file is, whether or not it exists."""
+    chosen = os.environ.get("FRANKA_TOOLS")
+    if chosen:
+        return Path(chosen)
+    home = os.environ.get("XDG_CONFIG_HOME")
+    # The specification of these directories has relative ones ignored.
+    base = Path(home) if home and os.path.isabs(home) else Path.home() / ".config"
+    return base / "franka_async" / "tools.json"
+
+
+def names() -> list[str]:
+    """Returns the names of all tools, in order."""
+    return sorted(_read())
+
+
+def get(name: str) -> Tool:
+    """Returns the tool of this name. Raises ``KeyError`` with the names that there are."""
+    tools = _read()
+    if name not in tools:
+        known = ", ".join(sorted(tools)) or "none"
+        raise KeyError(f"there is no tool {name!r} in {path()}: it has {known}")
+    return tools[name]
+
+
+def save(name: str, tool: Tool) -> None:
+    """Saves a tool under this name, in the place of the one before."""
+    if not name or name != name.strip():
+        raise ValueError(f"got the name {name!r}, expected text without blanks around it")
+    tools = _read()
+    tools[name] = tool
+    _write(tools)
+
+
+def delete(name: str) -> None:
+    """Forgets the tool of this name. Raises ``KeyError`` as ``get``."""
+    get(name)
+    tools = _read()
+    del tools[name]
+    _write(tools)
+
+
+async def load(robot: Robot, tool: str | Tool) -> Tool:
+    """Declares a tool to the robot, by its name or itself: its load, and the frame of the end effector. Returns it.
+
+    The robot refuses it while it moves (``CommandError``). If it takes the load and then refuses the frame, the load stays declared.
+    Cancelled, the robot may have taken the load without the frame: load it again.
+    """
+    chosen = get(tool) if isinstance(tool, str) else tool
+    await robot.set_load(chosen.mass, chosen.center, chosen.inertia)
+    await robot.set_ee(chosen.pose)
+    return chosen
+
+
+async def unload(robot: Robot) -> None:
+    """Declares to the robot that there is no tool: no load, and the nominal end effector's frame. Raises as ``load``."""
+    await load(robot, Tool())
+
+
+async def identify(robot: Robot, *, frame: ArrayLike = _IDENTITY) -> Tool:
+    """Measures what is on the flange by a minute of small motions, as ``robot.identify()`` plans them, and returns it as a tool.
+
+    A load that is declared counts as a part of it. Nothing is declared or saved. The inertia is not measured: it is zero. Raises
+    ``IdentifyError``, ``MotionError``, and ``ValueError`` if what is there is too light to be told from none. Cancelling brakes the
+    arm.
+    """
+    found = await robot.identify().run()
+    if found.center is None:
+        raise ValueError(f"found {found.mass:.3f} kg with a deviation of {found.mass_deviation:.3f} kg: too light to be a tool")
+    return Tool(mass=found.mass, center=tuple(found.center), frame=_matrix("frame", frame, (4, 4)))
+
+
+def _read() -> dict[str, Tool]:
+    file = path()
+    try:
+        text = file.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return {}
+    except UnicodeDecodeError as error:
+        raise ToolFileError(f"{file} is no text: {error}") from None
+    try:
+        content = json.loads(text)
+    except json.JSONDecodeError as error:
+        raise ToolFileError(f"{file}, line {error.lineno}, column {error.colno}: {error.msg}") from None
+    if not isinstance(content, dict) or not isinstance(content.get("tools"), dict):
+        raise ToolFileError(f'{file}: expected an object with "version" and "tools"')
+    if content.get("version") != _VERSION:
+        raise ToolFileError(f"{file}: got the version {content.get('version')!r}, expected {_VERSION}")
+    tools = {}
+    for name, fields in content["tools"].items():
+        try:
+            tools[name] = Tool(**fields)
+        except (TypeError, ValueError) as error:
+            raise ToolFileError(f"{file}, tool {name!r}: {error}") from None
+    return tools
+
+
+def _write(tools: dict[str, Tool]) -> None:
+    file = path()
+    content = {
+        "version": _VERSION,
+        "tools": {
+            name: {"mass": tool.mass, "center": tool.center, "inertia": tool.inertia, "frame": tool.frame}
+            for name, tool in sorted(tools.items())
+        },
+    }
+    file.parent.mkdir(parents=True, exist_ok=True)
+    # Beside the file, so that it is replaced in one step.
+    descriptor, draft = tempfile.mkstemp(dir=file.parent, prefix=".tools-", suffix=".json")
+    try:
+        with os.fdopen(descriptor, "w", encoding="utf-8") as out:
+            json.dump(content, out, indent=2)
+            out.write("\n")
+            out.flush()
+            os.fsync(out.fileno())
+        os.replace(draft, file)
+    except BaseException:
+        os.unlink(draft)
+        raise
