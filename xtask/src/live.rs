@@ -2,8 +2,10 @@
 
 use std::process::Command;
 
+use anyhow::anyhow;
+
 use crate::workspace::Workspace;
-use crate::{mujoco, peers};
+use crate::{mujoco, package, peers};
 
 /// Measures each client for `seconds` and writes `target/bench_live.json`.
 pub(crate) fn run(workspace: &Workspace, seconds: u32) -> anyhow::Result<()> {
@@ -33,6 +35,25 @@ pub(crate) fn run_simulator(workspace: &Workspace, seconds: u32) -> anyhow::Resu
             build(workspace, &[])?;
         }
     }
+    workspace.run(&mut measure)
+}
+
+/// Measures the package for Python beside others and writes `target/bench_python.json`.
+pub(crate) fn run_python(workspace: &Workspace) -> anyhow::Result<()> {
+    let mut build = workspace.cargo();
+    build.args(["build", "--release", "--package", "franka-sim", "--package"]);
+    build.args(["franka-tests", "--bin", "franka-sim", "--bin", "live"]);
+    workspace.run(&mut build)?;
+    let interpreter = package::prepare_bench(workspace)?.map_err(|why| anyhow!(why))?;
+    let target = workspace.target();
+    let mut measure = workspace.program(target.join("release").join("live"));
+    measure
+        .arg("packages")
+        .arg(target.join("bench_python.json"));
+    measure.arg("--python").arg(interpreter);
+    measure
+        .arg("--adapters")
+        .arg(package::directory(workspace).join("bench"));
     workspace.run(&mut measure)
 }
 

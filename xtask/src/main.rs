@@ -70,7 +70,8 @@ enum Task {
     ///
     /// With --live: measure clients against the simulator over real sockets, and write
     /// `target/bench_live.json`. With --sim: measure what one simulated arm costs, and write
-    /// `target/bench_sim.json`.
+    /// `target/bench_sim.json`. With --python: measure the package for Python beside others, and
+    /// write `target/bench_python.json`.
     Bench {
         /// Rounds; each runs every benchmark once.
         #[arg(long, default_value_t = 15)]
@@ -88,6 +89,10 @@ enum Task {
         /// else should run meanwhile.
         #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
         sim: bool,
+        /// Measure the package for Python and others against the simulator: nothing else should run
+        /// meanwhile.
+        #[arg(long, conflicts_with_all = ["sockets", "instructions", "starvation"])]
+        python: bool,
         /// How long to measure each case of --live and --sim.
         #[arg(long, default_value_t = 30, requires = "sockets")]
         seconds: u32,
@@ -139,6 +144,7 @@ fn run(task: Task) -> anyhow::Result<()> {
         Task::Bench {
             sim: true, seconds, ..
         } => live::run_simulator(&workspace, seconds),
+        Task::Bench { python: true, .. } => live::run_python(&workspace),
         Task::Bench {
             starvation: true, ..
         } => workspace.run(workspace.cargo_release_binary("live").arg("starvation")),

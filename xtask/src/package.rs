@@ -12,16 +12,41 @@ use crate::workspace::Workspace;
 /// Builds and installs the package and what its tests need; returns the interpreter that has them,
 /// or why there is none.
 pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
-    let python = match Python::find(OLDEST..=NEWEST) {
-        Ok(python) => python,
-        Err(why) => return Ok(Err(why)),
-    };
-    let requirements = directory(workspace).join("tests").join("requirements.txt");
-    let interpreter = python.environment(workspace, "python-package", &requirements)?;
-    let wheels = workspace.target().join("wheels");
-    let mut build = module(workspace, &interpreter, "maturin");
     // The profile of the tests: what computes in a cycle is optimised in it.
-    build.args(["build", "--quiet", "--locked", "--profile", "dev"]);
+    let [environment, profile] = ["python-package", "dev"];
+    match Python::find(OLDEST..=NEWEST) {
+        Ok(python) => install(workspace, &python, environment, "tests", profile).map(Ok),
+        Err(why) => Ok(Err(why)),
+    }
+}
+
+/// Builds the package optimised and installs it beside the packages that it is measured with;
+/// returns the interpreter that has them, or why there is none.
+pub(crate) fn prepare_bench(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
+    // Some have no wheels for newer versions, but ours does.
+    let python = Python::find(OLDEST..=NEWEST_OF_ALL).or_else(|_| Python::find(OLDEST..=NEWEST));
+    match python {
+        Ok(python) => install(workspace, &python, "python-bench", "bench", "release").map(Ok),
+        Err(why) => Ok(Err(why)),
+    }
+}
+
+/// Builds the package and installs it in a virtual environment with the requirements in one of its
+/// directories; returns the interpreter.
+fn install(
+    workspace: &Workspace,
+    python: &Python,
+    environment: &str,
+    requirements: &str,
+    profile: &str,
+) -> anyhow::Result<PathBuf> {
+    let requirements = directory(workspace)
+        .join(requirements)
+        .join("requirements.txt");
+    let interpreter = python.environment(workspace, environment, &requirements)?;
+    let wheels = workspace.target().join("wheels").join(profile);
+    let mut build = module(workspace, &interpreter, "maturin");
+    build.args(["build", "--quiet", "--locked", "--profile", profile]);
     build.args(["--manifest-path", "franka-py/Cargo.toml", "--out"]);
     build.arg(&wheels).arg("--interpreter").arg(&interpreter);
     build.env("CARGO_TARGET_DIR", workspace.target());
@@ -31,7 +56,7 @@ pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, S
     install.args(["--disable-pip-version-check", "--no-deps", "--no-index"]);
     install.arg("--find-links").arg(&wheels).arg("franka-async");
     workspace.run(&mut install)?;
-    Ok(Ok(interpreter))
+    Ok(interpreter)
 }
 
 /// Runs the tests beside the checks of the types.
@@ -71,9 +96,12 @@ fn module(workspace: &Workspace, interpreter: &Path, name: &str) -> Command {
 }
 
 /// Where the package is.
-fn directory(workspace: &Workspace) -> PathBuf {
+pub(crate) fn directory(workspace: &Workspace) -> PathBuf {
     workspace.root().join("franka-py")
 }
 
 /// The oldest Python that the wheel is for.
 const OLDEST: Version = (3, 10);
+
+/// The newest Python that all packages have wheels for which the package is measured with.
+const NEWEST_OF_ALL: Version = (3, 12);

@@ -140,7 +140,7 @@ impl Case {
 }
 
 /// The vendor's client uses one fixed port, so each relay needs its own address.
-fn loopback_address(process: u32) -> IpAddr {
+pub(crate) fn loopback_address(process: u32) -> IpAddr {
     // 127.2.x.y: away from 127.0.0.1, where a simulator of the user may listen; y is never 0 or
     // 255.
     let (high, low) = ((process / 254) % 256, process % 254 + 1);
@@ -148,7 +148,7 @@ fn loopback_address(process: u32) -> IpAddr {
 }
 
 /// The port of every FCI server.
-const PORT: u16 = 1337;
+pub(crate) const PORT: u16 = 1337;
 
 /// The time that a client controls before and after the measurement.
 const LEAD: Duration = Duration::from_secs(2);

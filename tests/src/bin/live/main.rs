@@ -15,6 +15,9 @@
 //!  (a process of its own: time to start, processor time, memory)
 //! ```
 //!
+//! `live packages OUTPUT.json --python INTERPRETER --adapters DIRECTORY`: the packages for Python,
+//! each in a few cases, with the same relay.
+//!
 //! `live starvation [--seconds N]`: see [`starvation`].
 //!
 //! | module | what it is |
@@ -27,10 +30,14 @@
 //! | [`case`] | the measurement of one client |
 //! | [`simulator_case`] | the measurement of one simulator |
 //! | [`report`] | the tables, and the JSON |
+//! | [`package_case`] | the measurement of one package for Python |
+//! | [`package_report`] | the table of these |
 //! | [`starvation`] | what blocked runtime workers cost |
 
 mod case;
 mod listener;
+mod package_case;
+mod package_report;
 mod process;
 mod relay;
 mod report;
@@ -49,6 +56,7 @@ use clap::{Args, Parser, Subcommand, value_parser};
 use serde_json::Value;
 
 use case::{Case, ClientKind, Scheduler};
+use package_case::{CASES, PACKAGES, Places};
 use simulator_case::{ConnectedClient, Plant, SimulatorCase};
 
 /// Measures over real sockets.
@@ -76,6 +84,20 @@ enum What {
         #[arg(long)]
         mujoco: bool,
     },
+    /// Packages for Python.
+    Packages {
+        /// Where to write the values; what each adapter prints is in a directory beside it.
+        output: PathBuf,
+        /// An interpreter that has the packages.
+        #[arg(long)]
+        python: PathBuf,
+        /// Directory of the adapters.
+        #[arg(long)]
+        adapters: PathBuf,
+        /// Measure these packages only.
+        #[arg(long)]
+        only: Vec<String>,
+    },
     /// What blocked runtime workers cost the control thread, and a task in the thread's place.
     Starvation {
         /// How long to measure each case.
@@ -99,12 +121,15 @@ impl Common {
     }
 
     fn write(&self, values: &Value) -> anyhow::Result<()> {
-        let json = serde_json::to_string_pretty(values)?;
-        fs::write(&self.output, json + "\n")
-            .with_context(|| format!("writing {}", self.output.display()))?;
-        println!("written to {}", self.output.display());
-        Ok(())
+        write(&self.output, values)
     }
+}
+
+fn write(output: &Path, values: &Value) -> anyhow::Result<()> {
+    let json = serde_json::to_string_pretty(values)?;
+    fs::write(output, json + "\n").with_context(|| format!("writing {}", output.display()))?;
+    println!("written to {}", output.display());
+    Ok(())
 }
 
 fn main() -> ExitCode {
@@ -123,6 +148,20 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
     match arguments.what {
         What::Clients { common, python } => measure_clients(programs, &common, python.as_deref()),
         What::Simulator { common, mujoco } => measure_simulator(programs, &common, mujoco),
+        What::Packages {
+            output,
+            python,
+            adapters,
+            only,
+        } => {
+            let places = Places {
+                programs,
+                interpreter: &python,
+                adapters: &adapters,
+                output: &output.with_extension(""),
+            };
+            measure_packages(&places, &output, &only)
+        }
         What::Starvation { seconds } => {
             starvation::print(seconds);
             Ok(())
@@ -189,6 +228,37 @@ fn measure_simulator(programs: &Path, common: &Common, mujoco: bool) -> anyhow::
     }
     println!("{}", report::simulator_markdown(&starts, &cases, time));
     common.write(&report::simulator_json(&starts, &cases, time))
+}
+
+fn measure_packages(places: &Places<'_>, output: &Path, only: &[String]) -> anyhow::Result<()> {
+    fs::create_dir_all(places.output)?;
+    let mut rows = Vec::new();
+    for package in &PACKAGES {
+        let name = package.name;
+        if !only.is_empty() && !only.iter().any(|wanted| wanted == name) {
+            continue;
+        }
+        eprintln!("measuring {name}");
+        let row = match package.import(places) {
+            Err(why) => serde_json::json!({ "package": name, "absent": why }),
+            Ok(mut row) => {
+                let mut steps = serde_json::Map::new();
+                for case in CASES {
+                    steps.append(&mut package.measure(places, case)?);
+                }
+                row["package"] = name.into();
+                row["steps"] = steps.into();
+                row
+            }
+        };
+        rows.push(row);
+    }
+    let machine = report::machine();
+    println!("{machine}\n\n{}", package_report::markdown(&rows));
+    write(
+        output,
+        &serde_json::json!({ "machine": machine, "packages": rows }),
+    )
 }
 
 /// Starts of the simulator.

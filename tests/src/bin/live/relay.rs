@@ -194,6 +194,7 @@ fn pass_states(
                 id: state.message_id,
                 left,
                 success_rate: state.control_command_success_rate,
+                mode: state.robot_mode,
             });
         }
     }

@@ -159,7 +159,7 @@ fn micros(quantiles: &Quantiles) -> String {
 }
 
 /// Processor, number of them, and kernel.
-fn machine() -> String {
+pub(crate) fn machine() -> String {
     let read = |path| fs::read_to_string(path).unwrap_or_default();
     let processors = read("/proc/cpuinfo");
     let model = processors

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::time::Duration;
 
 use anyhow::ensure;
+use franka_proto::RobotMode;
 use hdrhistogram::Histogram;
 use serde::Serialize;
 
@@ -16,6 +17,8 @@ pub(crate) struct Departure {
     pub(crate) left: Duration,
     /// The success rate that the robot reports.
     pub(crate) success_rate: f64,
+    /// What it is doing.
+    pub(crate) mode: RobotMode,
 }
 
 /// A command that arrived from the client.
@@ -55,6 +58,17 @@ pub(crate) struct Summary {
     pub(crate) turnaround: Quantiles,
 }
 
+/// What became of the states in which the robot expected a command.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub(crate) struct Punctuality {
+    /// The number of states of a motion.
+    pub(crate) states: u64,
+    /// The number of them whose command had not arrived when the next state left.
+    pub(crate) late: u64,
+    /// Whether the robot stopped itself.
+    pub(crate) reflex: bool,
+}
+
 /// Quantiles of durations, in nanoseconds, to three digits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Quantiles {
@@ -75,11 +89,7 @@ impl Trace {
     /// If no state was answered.
     pub(crate) fn summary(&self, begin: Duration, end: Duration) -> anyhow::Result<Summary> {
         let within = |time: Duration| begin <= time && time < end;
-        // The first answer counts: a robot ignores a second one.
-        let mut answered = HashMap::new();
-        for answer in &self.answers {
-            answered.entry(answer.id).or_insert(answer.arrived);
-        }
+        let answered = self.answered();
         let states: Vec<_> = self.departures.iter().filter(|d| within(d.left)).collect();
         let turnarounds: Vec<Duration> = states
             .iter()
@@ -97,6 +107,34 @@ impl Trace {
             interval: Quantiles::between(arrivals.filter(|&time| within(time))),
             turnaround: Quantiles::of(turnarounds),
         })
+    }
+
+    /// How punctual the commands were for the states that left from `begin` on and before `end`.
+    pub(crate) fn punctuality(&self, begin: Duration, end: Duration) -> Punctuality {
+        let answered = self.answered();
+        let mut punctuality = Punctuality::default();
+        for pair in self.departures.windows(2) {
+            let [state, next] = pair else { continue };
+            if state.left < begin || state.left >= end {
+                continue;
+            }
+            punctuality.reflex |= state.mode == RobotMode::Reflex;
+            if state.mode == RobotMode::Move {
+                let in_time = answered.get(&state.id).is_some_and(|at| *at < next.left);
+                punctuality.states += 1;
+                punctuality.late += u64::from(!in_time);
+            }
+        }
+        punctuality
+    }
+
+    /// When each state was answered. The first answer counts: a robot ignores a second one.
+    fn answered(&self) -> HashMap<u64, Duration> {
+        let mut answered = HashMap::new();
+        for answer in &self.answers {
+            answered.entry(answer.id).or_insert(answer.arrived);
+        }
+        answered
     }
 }
 
@@ -150,6 +188,7 @@ mod tests {
                     id: n,
                     left: micros(1000 * n),
                     success_rate: if n == 40 { 0.5 } else { 1.0 },
+                    mode: RobotMode::Move,
                 })
                 .collect(),
             answers: numbers
@@ -190,6 +229,20 @@ mod tests {
         assert_eq!(summary.success_minimum, 0.5);
         assert!((summary.success_average - (1.0 - 0.5 / 40.0)).abs() < 1e-12);
         assert!(near(summary.turnaround.max, 50));
+    }
+
+    #[test]
+    fn a_command_is_late_once_the_next_state_has_left() {
+        let mut trace = hundred();
+        trace.answers.retain(|answer| answer.id != 20);
+        trace.answers[30].arrived += micros(1000);
+        trace.departures[50].mode = RobotMode::Idle;
+        let all = trace.punctuality(Duration::ZERO, Duration::MAX);
+        // Nothing left after the last state.
+        assert_eq!((all.states, all.late, all.reflex), (98, 2, false));
+        trace.departures[60].mode = RobotMode::Reflex;
+        let window = trace.punctuality(micros(25_000), micros(65_000));
+        assert_eq!((window.states, window.late, window.reflex), (38, 1, true));
     }
 
     #[test]
