@@ -22,6 +22,8 @@ use tracing::{Event, Level, Subscriber};
 use tracing_subscriber::layer::{Context, Layer, SubscriberExt};
 use tracing_subscriber::registry::LookupSpan;
 
+use crate::exit;
+
 /// Passes what the driver and the simulator report on to Python's `logging` from now on: to loggers below
 /// `franka_async`, such as `franka_async.bridge`, so `logging.getLogger("franka_async").setLevel(...)` and
 /// handlers choose as usual. Off by default: without this call, nothing is passed on.
@@ -193,7 +195,7 @@ impl<S: Subscriber + for<'a> LookupSpan<'a>> Layer<S> for Bridge {
 /// Hands events on to `logging` until the interpreter exits.
 fn hand_on(reports: &Receiver<Report>) {
     while let Ok(report) = reports.recv() {
-        let logged = Python::try_attach(|py| {
+        let logged = exit::in_python(|py| {
             if let Err(error) = log(py, &report) {
                 error.write_unraisable(py, None);
             }

@@ -17,6 +17,7 @@ use pyo3::types::{PyBool, PyDict};
 use crate::arrays::{array, columns};
 use crate::device::at_least_zero;
 use crate::errors::{Raise, variant};
+use crate::exit;
 use crate::operation::{Operation, seconds};
 use crate::robot::Robot;
 use crate::state::names;
@@ -152,7 +153,7 @@ pub(crate) fn supervise_by(
     };
     Ok(builder.ask_before_recovery(move |reflex| {
         // On a thread for what blocks. No answer where the interpreter exits.
-        let agreed = Python::try_attach(|py| {
+        let agreed = exit::in_python(|py| {
             let answer = self::reflex(py, reflex)
                 .and_then(|reflex| ask.bind(py).call1((reflex,)))
                 .and_then(|answer| answer.is_truthy());

@@ -44,7 +44,7 @@ _OUTPUT = 16
 _SIGNS_OF_ALLOCATION = ("NRT required", "Only accept returning of array passed into the function")
 
 
-def _cycle_dtype() -> np.dtype[np.void]:
+def _cycle_dtype() -> np.dtype[np.record]:
     fields, size = _law_layout()
     names, offsets, shapes, formats = zip(*fields, strict=True)
     return np.dtype(
@@ -58,7 +58,7 @@ def _cycle_dtype() -> np.dtype[np.void]:
     )
 
 
-CYCLE: np.dtype[np.void] = _cycle_dtype()
+CYCLE: np.dtype[np.record] = _cycle_dtype()
 """What a law gets in a cycle, as a structured type: names, shapes and meanings are those of the header."""
 
 
@@ -108,12 +108,12 @@ def compiled(function: Callable[[Any, Any, Any, Any], int]) -> Any:
         raise TypeError(f"{function.__name__} is no law that numba can compile: {text}") from error
 
 
-def make_cycle(**fields: npt.ArrayLike) -> np.void:
+def make_cycle(**fields: npt.ArrayLike) -> np.record:
     """Returns what a law gets, with these fields and zeros in the others: for trying out a law before it is compiled."""
     cycle = np.zeros((), dtype=CYCLE)
     for name, value in fields.items():
         cycle[name] = value
-    record: np.void = cycle.view(np.recarray)[()]
+    record: np.record = cycle.view(np.recarray)[()]
     return record
 
 

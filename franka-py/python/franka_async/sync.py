@@ -20,7 +20,7 @@ from typing import Any
 
 from . import _native
 
-__all__ = ["Arm", "Robot"]
+__all__ = ["Arm", "Gripper", "IdentificationPlan", "Robot", "VacuumGripper"]
 
 _waiting: dict[type, type] = {}
 """The class of this module for a class of the package."""
@@ -76,4 +76,7 @@ def _class(of: type) -> Any:
 
 
 Arm = _class(_native.Arm)
+Gripper = _class(_native.Gripper)
+IdentificationPlan = _class(_native.IdentificationPlan)
 Robot = _class(_native.Robot)
+VacuumGripper = _class(_native.VacuumGripper)

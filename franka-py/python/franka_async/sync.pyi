@@ -1,17 +1,19 @@
 """Made by ``tests/sync_stub.py`` from the stub of the native module."""
 
-from collections.abc import AsyncIterable, Iterable, Sequence
-from typing import Literal, TypeAlias, final
+from collections.abc import AsyncIterable, Callable, Iterable, Sequence
+from typing import Any, Literal, TypeAlias, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Unpack
-from .goal import Budget, Chunk, Destination, Gains, Joints, Margin, Target, Waypoint
+from .goal import Budget, Chunk, Controller, Destination, Gains, Joints, Margin, Target, Waypoint
 from .motion import MotionReport, Reference
 from .options import EngageOptions, FollowOptions, MotionOptions, TuneOptions
+from .settings import VirtualWall
 from .streams import Reading, Stream
-from ._native import Latest, RobotState
+from .supervision import CloseReason, Event, Health, Policy, Reflex
+from ._native import ActiveControl, AsynchronousControl, GripperState, Identified, Latest, Recording, RobotState, VacuumGripperState
 
-__all__ = ['Arm', 'Robot']
+__all__ = ['Arm', 'Gripper', 'IdentificationPlan', 'Robot', 'VacuumGripper']
 
 _Array: TypeAlias = NDArray[np.float64]
 
@@ -74,10 +76,82 @@ class Arm:
         ...
 
 @final
+class Gripper:
+    """A Franka Hand at an address: ``async with Gripper(address) as gripper:``, or ``robot.gripper()``."""
+
+    def __init__(self, address: str) -> None:
+        ...
+
+    @property
+    def address(self) -> str:
+        ...
+
+    @property
+    def is_connected(self) -> bool:
+        ...
+
+    def connect(self) -> Gripper:
+        ...
+
+    def disconnect(self) -> None:
+        ...
+
+    def __enter__(self) -> Gripper:
+        ...
+
+    def __exit__(self, *_exception: object) -> None:
+        ...
+
+    def state(self) -> GripperState:
+        ...
+
+    def states(self) -> Stream[GripperState]:
+        ...
+
+    def homing(self) -> bool:
+        ...
+
+    def move_to(self, width: float, speed: float=...) -> bool:
+        ...
+
+    def grasp(self, width: float, speed: float=..., force: float=..., epsilon_inner: float=..., epsilon_outer: float=...) -> bool:
+        ...
+
+    def stop(self) -> bool:
+        ...
+
+@final
+class IdentificationPlan:
+    """The motions that an identification makes, which are looked at before they run."""
+
+    @property
+    def waypoints(self) -> _Array:
+        ...
+
+    @property
+    def duration(self) -> float:
+        ...
+
+    @property
+    def reach_of_joints(self) -> _Array:
+        ...
+
+    @property
+    def reach(self) -> float:
+        ...
+
+    @property
+    def reach_down(self) -> float:
+        ...
+
+    def run(self) -> Identified:
+        ...
+
+@final
 class Robot:
     """A robot at an address: ``async with Robot(address) as robot:`` connects, and shuts down at the end."""
 
-    def __init__(self, address: str, *, realtime: Literal['enforce', 'ignore'] | None=None, priority: int | None=None, cpu: int | None=None, version: Literal[5, 10] | None=None, connect_timeout: float | None=None, link_timeout: float | None=None, log_size: int | None=None, nominal_model: bool=False, known: str | None=None, supervise: bool=False) -> None:
+    def __init__(self, address: str, *, realtime: Literal['enforce', 'ignore'] | None=None, priority: int | None=None, cpu: int | None=None, version: Literal[5, 10] | None=None, connect_timeout: float | None=None, link_timeout: float | None=None, log_size: int | None=None, nominal_model: bool=False, known: Identified | None=None, supervise: Policy | bool | None=None, ask_before_recovery: Callable[[Reflex], bool] | None=None) -> None:
         ...
 
     def connect(self) -> Robot:
@@ -150,4 +224,133 @@ class Robot:
         ...
 
     def engage(self, **options: Unpack[EngageOptions]) -> Arm:
+        ...
+
+    def events(self) -> Stream[Event]:
+        ...
+
+    def health(self) -> Health:
+        ...
+
+    def health_changes(self) -> Stream[Health]:
+        ...
+
+    def agree(self, reflex: int, yes: bool=True) -> bool:
+        ...
+
+    def closed(self) -> CloseReason:
+        ...
+
+    def gripper(self) -> Gripper:
+        ...
+
+    def vacuum_gripper(self) -> VacuumGripper:
+        ...
+
+    def set_collision_behavior(self, *thresholds: ArrayLike, **named: ArrayLike) -> None:
+        ...
+
+    def set_joint_impedance(self, stiffness: ArrayLike) -> None:
+        ...
+
+    def set_cartesian_impedance(self, stiffness: ArrayLike) -> None:
+        ...
+
+    def set_guiding_mode(self, free: Sequence[bool], elbow: bool=True) -> None:
+        ...
+
+    def set_k(self, EE_T_K: ArrayLike) -> None:
+        ...
+
+    def set_ee(self, NE_T_EE: ArrayLike) -> None:
+        ...
+
+    def set_load(self, mass: float, center: ArrayLike | None=None, inertia: ArrayLike | None=None) -> None:
+        ...
+
+    def set_filters(self, *, joint_position: float=1000.0, joint_velocity: float=1000.0, cartesian_position: float=1000.0, cartesian_velocity: float=1000.0, controller: float=1000.0) -> None:
+        ...
+
+    def virtual_wall(self, id: int) -> VirtualWall:
+        ...
+
+    def urdf(self) -> str:
+        ...
+
+    def identify(self) -> IdentificationPlan:
+        ...
+
+    def stats(self) -> dict[str, Any]:
+        ...
+
+    def granted(self) -> dict[str, Any]:
+        ...
+
+    def metrics(self) -> str:
+        ...
+
+    def record(self, columns: Iterable[str], *, longest: float=...) -> Recording:
+        ...
+
+    def active_torques(self) -> ActiveControl:
+        ...
+
+    def active_joint_positions(self, controller: Controller='joint_impedance') -> ActiveControl:
+        ...
+
+    def active_joint_velocities(self, controller: Controller='joint_impedance') -> ActiveControl:
+        ...
+
+    def active_cartesian_pose(self, controller: Controller='joint_impedance') -> ActiveControl:
+        ...
+
+    def active_cartesian_velocities(self, controller: Controller='joint_impedance') -> ActiveControl:
+        ...
+
+    def asynchronous_joint_positions(self, maximum_joint_velocities: ArrayLike | None=None, goal_tolerance: float | None=None) -> AsynchronousControl:
+        ...
+
+    def run_law(self, law: Any, *, command: str | None=None, parameters: ArrayLike | None=None, memory: ArrayLike | None=None, controller: Controller='joint_impedance', limit_rate: bool | None=None, cutoff_frequency: float | None=None) -> MotionReport:
+        ...
+
+@final
+class VacuumGripper:
+    """A vacuum gripper at an address: ``async with VacuumGripper(address) as gripper:``, or ``robot.vacuum_gripper()``."""
+
+    def __init__(self, address: str) -> None:
+        ...
+
+    @property
+    def address(self) -> str:
+        ...
+
+    @property
+    def is_connected(self) -> bool:
+        ...
+
+    def connect(self) -> VacuumGripper:
+        ...
+
+    def disconnect(self) -> None:
+        ...
+
+    def __enter__(self) -> VacuumGripper:
+        ...
+
+    def __exit__(self, *_exception: object) -> None:
+        ...
+
+    def state(self) -> VacuumGripperState:
+        ...
+
+    def states(self) -> Stream[VacuumGripperState]:
+        ...
+
+    def vacuum(self, vacuum: int, timeout: float, profile: int=0) -> bool:
+        ...
+
+    def drop_off(self, timeout: float) -> bool:
+        ...
+
+    def stop(self) -> bool:
         ...
