@@ -30,8 +30,8 @@ try:
     import gymnasium
     from gymnasium.vector import AutoresetMode, VectorEnv
     from gymnasium.vector.utils import batch_space
-except ImportError as cause:
-    raise ImportError("franka_async.gym needs Gymnasium: pip install 'franka-async[gym]'") from cause
+except ImportError as _cause:
+    raise ImportError("franka_async.gym needs Gymnasium: pip install 'franka-async[gym]'") from _cause
 
 __all__ = ["ActionKind", "FrankaEnv", "FrankaVectorEnv", "Reward", "Start", "Terminate", "part"]
 
