@@ -73,7 +73,7 @@ impl Gripper {
 
     /// Moves the fingers to `width`, m, at `speed`, m/s; returns whether they arrived. Raises
     /// `ActionError`; cancelling stops the fingers.
-    #[pyo3(signature = (width, speed = SPEED))]
+    #[pyo3(signature = (width, speed = 0.1))]
     fn move_to(&self, width: f64, speed: f64) -> PyResult<Operation> {
         let width = at_least_zero("width", width)?;
         let speed = at_least_zero("speed", speed)?;
@@ -88,7 +88,7 @@ impl Gripper {
     /// stays applied either way, until the next action or `stop()`. Raises `ActionError`; cancelling stops
     /// the fingers and lets go.
     #[pyo3(signature = (
-        width, speed = SPEED, force = FORCE, epsilon_inner = Grasp::EPSILON, epsilon_outer = Grasp::EPSILON,
+        width, speed = 0.1, force = 20.0, epsilon_inner = 0.005, epsilon_outer = 0.005,
     ))]
     fn grasp(
         &self,
@@ -170,9 +170,3 @@ impl GripperState {
         )
     }
 }
-
-/// Speed of the fingers unless given, m/s.
-const SPEED: f64 = 0.1;
-
-/// Force of a grasp unless given, N.
-const FORCE: f64 = 20.0;

@@ -39,7 +39,7 @@ use crate::exit;
 /// Raises `ValueError` for another level, and `RuntimeError` if another library in the process has taken
 /// what Rust reports.
 #[pyfunction]
-#[pyo3(signature = (level = None, *, queue = QUEUE))]
+#[pyo3(signature = (level = None, *, queue = 4096))]
 pub(crate) fn enable_logging(level: Option<&Bound<'_, PyAny>>, queue: usize) -> PyResult<()> {
     let level = level.map_or(Ok(INFO), number_of)?;
     LEAST.store(level, Ordering::Relaxed);
@@ -288,6 +288,3 @@ static LEAST: AtomicU8 = AtomicU8::new(INFO);
 
 /// Reports dropped since the last one that was not.
 static DROPPED: AtomicU64 = AtomicU64::new(0);
-
-/// Reports that wait for the interpreter, at most, unless given.
-const QUEUE: usize = 4096;

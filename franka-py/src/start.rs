@@ -14,7 +14,7 @@ use crate::operation::seconds;
 /// not come within `timeout` seconds, or one is dropped before, it raises `MotionError` of the kind `start`,
 /// and nothing has moved.
 #[pyfunction]
-#[pyo3(signature = (members, timeout = StartBarrier::TIMEOUT.as_secs_f64()))]
+#[pyo3(signature = (members, timeout = 10.0))]
 pub(crate) fn start_tickets(members: usize, timeout: f64) -> PyResult<Vec<StartTicket>> {
     if !(1..=StartBarrier::MEMBERS_MAX).contains(&members) {
         let most = StartBarrier::MEMBERS_MAX;

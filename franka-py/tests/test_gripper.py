@@ -44,11 +44,13 @@ def test_a_grasp_without_an_object_is_false(sim_fr3: franka_async.Sim) -> None:
 def test_a_stop_ends_the_action_that_runs(franka_sim: franka_async.Sim) -> None:
     async def main() -> None:
         async with hand_of(franka_sim) as gripper:
-            homing = asyncio.create_task(gripper.homing())
+            await gripper.homing()
+            # A minute of the Hand, if nothing stopped it.
+            moving = asyncio.create_task(gripper.move_to(0.0, speed=1e-3))
             await moves(gripper)
             assert await gripper.stop()
             with pytest.raises(ActionError) as raised:
-                await homing
+                await moving
             assert raised.value.kind == "failure"
             assert "aborted" in str(raised.value)
 
@@ -59,12 +61,12 @@ def test_cancelling_an_action_stops_the_fingers(sim_fr3: franka_async.Sim) -> No
     async def main() -> None:
         async with hand_of(sim_fr3) as gripper:
             await gripper.homing()
-            moving = asyncio.create_task(gripper.move_to(0.0, speed=0.01))
+            moving = asyncio.create_task(gripper.move_to(0.0, speed=1e-3))
             await moves(gripper)
             moving.cancel()
             with pytest.raises(asyncio.CancelledError):
                 await moving
-            # At rest, far from where it was going to: ten states, 0.3 s, in which it would have moved 3 mm.
+            # At rest, far from where it was going to: ten states, in which it would have moved on.
             rest = await at_rest(gripper)
             assert rest.width > 0.03
 

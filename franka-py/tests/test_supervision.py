@@ -46,7 +46,7 @@ def test_the_reflex_of_a_motion_comes_with_its_error(fr3: Robot, sim_fr3: Sim) -
         events = fr3.events()
         target = fr3.pose()
         target[2, 3] += 0.1
-        motion = asyncio.ensure_future(fr3.move_to(target))
+        motion = asyncio.ensure_future(fr3.move_to(target, speed=0.1))
         while fr3.state().robot_mode != "move":
             await asyncio.sleep(0)
         sim_fr3.trip("cartesian_reflex")

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Literal, TypedDict
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ._native import Condition, Deadman, Reaction
+    from ._native import Condition, Deadman, Reaction, StartTicket
     from .goal import Backend, Box, Budget, Deviation, Gains, Lead, Leash, Plane, Settling, Tolerance
     from .simulation import Network
 
-__all__ = ["EngageOptions", "FollowOptions", "MotionOptions", "SessionOptions", "SimOptions", "TuneOptions"]
+__all__ = ["EngageOptions", "FollowOptions", "GoalOptions", "MotionOptions", "SessionOptions", "SimOptions", "TuneOptions"]
 
 
 class TuneOptions(TypedDict, total=False):
@@ -44,8 +44,8 @@ class SessionOptions(TuneOptions, total=False):
     """Walks the same paths so many times as fast as the limits allow."""
 
 
-class MotionOptions(SessionOptions, total=False):
-    """Options of a motion."""
+class GoalOptions(SessionOptions, total=False):
+    """What motions and followed targets have in common."""
 
     stiffness: ArrayLike | None
     """Stiffness at the end effector, x y z N/m and about x y z N m/rad, base axes; dampings keep their ratio."""
@@ -60,7 +60,14 @@ class MotionOptions(SessionOptions, total=False):
     """Goes on until this is true, and then stops, or goes where it says."""
 
 
-class FollowOptions(MotionOptions, total=False):
+class MotionOptions(GoalOptions, total=False):
+    """Options of a motion."""
+
+    start_with: StartTicket | None
+    """Begins together with the motions that have the other tickets of ``start_tickets``."""
+
+
+class FollowOptions(GoalOptions, total=False):
     """Options of following targets."""
 
     lead: Lead | None

@@ -88,7 +88,7 @@ class Policy:
     """Seconds that the robot may be silent, on a connection that looks alive, before that is closed and a new one made."""
 
     motions_wait: float | None = None
-    """Lets a motion that comes while the supervisor reconnects or recovers wait for so many seconds; ``None`` refuses it at once."""
+    """Lets a motion that comes while the supervisor reconnects or recovers wait for so many seconds; ``None`` refuses it."""
 
     seed: int | None = None
     """Seed of what is left to chance; ``None``: each robot draws its own."""
@@ -111,7 +111,7 @@ class Reflex:
     """The errors that hold the robot, by the vendor's names."""
 
     error: Exception | None
-    """The ``ControlError`` that ended the motion that ran, with its log and diagnosis; ``None`` if no motion of this program did."""
+    """The ``ControlError`` of the motion that ran, with its log and diagnosis; ``None`` if no motion of this program did."""
 
 
 @dataclass(frozen=True)

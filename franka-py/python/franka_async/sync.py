@@ -34,6 +34,9 @@ class _Waiting:
     def __repr__(self) -> str:
         return repr(self._awaiting)
 
+    def __str__(self) -> str:
+        return str(self._awaiting)
+
 
 def _result(result: Any) -> Any:
     """What a method returns here for what it returns there."""

@@ -111,10 +111,10 @@ class Gripper:
     def homing(self) -> bool:
         ...
 
-    def move_to(self, width: float, speed: float=...) -> bool:
+    def move_to(self, width: float, speed: float=0.1) -> bool:
         ...
 
-    def grasp(self, width: float, speed: float=..., force: float=..., epsilon_inner: float=..., epsilon_outer: float=...) -> bool:
+    def grasp(self, width: float, speed: float=0.1, force: float=20.0, epsilon_inner: float=0.005, epsilon_outer: float=0.005) -> bool:
         ...
 
     def stop(self) -> bool:
@@ -289,7 +289,7 @@ class Robot:
     def metrics(self) -> str:
         ...
 
-    def record(self, columns: Iterable[str], *, longest: float=...) -> Recording:
+    def record(self, columns: Iterable[str], *, longest: float=3600.0) -> Recording:
         ...
 
     def active_torques(self) -> ActiveControl:

@@ -41,7 +41,7 @@ __all__ = ["fer", "fr3", "franka_options", "franka_robot", "franka_sim", "sim_fe
 
 def pytest_configure(config: pytest.Config) -> None:
     """Describes the marker."""
-    config.addinivalue_line("markers", "franka(**options): keyword arguments of Sim.fr3 and Sim.fer, for the simulated robots of a test")
+    config.addinivalue_line("markers", "franka(**options): keyword arguments of the simulated robots of a test")
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ import json
 import math
 import os
 import tempfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -48,18 +48,21 @@ _IDENTITY = ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), (
 
 @dataclass(frozen=True, kw_only=True)
 class Tool:
-    """What is on the flange beside the end effector that the robot is configured with. Raises ``ValueError`` for values that no tool has."""
+    """What is on the flange beside the end effector that the robot is configured with.
+
+    Raises ``ValueError`` for values that no tool has.
+    """
 
     mass: float = 0.0
     """Mass, kg."""
 
-    center: tuple[float, ...] = (0.0, 0.0, 0.0)
+    center: ArrayLike = (0.0, 0.0, 0.0)
     """Centre of mass in the flange frame, 3 numbers, m."""
 
-    inertia: tuple[tuple[float, ...], ...] = ((0.0,) * 3,) * 3
+    inertia: ArrayLike = ((0.0,) * 3,) * 3
     """Inertia about the centre of mass, 3 x 3, kg m^2."""
 
-    frame: tuple[tuple[float, ...], ...] = field(default=_IDENTITY)
+    frame: ArrayLike = _IDENTITY
     """``NE_T_EE``: the pose of the end effector in the nominal end effector's frame, 4 x 4."""
 
     def __post_init__(self) -> None:
@@ -68,13 +71,13 @@ class Tool:
         for name, shape in (("center", (3,)), ("inertia", (3, 3)), ("frame", (4, 4))):
             object.__setattr__(self, name, _matrix(name, getattr(self, name), shape))
         object.__setattr__(self, "mass", float(self.mass))
-        if not np.array_equal(np.transpose(self.inertia), self.inertia):
+        if not np.array_equal(np.transpose(np.asarray(self.inertia)), np.asarray(self.inertia)):
             raise ValueError(f"inertia is {self.inertia}, expected a symmetric matrix")
         rotation = self.pose[:3, :3]
         if not (np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-6) and np.linalg.det(rotation) > 0):
             raise ValueError(f"frame is {self.frame}, expected a rigid transformation")
-        if self.frame[3] != (0.0, 0.0, 0.0, 1.0):
-            raise ValueError(f"frame ends with the row {self.frame[3]}, expected (0, 0, 0, 1)")
+        if self.pose[3].tolist() != [0.0, 0.0, 0.0, 1.0]:
+            raise ValueError(f"frame ends with the row {self.pose[3]}, expected (0, 0, 0, 1)")
 
     @property
     def pose(self) -> NDArray[np.float64]:
@@ -127,7 +130,8 @@ def delete(name: str) -> None:
 async def load(robot: Robot, tool: str | Tool) -> Tool:
     """Declares a tool to the robot, by its name or itself: its load, and the frame of the end effector. Returns it.
 
-    The robot refuses it while it moves (``CommandError``). If it takes the load and then refuses the frame, the load stays declared.
+    The robot refuses it while it moves (``CommandError``). If it takes the load and then refuses the frame, the load stays
+    declared.
     Cancelled, the robot may have taken the load without the frame: load it again.
     """
     chosen = get(tool) if isinstance(tool, str) else tool
@@ -150,8 +154,10 @@ async def identify(robot: Robot, *, frame: ArrayLike = _IDENTITY) -> Tool:
     """
     found = await robot.identify().run()
     if found.center is None:
-        raise ValueError(f"found {found.mass:.3f} kg with a deviation of {found.mass_deviation:.3f} kg: too light to be a tool")
-    return Tool(mass=found.mass, center=tuple(found.center), frame=_matrix("frame", frame, (4, 4)))
+        raise ValueError(
+            f"found {found.mass:.3f} kg with a deviation of {found.mass_deviation:.3f} kg: too light to be a tool"
+        )
+    return Tool(mass=found.mass, center=found.center, frame=frame)
 
 
 def _read() -> dict[str, Tool]:

@@ -35,7 +35,7 @@ impl Robot {
     /// Records these columns of every cycle, of `record_columns()`, while a `with` or `async with` block
     /// runs: see `Recording`. It keeps the first `longest` seconds. Raises `ValueError` for a column that is
     /// not known.
-    #[pyo3(signature = (columns, *, longest = LONGEST))]
+    #[pyo3(signature = (columns, *, longest = 3600.0))]
     fn record(&self, columns: Vec<String>, longest: f64) -> PyResult<Recording> {
         let mut chosen = Vec::with_capacity(columns.len());
         for name in &columns {
@@ -424,6 +424,3 @@ impl Cut<'_> {
 /// How long a recording that is over waits for its last cycles, where it is read: the control thread hands
 /// them on within 50 ms.
 const PATIENCE: Duration = Duration::from_secs(2);
-
-/// Seconds that are recorded at most, unless given.
-const LONGEST: f64 = 3600.0;
