@@ -1,9 +1,9 @@
 """Begins, cancels, drops and interrupts motions in random order: `churn.py [--motions N] [--seed S]`.
 
-The simulator is in the process, in virtual time. Prints what became of the motions, and the memory of the process after
-the first tenth and at the end. It works in a child process, which ends with a motion under way: how that exits is printed,
-too. A thousand motions that take more than `DEADLOCK` seconds print the threads and count as a deadlock. Exits with 1 if
-anything failed.
+The simulator is in the process, in virtual time. Prints what became of the motions, and the memory of the process
+after the first tenth and at the end. It works in a child process, which ends with a motion under way: how that exits is
+printed, too. A thousand motions that take more than `DEADLOCK` seconds print the threads and count as a deadlock. Exits
+with 1 if anything failed.
 """
 
 import argparse

@@ -1,7 +1,7 @@
 """Measures a package in one case, against a simulated robot: `ADAPTER.py CASE ROBOT HAND` runs an adapter's `main()`.
 
-`ROBOT` is the host that a client connects to, a relay that notes what passes; `HAND` that of the simulator, whose gripper
-has no relay. Each line of output is a JSON object. All have `step`, what it is about, and beside that
+`ROBOT` is the host that a client connects to, a relay that notes what passes; `HAND` that of the simulator, whose
+gripper has no relay. Each line of output is a JSON object. All have `step`, what it is about, and beside that
 
 - `values`: numbers, whose names end in their unit;
 - `window`: when something went on, `[begin, end]` in seconds since the epoch, for which the relay is asked;
@@ -32,7 +32,7 @@ class Absent(Exception):
 
 
 class Package(abc.ABC):
-    """What is asked of a package. Whatever is not overridden is absent, for the reason that `absent` has under its name.
+    """What is asked of a package. What is not overridden is absent, for the reason that `absent` has under its name.
 
     `async with package.connected():` is around all but the methods of the hand.
     """
@@ -95,7 +95,7 @@ class Package(abc.ABC):
 class Ticker(threading.Thread):
     """A thread that sleeps a millisecond at a time and notes when it wakes up.
 
-    It has real-time priority where that is granted: other programs then delay it less, and what is left is the interpreter.
+    It has real-time priority where that is granted: other programs then delay it less, and the interpreter is left.
     """
 
     def __init__(self):
