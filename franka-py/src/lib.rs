@@ -121,6 +121,8 @@ mod _native {
         crate::condition::add_quantities(module)?;
         crate::gains::add_defaults(module)?;
         crate::exit::register(module.py())?;
+        let all = franka_async::state::Errors::from_flags(&[1; 41]);
+        module.add("ERROR_NAMES", crate::state::names(all))?;
         module.add("FLAT_LAYOUT", crate::state_views::FLAT_LAYOUT)?;
         let thresholds = crate::settings::COLLISION_THRESHOLDS;
         module.add("COLLISION_THRESHOLDS", thresholds)?;

@@ -271,7 +271,7 @@ def test_parameters_reach_a_law_that_runs_whole(start: Start, library: ctypes.CD
         for value in [1.0, 2.0, 3.0]:
             law.parameters = np.full(256, value)
             while law.memory[0] != value:
-                await asyncio.sleep(0)
+                await asyncio.sleep(0.001)
         law.parameters = np.full(256, -1.0)
         await running
         assert law.memory == pytest.approx([-1.0, 0.0]), "no cycle has seen a mix"
@@ -285,7 +285,7 @@ def test_cancelling_has_the_robot_stop(start: Start, library: ctypes.CDLL) -> No
         law = Law(library.until_told, parameters=np.full(256, 1.0), memory=[0.0, 0.0])
         running = asyncio.ensure_future(robot.run_law(law))
         while law.memory[0] != 1.0:
-            await asyncio.sleep(0)
+            await asyncio.sleep(0.001)
         running.cancel()
         with pytest.raises(asyncio.CancelledError):
             await running
@@ -307,7 +307,7 @@ def test_the_code_lives_as_long_as_it_may_be_called(start: Start, library: ctype
         law = Law(code, parameters=np.full(256, 1.0), memory=[0.0, 0.0])
         running = asyncio.ensure_future(robot.run_law(law))
         while law.memory[0] != 1.0:
-            await asyncio.sleep(0)
+            await asyncio.sleep(0.001)
         del code
         gc.collect()
         assert freed() is not None
@@ -315,11 +315,11 @@ def test_the_code_lives_as_long_as_it_may_be_called(start: Start, library: ctype
         await running
         del law, running
         # The control thread has given the law back before or does so now.
-        for _ in range(1_000_000):
+        for _ in range(20_000):
             gc.collect(0)
             if freed() is None:
                 return
-            await asyncio.sleep(0)
+            await asyncio.sleep(0.001)
         pytest.fail("the code outlives the law")
 
     on(start, program)

@@ -19,6 +19,7 @@ from .supervision import CloseReason, Event, Health, Policy, Reflex
 _T_co = TypeVar("_T_co", covariant=True)
 _Array: TypeAlias = NDArray[np.float64]
 
+ERROR_NAMES: list[str]
 FLAT_LAYOUT: list[tuple[str, int, int]]
 __version__: str
 
@@ -628,6 +629,7 @@ class Robot:
         limit_rate: bool | None = None,
         cutoff_frequency: float | None = None,
     ) -> Operation[MotionReport]: ...
+    def model(self) -> Model: ...
 
 @final
 class Engagement(Operation[Arm]):

@@ -16,9 +16,10 @@ runs through the filter, the limiter and the checks of every control function. W
 from __future__ import annotations
 
 import ctypes
+import importlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -40,6 +41,8 @@ RAISED = -(2**31)
 
 _OUTPUT = 16
 
+_CTYPES_FUNCTION: Any = vars(ctypes)["_CFuncPtr"]
+
 # What numba says of code that allocates, where it must not.
 _SIGNS_OF_ALLOCATION = ("NRT required", "Only accept returning of array passed into the function")
 
@@ -47,7 +50,7 @@ _SIGNS_OF_ALLOCATION = ("NRT required", "Only accept returning of array passed i
 def _cycle_dtype() -> np.dtype[np.record]:
     fields, size = _law_layout()
     names, offsets, shapes, formats = zip(*fields, strict=True)
-    return np.dtype(
+    made: Any = np.dtype(
         {
             "names": list(names),
             "formats": [(form, shape) if shape else form for form, shape in zip(formats, shapes, strict=True)],
@@ -56,6 +59,7 @@ def _cycle_dtype() -> np.dtype[np.record]:
         },
         align=True,
     )
+    return cast("np.dtype[np.record]", made)
 
 
 CYCLE: np.dtype[np.record] = _cycle_dtype()
@@ -78,7 +82,7 @@ def compiled(function: Callable[[Any, Any, Any, Any], int]) -> Any:
     write loops over ``range`` instead) or that numba cannot compile.
     """
     try:
-        import numba
+        numba: Any = importlib.import_module("numba")
     except ImportError as missing:
         raise ImportError("laws are compiled by numba: pip install 'franka-async[numba]'") from missing
 
@@ -113,8 +117,8 @@ def make_cycle(**fields: npt.ArrayLike) -> np.record:
     cycle = np.zeros((), dtype=CYCLE)
     for name, value in fields.items():
         cycle[name] = value
-    record: np.record = cycle.view(np.recarray)[()]
-    return record
+    record: Any = cycle.view(np.recarray)[()]
+    return cast(np.record, record)
 
 
 def address_of(code: object) -> int:
@@ -128,13 +132,12 @@ def address_of(code: object) -> int:
     address = getattr(code, "address", None)
     if isinstance(address, int):
         return address
-    if isinstance(code, ctypes._CFuncPtr):
+    if isinstance(code, _CTYPES_FUNCTION):
         if any(type(kept).__name__ == "CThunkObject" for kept in (code._objects or {}).values()):
             raise TypeError("code is a callback into Python, expected a C function: compile it, see franka_async.laws.compiled")
         return ctypes.cast(code, ctypes.c_void_p).value or 0
     if type(code).__module__ == "_cffi_backend":
-        import cffi
-
+        cffi: Any = importlib.import_module("cffi")
         return int(cffi.FFI().cast("uintptr_t", code))
     if callable(code):
         raise TypeError("code is a Python function, expected a C function: compile it, see franka_async.laws.compiled")

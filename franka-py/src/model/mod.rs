@@ -26,7 +26,17 @@ use pyo3::prelude::*;
 use pyo3::types::{PyAny, PyTuple};
 
 use crate::batch::{Batch, Cost, output, write_matrix};
+use crate::robot::Robot;
 use arguments::{end_effector, frame};
+
+#[pymethods]
+impl Robot {
+    /// The model of the connected arm, which control computes with: of a Franka Research 3 its description
+    /// of itself, of a Franka Emika Robot the constants of its own library.
+    fn model(&self) -> PyResult<Model> {
+        Ok(Model::of(self.connected()?.model()))
+    }
+}
 
 /// An array of as many axes as the arguments call for.
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;

@@ -1,0 +1,7 @@
+"""The names of other packages over this one: a program changes one import line.
+
+* :mod:`franka_async.compat.franka` for programs that were written for ``franka`` of the distribution ``franka-rs``;
+* :mod:`franka_async.compat.pylibfranka` for programs that were written for the vendor's ``pylibfranka``.
+
+What is different is listed in the book, under "Programs written for other packages".
+"""

@@ -1,0 +1,75 @@
+"""Waiting on any thread, one that runs an event loop included, and for what comes next."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+import time
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+
+SILENCE = 1.0
+"""How long a robot may be silent, s."""
+
+_PAUSE = 0.0002
+
+
+def wait(operation: Any) -> Any:
+    """Waits for an operation; returns its result. The interpreter is left to other threads.
+
+    A notebook runs its cells on a thread with an event loop. There the operation is waited for on another thread, and the event
+    loop stands still meanwhile, as these packages have it.
+    """
+    if not _in_event_loop():
+        return operation.wait()
+    outcome: list[Any] = []
+
+    async def await_it() -> Any:
+        return await operation
+
+    def run() -> None:
+        asyncio.set_event_loop(loop)
+        try:
+            outcome.append((True, loop.run_until_complete(task)))
+        except BaseException as error:  # noqa: BLE001  (raised by the thread that waits)
+            outcome.append((False, error))
+
+    loop = asyncio.new_event_loop()
+    task = loop.create_task(await_it())
+    thread = threading.Thread(target=run, name="franka_async.compat", daemon=True)
+    thread.start()
+    try:
+        while thread.is_alive():
+            thread.join(0.05)  # Signals are looked at in between.
+    except BaseException:
+        loop.call_soon_threadsafe(task.cancel)
+        thread.join()
+        raise
+    finally:
+        loop.close()
+    succeeded, result = outcome[0]
+    if succeeded:
+        return result
+    raise result
+
+
+def _in_event_loop() -> bool:
+    try:
+        asyncio.get_running_loop()
+    except RuntimeError:
+        return False
+    return True
+
+
+def changed(read: Callable[[], T], when: Callable[[T], Any]) -> T | None:
+    """Returns what ``read()`` gives as soon as ``when`` of it has changed; ``None`` if it does not within :data:`SILENCE`."""
+    before = when(read())
+    end = time.monotonic() + SILENCE
+    while time.monotonic() < end:
+        newest = read()
+        if when(newest) != before:
+            return newest
+        time.sleep(_PAUSE)
+    return None

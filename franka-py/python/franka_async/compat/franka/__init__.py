@@ -1,0 +1,39 @@
+"""``franka`` of the distribution ``franka-rs`` 0.4 over this package: ``import franka_async.compat.franka as franka``.
+
+Classes, keywords, defaults, exceptions and semantics are those of the original. States and models are those of this package, which
+have the same names. No thread of the program is raised to real-time priority.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from ..._native import FLAT_LAYOUT, RobotState, __version__
+from ._errors import ControlException, FrankaError
+from ._gripper import Gripper, GripperState
+from ._robot import Model, Robot
+from ._rotation import rotated_by
+from ._targets import CartesianTargets, JointTargets
+
+__all__ = [
+    "FLAT_LAYOUT",
+    "FLAT_LEN",
+    "CartesianTargets",
+    "ControlException",
+    "FrankaError",
+    "Gripper",
+    "GripperState",
+    "JointTargets",
+    "Model",
+    "Robot",
+    "RobotState",
+    "__version__",
+    "rotated",
+]
+
+FLAT_LEN: int = RobotState.FLAT_LEN
+"""The length of ``RobotState.flat()``."""
+
+
+def rotated(quaternion: npt.ArrayLike, rotation_vector: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Returns ``quaternion`` (x y z w) turned by ``rotation_vector``, rad in the base frame: what ``move_by`` composes."""
+    return rotated_by(quaternion, rotation_vector)

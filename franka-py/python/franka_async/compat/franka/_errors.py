@@ -1,0 +1,75 @@
+"""Exceptions with the kinds of the original."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from ... import errors
+
+
+class FrankaError(Exception):
+    """What can go wrong with a robot or the Hand."""
+
+    def __init__(self, text: str, kind: str = "invalid_operation") -> None:
+        super().__init__(text)
+        self.kind = kind
+        """network, protocol, incompatible_version, command, control, realtime, invalid_operation, invalid_argument or model."""
+
+
+class ControlException(FrankaError):
+    """The robot ended a motion. ``__cause__`` has the log and the diagnosis."""
+
+    def __init__(self, text: str, reasons: list[str], move_status: str | None) -> None:
+        super().__init__(text, "control")
+        self.errors = reasons
+        self.reason = "[" + ", ".join(f'"{reason}"' for reason in reasons) + "]"
+        self.move_status = move_status
+
+
+PREEMPTED = "libfranka: Move command preempted!"
+
+
+@contextmanager
+def translated() -> Iterator[None]:
+    """Raises the exceptions of the original in the place of those of this package."""
+    try:
+        yield
+    except errors.FrankaError as error:
+        raise _exception(error) from error
+
+
+def _exception(error: errors.FrankaError) -> FrankaError:
+    text, kind = str(error), error.kind
+    match error:
+        case errors.ControlError():
+            preempted = error.move_status == "preempted"
+            status = "".join(word.capitalize() for word in error.move_status.split("_"))
+            return ControlException(PREEMPTED if preempted else text, error.errors, status)
+        case errors.MotionError() if kind in ("stopped", "superseded", "disengaged"):
+            return ControlException(PREEMPTED, [], "Preempted")
+        case errors.MotionError():
+            return FrankaError(text, _OF_MOTION.get(kind, "control"))
+        case errors.ConnectError() if kind in ("realtime", "incompatible_version", "model"):
+            return FrankaError(text, kind)
+        case errors.CommandError() if error.party in ("robot", "caller"):
+            return FrankaError(text, "command")
+        case errors.ActionError() if kind == "failure":
+            return FrankaError(text, "command")
+    if error.party == "peer":
+        return FrankaError(text, "protocol")
+    return FrankaError(text, "network")
+
+
+_OF_MOTION = {
+    "busy": "invalid_operation",
+    "goal": "invalid_argument",
+    "path": "invalid_argument",
+    "invalid": "invalid_argument",
+    "rejected": "command",
+    "unsupported": "command",
+    "link_lost": "network",
+    "connection_closed": "network",
+    "violation": "protocol",
+    "protocol": "protocol",
+}

@@ -1,0 +1,308 @@
+"""The robot and its model."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ... import _native
+from ...goal import Budget, Deviation, Gains, Leash, Limits
+from .._waiting import changed, wait
+from ._errors import FrankaError, translated
+from ._gripper import Gripper
+from ._rotation import Array, numbers
+from ._targets import CartesianTargets, JointTargets
+
+_CONTROLLERS = ("joint_impedance", "cartesian_impedance")
+_HAND = np.array(
+    [
+        [np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0],
+        [-np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0],
+        [0.0, 0.0, 1.0, 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+    ]
+)
+"""The Hand on the flange: turned by -45 degrees about z."""
+
+
+class Model:
+    """Kinematics and dynamics of the connected arm."""
+
+    def __init__(self, model: _native.Model) -> None:
+        self._model = model
+        self.pose = model.pose
+        self.zero_jacobian = model.zero_jacobian
+        self.body_jacobian = model.body_jacobian
+        self.mass = model.mass
+        self.gravity = model.gravity
+
+    def coriolis(
+        self,
+        q: npt.ArrayLike,
+        dq: npt.ArrayLike,
+        I_total: npt.ArrayLike | None = None,
+        m_total: float = 0.0,
+        F_x_Ctotal: npt.ArrayLike | None = None,
+        gravity_earth: npt.ArrayLike | None = None,
+    ) -> Array:
+        """Returns the torques of Coriolis and centrifugal forces, (7,), which do not depend on ``gravity_earth``."""
+        return self._model.coriolis(q, dq, I_total, m_total, F_x_Ctotal)
+
+    def link_poses(self, q: npt.ArrayLike) -> Array:
+        """Returns the poses of the base and the seven links, (8, 4, 4)."""
+        return np.concatenate([np.eye(4)[np.newaxis], self._model.link_poses(q)[:7]])
+
+    def hand_pose(self, q: npt.ArrayLike) -> Array:
+        """Returns the pose of the Hand, (4, 4): the flange turned by -45 degrees about its z."""
+        pose: Array = self._model.pose("flange", q) @ _HAND
+        return pose
+
+
+class Robot:
+    """A connected robot, from the call on for as long as the object lives."""
+
+    def __init__(self, address: str, *, realtime: str | None = None, log_size: int | None = None) -> None:
+        wanted = realtime if realtime is not None else os.environ.get("FRANKA_REALTIME") or "enforce"
+        if wanted not in ("enforce", "ignore"):
+            choices = "'enforce' or 'ignore' (also read from FRANKA_REALTIME)"
+            raise ValueError(f'franka: realtime must be {choices}, got "{wanted}"')
+        self._robot = _native.Robot(address, realtime=realtime, log_size=log_size)  # type: ignore[arg-type]
+        with translated():
+            wait(self._robot.connect())
+
+    @property
+    def address(self) -> str:
+        """Where the robot is."""
+        return self._robot.address
+
+    @property
+    def fci_version(self) -> int:
+        """The protocol version, 10 or 5."""
+        return self._robot.fci_version
+
+    @property
+    def server_version(self) -> int:
+        """The same, as the robot says it."""
+        return self._robot.fci_version
+
+    def read_once(self) -> _native.RobotState:
+        """Waits for the next state; also while a session runs."""
+        with translated():
+            state = changed(self._robot.state, lambda state: state.time_ms)
+        if state is None:
+            raise FrankaError("libfranka: UDP receive: Timeout", "network")
+        return state
+
+    def set_collision_behavior(
+        self,
+        lower_torque_thresholds_acceleration: npt.ArrayLike,
+        upper_torque_thresholds_acceleration: npt.ArrayLike,
+        lower_torque_thresholds_nominal: npt.ArrayLike,
+        upper_torque_thresholds_nominal: npt.ArrayLike,
+        lower_force_thresholds_acceleration: npt.ArrayLike,
+        upper_force_thresholds_acceleration: npt.ArrayLike,
+        lower_force_thresholds_nominal: npt.ArrayLike,
+        upper_force_thresholds_nominal: npt.ArrayLike,
+    ) -> None:
+        """Sets the thresholds of contact (lower) and collision (upper) while the arm accelerates and otherwise."""
+        thresholds = {name: value for name, value in locals().items() if name != "self"}
+        with translated():
+            wait(self._robot.set_collision_behavior(**thresholds))
+
+    def set_collision_behavior_simple(
+        self,
+        lower_torque_thresholds: npt.ArrayLike,
+        upper_torque_thresholds: npt.ArrayLike,
+        lower_force_thresholds: npt.ArrayLike,
+        upper_force_thresholds: npt.ArrayLike,
+    ) -> None:
+        """Sets the same thresholds whether the arm accelerates or not."""
+        thresholds = (lower_torque_thresholds, upper_torque_thresholds, lower_force_thresholds, upper_force_thresholds)
+        with translated():
+            wait(self._robot.set_collision_behavior(*thresholds))
+
+    def set_joint_impedance(self, K_theta: npt.ArrayLike) -> None:
+        """Sets the stiffness of the robot's joint impedance controller, (7,), N m/rad."""
+        with translated():
+            wait(self._robot.set_joint_impedance(K_theta))
+
+    def set_cartesian_impedance(self, K_x: npt.ArrayLike) -> None:
+        """Sets the stiffness of the robot's Cartesian impedance controller, (6,), N/m and N m/rad."""
+        with translated():
+            wait(self._robot.set_cartesian_impedance(K_x))
+
+    def automatic_error_recovery(self) -> None:
+        """Recovers the robot from a reflex."""
+        with translated():
+            wait(self._robot.recover())
+
+    def stop(self) -> None:
+        """Stops whatever moves, from any thread; a session's ``stop`` then raises ControlException."""
+        with translated():
+            wait(self._robot.stop())
+
+    def model(self) -> Model:
+        """Returns the model of this arm."""
+        with translated():
+            return Model(self._robot.model())
+
+    def gripper(self) -> Gripper:
+        """Returns the Hand of this robot, connected."""
+        gripper = Gripper.__new__(Gripper)
+        gripper._connect(self._robot.gripper())
+        return gripper
+
+    def cartesian_targets(
+        self,
+        *,
+        max_velocity: float = 0.3,
+        max_acceleration: float = 0.5,
+        max_jerk: float = 20.0,
+        max_deviation: float = 0.30,
+        max_angular_velocity: float | None = None,
+        max_angular_acceleration: float | None = None,
+        max_angular_jerk: float | None = None,
+        max_angular_deviation: float | None = None,
+        backend: str = "impedance",
+        cartesian_stiffness: npt.ArrayLike | None = None,
+        cartesian_damping: npt.ArrayLike | None = None,
+        joint_stiffness: npt.ArrayLike | None = None,
+        joint_damping: npt.ArrayLike | None = None,
+        torque_limits: npt.ArrayLike | None = None,
+        posture: npt.ArrayLike | None = None,
+        torque_cutoff: float | None = None,
+        velocity_feedforward: bool | None = None,
+        leash: Sequence[float] | None = None,
+        project_joint_gains: bool = False,
+        controller_mode: str = "cartesian_impedance",
+        limit_rate: bool = True,
+        realtime_priority: int | None = None,
+    ) -> CartesianTargets:
+        """Begins a session of targets of the end effector. Limits are m/s, m/s^2, m/s^3 and the same of angles in rad.
+
+        ``limit_rate`` and ``realtime_priority`` have no effect: commands are always limited, and the priority belongs to the
+        connection.
+        """
+        limits = Budget(
+            translation=Limits(max_velocity, max_acceleration, max_jerk),
+            rotation=Limits(
+                _or(max_angular_velocity, 0.5), _or(max_angular_acceleration, 1.0), _or(max_angular_jerk, 20.0)
+            ),
+        )
+        deviation = Deviation(translation=max_deviation, rotation=_or(max_angular_deviation, 0.5))
+        gains = _given(
+            cartesian_stiffness=_of_axes(cartesian_stiffness),
+            cartesian_damping=cartesian_damping,
+            joint_stiffness=joint_stiffness,
+            joint_damping=joint_damping,
+            torque_limits=torque_limits,
+            torque_cutoff=torque_cutoff,
+            feedforward=None if velocity_feedforward is None else float(velocity_feedforward),
+        )
+        options: dict[str, Any] = {"limits": limits, "deviation": deviation}
+        if _by_robot(backend, controller_mode, **gains, posture=posture, leash=leash):
+            options["backend"] = (controller_mode, "cartesian_poses")
+        else:
+            options["gains"] = _gains(Gains.droid(), gains, project_joint_gains)
+            options |= _given(posture=posture, leash=None if leash is None else Leash(*leash))
+        arm = self._engage(options)
+        pose = self._robot.state().flat()
+        return CartesianTargets(self._robot, arm, pose[28:35].copy())
+
+    def joint_targets(
+        self,
+        *,
+        fraction: float = 0.2,
+        max_deviation: float = 1.0,
+        backend: str = "impedance",
+        joint_stiffness: npt.ArrayLike | None = None,
+        joint_damping: npt.ArrayLike | None = None,
+        torque_limits: npt.ArrayLike | None = None,
+        torque_cutoff: float | None = None,
+        velocity_feedforward: bool | None = None,
+        leash: float | None = None,
+        project_joint_gains: bool = False,
+        controller_mode: str = "joint_impedance",
+        limit_rate: bool = True,
+        realtime_priority: int | None = None,
+    ) -> JointTargets:
+        """Begins a session of targets of the joints, at this fraction of the limits of this package. ``limit_rate`` and
+        ``realtime_priority`` have no effect, as of ``cartesian_targets``.
+        """
+        gains = _given(
+            joint_stiffness=joint_stiffness,
+            joint_damping=joint_damping,
+            torque_limits=torque_limits,
+            torque_cutoff=torque_cutoff,
+            feedforward=None if velocity_feedforward is None else float(velocity_feedforward),
+        )
+        options: dict[str, Any] = {"speed": fraction, "deviation": Deviation(joints=max_deviation)}
+        if _by_robot(backend, controller_mode, **gains, leash=leash):
+            options["backend"] = (controller_mode, "joint_positions")
+        else:
+            options["gains"] = _gains(Gains.joint(), gains, project_joint_gains)
+            options |= _given(leash=None if leash is None else Leash(joints=leash))
+        arm = self._engage(options)
+        return JointTargets(self._robot, arm, self._robot.state().q)
+
+    def _engage(self, options: dict[str, Any]) -> _native.Arm:
+        try:
+            with translated():
+                arm: _native.Arm = wait(self._robot.engage(**options))
+        except ValueError as error:
+            raise FrankaError(str(error), "invalid_argument") from error
+        return arm
+
+
+def _or(value: float | None, default: float) -> float:
+    return default if value is None else value
+
+
+def _given(**options: Any) -> dict[str, Any]:
+    return {name: value for name, value in options.items() if value is not None}
+
+
+def _of_axes(stiffness: npt.ArrayLike | None) -> Any:
+    """One number is that of the three translations."""
+    if stiffness is not None and np.ndim(stiffness) == 0:
+        return [float(np.float64(stiffness))] * 3 + list(Gains.droid().cartesian_stiffness[3:])  # type: ignore[arg-type]
+    return stiffness
+
+
+_LENGTHS = {
+    "cartesian_stiffness": 6,
+    "cartesian_damping": 6,
+    "joint_stiffness": 7,
+    "joint_damping": 7,
+    "torque_limits": 7,
+}
+
+
+def _gains(defaults: Gains, given: dict[str, Any], project: bool) -> Gains:
+    chosen = {
+        name: numbers(name, value, _LENGTHS[name]).tolist() if name in _LENGTHS else value
+        for name, value in given.items()
+    }
+    # Without word of it the original uses none.
+    return dataclasses.replace(defaults, **{"feedforward": 0.0, **chosen}, project_joint_gains=project)
+
+
+def _by_robot(backend: str, controller_mode: str, **impedance: Any) -> bool:
+    """Whether the robot's own controller follows. Raises ``ValueError``."""
+    if backend not in ("impedance", "robot"):
+        raise ValueError(f'franka: backend must be \'impedance\' or \'robot\', got "{backend}"')
+    if controller_mode not in _CONTROLLERS:
+        raise ValueError(
+            f"franka: controller_mode must be 'joint_impedance' or 'cartesian_impedance', got \"{controller_mode}\""
+        )
+    if backend == "robot":
+        for name, value in impedance.items():
+            if value is not None:
+                name = "velocity_feedforward" if name == "feedforward" else name
+                raise ValueError(f"franka: {name} applies to backend='impedance' only, not to backend='robot'")
+    return backend == "robot"

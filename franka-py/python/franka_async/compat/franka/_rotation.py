@@ -1,0 +1,56 @@
+"""Quaternions ``x y z w`` and rotation vectors."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+
+
+def rotated_by(quaternion: npt.ArrayLike, rotation_vector: npt.ArrayLike) -> Array:
+    """Returns the quaternion turned about axes of the base: ``exp(r) q``."""
+    q = normalised(numbers("quaternion", quaternion, 4))
+    r = numbers("rotation_vector", rotation_vector, 3)
+    angle = float(np.linalg.norm(r))
+    # sin(angle / 2) / angle, which is a half for no angle.
+    turn = np.append(r * (0.5 * np.sinc(angle / (2.0 * np.pi))), np.cos(angle / 2.0))
+    return normalised(product(turn, q))
+
+
+def product(a: Array, b: Array) -> Array:
+    """Returns the quaternion of ``b`` first, then ``a``."""
+    vector = a[3] * b[:3] + b[3] * a[:3] + np.cross(a[:3], b[:3])
+    return np.append(vector, a[3] * b[3] - a[:3] @ b[:3])
+
+
+def normalised(quaternion: Array) -> Array:
+    """Returns it with length 1. Raises ``ValueError`` if it has none."""
+    length = float(np.linalg.norm(quaternion))
+    if length < 1e-6:
+        raise ValueError("franka: the orientation quaternion has zero length")
+    return quaternion / length
+
+
+def matrix(target: Array) -> Array:
+    """Returns the pose, (4, 4), of a position and a quaternion, (7,)."""
+    x, y, z, w = target[3:]
+    pose = np.eye(4)
+    pose[:3, :3] = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    pose[:3, 3] = target[:3]
+    return pose
+
+
+def numbers(name: str, values: npt.ArrayLike, *counts: int) -> Array:
+    """Returns a vector of one of these lengths. Raises ``ValueError`` for another and for numbers that are not finite."""
+    array = np.array(values, dtype=np.float64)
+    if array.ndim != 1 or array.shape[0] not in counts:
+        expected = " or ".join(map(str, counts))
+        raise ValueError(f"franka: {name} has {expected} elements, got the shape {array.shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"franka: {name} must be finite, got {array.tolist()}")
+    return array

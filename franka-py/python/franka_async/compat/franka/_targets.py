@@ -1,0 +1,173 @@
+"""Target control: the robot goes to the newest target, which a program moves at its own rate."""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+import time
+import warnings
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from ... import _native
+from ...goal import Joints
+from .._waiting import wait
+from ._errors import FrankaError, translated
+from ._rotation import Array, matrix, normalised, numbers, rotated_by
+
+_STOPPED = (
+    "franka: this target control was stopped; start a new one with Robot.cartesian_targets() or Robot.joint_targets()."
+)
+
+
+class _Targets:
+    """A session. It runs from the call that made it on, with or without ``with``."""
+
+    def __init__(self, robot: _native.Robot, arm: _native.Arm, target: Array) -> None:
+        self._robot = robot
+        self._arm = arm
+        self._lock = threading.Lock()
+        self._target = target
+        self._is_stopped = False
+        # Which `follow` is the newest: an older one ends.
+        self._following = 0
+
+    def _goal(self, target: Array) -> Any:
+        raise NotImplementedError
+
+    def _absolute(self, values: npt.ArrayLike) -> Array:
+        raise NotImplementedError
+
+    def _moved(self, delta: npt.ArrayLike) -> Array:
+        raise NotImplementedError
+
+    def _set(self, target: Array) -> None:
+        if not self.running:
+            raise FrankaError(_STOPPED, "invalid_operation")
+        with translated():
+            self._arm.try_set(self._goal(target))
+        self._target = target
+
+    def move_to(self, target: npt.ArrayLike) -> None:
+        """Moves the target there; never waits."""
+        with self._lock:
+            self._following += 1
+            self._set(self._absolute(target))
+
+    def move_by(self, delta: npt.ArrayLike) -> None:
+        """Moves the target by so much, from where the target is; never waits."""
+        with self._lock:
+            self._following += 1
+            self._set(self._moved(delta))
+
+    def follow(self, chunk: npt.ArrayLike, dt: float = 0.02) -> None:
+        """Moves the target along the rows, the first now and each one ``dt`` seconds after the one before, in the background. A
+        newer call ends it, as does a row that is refused.
+        """
+        if not (dt > 0.0 and np.isfinite(dt)):
+            raise ValueError(f"franka: dt must be positive, got {dt}")
+        rows = np.array(chunk, dtype=np.float64)
+        if rows.ndim != 2 or len(rows) == 0:
+            raise ValueError(f"franka: a chunk has rows of targets, got the shape {rows.shape}")
+        with self._lock:
+            self._following += 1
+            mine = self._following
+            self._set(self._absolute(rows[0]))
+        background = threading.Thread(target=self._follow, args=(rows[1:], dt, mine), name="franka follow", daemon=True)
+        background.start()
+
+    def _follow(self, rows: Array, dt: float, mine: int) -> None:
+        due = time.monotonic()
+        for row in rows:
+            due += dt
+            time.sleep(max(0.0, due - time.monotonic()))
+            with self._lock, contextlib.suppress(FrankaError, ValueError):
+                if self._following != mine:
+                    return
+                self._set(self._absolute(row))
+                continue
+            return
+
+    def target(self) -> Array:
+        """Returns the target, (7,)."""
+        return self._target.copy()
+
+    def state(self) -> _native.RobotState:
+        """Returns the newest state, without waiting."""
+        with translated():
+            return self._robot.state()
+
+    @property
+    def running(self) -> bool:
+        """Whether the session goes on."""
+        return not self._is_stopped and self._arm.reference() is not None
+
+    def stop(self) -> None:
+        """Waits until the arm rests at the last target, and ends the session. Raises what had ended it before. Without effect once
+        it was stopped.
+        """
+        with self._lock:
+            self._following += 1
+            if self._is_stopped:
+                return
+            self._is_stopped = True
+        with translated():
+            wait(self._arm.at_rest())
+            wait(self._arm.disengage())
+
+    def __enter__(self) -> Any:
+        return self
+
+    def __exit__(self, kind: object, *_rest: object) -> Literal[False]:
+        try:
+            self.stop()
+        except FrankaError as error:
+            if kind is None:
+                raise
+            warnings.warn(f"target control ended in an error: {error}", RuntimeWarning, stacklevel=2)
+        return False
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}(running={str(self.running).lower()})"
+
+
+class CartesianTargets(_Targets):
+    """Targets of the end effector: position, m, and quaternion x y z w, in the base frame."""
+
+    def _goal(self, target: Array) -> Any:
+        return target
+
+    def _absolute(self, values: npt.ArrayLike) -> Array:
+        array = np.array(values, dtype=np.float64)
+        if array.shape not in ((3,), (7,)):
+            raise ValueError(
+                "franka: a Cartesian target has 3 elements (x, y, z in m) or 7 (plus a unit quaternion x, y, z, w), "
+                f"got {array.size}"
+            )
+        target = numbers("a target", array, 3, 7)
+        orientation = normalised(target[3:]) if len(target) == 7 else self._target[3:]
+        return np.append(target[:3], orientation)
+
+    def _moved(self, delta: npt.ArrayLike) -> Array:
+        way = numbers("a Cartesian delta", delta, 3, 6)
+        orientation = rotated_by(self._target[3:], way[3:]) if len(way) == 6 else self._target[3:]
+        return np.append(self._target[:3] + way[:3], orientation)
+
+    def target_pose(self) -> Array:
+        """Returns the target as a pose, (4, 4)."""
+        return matrix(self._target)
+
+
+class JointTargets(_Targets):
+    """Targets of the joints, (7,), rad."""
+
+    def _goal(self, target: Array) -> Any:
+        return Joints(target)
+
+    def _absolute(self, values: npt.ArrayLike) -> Array:
+        return numbers("a joint target", values, 7)
+
+    def _moved(self, delta: npt.ArrayLike) -> Array:
+        return self._target + numbers("a joint delta", delta, 7)

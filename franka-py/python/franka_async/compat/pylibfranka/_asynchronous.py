@@ -1,0 +1,112 @@
+"""Sparse joint targets between which the robot itself plans."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ... import _native, errors
+from .._waiting import wait
+from ._commands import numbers
+from ._robot import Robot
+from ._state import RobotState, _Number
+
+_ABORTED = "Control interface is in aborted state."
+
+
+class TargetStatus(_Number):
+    """How far a target has been followed."""
+
+    kIdle = 0
+    kExecuting = 1
+    kTargetReached = 2
+    kAborted = 3
+
+
+_STATUS = {
+    "idle": TargetStatus.kIdle,
+    "executing": TargetStatus.kExecuting,
+    "target_reached": TargetStatus.kTargetReached,
+    "aborted": TargetStatus.kAborted,
+}
+
+
+class AsyncPositionControlHandler:
+    """A motion between sparse joint targets. Made by ``configure``."""
+
+    class Configuration:
+        """Bounds of the joint velocities, 7, rad/s, and the distance that counts as reached, rad."""
+
+        def __init__(self, maximum_joint_velocities: Sequence[float], goal_tolerance: float) -> None:
+            self.maximum_joint_velocities = numbers("Configuration()", maximum_joint_velocities, 7)
+            self.goal_tolerance = float(goal_tolerance)
+
+    @dataclass
+    class ConfigurationResult:
+        """The handler, or why there is none."""
+
+        handler: AsyncPositionControlHandler | None
+        error_message: str | None
+
+    class JointPositionTarget:
+        """Where to go, 7, rad."""
+
+        def __init__(self, joint_positions: Sequence[float]) -> None:
+            self.joint_positions = numbers("JointPositionTarget()", joint_positions, 7)
+
+    @dataclass
+    class CommandResult:
+        """Whether a target was taken."""
+
+        motion_uuid: str | None
+        was_successful: bool
+        error_message: str | None
+
+    @dataclass
+    class TargetFeedback:
+        """How far a target has been followed, and why no further."""
+
+        status: TargetStatus
+        error_message: str | None
+
+    def __init__(self, control: _native.AsynchronousControl) -> None:
+        self._control: _native.AsynchronousControl | None = control
+
+    @staticmethod
+    def configure(robot: Robot, configuration: Configuration, /) -> ConfigurationResult:
+        """Begins the motion; returns its handler."""
+        result = AsyncPositionControlHandler.ConfigurationResult
+        begin = robot._robot.asynchronous_joint_positions
+        try:
+            control = wait(begin(configuration.maximum_joint_velocities, configuration.goal_tolerance))
+        except errors.FrankaError as error:
+            return result(None, str(error))
+        return result(AsyncPositionControlHandler(control), None)
+
+    def set_joint_position_target(self, target: JointPositionTarget, /) -> CommandResult:
+        """Sends the robot to a target, wherever it was going before."""
+        result = AsyncPositionControlHandler.CommandResult
+        if self._control is None:
+            return result(None, False, _ABORTED)
+        try:
+            self._control.set_target(target.joint_positions)
+        except errors.FrankaError:
+            return result(None, False, _ABORTED)
+        except ValueError as error:
+            return result(None, False, str(error))
+        return result(str(uuid.uuid4()), True, None)
+
+    def get_target_feedback(self, robot_state: RobotState | None = None) -> TargetFeedback:
+        """Returns how far the newest target has been followed, by the newest state."""
+        result = AsyncPositionControlHandler.TargetFeedback
+        if self._control is None:
+            return result(TargetStatus.kAborted, _ABORTED)
+        status, reason = self._control.status()
+        return result(_STATUS[status], reason)
+
+    def stop_control(self) -> None:
+        """Has the robot stop."""
+        control, self._control = self._control, None
+        if control is not None:
+            control.stop()

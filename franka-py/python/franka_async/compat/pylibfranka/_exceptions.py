@@ -1,0 +1,91 @@
+"""Exceptions, which as in the original derive from ``RuntimeError``, but for the base of them all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from ... import errors
+
+
+class FrankaException(Exception):
+    """What has no class of its own."""
+
+
+class CommandException(RuntimeError):
+    """The robot or the Hand refused a command."""
+
+
+class NetworkException(RuntimeError):
+    """There is no connection, or it was lost."""
+
+
+class ControlException(RuntimeError):
+    """A motion ended otherwise than asked. ``__cause__`` has the log and the diagnosis."""
+
+
+class InvalidOperationException(RuntimeError):
+    """Something else controls the robot."""
+
+
+class RealtimeException(RuntimeError):
+    """This computer does not allow real-time scheduling."""
+
+
+PREEMPTED = "libfranka: Move command preempted!"
+BUSY = "libfranka robot: Cannot perform this operation while another control or read operation is running."
+SILENT = "libfranka: UDP receive: Timeout"
+
+# What a command cannot be sent for is an argument's fault: the texts of it begin like these.
+_ARGUMENT = ("Commanding value is infinite or NaN", "libfranka: Attempt to set invalid", "Invalid ")
+
+
+@contextmanager
+def translated() -> Iterator[None]:
+    """Raises the exceptions of the original in the place of those of this package."""
+    try:
+        yield
+    except errors.FrankaError as error:
+        raise _exception(error) from error
+
+
+def _exception(error: errors.FrankaError) -> Exception:
+    text, kind = str(error), error.kind
+    match error:
+        case errors.ConnectError():
+            if kind == "realtime":
+                return RealtimeException(text)
+            return FrankaException(text) if kind == "incompatible_version" else NetworkException(text)
+        case errors.CommandError():
+            return CommandException(text) if error.party in ("robot", "caller") else NetworkException(text)
+        case errors.ActionError():
+            return CommandException(text) if kind == "failure" else NetworkException(text)
+        case errors.ControlError():
+            # Under active control the original says no rate.
+            return ControlException(PREEMPTED if error.move_status == "preempted" else text.split("\ncontrol_command_success_rate")[0])
+        case errors.ActiveError() if kind == "borrow":
+            return InvalidOperationException(BUSY)
+        case errors.ActiveError() | errors.MotionError() if text.startswith(_ARGUMENT):
+            return ValueError(text)
+        case errors.ActiveError() if error.party == "link":
+            return NetworkException(text)
+        case errors.MotionError():
+            return _of_motion(kind, text)
+        case errors.ReadError():
+            return NetworkException(text)
+    return NetworkException(text) if kind == "not_connected" else FrankaException(text)
+
+
+def _of_motion(kind: str, text: str) -> Exception:
+    match kind:
+        case "busy":
+            return InvalidOperationException(text)
+        case "rejected" | "unsupported":
+            return CommandException(text)
+        case "invalid":
+            return ValueError(text)
+        case "stopped" | "superseded" | "braked":
+            return ControlException(PREEMPTED)
+        case "link_lost" | "connection_closed":
+            return NetworkException(text)
+    return ControlException(text)

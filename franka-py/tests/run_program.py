@@ -1,0 +1,49 @@
+"""Runs a program with a package and prints its outcome: ``run_program.py PROGRAMS PROGRAM PACKAGE ADDRESS``, in a process of its own.
+
+The originals hold the interpreter while they wait, and raise the thread that connects to real-time priority.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import sys
+from typing import Any
+
+import numpy as np
+
+
+class Outcome:
+    """What a program notes on its way."""
+
+    def __init__(self) -> None:
+        self.notes: list[tuple[str, Any]] = []
+
+    def note(self, name: str, value: Any) -> None:
+        """Notes a value: text, truth, or numbers."""
+        self.notes.append((name, np.asarray(value).tolist()))
+
+    def attempt(self, name: str, call: Any, *arguments: Any, **named: Any) -> Any:
+        """Calls it, and notes by which class, whose base and with which text it raises, or that it does not."""
+        try:
+            result = call(*arguments, **named)
+        except Exception as error:
+            kind = getattr(error, "kind", None)
+            described = [type(error).__name__, type(error).__mro__[1].__name__, kind]
+            text = "" if isinstance(error, TypeError) else str(error)
+            self.notes.append((name, [*described, text]))
+            return None
+        self.notes.append((name, "returned"))
+        return result
+
+
+def main() -> None:
+    programs, program, package, address = sys.argv[1:]
+    outcome = Outcome()
+    run = getattr(importlib.import_module(programs), program)
+    run(importlib.import_module(package), address, outcome)
+    print("outcome", json.dumps(outcome.notes), flush=True)
+
+
+if __name__ == "__main__":
+    main()
