@@ -1,24 +1,19 @@
 //! An engaged arm: one session, many goals.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::atomic::{AtomicU64, Ordering};
 
-use franka_async::goal::{Backend, Controller, Deadman as Token, DeadmanMonitor, Free, Setpoints};
-use franka_async::model::collision::Obstacle;
-use franka_async::nalgebra::{UnitVector3, Vector3};
-use franka_async::{Engage, MotionError};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use franka_async::goal::Free;
 use pyo3::prelude::*;
 use pyo3::types::{PyAny, PyDict};
 
-use crate::arrays::{pose, vector};
+use crate::arrays::vector;
 use crate::chunk::chunk;
 use crate::destination::{destination, is, offset, target_object, waypoints};
 use crate::follow::{self, Leader};
 use crate::goals::motion;
 use crate::motion::{Motion, Report, reference};
-use crate::operation::{Operation, seconds};
-use crate::options::{Keywords, Options, tuning, with_options};
+use crate::operation::Operation;
+use crate::options::{Keywords, tuning};
 use crate::runtime::{self, Threaded};
 
 /// A session of target control: the arm is held, and goes from goal to goal without a stop in between,
@@ -274,197 +269,12 @@ impl Arm {
 }
 
 /// Ends the session at the end of a `with` block. What the block raised is not replaced.
-fn leave(arm: franka_async::Arm, raised: Option<&Bound<'_, PyAny>>) -> Operation {
+pub(crate) fn leave(arm: franka_async::Arm, raised: Option<&Bound<'_, PyAny>>) -> Operation {
     let raised = raised.is_some_and(|kind| !kind.is_none());
     Operation::new("Arm.disengage", async move {
         match arm.disengage().await {
             Err(error) if !raised => Err(error),
             _ => Ok(()),
         }
-    })
-}
-
-/// A session that begins when it is awaited, or entered by `async with`, and is then an `Arm`.
-#[pyclass(frozen, extends = Operation, module = "franka_async")]
-pub(crate) struct Engagement {
-    entered: Arc<Entered>,
-}
-
-/// The session of a `with` block.
-#[derive(Default)]
-struct Entered {
-    is_entered: AtomicBool,
-    arm: OnceLock<franka_async::Arm>,
-}
-
-impl Engagement {
-    pub(crate) fn new(
-        py: Python<'_>,
-        robot: franka_async::Robot,
-        options: Option<&Bound<'_, PyDict>>,
-    ) -> PyResult<Py<Self>> {
-        let mut keywords = Keywords::new("Robot.engage", options)?;
-        let common = Options::of_session(&mut keywords, robot.model())?;
-        let mut engage = with_options!(Engage::default(), common, session);
-        if let Some(regions) = keywords.take("keep_out")? {
-            let regions: PyResult<Vec<_>> = regions.try_iter()?.map(|it| region(&it?)).collect();
-            engage = engage.keep_out(regions?);
-        }
-        if let Some(chosen) = keywords.take("backend")? {
-            engage = engage.backend(backend(&chosen)?);
-        }
-        if let Some(deadman) = keywords.take("deadman")? {
-            engage = engage.deadman(deadman.cast::<Deadman>()?.get().bind()?);
-        }
-        keywords.end()?;
-        let entered = Arc::new(Entered::default());
-        let shared = entered.clone();
-        let begin = Operation::new("Robot.engage", async move {
-            let arm = robot.engage(engage).await?;
-            if shared.is_entered.load(Ordering::Relaxed) {
-                // Set once: the operation runs once.
-                let _ = shared.arm.set(arm.clone());
-            }
-            Ok::<_, MotionError>(Arm::new(arm))
-        });
-        Py::new(
-            py,
-            PyClassInitializer::from(begin).add_subclass(Self { entered }),
-        )
-    }
-}
-
-#[pymethods]
-impl Engagement {
-    fn __aenter__(this: Py<Self>) -> Py<Self> {
-        this.get().entered.is_entered.store(true, Ordering::Relaxed);
-        this
-    }
-
-    #[pyo3(signature = (kind = None, *_rest))]
-    fn __aexit__(
-        &self,
-        kind: Option<&Bound<'_, PyAny>>,
-        _rest: &Bound<'_, PyAny>,
-    ) -> PyResult<Operation> {
-        let arm = self.entered.arm.get();
-        let arm = arm.ok_or_else(|| PyTypeError::new_err("the session was not entered"))?;
-        Ok(leave(arm.clone(), kind))
-    }
-}
-
-/// A token that has to be kept alive: while it is silent for longer than `silence` seconds, and once it is
-/// released or gone, the arm that it was given to by `Robot.engage` brakes and holds, and every goal raises
-/// `held`. The control thread watches it, whatever Python is busy with.
-#[pyclass(frozen, module = "franka_async")]
-pub(crate) struct Deadman {
-    token: Mutex<Option<Token>>,
-    monitor: Mutex<Option<DeadmanMonitor>>,
-    silence: f64,
-}
-
-impl Deadman {
-    /// The other end of the token, for one session.
-    fn bind(&self) -> PyResult<DeadmanMonitor> {
-        let monitor = self
-            .monitor
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .take();
-        monitor.ok_or_else(|| PyValueError::new_err("deadman is bound to a session already"))
-    }
-}
-
-#[pymethods]
-impl Deadman {
-    #[new]
-    fn new(silence: f64) -> PyResult<Self> {
-        let (token, monitor) = Token::new(seconds(silence)?);
-        Ok(Self {
-            token: Mutex::new(Some(token)),
-            monitor: Mutex::new(Some(monitor)),
-            silence,
-        })
-    }
-
-    /// How long it may be silent, s.
-    #[getter]
-    fn silence(&self) -> f64 {
-        self.silence
-    }
-
-    /// Restarts the time of silence; from any thread. Without effect once it was released.
-    fn keep_alive(&self) {
-        let token = self.token.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(token) = &*token {
-            token.keep_alive();
-        }
-    }
-
-    /// Gives the token up: the arm brakes, and holds from then on.
-    fn release(&self) {
-        self.token
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .take();
-    }
-
-    fn __repr__(&self) -> String {
-        format!("Deadman({})", self.silence)
-    }
-}
-
-/// Reads a region that the arm keeps out of.
-fn region(region: &Bound<'_, PyAny>) -> PyResult<Obstacle> {
-    if is(region, "Plane")? {
-        let normal = Vector3::from(vector::<3>("normal", &region.getattr("normal")?)?);
-        let normal = UnitVector3::try_new(normal, 1e-9)
-            .ok_or_else(|| PyValueError::new_err("the normal of a plane has no length"))?;
-        let offset = region.getattr("offset")?.extract()?;
-        return Ok(Obstacle::Plane { normal, offset });
-    }
-    if is(region, "Box")? {
-        let sides = Vector3::from(vector::<3>("sides", &region.getattr("sides")?)?);
-        let pose = pose("pose", &region.getattr("pose")?)?;
-        let half = 0.5 * sides;
-        return Ok(Obstacle::Box { pose, half });
-    }
-    let text = format!("keep_out has {}, expected a Plane or a Box", region.repr()?);
-    Err(PyTypeError::new_err(text))
-}
-
-/// Reads `torques`, or a pair of a controller and its setpoints.
-fn backend(backend: &Bound<'_, PyAny>) -> PyResult<Backend> {
-    let unknown = || {
-        let text = format!(
-            "backend is {backend}, expected 'torques' or a pair of 'joint_impedance' or \
-             'cartesian_impedance' and 'joint_positions', 'joint_velocities', 'cartesian_poses' or \
-             'cartesian_velocities'"
-        );
-        PyValueError::new_err(text)
-    };
-    if let Ok(name) = backend.extract::<String>() {
-        return (name == "torques")
-            .then_some(Backend::Torques)
-            .ok_or_else(unknown);
-    }
-    let (controller, setpoints) = backend
-        .extract::<(String, String)>()
-        .map_err(|_| unknown())?;
-    let setpoints = match setpoints.as_str() {
-        "joint_positions" => Setpoints::JointPositions,
-        "joint_velocities" => Setpoints::JointVelocities,
-        "cartesian_poses" => Setpoints::CartesianPoses,
-        "cartesian_velocities" => Setpoints::CartesianVelocities,
-        _ => return Err(unknown()),
-    };
-    let controller = match controller.as_str() {
-        "joint_impedance" => Controller::JointImpedance,
-        "cartesian_impedance" => Controller::CartesianImpedance,
-        _ => return Err(unknown()),
-    };
-    Ok(match controller {
-        Controller::JointImpedance => Backend::joint_impedance(setpoints),
-        _ => Backend::cartesian_impedance(setpoints),
     })
 }

@@ -3,9 +3,9 @@
 use pyo3::prelude::*;
 use pyo3::types::{PyAny, PyDict};
 
-use crate::arm::Engagement;
 use crate::arrays::vector;
 use crate::destination::{destination, offset, waypoints};
+use crate::engagement::Engagement;
 use crate::follow::{self, Leader};
 use crate::motion::{Motion, reference};
 use crate::operation::Operation;

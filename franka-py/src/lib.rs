@@ -17,9 +17,11 @@ mod batch;
 mod chunk;
 mod condition;
 mod control;
+mod deadman;
 mod destination;
 mod device;
 mod disturbance;
+mod engagement;
 mod errors;
 mod exit;
 mod follow;
@@ -60,7 +62,7 @@ mod _native {
     #[pymodule_export]
     use crate::active::ActiveControl;
     #[pymodule_export]
-    use crate::arm::{Arm, Deadman, Engagement};
+    use crate::arm::Arm;
     #[pymodule_export]
     use crate::arrays::_row;
     #[pymodule_export]
@@ -72,7 +74,11 @@ mod _native {
         joint_velocity, torque,
     };
     #[pymodule_export]
+    use crate::deadman::Deadman;
+    #[pymodule_export]
     use crate::disturbance::Touch;
+    #[pymodule_export]
+    use crate::engagement::Engagement;
     #[pymodule_export]
     use crate::follow::Latest;
     #[pymodule_export]

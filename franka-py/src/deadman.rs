@@ -1,0 +1,70 @@
+//! The token that an arm moves by.
+
+use std::sync::{Mutex, PoisonError};
+
+use franka_async::goal::{Deadman as Token, DeadmanMonitor};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::operation::seconds;
+
+/// A token that has to be kept alive: while it is silent for longer than `silence` seconds, and once it is
+/// released or gone, the arm that it was given to by `Robot.engage` brakes and holds, and every goal raises
+/// `held`. The control thread watches it, whatever Python is busy with.
+#[pyclass(frozen, module = "franka_async")]
+pub(crate) struct Deadman {
+    token: Mutex<Option<Token>>,
+    monitor: Mutex<Option<DeadmanMonitor>>,
+    silence: f64,
+}
+
+impl Deadman {
+    /// The other end of the token, for one session.
+    pub(crate) fn bind(&self) -> PyResult<DeadmanMonitor> {
+        let monitor = self
+            .monitor
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take();
+        monitor.ok_or_else(|| PyValueError::new_err("deadman is bound to a session already"))
+    }
+}
+
+#[pymethods]
+impl Deadman {
+    #[new]
+    fn new(silence: f64) -> PyResult<Self> {
+        let (token, monitor) = Token::new(seconds(silence)?);
+        Ok(Self {
+            token: Mutex::new(Some(token)),
+            monitor: Mutex::new(Some(monitor)),
+            silence,
+        })
+    }
+
+    /// How long it may be silent, s.
+    #[getter]
+    fn silence(&self) -> f64 {
+        self.silence
+    }
+
+    /// Restarts the time of silence; from any thread. Without effect once it was released.
+    fn keep_alive(&self) {
+        let token = self.token.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(token) = &*token {
+            token.keep_alive();
+        }
+    }
+
+    /// Gives the token up: the arm brakes, and holds from then on.
+    fn release(&self) {
+        self.token
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .take();
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Deadman({})", self.silence)
+    }
+}
