@@ -16,13 +16,13 @@ use crate::operation::Operation;
 use crate::options::{Keywords, tuning};
 use crate::runtime::{self, Threaded};
 
-/// A session of target control: the arm is held, and goes from goal to goal without a stop in between,
-/// whatever their kinds. Made by `Robot.engage`.
+/// A session of target control: the arm is held, and goes from goal to goal without a stop in
+/// between, whatever their kinds. Made by `Robot.engage`.
 ///
 /// When the last reference to it goes, the arm brakes and the session ends, in the background;
-/// `disengage()` does the same and can be awaited. `Robot.stop` ends it from outside, as does the robot by a
-/// reflex: whatever is asked of the session afterwards raises the reason. While it lasts, motions of the
-/// `Robot` itself are refused as `busy`.
+/// `disengage()` does the same and can be awaited. `Robot.stop` ends it from outside, as does the
+/// robot by a reflex: whatever is asked of the session afterwards raises the reason. While it
+/// lasts, motions of the `Robot` itself are refused as `busy`.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Arm {
     arm: Threaded<franka_async::Arm>,
@@ -64,7 +64,8 @@ impl Arm {
 
 #[pymethods]
 impl Arm {
-    /// As `Robot.move_to`; the arm is then held at the target. Cancelling it brakes the arm and holds it.
+    /// As `Robot.move_to`; the arm is then held at the target. Cancelling it brakes the arm and
+    /// holds it.
     #[pyo3(signature = (target, **options))]
     fn move_to(
         &self,
@@ -127,8 +128,9 @@ impl Arm {
         self.motion(py, "Arm.hold", options, self.session()?.hold())
     }
 
-    /// Heads for `target` from now on, in the place of whatever came before, and holds it; what `move_to`
-    /// takes, and targets with velocities. Over as soon as the goal is taken. Cancelling takes nothing back.
+    /// Heads for `target` from now on, in the place of whatever came before, and holds it; what
+    /// `move_to` takes, and targets with velocities. Over as soon as the goal is taken.
+    /// Cancelling takes nothing back.
     fn set(&self, target: &Bound<'_, PyAny>) -> PyResult<Operation> {
         let (arm, target) = (self.session()?, destination("target", target)?);
         Ok(Operation::new(
@@ -137,9 +139,9 @@ impl Arm {
         ))
     }
 
-    /// As `set`, without waiting for an answer: for loops at a rate of their own, on any thread. The newest
-    /// of goals that come faster than they are taken counts. Raises `MotionError` for a goal that is not
-    /// accepted, and for what ended the session.
+    /// As `set`, without waiting for an answer: for loops at a rate of their own, on any thread.
+    /// The newest of goals that come faster than they are taken counts. Raises `MotionError`
+    /// for a goal that is not accepted, and for what ended the session.
     fn try_set(&self, py: Python<'_>, target: &Bound<'_, PyAny>) -> PyResult<()> {
         use crate::errors::Raise;
         let (arm, target) = (self.session()?, destination("target", target)?);
@@ -147,8 +149,9 @@ impl Arm {
             .map_err(|error| error.raise(py))
     }
 
-    /// What the arm is held at or heads for: a pose, `(4, 4)`, `Joints`, or a pair with the twist. `None`
-    /// along a chunk, at the beginning, where a goal was given up, and once the session has ended.
+    /// What the arm is held at or heads for: a pose, `(4, 4)`, `Joints`, or a pair with the twist.
+    /// `None` along a chunk, at the beginning, where a goal was given up, and once the session
+    /// has ended.
     fn target<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         match self.session()?.target() {
             Some(target) => target_object(py, target),
@@ -156,14 +159,15 @@ impl Arm {
         }
     }
 
-    /// Where the arm is to be in this millisecond: a `Reference`; `None` once the session has ended.
+    /// Where the arm is to be in this millisecond: a `Reference`; `None` once the session has
+    /// ended.
     fn reference<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let newest = self.session()?.reference();
         newest.map(|newest| reference(py, &newest)).transpose()
     }
 
-    /// Waits until the arm rests at the target that was taken last, or where that has been given up.
-    /// Cancelling has no effect on the arm.
+    /// Waits until the arm rests at the target that was taken last, or where that has been given
+    /// up. Cancelling has no effect on the arm.
     fn at_rest(&self) -> PyResult<Operation> {
         let arm = self.session()?;
         Ok(Operation::new(
@@ -172,8 +176,9 @@ impl Arm {
         ))
     }
 
-    /// Follows points with times, as a policy predicts them, from now on; over as soon as they are taken. See
-    /// `Chunk`, which may be given in the place of the points; the other arguments are its fields.
+    /// Follows points with times, as a policy predicts them, from now on; over as soon as they are
+    /// taken. See `Chunk`, which may be given in the place of the points; the other arguments
+    /// are its fields.
     #[pyo3(signature = (points, dt = None, times = None, *, velocities = None, joints = false, observed_at = None, blend = None))]
     #[expect(clippy::too_many_arguments, reason = "keywords")]
     fn chunk(
@@ -199,9 +204,10 @@ impl Arm {
         }))
     }
 
-    /// Lets a hand guide the arm, once it rests, until the next goal; `hold()` ends it. `axes` are free: x y z
-    /// and about x y z of the base frame, six truth values; the others stay where they are. Over as soon as
-    /// it is taken. The load has to be declared, or it pulls the arm down.
+    /// Lets a hand guide the arm, once it rests, until the next goal; `hold()` ends it. `axes` are
+    /// free: x y z and about x y z of the base frame, six truth values; the others stay where
+    /// they are. Over as soon as it is taken. The load has to be declared, or it pulls the arm
+    /// down.
     #[pyo3(signature = (axes = [true; 6], elbow = true))]
     fn guide(&self, axes: [bool; 6], elbow: bool) -> PyResult<Operation> {
         let arm = self.session()?;
@@ -223,8 +229,8 @@ impl Arm {
         follow::operation(this, "Arm.follow", arm, targets, options)
     }
 
-    /// Changes `gains`, `limits`, `force_cap`, `leash`, `deviation` and `posture`, as far as they are given,
-    /// of the goal under way and of those to come. Gains fade over 0.3 s.
+    /// Changes `gains`, `limits`, `force_cap`, `leash`, `deviation` and `posture`, as far as they
+    /// are given, of the goal under way and of those to come. Gains fade over 0.3 s.
     #[pyo3(signature = (**options))]
     fn tune(&self, options: Option<&Bound<'_, PyDict>>) -> PyResult<Operation> {
         let arm = self.session()?;
@@ -246,7 +252,8 @@ impl Arm {
         }))
     }
 
-    /// Waits until the session has ended, and returns or raises how. Cancelling has no effect on the arm.
+    /// Waits until the session has ended, and returns or raises how. Cancelling has no effect on
+    /// the arm.
     fn ended(&self) -> PyResult<Operation> {
         let ended = self.session()?.ended();
         Ok(Operation::new("Arm.ended", async move {

@@ -8,8 +8,8 @@ use pyo3::prelude::*;
 use crate::destination::target;
 use crate::operation::seconds;
 
-/// What has to be the case: comparisons of quantities, flags of the robot and the time, joined by `&`,
-/// `|` and `~`. See `franka_async.condition`.
+/// What has to be the case: comparisons of quantities, flags of the robot and the time, joined by
+/// `&`, `|` and `~`. See `franka_async.condition`.
 #[pyclass(frozen, from_py_object, module = "franka_async.condition")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Condition {
@@ -50,8 +50,8 @@ impl Condition {
         ))
     }
 
-    /// Compares the changes since the motion began instead of the values, in every comparison of this
-    /// condition: for loads that the robot does not know of, and for displacements.
+    /// Compares the changes since the motion began instead of the values, in every comparison of
+    /// this condition: for loads that the robot does not know of, and for displacements.
     fn relative(&self) -> PyResult<Self> {
         Self::new(
             self.condition.relative(),
@@ -59,7 +59,8 @@ impl Condition {
         )
     }
 
-    /// True once this condition has been true for so many seconds without a break, by the robot's clock.
+    /// True once this condition has been true for so many seconds without a break, by the robot's
+    /// clock.
     #[pyo3(signature = (seconds, /))]
     fn held_for(&self, seconds: f64) -> PyResult<Self> {
         let time = self::seconds(seconds)?;
@@ -67,8 +68,8 @@ impl Condition {
         Self::new(self.condition.held_for(time), text)
     }
 
-    /// Has the motion go on to `target`, a pose or `Joints`, once the condition is true; without, it comes
-    /// to rest. The arm turns there at once, without waiting for the program.
+    /// Has the motion go on to `target`, a pose or `Joints`, once the condition is true; without,
+    /// it comes to rest. The arm turns there at once, without waiting for the program.
     fn then(&self, target: &Bound<'_, PyAny>) -> PyResult<Then> {
         let reaction = self.condition.then(self::target("target", target)?);
         let text = format!("{}.then({})", self.text, target.repr()?);
@@ -124,8 +125,8 @@ pub(crate) fn reaction(until: &Bound<'_, PyAny>) -> PyResult<Reaction> {
 
 /// A number that changes while the arm moves: compare it by `<`, `<=`, `>` or `>=` for a condition.
 ///
-/// Forces and torques are the robot's estimates, positive where the arm exerts them. Axes are those of
-/// the base frame.
+/// Forces and torques are the robot's estimates, positive where the arm exerts them. Axes are those
+/// of the base frame.
 #[pyclass(frozen, module = "franka_async.condition")]
 pub(crate) struct Quantity {
     quantity: condition::Quantity,

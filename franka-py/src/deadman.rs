@@ -8,9 +8,9 @@ use pyo3::prelude::*;
 
 use crate::operation::seconds;
 
-/// A token that has to be kept alive: while it is silent for longer than `silence` seconds, and once it is
-/// released or gone, the arm that it was given to by `Robot.engage` brakes and holds, and every goal raises
-/// `held`. The control thread watches it, whatever Python is busy with.
+/// A token that has to be kept alive: while it is silent for longer than `silence` seconds, and
+/// once it is released or gone, the arm that it was given to by `Robot.engage` brakes and holds,
+/// and every goal raises `held`. The control thread watches it, whatever Python is busy with.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Deadman {
     token: Mutex<Option<Token>>,

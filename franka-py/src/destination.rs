@@ -170,7 +170,8 @@ pub(crate) fn offset(
     Ok(if from_arm { offset.from_arm() } else { offset })
 }
 
-/// Reads waypoints: targets, which are rounded within `blend`, and `Waypoint`s, which say that themselves.
+/// Reads waypoints: targets, which are rounded within `blend`, and `Waypoint`s, which say that
+/// themselves.
 ///
 /// # Errors
 /// `ValueError`, `TypeError`.
@@ -186,8 +187,8 @@ pub(crate) fn waypoints(argument: &Bound<'_, PyAny>, blend: f64) -> PyResult<Vec
     argument.try_iter()?.enumerate().map(waypoint).collect()
 }
 
-/// What Python gets for a target: a pose `(4, 4)`, `Joints`, or a pair of a pose and its twist. `None` for
-/// rest and hand guiding, which are nowhere.
+/// What Python gets for a target: a pose `(4, 4)`, `Joints`, or a pair of a pose and its twist.
+/// `None` for rest and hand guiding, which are nowhere.
 pub(crate) fn target_object<'py>(
     py: Python<'py>,
     target: Target,

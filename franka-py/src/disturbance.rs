@@ -29,8 +29,8 @@ impl Touch {
         self.sim.get().robot(py, move |robot| robot.release(id))
     }
 
-    /// The wrench that it exerts on the arm now, base axes, `(6,)` N and N m; `None` if it is over, or acts on
-    /// joints.
+    /// The wrench that it exerts on the arm now, base axes, `(6,)` N and N m; `None` if it is over,
+    /// or acts on joints.
     fn felt<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
         let id = self.id;
         let felt = self.sim.get().robot(py, move |robot| robot.felt(id))?;
@@ -62,9 +62,9 @@ fn touch(
 
 #[pymethods]
 impl Sim {
-    /// Pushes the arm `at` a frame (`ee`, `flange`, `joint4`, ...), `offset` from its origin in its axes, m, with
-    /// a force, base axes, N, and a torque, N m, for `duration` seconds of its own clock; until it is released if
-    /// `None`.
+    /// Pushes the arm `at` a frame (`ee`, `flange`, `joint4`, ...), `offset` from its origin in its
+    /// axes, m, with a force, base axes, N, and a torque, N m, for `duration` seconds of its
+    /// own clock; until it is released if `None`.
     #[pyo3(signature = (force, torque = None, *, duration = None, at = "ee", offset = None))]
     fn push(
         this: &Bound<'_, Self>,
@@ -91,7 +91,8 @@ impl Sim {
         touch(this, torques, None, duration)
     }
 
-    /// Pulls the arm to the point `to`, base frame, m, by a spring of this stiffness, N/m; otherwise like `push`.
+    /// Pulls the arm to the point `to`, base frame, m, by a spring of this stiffness, N/m;
+    /// otherwise like `push`.
     #[pyo3(signature = (to, stiffness, *, duration = None, at = "ee", offset = None))]
     fn pull(
         this: &Bound<'_, Self>,
@@ -132,7 +133,8 @@ impl Sim {
         touch(this, franka_sim::Touch::block(joint - 1), None, duration)
     }
 
-    /// Puts a wall in the way of the end effector: through `point`, base frame, m, with a `normal` out of it.
+    /// Puts a wall in the way of the end effector: through `point`, base frame, m, with a `normal`
+    /// out of it.
     #[pyo3(signature = (point, normal, *, duration = None, at = "ee", offset = None))]
     fn wall(
         this: &Bound<'_, Self>,
@@ -181,7 +183,8 @@ impl Sim {
         })
     }
 
-    /// Raises an error of the robot, by the vendor's name, such as `cartesian_reflex`: it stops itself.
+    /// Raises an error of the robot, by the vendor's name, such as `cartesian_reflex`: it stops
+    /// itself.
     fn trip(&self, py: Python<'_>, error: &str) -> PyResult<()> {
         let found = RobotError::from_name(error).ok_or_else(|| {
             PyValueError::new_err(format!("error is {error:?}, which no error is called"))
@@ -200,8 +203,9 @@ impl Sim {
         self.robot(py, move |robot| robot.place(&q))
     }
 
-    /// Attaches a body to the flange that the robot does not know of, in the place of the one before: mass,
-    /// kg, centre of mass in the flange frame, m, and inertia about it, `(3, 3)` kg m^2.
+    /// Attaches a body to the flange that the robot does not know of, in the place of the one
+    /// before: mass, kg, centre of mass in the flange frame, m, and inertia about it, `(3, 3)`
+    /// kg m^2.
     #[pyo3(signature = (mass, center, inertia = None))]
     fn attach(
         &self,
@@ -214,14 +218,15 @@ impl Sim {
         self.robot(py, move |robot| robot.attach(body))
     }
 
-    /// Where the end effector really is, base frame, `(4, 4)`: the robot's own joint sensors may be off.
+    /// Where the end effector really is, base frame, `(4, 4)`: the robot's own joint sensors may be
+    /// off.
     fn true_pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let pose = self.robot(py, |robot| robot.true_pose())?;
         Ok(pose_array(py, &pose))
     }
 
-    /// Puts an object of this width, m, between the fingers of the Hand. Raises `ValueError` if it does not
-    /// fit, and without a Hand.
+    /// Puts an object of this width, m, between the fingers of the Hand. Raises `ValueError` if it
+    /// does not fit, and without a Hand.
     fn place_object(&self, py: Python<'_>, width: f64) -> PyResult<()> {
         let place = move |hand: &mut franka_sim::Hand| hand.mechanism_mut().place_object(width);
         let placed = self.with(py, async |sim| match sim.hand() {

@@ -53,7 +53,8 @@ impl Raise for Error {
     }
 }
 
-/// A `FrankaError` of this `kind` by the program itself, which this package raises before the driver is asked.
+/// A `FrankaError` of this `kind` by the program itself, which this package raises before the
+/// driver is asked.
 pub(crate) fn misuse(py: Python<'_>, kind: &str, message: &str) -> PyErr {
     let made = || {
         let class = py.import("franka_async.errors")?.getattr("FrankaError")?;

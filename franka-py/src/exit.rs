@@ -40,8 +40,8 @@ pub(crate) fn wait_for(robot: &Robot) {
         .spawn(async move { while health.changed().await.is_ok() {} });
 }
 
-/// Does what takes the interpreter on a thread that Python does not know. `None` once it exits: threads
-/// that it takes by surprise would be torn out of the middle of what they do.
+/// Does what takes the interpreter on a thread that Python does not know. `None` once it exits:
+/// threads that it takes by surprise would be torn out of the middle of what they do.
 pub(crate) fn in_python<T>(work: impl FnOnce(Python<'_>) -> T) -> Option<T> {
     let is_open = LIVE
         .interpreter
@@ -57,8 +57,8 @@ pub(crate) fn register(py: Python<'_>) -> PyResult<()> {
     Ok(())
 }
 
-/// Brakes every robot and closes its connection; waits for that for a bounded time. In a forked child it
-/// does nothing: the robots are the parent's.
+/// Brakes every robot and closes its connection; waits for that for a bounded time. In a forked
+/// child it does nothing: the robots are the parent's.
 #[pyfunction]
 fn shut_down(py: Python<'_>) {
     let Some(runtime) = runtime::started() else {
@@ -84,8 +84,10 @@ fn shut_down(py: Python<'_>) {
     });
 }
 
-/// A motion brakes within a quarter of a second; a robot that does not answer is given up after two.
+/// A motion brakes within a quarter of a second; a robot that does not answer is given up after
+/// two.
 const BRAKED: Duration = Duration::from_secs(4);
 
-/// What has the interpreter then delivers a result, or is code of the program that may take any time.
+/// What has the interpreter then delivers a result, or is code of the program that may take any
+/// time.
 const GIVEN_BACK: Duration = Duration::from_secs(1);

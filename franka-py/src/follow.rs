@@ -18,14 +18,15 @@ use crate::motion::Report;
 use crate::operation::Operation;
 use crate::options::{Bounds, Keywords, Options, watchdog, with_options};
 
-/// The newest target of a program: `set` it from any thread, at any rate, and `follow` it. When it is
-/// closed, or nobody holds it any more, the motion ends at the target that was set last.
+/// The newest target of a program: `set` it from any thread, at any rate, and `follow` it. When it
+/// is closed, or nobody holds it any more, the motion ends at the target that was set last.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Latest(Mutex<Option<watch::Sender<Option<Target>>>>);
 
 #[pymethods]
 impl Latest {
-    /// Begins with `target`, or without one: a motion that follows it then begins with the first one.
+    /// Begins with `target`, or without one: a motion that follows it then begins with the first
+    /// one.
     #[new]
     #[pyo3(signature = (target = None))]
     fn new(target: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
@@ -153,8 +154,8 @@ pub(crate) fn operation(
     }))
 }
 
-/// The targets of an iterator of Python, each taken on a thread that may wait, once the one before has
-/// been passed on. What it raises goes to `failed`; no target comes after that.
+/// The targets of an iterator of Python, each taken on a thread that may wait, once the one before
+/// has been passed on. What it raises goes to `failed`; no target comes after that.
 fn stepped(
     iterator: Py<PyAny>,
     failed: oneshot::Sender<PyErr>,

@@ -109,8 +109,8 @@ pub(crate) fn add_defaults(module: &Bound<'_, PyModule>) -> PyResult<()> {
 
 #[pymethods]
 impl Robot {
-    /// How far gains are from the first oscillation of an arm like this where it is: a `Margin`. `None` for
-    /// gains that are out of their bounds.
+    /// How far gains are from the first oscillation of an arm like this where it is: a `Margin`.
+    /// `None` for gains that are out of their bounds.
     fn margin<'py>(&self, gains: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let Some(margin) = self.connected()?.margin(&read(gains)?) else {
             return Ok(None);

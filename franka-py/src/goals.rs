@@ -35,14 +35,15 @@ pub(crate) fn motion(
 
 #[pymethods]
 impl Robot {
-    /// A motion of the end effector to `target` in the base frame: a pose, `(4, 4)`, or 3 + 4 numbers with a
-    /// quaternion `x y z w`, which may be a pair; 3 numbers, a position that is reached with the orientation
-    /// kept; `(3, 3)` or 4 numbers, an orientation; or `Joints`. To a pose it is a straight line.
+    /// A motion of the end effector to `target` in the base frame: a pose, `(4, 4)`, or 3 + 4
+    /// numbers with a quaternion `x y z w`, which may be a pair; 3 numbers, a position that is
+    /// reached with the orientation kept; `(3, 3)` or 4 numbers, an orientation; or `Joints`.
+    /// To a pose it is a straight line.
     ///
-    /// Options of every motion: `speed`, a factor; `limits`, a `Budget`; `gains`, `Gains`; `stiffness` at the
-    /// end effector, 6 numbers; `force_cap`, N, or `None` for off; `leash`, `deviation`, `tolerance`,
-    /// `settling`; `posture`, 7 joint positions; `until`, a condition; and `start_with`, a `StartTicket`.
-    /// Raises `ValueError` for arguments
+    /// Options of every motion: `speed`, a factor; `limits`, a `Budget`; `gains`, `Gains`;
+    /// `stiffness` at the end effector, 6 numbers; `force_cap`, N, or `None` for off; `leash`,
+    /// `deviation`, `tolerance`, `settling`; `posture`, 7 joint positions; `until`, a
+    /// condition; and `start_with`, a `StartTicket`. Raises `ValueError` for arguments
     /// that make no sense, and `MotionError` when it is awaited.
     #[pyo3(signature = (target, **options))]
     fn move_to(
@@ -73,9 +74,10 @@ impl Robot {
         )
     }
 
-    /// A motion of the end effector away from where it is, or from the target of a motion under way: 3
-    /// numbers, m, or 6, with a rotation vector, rad; along and about the axes of the `base` or the `tool`.
-    /// `from_arm` counts from the measured arm in any case. Options as of `move_to`.
+    /// A motion of the end effector away from where it is, or from the target of a motion under
+    /// way: 3 numbers, m, or 6, with a rotation vector, rad; along and about the axes of the
+    /// `base` or the `tool`. `from_arm` counts from the measured arm in any case. Options as of
+    /// `move_to`.
     #[pyo3(signature = (way, frame = "base", from_arm = false, **options))]
     fn move_by(
         &self,
@@ -89,9 +91,9 @@ impl Robot {
         motion(py, "Robot.move_by", &robot, options, robot.move_by(offset))
     }
 
-    /// A motion through several poses, or several `Joints`, to the last of them, without a stop where the
-    /// corner is rounded: within `blend` (m; rad for joints), or as each `Waypoint` says. Options as of
-    /// `move_to`.
+    /// A motion through several poses, or several `Joints`, to the last of them, without a stop
+    /// where the corner is rounded: within `blend` (m; rad for joints), or as each `Waypoint`
+    /// says. Options as of `move_to`.
     #[pyo3(signature = (waypoints, blend = 0.0, **options))]
     fn move_through(
         &self,
@@ -105,14 +107,14 @@ impl Robot {
         motion(py, "Robot.move_through", &robot, options, through)
     }
 
-    /// Follows the newest of `targets`, poses or `Joints`, alone or with velocities as a pair, until they
-    /// end, and then comes to rest at the last one. `targets` is a `Latest`, which any thread sets; an
-    /// asynchronous iterator, which runs in the event loop that awaits; or a plain one, which runs on a thread
-    /// of its own and may wait.
+    /// Follows the newest of `targets`, poses or `Joints`, alone or with velocities as a pair,
+    /// until they end, and then comes to rest at the last one. `targets` is a `Latest`, which
+    /// any thread sets; an asynchronous iterator, which runs in the event loop that awaits; or
+    /// a plain one, which runs on a thread of its own and may wait.
     ///
     /// Options as of `move_to`, and `lead`, a `Lead`: how far ahead of the arm a target may be; and
-    /// `watchdog`, a pair of seconds and `brake` or `hold`: what happens if no target comes for so long. What
-    /// the iterator raises brakes the arm and is raised.
+    /// `watchdog`, a pair of seconds and `brake` or `hold`: what happens if no target comes for so
+    /// long. What the iterator raises brakes the arm and is raised.
     #[pyo3(signature = (targets, **options))]
     fn follow(
         this: &Bound<'_, Self>,
@@ -126,9 +128,10 @@ impl Robot {
     /// Begins a session that holds the arm where it is and goes from goal to goal without a stop in
     /// between: `async with robot.engage() as arm`, or `arm = await robot.engage()`.
     ///
-    /// Options: `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture` as of `move_to`, for
-    /// all its goals; `keep_out`, regions (`Plane`, `Box`) that the arm keeps out of; `deadman`, a `Deadman`;
-    /// and `backend`, `torques` or a pair of a controller of the robot and its setpoints.
+    /// Options: `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture` as of
+    /// `move_to`, for all its goals; `keep_out`, regions (`Plane`, `Box`) that the arm keeps
+    /// out of; `deadman`, a `Deadman`; and `backend`, `torques` or a pair of a controller of
+    /// the robot and its setpoints.
     #[pyo3(signature = (**options))]
     fn engage(
         &self,
@@ -138,7 +141,8 @@ impl Robot {
         Engagement::new(py, self.connected()?, options)
     }
 
-    /// Where target control has the arm go in this millisecond: a `Reference`; `None` while it moves nothing.
+    /// Where target control has the arm go in this millisecond: a `Reference`; `None` while it
+    /// moves nothing.
     fn reference<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let newest = self.connected()?.reference();
         newest.map(|newest| reference(py, &newest)).transpose()

@@ -14,8 +14,9 @@ use crate::state::RobotState;
 
 /// The last cycles of a motion, oldest first: what the robot said, and what it had been sent.
 ///
-/// Every field of `RobotState` is here as one array over the cycles: `log.q` is `(N, 7)`, `log.O_T_EE` is
-/// `(N, 4, 4)`, `log.time` is `(N,)`. What was sent before each state is `log.sent("tau_J_d")`.
+/// Every field of `RobotState` is here as one array over the cycles: `log.q` is `(N, 7)`,
+/// `log.O_T_EE` is `(N, 4, 4)`, `log.time` is `(N,)`. What was sent before each state is
+/// `log.sent("tau_J_d")`.
 #[pyclass(frozen, sequence, module = "franka_async")]
 pub(crate) struct ControlLog {
     log: Arc<record::ControlLog>,
@@ -62,8 +63,8 @@ impl ControlLog {
         }
     }
 
-    /// What had been sent before each state, `(N, ...)`; zeros before the first. `name` is `tau_J_d`, `q_c`,
-    /// `dq_c`, `O_T_EE_c` or `O_dP_EE_c`.
+    /// What had been sent before each state, `(N, ...)`; zeros before the first. `name` is
+    /// `tau_J_d`, `q_c`, `dq_c`, `O_T_EE_c` or `O_dP_EE_c`.
     fn sent<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let commands = self.log.iter().map(|entry| &entry.command);
         let values: Vec<Bound<'py, PyAny>> = match name {

@@ -13,8 +13,8 @@ use pyo3::types::PyAny;
 use crate::arrays::{array, pose_array};
 use crate::operation::Operation;
 
-/// A motion: it begins when it is awaited, and then arrives, with a `MotionReport`, or raises `MotionError`.
-/// Cancelling it brakes the arm.
+/// A motion: it begins when it is awaited, and then arrives, with a `MotionReport`, or raises
+/// `MotionError`. Cancelling it brakes the arm.
 #[pyclass(frozen, extends = Operation, module = "franka_async")]
 pub(crate) struct Motion {
     handle: Handle,
@@ -78,8 +78,8 @@ impl Motion {
         progress(py, &self.handle)
     }
 
-    /// Stops the motion on its way, until `resume()`; the arm is held there. Without effect before it has
-    /// begun and after its end.
+    /// Stops the motion on its way, until `resume()`; the arm is held there. Without effect before
+    /// it has begun and after its end.
     fn pause(&self) {
         self.handle.pause();
     }
@@ -89,14 +89,15 @@ impl Motion {
         self.handle.resume();
     }
 
-    /// Brakes the motion for good, from any thread; whoever awaits it gets `MotionError` of the kind
-    /// `stopped`. One that has not begun never begins.
+    /// Brakes the motion for good, from any thread; whoever awaits it gets `MotionError` of the
+    /// kind `stopped`. One that has not begun never begins.
     fn cancel(&self) {
         self.handle.cancel();
     }
 }
 
-/// A motion from elsewhere: how far it is, and pausing or braking it. It does not keep the motion going.
+/// A motion from elsewhere: how far it is, and pausing or braking it. It does not keep the motion
+/// going.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct MotionHandle(Handle);
 

@@ -27,8 +27,8 @@ type Deliver = Box<dyn FnOnce(Python<'_>) -> PyResult<Py<PyAny>> + Send>;
 type Work = Pin<Box<dyn Future<Output = Delivered> + Send>>;
 
 /// Something that takes time: `await` it in a coroutine, or call `wait()` on a thread without an
-/// event loop. It begins then and not before. Where the waiting is cancelled, so is the operation; a
-/// motion brakes.
+/// event loop. It begins then and not before. Where the waiting is cancelled, so is the operation;
+/// a motion brakes.
 ///
 /// It is a coroutine in the sense of `collections.abc`, so `asyncio.create_task`, `TaskGroup`,
 /// `gather`, `wait_for` and `timeout` take it.

@@ -165,8 +165,8 @@ macro_rules! with_options {
 
 pub(crate) use with_options;
 
-/// Takes what a session keeps and can be tuned: `limits`, `gains`, `force_cap`, `leash`, `deviation`,
-/// `posture`.
+/// Takes what a session keeps and can be tuned: `limits`, `gains`, `force_cap`, `leash`,
+/// `deviation`, `posture`.
 pub(crate) fn tuning(keywords: &mut Keywords<'_>, model: &Model) -> PyResult<Tuning> {
     let limits = keywords.take("limits")?;
     let (gains, leash) = (keywords.take("gains")?, keywords.take("leash")?);

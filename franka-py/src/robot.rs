@@ -19,11 +19,11 @@ use crate::runtime::{self, Threaded};
 use crate::state::RobotState;
 use crate::supervision::supervise_by;
 
-/// A robot at an address. `async with Robot(address) as robot:` connects, and shuts down at the end:
-/// what moves is braked. Its methods may be called from any thread.
+/// A robot at an address. `async with Robot(address) as robot:` connects, and shuts down at the
+/// end: what moves is braked. Its methods may be called from any thread.
 ///
-/// When the last reference to a connected robot goes, it is braked and closed in the background; when
-/// the interpreter exits, it is waited for.
+/// When the last reference to a connected robot goes, it is braked and closed in the background;
+/// when the interpreter exits, it is waited for.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Robot {
     builder: Builder,
@@ -36,15 +36,18 @@ impl Robot {
     /// Describes a connection to `address`, `host` or `host:port`; nothing is sent yet.
     ///
     /// `realtime` is `enforce` or `ignore`: whether a host without real-time scheduling is refused.
-    /// `None` is the environment variable `FRANKA_REALTIME`, and `enforce` without one. `priority` (1 to
-    /// 99) and `cpu` are for the control thread; threads of Python keep theirs. `version` is the protocol
-    /// version, 5 or 10; negotiated if `None`. `connect_timeout` is for each step of connecting, and
-    /// `link_timeout` the silence of the robot after which a motion fails with `link_lost`, 0.02 to 1 s.
-    /// `log_size` is how many cycles an error carries, 10000 at most. `nominal_model` computes with the
-    /// vendor's constants whatever the robot says of itself. `known` is an `Identified` of this arm.
-    /// `supervise` is a `Policy`, or `True` for the default one: lost connections are made again, and the
-    /// robot is recovered as the policy says. `ask_before_recovery` is called with the `Reflex` before each
-    /// recovery, on a thread of its own, and has to return whether it may be; it implies `ask_first`.
+    /// `None` is the environment variable `FRANKA_REALTIME`, and `enforce` without one. `priority`
+    /// (1 to
+    /// 99) and `cpu` are for the control thread; threads of Python keep theirs. `version` is the
+    ///     protocol
+    /// version, 5 or 10; negotiated if `None`. `connect_timeout` is for each step of connecting,
+    /// and `link_timeout` the silence of the robot after which a motion fails with `link_lost`,
+    /// 0.02 to 1 s. `log_size` is how many cycles an error carries, 10000 at most.
+    /// `nominal_model` computes with the vendor's constants whatever the robot says of itself.
+    /// `known` is an `Identified` of this arm. `supervise` is a `Policy`, or `True` for the
+    /// default one: lost connections are made again, and the robot is recovered as the policy
+    /// says. `ask_before_recovery` is called with the `Reflex` before each recovery, on a
+    /// thread of its own, and has to return whether it may be; it implies `ask_first`.
     ///
     /// Raises `ValueError` for options that make no sense.
     #[new]
@@ -104,8 +107,8 @@ impl Robot {
         })
     }
 
-    /// Connects, and returns this robot; without effect while it is connected. Raises `ConnectError`.
-    /// Cancelling gives it up.
+    /// Connects, and returns this robot; without effect while it is connected. Raises
+    /// `ConnectError`. Cancelling gives it up.
     fn connect(this: &Bound<'_, Self>) -> Operation {
         let (robot, builder) = (this.clone().unbind(), this.get().builder.clone());
         Operation::new("Robot.connect", async move {
@@ -118,8 +121,8 @@ impl Robot {
         })
     }
 
-    /// Brakes whatever moves, ends it and closes the connection; without effect if there is none. Once it
-    /// has begun, it goes on even if it is cancelled.
+    /// Brakes whatever moves, ends it and closes the connection; without effect if there is none.
+    /// Once it has begun, it goes on even if it is cancelled.
     fn shutdown(this: &Bound<'_, Self>) -> Operation {
         let robot = this.clone().unbind();
         Operation::infallible("Robot.shutdown", async move {
@@ -154,7 +157,8 @@ impl Robot {
         self.open().is_some()
     }
 
-    /// The protocol version that the robot speaks: 10 for a Franka Research 3, 5 for a Franka Emika Robot.
+    /// The protocol version that the robot speaks: 10 for a Franka Research 3, 5 for a Franka Emika
+    /// Robot.
     #[getter]
     fn fci_version(&self) -> PyResult<u16> {
         Ok(self.connected()?.version().number())
@@ -171,7 +175,8 @@ impl Robot {
         Ok(pose_array(py, &self.connected()?.pose()))
     }
 
-    /// The pose in the base frame, `(4, 4)`, that the end effector has at joint positions `q`, `(7,)` rad.
+    /// The pose in the base frame, `(4, 4)`, that the end effector has at joint positions `q`,
+    /// `(7,)` rad.
     fn pose_at<'py>(
         &self,
         py: Python<'py>,
@@ -181,8 +186,9 @@ impl Robot {
         Ok(pose_array(py, &self.connected()?.pose_at(q)))
     }
 
-    /// Brakes whatever moves, and waits until the arm rests and the motion has ended; that one raises
-    /// `MotionError` of the kind `stopped`. Once it has begun, it goes on even if it is cancelled.
+    /// Brakes whatever moves, and waits until the arm rests and the motion has ended; that one
+    /// raises `MotionError` of the kind `stopped`. Once it has begun, it goes on even if it is
+    /// cancelled.
     fn stop(&self) -> PyResult<Operation> {
         let robot = self.connected()?;
         Ok(Operation::new(
@@ -191,8 +197,8 @@ impl Robot {
         ))
     }
 
-    /// Recovers the robot from a reflex, and waits until it takes motions again; without effect if there is
-    /// nothing to recover from. Moves nothing. Raises `CommandError`.
+    /// Recovers the robot from a reflex, and waits until it takes motions again; without effect if
+    /// there is nothing to recover from. Moves nothing. Raises `CommandError`.
     fn recover(&self) -> PyResult<Operation> {
         let robot = self.connected()?;
         Ok(Operation::new("Robot.recover", async move {

@@ -43,7 +43,8 @@ pub(crate) fn started() -> Option<&'static Runtime> {
     runtime().ok()
 }
 
-/// A value with threads behind it. In a forked child, where nothing would answer it, it is not dropped.
+/// A value with threads behind it. In a forked child, where nothing would answer it, it is not
+/// dropped.
 pub(crate) struct Threaded<T>(Option<T>);
 
 impl<T> Threaded<T> {
@@ -76,8 +77,8 @@ impl<T> Drop for Threaded<T> {
 /// a signal handler raises (Ctrl-C), `work` is dropped first: a motion brakes.
 ///
 /// # Errors
-/// `TimeoutError`, what the signal handler raised, and `RuntimeError` on a thread that runs an event
-/// loop.
+/// `TimeoutError`, what the signal handler raised, and `RuntimeError` on a thread that runs an
+/// event loop.
 pub(crate) fn wait<T: Send + 'static>(
     py: Python<'_>,
     work: impl Future<Output = T> + Send + 'static,

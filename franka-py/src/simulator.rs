@@ -34,19 +34,21 @@ pub(crate) struct Sim {
 
 #[pymethods]
 impl Sim {
-    /// Starts a Franka Research 3 in the ready pose, with an arm that sticks, flexes and lags like real ones.
+    /// Starts a Franka Research 3 in the ready pose, with an arm that sticks, flexes and lags like
+    /// real ones.
     ///
-    /// Options: `virtual_time`, whether its next millisecond begins with the command, however long that takes
-    /// up to `patience` seconds (0.5): for tests, and for programs that learn. `patience` alone waits for
-    /// commands that come late, but is never faster than the clock on the wall. `arm`, `ideal`, `nominal`,
-    /// `realistic` or `bad`: a good arm for tests that need exactness, or worse ones; with `arm_seed`, one that
-    /// is drawn at random from such arms; `ideal=True` is `arm="ideal"`. `seed` of all other randomness. `q`,
-    /// joint positions at the start, 7 numbers, rad. `tool`, `hand` or a tuple of its frame on the flange (a
-    /// pose), its mass, kg, and its centre of mass in the flange frame, m: what the robot knows of. `load`, a
-    /// tuple of mass and centre: what it does not know of. `hand` serves a Franka Hand and mounts it,
-    /// `vacuum_gripper` a vacuum gripper, each at an address of its own. `network`, a `Network` between robot
-    /// and clients. `address`, where to listen. `enforce_limits`, whether commands outside the limits end in a
-    /// reflex.
+    /// Options: `virtual_time`, whether its next millisecond begins with the command, however long
+    /// that takes up to `patience` seconds (0.5): for tests, and for programs that learn.
+    /// `patience` alone waits for commands that come late, but is never faster than the clock
+    /// on the wall. `arm`, `ideal`, `nominal`, `realistic` or `bad`: a good arm for tests that
+    /// need exactness, or worse ones; with `arm_seed`, one that is drawn at random from such
+    /// arms; `ideal=True` is `arm="ideal"`. `seed` of all other randomness. `q`,
+    /// joint positions at the start, 7 numbers, rad. `tool`, `hand` or a tuple of its frame on the
+    /// flange (a pose), its mass, kg, and its centre of mass in the flange frame, m: what the
+    /// robot knows of. `load`, a tuple of mass and centre: what it does not know of. `hand`
+    /// serves a Franka Hand and mounts it, `vacuum_gripper` a vacuum gripper, each at an
+    /// address of its own. `network`, a `Network` between robot and clients. `address`, where
+    /// to listen. `enforce_limits`, whether commands outside the limits end in a reflex.
     #[staticmethod]
     #[pyo3(signature = (**options))]
     fn fr3(py: Python<'_>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
@@ -261,7 +263,8 @@ fn arm(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<Arm> {
     })
 }
 
-/// Reads a load: a tuple of mass, kg, and centre of mass in the flange frame, m; or with its inertia.
+/// Reads a load: a tuple of mass, kg, and centre of mass in the flange frame, m; or with its
+/// inertia.
 fn load(load: &Bound<'_, PyAny>) -> PyResult<Load> {
     let (mass, center, inertia) = match load.extract::<(f64, Bound<'_, PyAny>)>() {
         Ok((mass, center)) => (mass, center, None),

@@ -12,9 +12,9 @@ use crate::stream::stream;
 
 #[pymethods]
 impl Robot {
-    /// The newest state as it changes, for `async for` or `for`; at most `rate` of them per second, by the
-    /// robot's clock, if that is given. States that come while the program does something else are skipped
-    /// for the newest. Ends when the connection does.
+    /// The newest state as it changes, for `async for` or `for`; at most `rate` of them per second,
+    /// by the robot's clock, if that is given. States that come while the program does
+    /// something else are skipped for the newest. Ends when the connection does.
     #[pyo3(signature = (rate = None))]
     fn states<'py>(&self, py: Python<'py>, rate: Option<f64>) -> PyResult<Bound<'py, PyAny>> {
         let robot = self.connected()?;
@@ -42,9 +42,9 @@ impl Robot {
         })
     }
 
-    /// Every state from now on, each once and in order, for `async for` or `for`: pairs of the state and how
-    /// many are `missed` before it. A program may lag about a second behind before it misses any. Ends when
-    /// the connection does.
+    /// Every state from now on, each once and in order, for `async for` or `for`: pairs of the
+    /// state and how many are `missed` before it. A program may lag about a second behind
+    /// before it misses any. Ends when the connection does.
     fn state_stream<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let robot = self.connected()?;
         let version = robot.version();
