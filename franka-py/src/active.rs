@@ -23,7 +23,8 @@ use crate::state::RobotState;
 
 /// A motion under active control: from the first `read_once()` on, the thread that calls it is the
 /// control cycle. Each state is to be answered within the millisecond; one that neither reads nor
-/// writes leaves the robot without commands, which stops it. Commands pass no filter and no limiter.
+/// writes leaves the robot without commands, which stops it. Commands pass no filter and no
+/// limiter.
 ///
 /// As a context manager it has the robot stop at the end of the block, unless the last command was
 /// written before. One thread at a time may use it.
@@ -81,8 +82,8 @@ impl Robot {
         self.active(CommandKind::JointVelocities, controller)
     }
 
-    /// Begins control by poses of the end effector in the base frame, `(4, 4)` or 3 + 4 numbers with
-    /// a quaternion `x y z w`; otherwise like `active_joint_positions`.
+    /// Begins control by poses of the end effector in the base frame, `(4, 4)` or 3 + 4 numbers
+    /// with a quaternion `x y z w`; otherwise like `active_joint_positions`.
     #[pyo3(signature = (controller = "joint_impedance"))]
     fn active_cartesian_pose(&self, controller: &str) -> PyResult<Operation> {
         self.active(CommandKind::CartesianPose, controller)
@@ -128,8 +129,8 @@ impl Robot {
 #[pymethods]
 impl ActiveControl {
     /// Waits for the next state of the motion, with the interpreter released. Returns it with the
-    /// robot's time since the state read before, in seconds: 0 at first, and more than 0.001 after a
-    /// loss.
+    /// robot's time since the state read before, in seconds: 0 at first, and more than 0.001 after
+    /// a loss.
     ///
     /// Raises `MotionError` with what ended the motion, and `ActiveError` of the kind `finished`
     /// after the last command.
@@ -149,17 +150,17 @@ impl ActiveControl {
         Ok((RobotState::new(state, self.version), step.as_secs_f64()))
     }
 
-    /// Sends the command that answers the newest state; with `finished` the last one, after which it
-    /// waits, with the interpreter released, until the robot has ended the motion, and returns a
+    /// Sends the command that answers the newest state; with `finished` the last one, after which
+    /// it waits, with the interpreter released, until the robot has ended the motion, and returns a
     /// `MotionReport`.
     ///
     /// `torques`, `(7,)` N m, go beside a command to a motion generator under
     /// `external_controller`. `elbow` goes with poses and twists: position of joint 3 in rad, and
     /// sign of joint 4.
     ///
-    /// Raises `ValueError` for numbers that are not finite or of the wrong shape, `ActiveError` for a
-    /// command that cannot be sent, after which others may be, and `MotionError` if the robot ended
-    /// the motion otherwise than asked.
+    /// Raises `ValueError` for numbers that are not finite or of the wrong shape, `ActiveError` for
+    /// a command that cannot be sent, after which others may be, and `MotionError` if the robot
+    /// ended the motion otherwise than asked.
     #[pyo3(signature = (command, finished = false, *, torques = None, elbow = None))]
     fn write_once(
         &self,

@@ -188,7 +188,8 @@ comparisons! {
     force_z(newtons: f64);
     /// True while the external force, whatever its direction, is at or beyond so many newtons.
     force(newtons: f64);
-    /// True while the external torque at the end effector, whatever its axis, is at or beyond so many N m.
+    /// True while the external torque at the end effector, whatever its axis, is at or beyond so
+    /// many N m.
     torque(newton_metres: f64);
     /// True while the external torque of any joint is at or beyond so many N m.
     joint_torques(newton_metres: f64);

@@ -17,9 +17,9 @@ use crate::stream::stream;
 /// stands in the place of `await`. What is grasped stays grasped when the connection ends.
 ///
 /// One action runs at a time. A newer one aborts it, which then raises `ActionError`, and so does
-/// `stop()`, from any task or thread. Cancelling the task that awaits an action stops the fingers, and so
-/// does a timeout around it. An action has no deadline of its own: a move that an obstacle blocks takes
-/// minutes. None holds the interpreter while it is awaited or waited for.
+/// `stop()`, from any task or thread. Cancelling the task that awaits an action stops the fingers,
+/// and so does a timeout around it. An action has no deadline of its own: a move that an obstacle
+/// blocks takes minutes. None holds the interpreter while it is awaited or waited for.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Gripper(Device<gripper::Gripper>);
 
@@ -33,8 +33,8 @@ device_methods!(Gripper, gripper::Gripper, "Gripper.connect");
 
 #[pymethods]
 impl Robot {
-    /// The Franka Hand of this robot, at its host and the usual port; it is yet to be connected: `async with
-    /// robot.gripper() as gripper:`.
+    /// The Franka Hand of this robot, at its host and the usual port; it is yet to be connected:
+    /// `async with robot.gripper() as gripper:`.
     fn gripper(&self) -> Gripper {
         Gripper::new(self.beside(1338))
     }
@@ -42,8 +42,8 @@ impl Robot {
 
 #[pymethods]
 impl Gripper {
-    /// Describes a connection to the Hand at `address`, `host` or `host:port`; nothing is sent yet. The
-    /// port is 1338 unless given.
+    /// Describes a connection to the Hand at `address`, `host` or `host:port`; nothing is sent yet.
+    /// The port is 1338 unless given.
     #[new]
     fn python_new(address: &str) -> Self {
         Self::new(address)
@@ -61,9 +61,9 @@ impl Gripper {
         })
     }
 
-    /// Finds how wide the fingers open, `max_width` of the state; returns whether that succeeded. Needed
-    /// once after power-on and after a change of fingers. Raises `ActionError`; cancelling stops the
-    /// fingers.
+    /// Finds how wide the fingers open, `max_width` of the state; returns whether that succeeded.
+    /// Needed once after power-on and after a change of fingers. Raises `ActionError`; cancelling
+    /// stops the fingers.
     fn homing(&self) -> PyResult<Operation> {
         let gripper = self.0.connected()?;
         Ok(Operation::new("Gripper.homing", async move {
@@ -83,10 +83,10 @@ impl Gripper {
         }))
     }
 
-    /// Closes the fingers on an object of this `width`, m, at `speed`, m/s, and holds it with `force`, N.
-    /// Returns whether they ended at most `epsilon_inner` narrower and `epsilon_outer` wider, m; the force
-    /// stays applied either way, until the next action or `stop()`. Raises `ActionError`; cancelling stops
-    /// the fingers and lets go.
+    /// Closes the fingers on an object of this `width`, m, at `speed`, m/s, and holds it with
+    /// `force`, N. Returns whether they ended at most `epsilon_inner` narrower and `epsilon_outer`
+    /// wider, m; the force stays applied either way, until the next action or `stop()`. Raises
+    /// `ActionError`; cancelling stops the fingers and lets go.
     #[pyo3(signature = (
         width, speed = 0.1, force = 20.0, epsilon_inner = 0.005, epsilon_outer = 0.005,
     ))]
@@ -111,8 +111,8 @@ impl Gripper {
         }))
     }
 
-    /// Stops the fingers and lets go of what they hold; returns whether that succeeded. The action that
-    /// runs raises `ActionError`. Once it has begun, it goes on even if it is cancelled.
+    /// Stops the fingers and lets go of what they hold; returns whether that succeeded. The action
+    /// that runs raises `ActionError`. Once it has begun, it goes on even if it is cancelled.
     fn stop(&self) -> PyResult<Operation> {
         let gripper = self.0.connected()?;
         Ok(Operation::new("Gripper.stop", async move {

@@ -14,10 +14,10 @@ use crate::robot::Robot;
 
 #[pymethods]
 impl Robot {
-    /// Plans motions that show friction and bias of the joints and the load at the flange: in each of six
-    /// poses around where the arm is, all joints go 0.2 rad to and fro twice, at 0.2 rad/s, about a minute in
-    /// all. Nothing moves before `run()` of the plan is awaited. The arm has to be free to go so far, see
-    /// `reach`, and to carry what it is to be identified with.
+    /// Plans motions that show friction and bias of the joints and the load at the flange: in each
+    /// of six poses around where the arm is, all joints go 0.2 rad to and fro twice, at 0.2 rad/s,
+    /// about a minute in all. Nothing moves before `run()` of the plan is awaited. The arm has to
+    /// be free to go so far, see `reach`, and to carry what it is to be identified with.
     fn identify(&self) -> PyResult<IdentificationPlan> {
         Ok(IdentificationPlan(self.connected()?.identify()))
     }
@@ -29,8 +29,8 @@ pub(crate) struct IdentificationPlan(Identify);
 
 #[pymethods]
 impl IdentificationPlan {
-    /// The joint positions that the arm goes to, `(n, 7)` rad, one row for each motion; the last one is
-    /// where it is now.
+    /// The joint positions that the arm goes to, `(n, 7)` rad, one row for each motion; the last
+    /// one is where it is now.
     #[getter]
     fn waypoints<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         let targets: Vec<[f64; 7]> = self.0.motions().iter().map(|motion| motion.to).collect();
@@ -61,10 +61,10 @@ impl IdentificationPlan {
         self.0.reach().down
     }
 
-    /// Moves the arm, and returns an `Identified`. Nothing is changed at the robot: pass the result to
-    /// `Robot(address, known=...)` of later connections, and declare the load by `set_load` if you like.
-    /// Raises `MotionError`, and `IdentifyError` if the arm is no longer where this was planned, or was held
-    /// or pushed. Cancelling brakes the arm; what was measured is lost.
+    /// Moves the arm, and returns an `Identified`. Nothing is changed at the robot: pass the result
+    /// to `Robot(address, known=...)` of later connections, and declare the load by `set_load` if
+    /// you like. Raises `MotionError`, and `IdentifyError` if the arm is no longer where this was
+    /// planned, or was held or pushed. Cancelling brakes the arm; what was measured is lost.
     fn run(&self) -> Operation {
         let plan = self.0.clone();
         Operation::new("IdentificationPlan.run", async move {
@@ -87,8 +87,8 @@ impl IdentificationPlan {
     }
 }
 
-/// What is known of one arm: friction and bias of its joints, and the load at its flange. `str()` is a table
-/// to read.
+/// What is known of one arm: friction and bias of its joints, and the load at its flange. `str()`
+/// is a table to read.
 #[pyclass(frozen, eq, name = "Identified", module = "franka_async")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct PyIdentified(pub(crate) Identified);
@@ -125,8 +125,8 @@ impl PyIdentified {
         array(py, &self.0.joints.map(|joint| joint.bias.deviation))
     }
 
-    /// Mass of what the flange carries beside the end effector that the robot is configured with, kg. A
-    /// declared load is part of it.
+    /// Mass of what the flange carries beside the end effector that the robot is configured with,
+    /// kg. A declared load is part of it.
     #[getter]
     fn mass(&self) -> f64 {
         self.0.load.mass.value
@@ -138,8 +138,8 @@ impl PyIdentified {
         self.0.load.mass.deviation
     }
 
-    /// Its centre of mass in the flange frame, `(3,)` m; `None` where the mass is less than three of its
-    /// deviations, and the centre therefore unknown.
+    /// Its centre of mass in the flange frame, `(3,)` m; `None` where the mass is less than three
+    /// of its deviations, and the centre therefore unknown.
     #[getter]
     fn center<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         let center: [Estimate; 3] = self.0.load.center()?;

@@ -4,8 +4,8 @@
 //!  any thread: event --> bounded queue --> thread "franka-logging" --> interpreter --> logging
 //! ```
 //!
-//! No thread of the driver waits for the interpreter: where the queue is full, an event is dropped and
-//! counted.
+//! No thread of the driver waits for the interpreter: where the queue is full, an event is dropped
+//! and counted.
 
 use std::fmt;
 use std::sync::OnceLock;
@@ -24,20 +24,21 @@ use tracing_subscriber::registry::LookupSpan;
 
 use crate::exit;
 
-/// Passes what the driver and the simulator report on to Python's `logging` from now on: to loggers below
-/// `franka_async`, such as `franka_async.bridge`, so `logging.getLogger("franka_async").setLevel(...)` and
-/// handlers choose as usual. Off by default: without this call, nothing is passed on.
+/// Passes what the driver and the simulator report on to Python's `logging` from now on: to loggers
+/// below `franka_async`, such as `franka_async.bridge`, so
+/// `logging.getLogger("franka_async").setLevel(...)` and handlers choose as usual. Off by default:
+/// without this call, nothing is passed on.
 ///
-/// Reports below `level` are not even made: `trace`, `debug`, `info`, `warning` or `error`, in any case, or
-/// a number of `logging`; a later call changes it. What an event and the spans around it carry is in the
-/// message and in the record's `fields`, a `dict`; `record.rust_target` is the module. `trace` is the
-/// number 5.
+/// Reports below `level` are not even made: `trace`, `debug`, `info`, `warning` or `error`, in any
+/// case, or a number of `logging`; a later call changes it. What an event and the spans around it
+/// carry is in the message and in the record's `fields`, a `dict`; `record.rust_target` is the
+/// module. `trace` is the number 5.
 ///
-/// A thread of its own hands them on. No motion waits for it: where more than `queue` reports wait, of
-/// the first call, those that come then are dropped; a warning tells their number later.
+/// A thread of its own hands them on. No motion waits for it: where more than `queue` reports wait,
+/// of the first call, those that come then are dropped; a warning tells their number later.
 ///
-/// Raises `ValueError` for another level, and `RuntimeError` if another library in the process has taken
-/// what Rust reports.
+/// Raises `ValueError` for another level, and `RuntimeError` if another library in the process has
+/// taken what Rust reports.
 #[pyfunction]
 #[pyo3(signature = (level = None, *, queue = 4096))]
 pub(crate) fn enable_logging(level: Option<&Bound<'_, PyAny>>, queue: usize) -> PyResult<()> {

@@ -12,17 +12,18 @@ use crate::robot::Robot;
 
 #[pymethods]
 impl Robot {
-    /// Sets the torques and forces at which the robot reports contact (lower) and stops itself (upper).
+    /// Sets the torques and forces at which the robot reports contact (lower) and stops itself
+    /// (upper).
     ///
-    /// Either one of the names `careful` (10 N and 10 N m, for the robot's own controllers), `compliant`
-    /// (60, for an arm that a hand pushes) and `insensitive` (100, for work that presses); or four arrays:
-    /// `lower_torque_thresholds`, `upper_torque_thresholds`, `(7,)` N m, `lower_force_thresholds`,
-    /// `upper_force_thresholds`, `(6,)` N and N m; or eight, each of the four twice:
-    /// `..._acceleration` while the arm accelerates, and `..._nominal`, in the order of
+    /// Either one of the names `careful` (10 N and 10 N m, for the robot's own controllers),
+    /// `compliant` (60, for an arm that a hand pushes) and `insensitive` (100, for work that
+    /// presses); or four arrays: `lower_torque_thresholds`, `upper_torque_thresholds`, `(7,)` N m,
+    /// `lower_force_thresholds`, `upper_force_thresholds`, `(6,)` N and N m; or eight, each of the
+    /// four twice: `..._acceleration` while the arm accelerates, and `..._nominal`, in the order of
     /// `COLLISION_THRESHOLDS`. Positional or by name.
     ///
-    /// Raises `ValueError`, `TypeError` and `CommandError`; a robot that moves refuses it. Once it has
-    /// begun, the robot may carry it out even if it is cancelled.
+    /// Raises `ValueError`, `TypeError` and `CommandError`; a robot that moves refuses it. Once it
+    /// has begun, the robot may carry it out even if it is cancelled.
     #[pyo3(signature = (*thresholds, **named))]
     fn set_collision_behavior(
         &self,
@@ -36,8 +37,8 @@ impl Robot {
         }))
     }
 
-    /// Sets the stiffness of the robot's own joint impedance controller, `(7,)` N m/rad, each 0 to 14250.
-    /// Raises and is cancelled as `set_collision_behavior`.
+    /// Sets the stiffness of the robot's own joint impedance controller, `(7,)` N m/rad, each 0 to
+    /// 14250. Raises and is cancelled as `set_collision_behavior`.
     fn set_joint_impedance(&self, stiffness: &Bound<'_, PyAny>) -> PyResult<Operation> {
         let stiffness = vector("stiffness", stiffness)?;
         let robot = self.connected()?;
@@ -46,9 +47,9 @@ impl Robot {
         }))
     }
 
-    /// Sets the stiffness of the robot's own Cartesian impedance controller in the stiffness frame, `(6,)`:
-    /// x y z, 10 to 3000 N/m, and roll pitch yaw, 1 to 300 N m/rad. Raises and is cancelled as
-    /// `set_collision_behavior`.
+    /// Sets the stiffness of the robot's own Cartesian impedance controller in the stiffness frame,
+    /// `(6,)`: x y z, 10 to 3000 N/m, and roll pitch yaw, 1 to 300 N m/rad. Raises and is cancelled
+    /// as `set_collision_behavior`.
     fn set_cartesian_impedance(&self, stiffness: &Bound<'_, PyAny>) -> PyResult<Operation> {
         let stiffness = vector("stiffness", stiffness)?;
         let robot = self.connected()?;
@@ -58,8 +59,8 @@ impl Robot {
         ))
     }
 
-    /// Sets which directions are free in hand guiding: six truth values, x y z and roll pitch yaw, and
-    /// whether the `elbow` is. Raises and is cancelled as `set_collision_behavior`.
+    /// Sets which directions are free in hand guiding: six truth values, x y z and roll pitch yaw,
+    /// and whether the `elbow` is. Raises and is cancelled as `set_collision_behavior`.
     #[pyo3(signature = (free, elbow = true))]
     fn set_guiding_mode(&self, free: [bool; 6], elbow: bool) -> PyResult<Operation> {
         let robot = self.connected()?;
@@ -90,8 +91,8 @@ impl Robot {
         }))
     }
 
-    /// Declares the load beyond the end effector: `mass`, kg; `center` of mass in the flange frame, `(3,)`
-    /// m; `inertia` about it, `(3, 3)` kg m^2, zero unless given. Raises and is cancelled as
+    /// Declares the load beyond the end effector: `mass`, kg; `center` of mass in the flange frame,
+    /// `(3,)` m; `inertia` about it, `(3, 3)` kg m^2, zero unless given. Raises and is cancelled as
     /// `set_collision_behavior`.
     #[pyo3(signature = (mass, center = None, inertia = None))]
     fn set_load(
@@ -111,9 +112,10 @@ impl Robot {
         }))
     }
 
-    /// Sets the cutoff frequencies of the robot's own low-pass filters, each 1 to 1000 Hz; 1000 switches a
-    /// filter off. Franka Emika Robot only, and deprecated by the vendor. Raises and is cancelled as
-    /// `set_collision_behavior`; `CommandError` of the kind `request` from a robot that has no such command.
+    /// Sets the cutoff frequencies of the robot's own low-pass filters, each 1 to 1000 Hz; 1000
+    /// switches a filter off. Franka Emika Robot only, and deprecated by the vendor. Raises and is
+    /// cancelled as `set_collision_behavior`; `CommandError` of the kind `request` from a robot
+    /// that has no such command.
     #[pyo3(signature = (
         *, joint_position = 1000.0, joint_velocity = 1000.0, cartesian_position = 1000.0,
         cartesian_velocity = 1000.0, controller = 1000.0,
@@ -145,8 +147,9 @@ impl Robot {
         }))
     }
 
-    /// Reads the virtual wall `id` as it is set up in Desk; returns a `VirtualWall`. Franka Emika Robot
-    /// only. Raises `CommandError`, of the kind `request` from a robot that has no such command.
+    /// Reads the virtual wall `id` as it is set up in Desk; returns a `VirtualWall`. Franka Emika
+    /// Robot only. Raises `CommandError`, of the kind `request` from a robot that has no such
+    /// command.
     fn virtual_wall(&self, id: i32) -> PyResult<Operation> {
         let robot = self.connected()?;
         Ok(Operation::new("Robot.virtual_wall", async move {

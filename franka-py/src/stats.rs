@@ -11,17 +11,18 @@ use crate::robot::Robot;
 
 #[pymethods]
 impl Robot {
-    /// Counters and times of the control thread since the connection was made, as a new `dict`; without
-    /// waiting, whatever moves.
+    /// Counters and times of the control thread since the connection was made, as a new `dict`;
+    /// without waiting, whatever moves.
     ///
     /// Counters: `states`, `commands`, `skipped`, `lost`, `stale`, `foreign`, `malformed`,
-    /// `receive_errors`, `send_errors`, `records_lost`, `states_lost`, `reports_lost`. Times, each a `dict`
-    /// of `count`, `min`, `p50`, `p90`, `p99`, `p999` and `max`, s, `None` before the first one; quantiles
-    /// are exact to 1/16: `interval` between two states, `turnaround` from a state to its command, `slack`
-    /// that is left when a command leaves, `overrun` of those that left too late. `worst_cycle` and
-    /// `newest_overrun` are the times of one cycle, or `None`: `time` of the robot's clock, `late`,
-    /// `turnaround`, `slack` (negative for an overrun), `phases` and the `longest` of these. `motion` counts
-    /// over the motion that runs or ran last, or is `None`.
+    /// `receive_errors`, `send_errors`, `records_lost`, `states_lost`, `reports_lost`. Times, each
+    /// a `dict` of `count`, `min`, `p50`, `p90`, `p99`, `p999` and `max`, s, `None` before the
+    /// first one; quantiles are exact to 1/16: `interval` between two states, `turnaround` from a
+    /// state to its command, `slack` that is left when a command leaves, `overrun` of those that
+    /// left too late. `worst_cycle` and `newest_overrun` are the times of one cycle, or `None`:
+    /// `time` of the robot's clock, `late`, `turnaround`, `slack` (negative for an overrun),
+    /// `phases` and the `longest` of these. `motion` counts over the motion that runs or ran last,
+    /// or is `None`.
     fn stats<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let stats = self.connected()?.stats();
         let all = PyDict::new(py);
@@ -69,8 +70,9 @@ impl Robot {
         Ok(all)
     }
 
-    /// What the operating system granted the control thread, as a new `dict`: its `SCHED_FIFO` `priority`
-    /// or `None`, `busy_poll` in s or `None`, and `refusals`, texts, under `realtime="ignore"`.
+    /// What the operating system granted the control thread, as a new `dict`: its `SCHED_FIFO`
+    /// `priority` or `None`, `busy_poll` in s or `None`, and `refusals`, texts, under
+    /// `realtime="ignore"`.
     fn granted<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let granted = self.connected()?.granted();
         let refusals: Vec<String> = granted.refusals.iter().map(ToString::to_string).collect();
@@ -84,8 +86,8 @@ impl Robot {
         Ok(all)
     }
 
-    /// The robot's metrics as OpenMetrics text, for Prometheus and whatever else reads that; the label
-    /// `robot` is its address.
+    /// The robot's metrics as OpenMetrics text, for Prometheus and whatever else reads that; the
+    /// label `robot` is its address.
     fn metrics(&self, py: Python<'_>) -> PyResult<String> {
         let robot = self.connected()?;
         Ok(py.detach(|| robot.metrics()))

@@ -126,8 +126,8 @@ pub(crate) fn _check_policy(policy: &Bound<'_, PyAny>) -> PyResult<()> {
     self::policy(policy).map(drop)
 }
 
-/// Has a robot supervised by `policy`, or `True` for the default one, and `ask` called with the reflex
-/// before each recovery.
+/// Has a robot supervised by `policy`, or `True` for the default one, and `ask` called with the
+/// reflex before each recovery.
 ///
 /// # Errors
 /// As [`policy`]; `ValueError` for a function without a policy.
@@ -169,15 +169,16 @@ pub(crate) fn supervise_by(
 #[pymethods]
 impl Robot {
     /// What happens to the robot from now on, for `async for`: connections lost and made, reflexes,
-    /// recoveries, user stop, guiding, brakes, motions, loads; see `Event`. It is there for a robot that is
-    /// not supervised, too. Ends when there is no connection and will be none.
+    /// recoveries, user stop, guiding, brakes, motions, loads; see `Event`. It is there for a robot
+    /// that is not supervised, too. Ends when there is no connection and will be none.
     fn events<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         stream(py, self.connected()?.events(), |py, notification| {
             Ok(event(py, notification)?.unbind())
         })
     }
 
-    /// How the robot is now: whether it takes motions, why not, how often it was reconnected and recovered.
+    /// How the robot is now: whether it takes motions, why not, how often it was reconnected and
+    /// recovered.
     fn health<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         health(py, self.connected()?.health().newest())
     }
@@ -191,8 +192,9 @@ impl Robot {
         })
     }
 
-    /// Agrees, or not, to the recovery from the reflex of this number: for a `Policy` that asks first.
-    /// Returns whether that was awaited. The number is that of the event or of `health().reflex`.
+    /// Agrees, or not, to the recovery from the reflex of this number: for a `Policy` that asks
+    /// first. Returns whether that was awaited. The number is that of the event or of
+    /// `health().reflex`.
     #[pyo3(signature = (reflex, yes = true))]
     fn agree(&self, reflex: u64, yes: bool) -> PyResult<bool> {
         Ok(self.connected()?.agree(reflex, yes))

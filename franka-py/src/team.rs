@@ -43,14 +43,14 @@ macro_rules! with_team {
 
 type Outcomes = Pin<Box<dyn Future<Output = Vec<Outcome>> + Send>>;
 
-/// Two to four arms as one: `async with await Team.engage(left, right) as team:`. Their motions begin within a
-/// millisecond of each other, and the fault of one brakes the others within two cycles of their control
-/// threads, whatever Python is busy with.
+/// Two to four arms as one: `async with await Team.engage(left, right) as team:`. Their motions
+/// begin within a millisecond of each other, and the fault of one brakes the others within two
+/// cycles of their control threads, whatever Python is busy with.
 ///
-/// A joint motion returns a list of one `MotionReport` for each arm. If one of them has not arrived, it
-/// raises `TeamError` with `outcomes`, one for each arm, of which the error of the arm at fault is the cause.
-/// Cancelling a joint motion brakes all arms. When the last reference to the team and its arms goes, all brake
-/// and their sessions end.
+/// A joint motion returns a list of one `MotionReport` for each arm. If one of them has not
+/// arrived, it raises `TeamError` with `outcomes`, one for each arm, of which the error of the arm
+/// at fault is the cause. Cancelling a joint motion brakes all arms. When the last reference to the
+/// team and its arms goes, all brake and their sessions end.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Team {
     members: Threaded<Arc<Members>>,
@@ -59,10 +59,10 @@ pub(crate) struct Team {
 
 #[pymethods]
 impl Team {
-    /// Begins a session for each robot, as `Robot.engage` does, with the same options for all: `speed`,
-    /// `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture`; returns a `Team`. A robot that is
-    /// silent for `silence` seconds brakes the others. Raises `MotionError` of the first arm that is not
-    /// engaged; the others are then let go. Cancelling ends all sessions.
+    /// Begins a session for each robot, as `Robot.engage` does, with the same options for all:
+    /// `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture`; returns a `Team`.
+    /// A robot that is silent for `silence` seconds brakes the others. Raises `MotionError` of the
+    /// first arm that is not engaged; the others are then let go. Cancelling ends all sessions.
     #[staticmethod]
     #[pyo3(signature = (*robots, silence = SILENCE.as_secs_f64(), **options))]
     fn engage(
@@ -100,7 +100,8 @@ impl Team {
         self.arms.iter().map(|arm| arm.clone_ref(py)).collect()
     }
 
-    /// A motion of all arms, each to its target, which `Arm.move_to` takes; with the same options for all.
+    /// A motion of all arms, each to its target, which `Arm.move_to` takes; with the same options
+    /// for all.
     #[pyo3(signature = (targets, **options))]
     fn move_to(
         &self,
@@ -120,8 +121,9 @@ impl Team {
         Ok(self.joint("Team.move_to", motions))
     }
 
-    /// A motion of all arms: `motions` are one of each arm, in their order, `[team.arms[0].move_to(a),
-    /// team.arms[1].move_by(b)]`, which are then not to be awaited themselves. All begin together.
+    /// A motion of all arms: `motions` are one of each arm, in their order,
+    /// `[team.arms[0].move_to(a), team.arms[1].move_by(b)]`, which are then not to be awaited
+    /// themselves. All begin together.
     fn run(&self, motions: Vec<Bound<'_, Motion>>) -> PyResult<Operation> {
         self.check_count("motions", motions.len())?;
         for (member, (arm, motion)) in self.arms.iter().zip(&motions).enumerate() {
@@ -136,14 +138,14 @@ impl Team {
         Ok(self.joint("Team.run", motions))
     }
 
-    /// Brakes all arms, each within two of its cycles. Never waits, fit for any thread. Motions raise, the
-    /// sessions go on and hold the arms.
+    /// Brakes all arms, each within two of its cycles. Never waits, fit for any thread. Motions
+    /// raise, the sessions go on and hold the arms.
     fn stop(&self) {
         with_team!(&**self.members, team => team.stop());
     }
 
-    /// Why the newest joint motion, or what came after it, has stopped: `requested`, or the name of what
-    /// happened with the number of the arm, `("robot_stopped", 1)`; `None` if nothing has.
+    /// Why the newest joint motion, or what came after it, has stopped: `requested`, or the name of
+    /// what happened with the number of the arm, `("robot_stopped", 1)`; `None` if nothing has.
     fn stopped<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let stopped = with_team!(&**self.members, team => team.stopped());
         Ok(match stopped {
@@ -155,9 +157,9 @@ impl Team {
         })
     }
 
-    /// Takes an object as held by all arms from now on, where it is: `bases` are the robots' base frames and
-    /// `object` is the object's, poses in one frame of the program's choice. Nothing moves. Raises
-    /// `MotionError` if a session has ended.
+    /// Takes an object as held by all arms from now on, where it is: `bases` are the robots' base
+    /// frames and `object` is the object's, poses in one frame of the program's choice. Nothing
+    /// moves. Raises `MotionError` if a session has ended.
     fn grasp(
         this: &Bound<'_, Self>,
         bases: Vec<Bound<'_, PyAny>>,
@@ -177,7 +179,8 @@ impl Team {
         })
     }
 
-    /// Brakes all arms, lets them go and ends their sessions. Raises `TeamError` if one ended otherwise.
+    /// Brakes all arms, lets them go and ends their sessions. Raises `TeamError` if one ended
+    /// otherwise.
     fn disengage(&self) -> PyResult<Operation> {
         let arms: PyResult<Vec<_>> = self.arms.iter().map(|arm| arm.get().session()).collect();
         let ending = arms?.into_iter().map(franka_async::Arm::disengage);
@@ -253,8 +256,9 @@ pub(crate) struct TeamGrasp {
 
 #[pymethods]
 impl TeamGrasp {
-    /// A motion of the object to this pose, in the frame of the bases, on a straight line; with options of
-    /// `Arm.move_to` other than `limits`, the same for all arms. An arm that is held back holds up the others.
+    /// A motion of the object to this pose, in the frame of the bases, on a straight line; with
+    /// options of `Arm.move_to` other than `limits`, the same for all arms. An arm that is held
+    /// back holds up the others.
     #[pyo3(signature = (object, **options))]
     fn move_to(
         &self,
@@ -287,7 +291,8 @@ impl TeamGrasp {
         }))
     }
 
-    /// Where the object is by the newest state of each arm, in the frame of the bases: a list of `(4, 4)`.
+    /// Where the object is by the newest state of each arm, in the frame of the bases: a list of
+    /// `(4, 4)`.
     fn measured<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let measured: Vec<Pose> = with_team!(&**self.team.get().members, team => {
             team.grasp_at(sized(&self.bases), sized(&self.hands)).measured().into()

@@ -13,7 +13,8 @@ use crate::robot::Robot;
 use crate::stream::stream;
 
 /// A vacuum gripper, which has a connection of its own beside the robot's. What `Gripper` says of
-/// connecting, of actions and of their ends holds for it as well; cancelling an action stops the pump.
+/// connecting, of actions and of their ends holds for it as well; cancelling an action stops the
+/// pump.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct VacuumGripper(Device<vacuum::VacuumGripper>);
 
@@ -31,8 +32,8 @@ device_methods!(
 
 #[pymethods]
 impl Robot {
-    /// The vacuum gripper of this robot, at its host and the usual port; it is yet to be connected, as
-    /// `gripper()`.
+    /// The vacuum gripper of this robot, at its host and the usual port; it is yet to be connected,
+    /// as `gripper()`.
     fn vacuum_gripper(&self) -> VacuumGripper {
         VacuumGripper::new(self.beside(1339))
     }
@@ -40,8 +41,8 @@ impl Robot {
 
 #[pymethods]
 impl VacuumGripper {
-    /// Describes a connection to the gripper at `address`, `host` or `host:port`; nothing is sent yet. The
-    /// port is 1339 unless given.
+    /// Describes a connection to the gripper at `address`, `host` or `host:port`; nothing is sent
+    /// yet. The port is 1339 unless given.
     #[new]
     fn python_new(address: &str) -> Self {
         Self::new(address)
@@ -59,9 +60,10 @@ impl VacuumGripper {
         })
     }
 
-    /// Sucks an object on and holds it; returns whether the vacuum was reached within `timeout` seconds,
-    /// which go out in whole milliseconds. `vacuum` is in units of 10 mbar, 0 to 255; `profile` is a
-    /// production set-up profile of the device, 0 to 3. Raises `ActionError`; cancelling stops the pump.
+    /// Sucks an object on and holds it; returns whether the vacuum was reached within `timeout`
+    /// seconds, which go out in whole milliseconds. `vacuum` is in units of 10 mbar, 0 to 255;
+    /// `profile` is a production set-up profile of the device, 0 to 3. Raises `ActionError`;
+    /// cancelling stops the pump.
     #[pyo3(signature = (vacuum, timeout, profile = 0))]
     fn vacuum(&self, vacuum: u8, timeout: f64, profile: u8) -> PyResult<Operation> {
         let profile = Profile::from_byte(profile)
@@ -78,8 +80,8 @@ impl VacuumGripper {
         }))
     }
 
-    /// Drops the object; returns whether that was done within `timeout` seconds. Raises `ActionError`;
-    /// cancelling stops the pump.
+    /// Drops the object; returns whether that was done within `timeout` seconds. Raises
+    /// `ActionError`; cancelling stops the pump.
     fn drop_off(&self, timeout: f64) -> PyResult<Operation> {
         let timeout = seconds(timeout)?;
         let gripper = self.0.connected()?;
@@ -88,8 +90,8 @@ impl VacuumGripper {
         }))
     }
 
-    /// Stops the action that runs, which raises `ActionError`; returns whether that succeeded. Once it has
-    /// begun, it goes on even if it is cancelled.
+    /// Stops the action that runs, which raises `ActionError`; returns whether that succeeded. Once
+    /// it has begun, it goes on even if it is cancelled.
     fn stop(&self) -> PyResult<Operation> {
         let gripper = self.0.connected()?;
         Ok(Operation::new("VacuumGripper.stop", async move {
@@ -123,8 +125,8 @@ impl VacuumGripperState {
         self.0.part_present
     }
 
-    /// The status light: `green`, `yellow` (warnings), `orange` (severe ones), `red` (does not work) or
-    /// `unknown`.
+    /// The status light: `green`, `yellow` (warnings), `orange` (severe ones), `red` (does not
+    /// work) or `unknown`.
     #[getter]
     fn device_status(&self) -> String {
         variant(&self.0.device_status)

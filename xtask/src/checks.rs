@@ -143,8 +143,8 @@ fn test(workspace: &Workspace) -> anyhow::Result<Outcome> {
     })
 }
 
-/// Builds what the next three steps use. One after the other, each build would leave processors idle.
-/// A step says itself what it lacks on this machine.
+/// Builds what the next three steps use. One after the other, each build would leave processors
+/// idle. A step says itself what it lacks on this machine.
 fn builds(workspace: &Workspace) -> anyhow::Result<()> {
     thread::scope(|scope| {
         let builds = [

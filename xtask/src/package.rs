@@ -1,5 +1,5 @@
-//! The Python package: builds its wheel, installs it into a virtual environment of its own, and runs
-//! its tests and the checks of its types.
+//! The Python package: builds its wheel, installs it into a virtual environment of its own, and
+//! runs its tests and the checks of its types.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -52,8 +52,9 @@ impl<const N: usize> Team<N> {
         Ok(self.grasp_at(bases, hands))
     }
 
-    /// Takes an object as held by all arms, each of whose end effectors has it at this pose in its own
-    /// frame: of an earlier [`Grasp::hands`], or one that is known from elsewhere. Nothing moves.
+    /// Takes an object as held by all arms, each of whose end effectors has it at this pose in its
+    /// own frame: of an earlier [`Grasp::hands`], or one that is known from elsewhere. Nothing
+    /// moves.
     pub fn grasp_at(&self, bases: [Pose; N], hands: [Pose; N]) -> Grasp<'_, N> {
         let team = self;
         Grasp { team, bases, hands }

@@ -14,8 +14,8 @@ use franka_async::model::{EndEffector, GRAVITY_EARTH, JointVector, Load, Model};
 use franka_async::nalgebra::{Matrix3, Matrix4, SMatrix};
 use franka_async::state::RobotState;
 
-/// The version of [`Cycle`] and [`Function`]: incremented when a field changes its place or meaning.
-/// Fields that are added at the end change `Cycle::size` alone.
+/// The version of [`Cycle`] and [`Function`]: incremented when a field changes its place or
+/// meaning. Fields that are added at the end change `Cycle::size` alone.
 pub(crate) const VERSION: u32 = 1;
 
 /// The most numbers in parameters and in memory.
@@ -43,8 +43,8 @@ impl Code {
     /// The function at `address`, which lives as long as `owner`. `None` for the null pointer.
     ///
     /// # Safety
-    /// At `address` is a [`Function`] that reads and writes no more than the lengths in [`Cycle`] and
-    /// of the output allow, and that any thread may call.
+    /// At `address` is a [`Function`] that reads and writes no more than the lengths in [`Cycle`]
+    /// and of the output allow, and that any thread may call.
     pub(crate) unsafe fn new(address: usize, owner: Box<dyn Any + Send + Sync>) -> Option<Self> {
         // SAFETY: a pointer and an optional function pointer have the same representation, null is
         // `None`; the caller vouches for the rest.
@@ -88,8 +88,8 @@ pub(crate) type Place = (&'static str, usize, Vec<usize>, &'static str);
 
 macro_rules! cycle {
     ($($name:ident: $type:ty,)*) => {
-        /// What a law gets in a cycle. Matrices are row by row, poses with the translation in the last
-        /// column. Documented in `include/franka_async_law.h`, which has the same fields.
+        /// What a law gets in a cycle. Matrices are row by row, poses with the translation in the
+        /// last column. Documented in `include/franka_async_law.h`, which has the same fields.
         #[repr(C)]
         #[derive(Clone, Default)]
         #[allow(non_snake_case)]
@@ -258,8 +258,8 @@ impl Running {
         }
     }
 
-    /// Calls the law. Returns its output and what it returned; numbers of the output that it did not
-    /// write are NaN, which no robot is sent.
+    /// Calls the law. Returns its output and what it returned; numbers of the output that it did
+    /// not write are NaN, which no robot is sent.
     pub(crate) fn call(&mut self, state: &RobotState, step: Duration) -> (Output, i32) {
         // A torn read keeps the parameters of the cycle before.
         if let Read::Newer(parameters) = self.arriving.read_newer() {

@@ -34,11 +34,11 @@ use function::{Code, MOST, Numbers, Output, Running, Setup};
 /// `code` is a `numba.cfunc`, what `franka_async.laws.compiled` makes, a function of a library that
 /// `ctypes` or `cffi` has loaded, or an address as an integer, whose code the program then has to
 /// keep. `command` is what the law's output is: `torques`, `joint_positions`, `joint_velocities`,
-/// `cartesian_pose` or `cartesian_velocities`. `parameters` and `memory`, `(n,)` with 256 numbers at
-/// most, are what the law finds in its first cycle.
+/// `cartesian_pose` or `cartesian_velocities`. `parameters` and `memory`, `(n,)` with 256 numbers
+/// at most, are what the law finds in its first cycle.
 ///
-/// The function runs on the real-time thread, with some 300 us to answer: it must not lock, allocate,
-/// print or wait, and nothing guards against code that writes where it should not.
+/// The function runs on the real-time thread, with some 300 us to answer: it must not lock,
+/// allocate, print or wait, and nothing guards against code that writes where it should not.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Law {
     code: Arc<Code>,
@@ -119,8 +119,8 @@ impl Law {
         Ok(())
     }
 
-    /// The memory after the newest cycle of the newest run, `(n,)`; before the first one, what the law
-    /// was made with.
+    /// The memory after the newest cycle of the newest run, `(n,)`; before the first one, what the
+    /// law was made with.
     #[getter]
     fn memory<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let mut remembered = lock(&self.remembered);
@@ -132,9 +132,9 @@ impl Law {
     }
 
     /// Calls the law once, with `state` and `dt` seconds after the state before, without a robot.
-    /// Returns its output, `(7,)`, `(4, 4)` or `(6,)`, and what it returned. Numbers that it did not
-    /// write are NaN. Time and memory go on from call to call; `reset()` begins anew. Model terms are
-    /// those of the vendor's constants for the kind of robot that the state is from.
+    /// Returns its output, `(7,)`, `(4, 4)` or `(6,)`, and what it returned. Numbers that it did
+    /// not write are NaN. Time and memory go on from call to call; `reset()` begins anew. Model
+    /// terms are those of the vendor's constants for the kind of robot that the state is from.
     #[pyo3(signature = (state, dt = 0.001))]
     fn step<'py>(
         &self,
@@ -218,13 +218,13 @@ impl Law {
 #[pymethods]
 impl Robot {
     /// Control by a law that needs no interpreter in the cycle, a `Law`, or code that one is made
-    /// of with `command`, `parameters` and `memory`. Resolves with a `MotionReport` when the law has
-    /// returned a positive number and the robot has ended the motion.
+    /// of with `command`, `parameters` and `memory`. Resolves with a `MotionReport` when the law
+    /// has returned a positive number and the robot has ended the motion.
     ///
     /// `controller` is which of the robot's own controllers follows, where no torques are
     /// commanded. `limit_rate` is whether commands pass the limiter: by default on a Franka Emika
-    /// Robot and not on a Franka Research 3, as with the vendor's library. `cutoff_frequency` is that
-    /// of the low-pass filter, Hz; 1000 switches it off.
+    /// Robot and not on a Franka Research 3, as with the vendor's library. `cutoff_frequency` is
+    /// that of the low-pass filter, Hz; 1000 switches it off.
     ///
     /// Raises `MotionError` of the kind `given_up` if the law returned a negative number, which is
     /// its `code`, of the kind `invalid` for output that is not finite, and `busy` while anything
@@ -276,8 +276,8 @@ impl Robot {
     }
 }
 
-/// Where each field of what a law gets is: name, offset in bytes, shape, numpy format; and the size of
-/// it all.
+/// Where each field of what a law gets is: name, offset in bytes, shape, numpy format; and the size
+/// of it all.
 #[pyfunction]
 pub(crate) fn _law_layout() -> (Vec<function::Place>, usize) {
     (function::layout(), size_of::<function::Cycle>())

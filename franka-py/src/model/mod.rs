@@ -31,8 +31,8 @@ use arguments::{end_effector, frame};
 
 #[pymethods]
 impl Robot {
-    /// The model of the connected arm, which control computes with: of a Franka Research 3 its description
-    /// of itself, of a Franka Emika Robot the constants of its own library.
+    /// The model of the connected arm, which control computes with: of a Franka Research 3 its
+    /// description of itself, of a Franka Emika Robot the constants of its own library.
     fn model(&self) -> PyResult<Model> {
         Ok(Model::of(self.connected()?.model()))
     }

@@ -32,9 +32,9 @@ use table::Table;
 
 #[pymethods]
 impl Robot {
-    /// Records these columns of every cycle, of `record_columns()`, while a `with` or `async with` block
-    /// runs: see `Recording`. It keeps the first `longest` seconds. Raises `ValueError` for a column that is
-    /// not known.
+    /// Records these columns of every cycle, of `record_columns()`, while a `with` or `async with`
+    /// block runs: see `Recording`. It keeps the first `longest` seconds. Raises `ValueError` for a
+    /// column that is not known.
     #[pyo3(signature = (columns, *, longest = 3600.0))]
     fn record(&self, columns: Vec<String>, longest: f64) -> PyResult<Recording> {
         let mut chosen = Vec::with_capacity(columns.len());
@@ -70,12 +70,13 @@ pub(crate) fn record_columns(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(all)
 }
 
-/// Columns of every cycle: `with robot.record(["q", "tau_c"]) as recording:` begins, the end of the block
-/// ends it, and `recording["q"]` is an array of one row for each cycle, `recording["time"]` its time, s.
+/// Columns of every cycle: `with robot.record(["q", "tau_c"]) as recording:` begins, the end of the
+/// block ends it, and `recording["q"]` is an array of one row for each cycle, `recording["time"]`
+/// its time, s.
 ///
-/// It is collected beside the interpreter: however long Python is busy, nothing is lost by that. The columns
-/// of a state and those of the control thread that belong to the same cycle are in the same row. Reading it
-/// is possible while it goes on.
+/// It is collected beside the interpreter: however long Python is busy, nothing is lost by that.
+/// The columns of a state and those of the control thread that belong to the same cycle are in the
+/// same row. Reading it is possible while it goes on.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Recording {
     /// Until it has ended: a recording that is read does not keep the connection.
@@ -151,8 +152,8 @@ impl Recording {
         Ok(self.begun()?.cut(py).len())
     }
 
-    /// How many cycles of the robot since the begin are missing: their states did not arrive, were skipped
-    /// by the control thread for a newer one, or came after the longest time.
+    /// How many cycles of the robot since the begin are missing: their states did not arrive, were
+    /// skipped by the control thread for a newer one, or came after the longest time.
     #[getter]
     fn lost(&self, py: Python<'_>) -> PyResult<u64> {
         let begun = self.begun()?;
@@ -311,8 +312,8 @@ impl Shared {
         self.tables.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits until the tables have all that belongs to a recording that is over. Of a robot that sends
-    /// nothing any more, what there is has to do.
+    /// Waits until the tables have all that belongs to a recording that is over. Of a robot that
+    /// sends nothing any more, what there is has to do.
     fn wait(&self, py: Python<'_>) {
         py.detach(|| {
             let is_incomplete =
@@ -330,7 +331,8 @@ impl Tables {
         &mut self.0[source as usize]
     }
 
-    /// Rows of each table up to `last` that belong to the same cycles, of all tables that are in use.
+    /// Rows of each table up to `last` that belong to the same cycles, of all tables that are in
+    /// use.
     fn rows(&self, last: u64) -> [Vec<usize>; 2] {
         let [states, cycles] = &self.0;
         let until = |table: &Table| table.times.partition_point(|time| *time <= last);
@@ -421,6 +423,6 @@ impl Cut<'_> {
     }
 }
 
-/// How long a recording that is over waits for its last cycles, where it is read: the control thread hands
-/// them on within 50 ms.
+/// How long a recording that is over waits for its last cycles, where it is read: the control
+/// thread hands them on within 50 ms.
 const PATIENCE: Duration = Duration::from_secs(2);
