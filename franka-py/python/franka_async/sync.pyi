@@ -11,7 +11,7 @@ from .options import EngageOptions, FollowOptions, MotionOptions, TuneOptions
 from .settings import VirtualWall
 from .streams import Reading, Stream
 from .supervision import CloseReason, Event, Health, Policy, Reflex
-from ._native import ActiveControl, AsynchronousControl, GripperState, Identified, Latest, Recording, RobotState, VacuumGripperState
+from ._native import ActiveControl, AsynchronousControl, GripperState, Identified, Latest, Model, Recording, RobotState, VacuumGripperState
 
 __all__ = ['Arm', 'Gripper', 'IdentificationPlan', 'Robot', 'VacuumGripper']
 
@@ -311,6 +311,9 @@ class Robot:
         ...
 
     def run_law(self, law: Any, *, command: str | None=None, parameters: ArrayLike | None=None, memory: ArrayLike | None=None, controller: Controller='joint_impedance', limit_rate: bool | None=None, cutoff_frequency: float | None=None) -> MotionReport:
+        ...
+
+    def model(self) -> Model:
         ...
 
 @final
