@@ -55,7 +55,7 @@ mod virtual_robots;
 
 use pyo3::prelude::*;
 
-#[pymodule]
+#[pymodule(gil_used = true)]
 mod _native {
     use super::*;
 

@@ -1,0 +1,56 @@
+"""The programs of the book's chapter on Python, run as a reader would run them."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import begun, connection
+
+from franka_async import Robot, Sim
+
+CHAPTER = Path(__file__).parents[2] / "docs" / "src" / "python.md"
+
+
+@pytest.fixture(scope="module")
+def chapter() -> dict[str, Any]:
+    """What the programs of the chapter define, after all of them have run."""
+    programs = re.findall(r"^```python\n(.*?)^```", CHAPTER.read_text(), re.MULTILINE | re.DOTALL)
+    names: dict[str, Any] = {}
+    for program in programs:
+        # On a machine that is busy commands and targets come late: they are waited for.
+        program = program.replace("Sim.fr3()", "Sim.fr3(patience=0.25)")
+        exec(program.replace("watchdog=(0.5, ", "watchdog=(60.0, "), names)
+    return names
+
+
+@pytest.mark.parametrize("name", ["careful", "touch", "follow_policy"])
+def test_the_functions_of_the_chapter_run(chapter: dict[str, Any], live: Sim, name: str) -> None:
+    function: Callable[[Robot], Awaitable[None]] = chapter[name]
+
+    async def main() -> None:
+        async with connection(live) as robot:
+            await function(robot)
+
+    asyncio.run(main())
+
+
+def test_a_reflex_is_explained_and_recovered_from(
+    chapter: dict[str, Any], sim: Sim, capsys: pytest.CaptureFixture[str]
+) -> None:
+    async def main() -> None:
+        async with connection(sim) as robot:
+            target = robot.pose()
+            target[2, 3] += 0.05
+            explained = asyncio.create_task(chapter["move_or_explain"](robot, target))
+            await begun(robot)
+            sim.trip("cartesian_reflex")
+            await explained
+            await robot.move_to(target)
+
+    asyncio.run(main())
+    assert "cartesian_reflex" in capsys.readouterr().out
