@@ -398,7 +398,7 @@ fn random_paths_are_gone_to_their_end_or_refused_before_anything_moves() {
     for (name, mut lockstep) in robots() {
         let mut random = SmallRng::seed_from_u64(seed);
         let down = UnitQuaternion::from_euler_angles(std::f64::consts::PI, 0.0, 0.0);
-        let (mut arrived, mut refused, mut blocked) = (0, 0, 0);
+        let (mut arrived, mut refused, mut blocked, mut reflexes) = (0, 0, 0, 0);
         for case in 0..cases {
             let mut vector = || Vector3::from_fn(|_, _| random.random_range(-1.0..1.0_f64));
             let poses: Vec<_> = (0..3)
@@ -416,6 +416,14 @@ fn random_paths_are_gone_to_their_end_or_refused_before_anything_moves() {
                     Ok(_) => arrived += 1,
                     // The way leads too near to the arm itself.
                     Err(MotionError::Braked(Lapse::Blocked)) => blocked += 1,
+                    // Near a singular posture joints move at thrice their budget, which the robot
+                    // may take for a contact of an arm that sticks.
+                    Err(MotionError::Control(error)) if error.is_reflex() => {
+                        println!("{case}: {error}");
+                        reflexes += 1;
+                        lockstep.request(&Request::AutomaticErrorRecovery);
+                        lockstep.run(500);
+                    }
                     Err(error) => panic!("{case}: {error}"),
                 },
                 Err(MotionError::Path(PathError::Way { .. } | PathError::Waypoint { .. })) => {
@@ -427,7 +435,15 @@ fn random_paths_are_gone_to_their_end_or_refused_before_anything_moves() {
                 Err(error) => panic!("{case}: {error}"),
             }
         }
-        println!("{name}: {arrived} arrived, {refused} refused, {blocked} blocked");
+        println!(
+            "{name}: {arrived} arrived, {refused} refused, {blocked} blocked, {reflexes} reflexes"
+        );
+        let most = if name.ends_with("ideal") {
+            0
+        } else {
+            cases / 20
+        };
+        assert!(reflexes <= most, "{name}: {reflexes} reflexes");
         assert!(arrived > cases / 4 && blocked <= cases / 10, "{name}");
     }
 }
