@@ -232,7 +232,8 @@ impl MotionHandle {
         self.0.set_paused(false);
     }
 
-    /// How far the motion has come; `None` before it has begun and after its end.
+    /// How far the motion has come; `None` before it has begun, after its end, and for a moment
+    /// where the host holds up the control thread while it tells.
     pub fn progress(&self) -> Option<Progress> {
         self.0.robot().link().course.progress(self.0.id())
     }
