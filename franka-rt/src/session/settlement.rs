@@ -58,18 +58,18 @@ pub enum Settlement {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Lapse {
-    /// Its targets stopped coming: see [`Watchdog`].
+    /// Its targets stopped coming: see [`Watchdog`](super::Watchdog).
     Silent {
         /// For how long none had come, by the robot's clock.
         silence: Duration,
     },
-    /// The [`Deadman`] that the session is bound to fell silent, or was dropped.
+    /// The [`Deadman`](super::Deadman) that the session is bound to fell silent, or was dropped.
     Deadman,
     /// Something pushed the arm further from its path than it may swing back by itself:
-    /// [`Deviation`].
+    /// [`Deviation`](super::Deviation).
     Displaced,
-    /// The way leads too near to the arm itself, or to a region to keep out of: see [`SELF_STOP`]
-    /// and [`KEEP_OUT_STOP`].
+    /// The way leads too near to the arm itself, or to a region to keep out of: see
+    /// [`SELF_STOP`](super::SELF_STOP) and [`KEEP_OUT_STOP`](super::KEEP_OUT_STOP).
     Blocked,
     /// The team that it is a member of has stopped.
     Team(TeamStop),
