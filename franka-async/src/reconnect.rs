@@ -188,7 +188,7 @@ impl Reconnector {
         self.supervisor.on_recovery(reflex, answer);
     }
 
-    /// Asks the function of the program, which may take its time. Without one, somebody calls
+    /// Asks the function of the program, which may take its time. Without one, the answer comes by
     /// [`Robot::agree`].
     fn ask(&mut self, reflex: Reflex) {
         let Some(ask) = self.builder.ask.clone() else {

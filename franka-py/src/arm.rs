@@ -56,7 +56,7 @@ impl Arm {
         begun: franka_async::Motion,
     ) -> PyResult<Py<Motion>> {
         let motion = motion(py, name, self.arm.robot(), options, begun)?;
-        // Just made: nobody else has set it.
+        // The motion is new, so its session is not set yet.
         let _ = motion.get().arm.set(self.id);
         Ok(motion)
     }

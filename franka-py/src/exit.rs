@@ -34,7 +34,7 @@ pub(crate) fn cancellation() -> CancellationToken {
 
 /// Has the exit of the interpreter wait for this robot. Called on the runtime.
 pub(crate) fn wait_for(robot: &Robot) {
-    // No handle: a robot that nobody holds any more closes.
+    // The task holds no handle, so that a robot without handles closes.
     let mut health = robot.health();
     LIVE.robots
         .spawn(async move { while health.changed().await.is_ok() {} });
@@ -75,7 +75,7 @@ fn shut_down(py: Python<'_>) {
             });
         };
         within("a robot", BRAKED, Box::pin(LIVE.robots.wait()));
-        // Whoever has the interpreter now gives it back first.
+        // Waits until no thread of this module holds the interpreter.
         let closed = runtime.spawn_blocking(|| {
             let is_open = LIVE.interpreter.write();
             *is_open.unwrap_or_else(PoisonError::into_inner) = false;

@@ -19,7 +19,7 @@ use crate::operation::Operation;
 use crate::options::{Bounds, Keywords, Options, watchdog, with_options};
 
 /// The newest target of a program: `set` it from any thread, at any rate, and `follow` it. When it
-/// is closed, or nobody holds it any more, the motion ends at the target that was set last.
+/// is closed or its last reference is dropped, the motion ends at the target that was set last.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Latest(Mutex<Option<watch::Sender<Option<Target>>>>);
 
@@ -180,7 +180,7 @@ fn stepped(
             Ok(Some((target, iterator))) => Some((target, (iterator, failed))),
             Ok(None) => None,
             Err(error) => {
-                // Fails if nobody follows any more.
+                // Fails if the motion has ended.
                 let _ = failed.send(error);
                 future::pending().await
             }

@@ -190,7 +190,10 @@ impl Model {
         Ok(found.iter().flat_map(|found| found.q.data.0[0]).collect())
     }
 
-    /// `found` unless it is one posture that is none: then why.
+    /// Returns `found`.
+    ///
+    /// # Errors
+    /// Why there is no posture, if a single pose was asked for and has none.
     fn within_reach<'py>(
         &self,
         count: Option<usize>,
