@@ -1,0 +1,2 @@
+//! Flight recorder for Franka robots: every cycle in an MCAP file, every reflex explained, every
+//! session replayed.
