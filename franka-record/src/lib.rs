@@ -1,2 +1,7 @@
 //! Flight recorder for Franka robots: every cycle in an MCAP file, every reflex explained, every
 //! session replayed.
+
+pub mod export;
+mod sample;
+
+pub use sample::Sample;

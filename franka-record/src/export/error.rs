@@ -1,0 +1,69 @@
+//! Why an export fails.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why nothing, or not everything, was exported.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// A file or folder cannot be read or written.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The rows cannot be written or read as a table.
+    #[cfg(feature = "export")]
+    #[error("{}: {source}", path.display())]
+    Table {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: ::parquet::errors::ParquetError,
+    },
+    /// No column has this name.
+    #[error("got the column {got:?}, expected some of {known}")]
+    Column {
+        /// The name given.
+        got: String,
+        /// The names that there are.
+        known: String,
+    },
+    /// The samples of an episode do not make one.
+    #[error("episode {task:?}: {why}")]
+    Episode {
+        /// Its task.
+        task: String,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// A dataset is not one that can be written to.
+    #[error("the dataset {}: {why}", path.display())]
+    Dataset {
+        /// Its folder.
+        path: PathBuf,
+        /// What was found and what was expected.
+        why: String,
+    },
+    /// An option has a value that is not accepted.
+    #[error("{option}: got {got}, expected {expected}")]
+    Option {
+        /// Its name.
+        option: &'static str,
+        /// The value.
+        got: String,
+        /// What is accepted.
+        expected: &'static str,
+    },
+}
+
+impl ExportError {
+    /// Makes a system's error one about `path`.
+    pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Io { path, source }
+    }
+}

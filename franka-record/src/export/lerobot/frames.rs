@@ -1,0 +1,158 @@
+//! Samples at 1 kHz into frames at the rate of a dataset.
+
+use nalgebra::{Isometry3, Vector4};
+
+use super::Action;
+use crate::sample::Sample;
+
+/// Names of the numbers of a state or an action: joints, pose of the end effector (position and
+/// quaternion), and the width of the gripper where there is one.
+pub(super) fn names(gripper: bool) -> Vec<String> {
+    let joints = (1..=7).map(|joint| format!("joint_{joint}.pos"));
+    let pose = ["x", "y", "z", "qx", "qy", "qz", "qw"].map(|axis| format!("ee_{axis}.pos"));
+    let gripper = gripper.then(|| "gripper.pos".to_owned());
+    joints.chain(pose).chain(gripper).collect()
+}
+
+/// The frames of an episode: rows of states and actions, one after the other.
+#[derive(Debug, PartialEq)]
+pub(super) struct Frames {
+    pub(super) count: usize,
+    pub(super) state: Vec<f32>,
+    pub(super) action: Vec<f32>,
+}
+
+/// What a frame has of one moment.
+struct Moment {
+    joints: [f64; 7],
+    pose: Isometry3<f64>,
+    width: Option<f64>,
+}
+
+impl Frames {
+    /// Frames of a dataset with this rate, the first of them at the first sample. The action of a
+    /// frame is where the arm was to be at the next one.
+    ///
+    /// # Errors
+    /// Why the samples make no episode.
+    pub(super) fn of(
+        samples: impl IntoIterator<Item = Sample>,
+        fps: u16,
+        gripper: bool,
+        action: Action,
+    ) -> Result<Self, String> {
+        let (at_frames, last) = resampled(samples, fps)?;
+        let states = at_frames.iter().map(measured);
+        let state = rows(states, gripper, None)?;
+        let next = at_frames.iter().skip(1).chain([&last]);
+        let actions = next.map(|sample| match action {
+            Action::Measured => measured(sample),
+            Action::Reference => Ok(Moment {
+                joints: sample.q_ref.ok_or_else(|| uncontrolled(sample))?,
+                pose: sample.pose_ref.ok_or_else(|| uncontrolled(sample))?,
+                width: sample.width_ref.or(sample.width),
+            }),
+        });
+        let action = rows(actions, gripper, Some(&at_frames[0].pose))?;
+        Ok(Self {
+            count: at_frames.len(),
+            state,
+            action,
+        })
+    }
+}
+
+fn measured(sample: &Sample) -> Result<Moment, String> {
+    Ok(Moment {
+        joints: sample.q,
+        pose: sample.pose,
+        width: sample.width,
+    })
+}
+
+fn uncontrolled(sample: &Sample) -> String {
+    let time = sample.time;
+    format!(
+        "nothing told the arm where to be at {time} ms of the robot's clock: \
+         Action::Measured takes where it was"
+    )
+}
+
+/// The samples at the times of the frames, and the last of all.
+fn resampled(
+    samples: impl IntoIterator<Item = Sample>,
+    fps: u16,
+) -> Result<(Vec<Sample>, Sample), String> {
+    let mut samples = samples.into_iter();
+    let first = samples.next().ok_or("there is no cycle in it")?;
+    let period = 1000.0 / f64::from(fps);
+    let due = |frame: usize| period * frame as f64;
+    let (mut frames, mut before) = (vec![first], first);
+    for sample in samples {
+        let step = sample
+            .time
+            .checked_sub(before.time)
+            .filter(|step| *step > 0);
+        let step = step.ok_or_else(|| {
+            let (from, to) = (before.time, sample.time);
+            format!("its time goes from {from} ms back to {to} ms of the robot's clock")
+        })?;
+        if step as f64 > period.max(GAP_MIN) {
+            let at = before.time;
+            return Err(format!(
+                "there is no cycle for {step} ms after {at} ms of the robot's clock, \
+                 expected gaps of {:.0} ms at most",
+                period.max(GAP_MIN)
+            ));
+        }
+        let end = (sample.time - first.time) as f64;
+        while due(frames.len()) <= end {
+            let begin = (before.time - first.time) as f64;
+            let share = (due(frames.len()) - begin) / step as f64;
+            frames.push(before.towards(&sample, share));
+        }
+        before = sample;
+    }
+    Ok((frames, before))
+}
+
+/// The longest gap between cycles that is filled at any rate, `[ms]`: what the robot itself
+/// tolerates of lost states.
+const GAP_MIN: f64 = 20.0;
+
+/// Rows of numbers. Quaternions keep their sign from row to row, the first that of the pose
+/// `nearest`.
+fn rows(
+    moments: impl Iterator<Item = Result<Moment, String>>,
+    gripper: bool,
+    nearest: Option<&Isometry3<f64>>,
+) -> Result<Vec<f32>, String> {
+    let mut rows = Vec::new();
+    let mut before = first_sign(nearest);
+    for moment in moments {
+        let Moment {
+            joints,
+            pose,
+            width,
+        } = moment?;
+        let coordinates = pose.rotation.coords;
+        let same = coordinates.dot(&before) >= 0.0;
+        before = if same { coordinates } else { -coordinates };
+        let width = gripper.then(|| width.ok_or("a cycle has no gripper, which the dataset has"));
+        let numbers = joints.iter().chain(&pose.translation.vector).chain(&before);
+        rows.extend(numbers.map(|x| *x as f32));
+        rows.extend(width.transpose()?.map(|x| x as f32));
+    }
+    Ok(rows)
+}
+
+/// A quaternion whose sign the first one takes. Without another pose it is that of a hand that
+/// points down: near there, signs do not change from one episode to the next.
+fn first_sign(nearest: Option<&Isometry3<f64>>) -> Vector4<f64> {
+    let down = Vector4::new(1.0, 0.0, 0.0, 0.0);
+    match nearest {
+        Some(pose) if pose.rotation.coords.dot(&down) < 0.0 => -pose.rotation.coords,
+        Some(pose) => pose.rotation.coords,
+        None => down,
+    }
+}

@@ -1,0 +1,358 @@
+//! Episodes as a dataset in LeRobot's layout v3.0, for training.
+//!
+//! ```text
+//! samples at 1 kHz -> frames at `fps` -> data/chunk-000/file-000.parquet       a row per frame
+//!                          '-> stats --> meta/episodes/chunk-000/file-000.parquet  a row per episode
+//!                                        meta/{info.json, stats.json, tasks.parquet}
+//! ```
+//!
+//! * `frames`: resampling, and the names of the numbers.
+//! * `stats`: minimum to quantiles of each feature.
+//! * `meta`: the files in `meta/` of the whole dataset.
+//! * `episodes`: the table with a row per episode.
+//!
+//! Every export adds files of its own, so nothing that is there is rewritten but the three files of
+//! the whole. Each file has its name only once it is complete; `info.json` comes last.
+
+mod episodes;
+mod frames;
+mod meta;
+mod stats;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::error::ExportError;
+use super::parquet::{Field, Kind, TableWriter, Values};
+use crate::sample::Sample;
+use episodes::{Episode, FileNumber};
+use frames::Frames;
+use meta::{BOOKKEEPING, Contents, FLAGS, VECTORS};
+use stats::Stats;
+
+/// What all episodes of a dataset have in common.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct DatasetOptions {
+    /// Frames per second, 1 to 1000; policies are usually trained at 15 to 50.
+    pub fps: u16,
+    /// What the robot is called: `franka_fr3`, `franka_fer`.
+    pub robot_type: String,
+    /// Whether the width of the gripper is part of states and actions.
+    pub gripper: bool,
+    /// What actions are.
+    pub action: Action,
+}
+
+/// What the action of a frame is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Action {
+    /// Where the arm was to be at the next frame. Needs an arm that something controls.
+    #[default]
+    Reference,
+    /// Where the arm was at the next frame: for demonstrations by hand.
+    Measured,
+}
+
+impl DatasetOptions {
+    /// 30 frames per second, with the gripper, and references as actions.
+    pub fn new(robot_type: impl Into<String>) -> Self {
+        Self {
+            fps: 30,
+            robot_type: robot_type.into(),
+            gripper: true,
+            action: Action::default(),
+        }
+    }
+
+    /// Replaces the frames per second.
+    #[must_use]
+    pub fn fps(mut self, fps: u16) -> Self {
+        self.fps = fps;
+        self
+    }
+
+    /// Sets whether the width of the gripper is part of states and actions.
+    #[must_use]
+    pub fn gripper(mut self, gripper: bool) -> Self {
+        self.gripper = gripper;
+        self
+    }
+
+    /// Replaces what actions are.
+    #[must_use]
+    pub fn action(mut self, action: Action) -> Self {
+        self.action = action;
+        self
+    }
+}
+
+/// A dataset to which episodes are added. What was added counts once it is [finished](Self::finish);
+/// dropped before, it leaves the dataset as it was.
+///
+/// Per frame it has `observation.state` and `action` (`joint_1.pos` to `joint_7.pos` in rad,
+/// `ee_x.pos` to `ee_z.pos` in metres, `ee_qx.pos` to `ee_qw.pos`, and `gripper.pos` in metres),
+/// `next.done` and `next.success`, and what every dataset has. It has no images.
+pub struct Dataset {
+    root: PathBuf,
+    options: DatasetOptions,
+    contents: Contents,
+    /// The number of the next data file.
+    next_file: FileNumber,
+    /// The data file under way.
+    data: Option<TableWriter>,
+    /// Data files that are complete but for their names.
+    full: Vec<TableWriter>,
+    added: Vec<Episode>,
+}
+
+impl Dataset {
+    /// Begins a dataset in the folder `root`, which has to be empty or not to exist.
+    ///
+    /// # Errors
+    /// [`ExportError`] for options that are not accepted, and if the folder is not empty or cannot
+    /// be written to.
+    pub fn create(root: impl Into<PathBuf>, options: DatasetOptions) -> Result<Self, ExportError> {
+        let root = root.into();
+        checked(&options)?;
+        fs::create_dir_all(&root).map_err(ExportError::at(&root))?;
+        let mut entries = fs::read_dir(&root).map_err(ExportError::at(&root))?;
+        if let Some(entry) = entries.next() {
+            let entry = entry.map_err(ExportError::at(&root))?;
+            return Err(ExportError::Dataset {
+                why: format!(
+                    "there is {:?} in it already, expected an empty folder, or none",
+                    entry.file_name()
+                ),
+                path: root,
+            });
+        }
+        Ok(Self::with(
+            root,
+            options,
+            Contents::default(),
+            FileNumber(0),
+        ))
+    }
+
+    /// Opens the dataset in the folder `root`, to add episodes to it. It may be one that other
+    /// programs have written, if it has the same features.
+    ///
+    /// # Errors
+    /// [`ExportError::Dataset`] if it differs in version, robot, rate or features, or if its files
+    /// do not hold the frames that it says.
+    pub fn open(root: impl Into<PathBuf>, options: DatasetOptions) -> Result<Self, ExportError> {
+        let root = root.into();
+        checked(&options)?;
+        let contents = meta::read(&root, &options)?;
+        let files = [
+            ("data", contents.frames),
+            ("meta/episodes", contents.episodes),
+        ];
+        let mut next_file = FileNumber(0);
+        for (folder, expected) in files {
+            let (rows, next) = episodes::files_in(&root.join(folder))?;
+            if rows != expected {
+                let why = format!(
+                    "the files in {folder} have {rows} rows, but meta/info.json says {expected}: \
+                     an export was interrupted at its end, or is under way"
+                );
+                return Err(ExportError::Dataset { path: root, why });
+            }
+            next_file = next_file.max(next);
+        }
+        Ok(Self::with(root, options, contents, next_file))
+    }
+
+    fn with(
+        root: PathBuf,
+        options: DatasetOptions,
+        contents: Contents,
+        next_file: FileNumber,
+    ) -> Self {
+        Self {
+            root,
+            options,
+            contents,
+            next_file,
+            data: None,
+            full: Vec::new(),
+            added: Vec::new(),
+        }
+    }
+
+    /// How many episodes it holds, those that were added included.
+    pub fn episodes(&self) -> u64 {
+        self.contents.episodes
+    }
+
+    /// How many frames it holds, those that were added included.
+    pub fn frames(&self) -> u64 {
+        self.contents.frames
+    }
+
+    /// Adds an episode: the task in words, whether it succeeded, and every cycle. Returns how many
+    /// frames it has. `next.done` is true in the last one, and so is `next.success` if the episode
+    /// is known to have succeeded.
+    ///
+    /// # Errors
+    /// [`ExportError::Episode`] for samples that make no episode: none at all, gaps of more than a
+    /// frame, no gripper, or no reference. The dataset is then as it was before.
+    pub fn add_episode(
+        &mut self,
+        task: &str,
+        success: Option<bool>,
+        samples: impl IntoIterator<Item = Sample>,
+    ) -> Result<u64, ExportError> {
+        let refused = |why: String| ExportError::Episode {
+            task: task.to_owned(),
+            why,
+        };
+        if task.trim().is_empty() {
+            return Err(refused("a task needs a text".into()));
+        }
+        let DatasetOptions {
+            fps,
+            gripper,
+            action,
+            ..
+        } = self.options;
+        let frames = Frames::of(samples, fps, gripper, action).map_err(refused)?;
+        let count = frames.count as u64;
+        let tasks = &mut self.contents.tasks;
+        let known = tasks.iter().position(|it| it == task);
+        let task_index = known.unwrap_or(tasks.len());
+        let columns = columns(&frames, &self.contents, fps, task_index, success);
+        let file = self.begin_file()?;
+        let data = self.data.as_mut().expect("begun just now");
+        data.write(&columns)?;
+        if data.size() >= meta::DATA_FILE_MB << 20 {
+            self.full.extend(self.data.take());
+        }
+        let contents = &mut self.contents;
+        if known.is_none() {
+            contents.tasks.push(task.to_owned());
+        }
+        let names = VECTORS.into_iter().chain(FLAGS);
+        let names = names.chain(BOOKKEEPING.map(|(name, _)| name));
+        let stats: Vec<_> = names
+            .zip(&columns)
+            .map(|(name, values)| {
+                (
+                    name,
+                    Stats::of(&values.numbers(), values.len() / frames.count),
+                )
+            })
+            .collect();
+        for (name, stats) in &stats {
+            let all = contents.stats.entry((*name).to_owned());
+            all.and_modify(|all| *all = all.and(stats))
+                .or_insert_with(|| stats.clone());
+        }
+        self.added.push(Episode {
+            index: contents.episodes,
+            task: task.to_owned(),
+            begin: contents.frames,
+            length: count,
+            file,
+            stats: stats.into_iter().map(|(_, stats)| stats).collect(),
+        });
+        contents.episodes += 1;
+        contents.frames += count;
+        Ok(count)
+    }
+
+    /// Writes the episodes that were added.
+    ///
+    /// # Errors
+    /// [`ExportError::Dataset`] if there is none in a new dataset, and [`ExportError::Io`].
+    pub fn finish(mut self) -> Result<(), ExportError> {
+        if self.contents.episodes == 0 {
+            let why = "no episode was added, and a dataset needs one".to_owned();
+            return Err(ExportError::Dataset {
+                path: self.root,
+                why,
+            });
+        }
+        if self.added.is_empty() {
+            return Ok(());
+        }
+        let table = episodes::table(&self.root, &self.added, &self.options)?;
+        for file in self.full.drain(..).chain(self.data.take()) {
+            file.finish()?;
+        }
+        table.finish()?;
+        meta::write(&self.root, &self.options, &self.contents)
+    }
+
+    /// Begins a data file unless one is under way. Returns its number.
+    fn begin_file(&mut self) -> Result<FileNumber, ExportError> {
+        if self.data.is_none() {
+            let path = self.next_file.path(&self.root, "data");
+            make_folder_of(&path)?;
+            let width = frames::names(self.options.gripper).len();
+            let vectors = VECTORS.map(|name| Field::list(name, Kind::Single, width));
+            let flags = FLAGS.map(|name| Field::new(name, Kind::Bool));
+            let rest = BOOKKEEPING.map(|(name, dtype)| match dtype {
+                "float32" => Field::new(name, Kind::Single),
+                _ => Field::new(name, Kind::Int),
+            });
+            let fields = vectors.into_iter().chain(flags).chain(rest).collect();
+            self.data = Some(TableWriter::create(&path, fields, &[])?);
+            self.next_file = self.next_file.next();
+        }
+        Ok(self.next_file.before())
+    }
+}
+
+impl std::fmt::Debug for Dataset {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Dataset")
+            .field("root", &self.root)
+            .field("options", &self.options)
+            .field("episodes", &self.contents.episodes)
+            .finish_non_exhaustive()
+    }
+}
+
+fn checked(options: &DatasetOptions) -> Result<(), ExportError> {
+    if (1..=1000).contains(&options.fps) {
+        return Ok(());
+    }
+    Err(ExportError::Option {
+        option: "fps",
+        got: options.fps.to_string(),
+        expected: "1 to 1000 frames per second",
+    })
+}
+
+/// The columns of an episode: vectors, flags, and the bookkeeping.
+fn columns(
+    frames: &Frames,
+    before: &Contents,
+    fps: u16,
+    task_index: usize,
+    success: Option<bool>,
+) -> Vec<Values> {
+    let count = frames.count;
+    let last = |flag: bool| Values::Bool((1..=count).map(|i| flag && i == count).collect());
+    let all = |value: u64| Values::Int(vec![value as i64; count]);
+    let from = |begin: u64| Values::Int((0..count as i64).map(|i| begin as i64 + i).collect());
+    let timestamps = (0..count).map(|i| (i as f64 / f64::from(fps)) as f32);
+    vec![
+        Values::Single(frames.state.clone()),
+        Values::Single(frames.action.clone()),
+        last(true),
+        last(success == Some(true)),
+        Values::Single(timestamps.collect()),
+        from(0),
+        all(before.episodes),
+        from(before.frames),
+        all(task_index as u64),
+    ]
+}
+
+fn make_folder_of(path: &Path) -> Result<(), ExportError> {
+    let folder = path.parent().expect("a file in a folder");
+    fs::create_dir_all(folder).map_err(ExportError::at(folder))
+}

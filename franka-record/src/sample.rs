@@ -1,0 +1,51 @@
+//! What exports and replays read of one cycle.
+
+use nalgebra::Isometry3;
+
+/// Arm and gripper in one cycle of a recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// `message_id` of the state, `[ms]` of the robot's clock.
+    pub time: u64,
+    /// Measured joint positions, `[rad]`.
+    pub q: [f64; 7],
+    /// Joint positions that the arm was to have, `[rad]`: the reference of target control, or what
+    /// a control function commanded. `None` where the joints were not under control.
+    pub q_ref: Option<[f64; 7]>,
+    /// Measured pose of the end effector in the base frame, `O_T_EE`, metres.
+    pub pose: Isometry3<f64>,
+    /// Pose that the end effector was to have, base frame, metres.
+    pub pose_ref: Option<Isometry3<f64>>,
+    /// Distance between the fingers, `[m]`; `None` before the gripper's first state.
+    pub width: Option<f64>,
+    /// Distance that the fingers were told to have, `[m]`; `None` before the first order.
+    pub width_ref: Option<f64>,
+}
+
+impl Sample {
+    /// The sample between this one and `later`, a `share` from 0 to 1 of the way: positions along
+    /// the line, rotations along the shorter arc. The finger width is this one's, as grippers
+    /// report rarely.
+    pub(crate) fn towards(&self, later: &Self, share: f64) -> Self {
+        let line =
+            |a: &[f64; 7], b: &[f64; 7]| std::array::from_fn(|i| a[i] + (b[i] - a[i]) * share);
+        let time = (later.time - self.time) as f64 * share;
+        let both = |a: Option<[f64; 7]>, b: Option<[f64; 7]>| Some(line(&a?, &b?));
+        let turn =
+            |a: Option<Isometry3<f64>>, b: Option<Isometry3<f64>>| Some(between(&a?, &b?, share));
+        Self {
+            time: self.time + time.round() as u64,
+            q: line(&self.q, &later.q),
+            q_ref: both(self.q_ref, later.q_ref),
+            pose: between(&self.pose, &later.pose, share),
+            pose_ref: turn(self.pose_ref, later.pose_ref),
+            ..if share < 1.0 { *self } else { *later }
+        }
+    }
+}
+
+/// The pose a `share` of the way from `a` to `b`.
+fn between(a: &Isometry3<f64>, b: &Isometry3<f64>, share: f64) -> Isometry3<f64> {
+    // There is no shorter arc to the opposite orientation.
+    a.try_lerp_slerp(b, share, 1e-9).unwrap_or(*a)
+}
