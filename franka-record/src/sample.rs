@@ -23,13 +23,13 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// The sample between this one and `later`, a `share` from 0 to 1 of the way: positions along
-    /// the line, rotations along the shorter arc. The finger width is this one's, as grippers
-    /// report rarely.
-    pub(crate) fn towards(&self, later: &Self, share: f64) -> Self {
+    /// The sample between this one and a `later` one, a `share` from 0 to 1 of the way: positions
+    /// on the line, rotations on the shorter arc. The finger width is this one's: grippers report
+    /// it rarely.
+    pub fn towards(&self, later: &Self, share: f64) -> Self {
         let line =
             |a: &[f64; 7], b: &[f64; 7]| std::array::from_fn(|i| a[i] + (b[i] - a[i]) * share);
-        let time = (later.time - self.time) as f64 * share;
+        let time = later.time.saturating_sub(self.time) as f64 * share;
         let both = |a: Option<[f64; 7]>, b: Option<[f64; 7]>| Some(line(&a?, &b?));
         let turn =
             |a: Option<Isometry3<f64>>, b: Option<Isometry3<f64>>| Some(between(&a?, &b?, share));

@@ -16,21 +16,12 @@ pub enum ExportError {
         source: io::Error,
     },
     /// The rows cannot be written or read as a table.
-    #[cfg(feature = "export")]
     #[error("{}: {source}", path.display())]
     Table {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.
         source: ::parquet::errors::ParquetError,
-    },
-    /// No column has this name.
-    #[error("got the column {got:?}, expected some of {known}")]
-    Column {
-        /// The name given.
-        got: String,
-        /// The names that there are.
-        known: String,
     },
     /// The samples of an episode do not make one.
     #[error("episode {task:?}: {why}")]

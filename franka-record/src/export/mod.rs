@@ -1,12 +1,10 @@
-//! Recordings as tables and datasets of other programs.
+//! Recordings as tables and datasets of other programs (feature `export`).
 //!
-//! * `parquet`: tables as Parquet files (feature `export`).
-//! * [`lerobot`]: episodes for training (feature `export`).
+//! * `parquet`: tables as Parquet files.
+//! * [`lerobot`]: episodes for training.
 
 mod error;
-#[cfg(feature = "export")]
 pub mod lerobot;
-#[cfg(feature = "export")]
 mod parquet;
 
 pub use error::ExportError;

@@ -59,7 +59,8 @@ fn rows(root: &Path, file: &str) -> Vec<Row> {
 fn cell<'a>(row: &'a Row, name: &str) -> &'a Field {
     let mut cells = row.get_column_iter();
     let found = cells.find(|(column, _)| *column == name);
-    &found.unwrap_or_else(|| panic!("no column {name}")).1
+    let (_, cell) = found.unwrap_or_else(|| panic!("no column {name}"));
+    cell
 }
 
 fn number(row: &Row, name: &str) -> i64 {

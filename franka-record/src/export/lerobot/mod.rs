@@ -87,8 +87,8 @@ impl DatasetOptions {
     }
 }
 
-/// A dataset to which episodes are added. What was added counts once it is [finished](Self::finish);
-/// dropped before, it leaves the dataset as it was.
+/// A dataset to which episodes are added. What was added counts once it is
+/// [finished](Self::finish); dropped before, it leaves the dataset as it was.
 ///
 /// Per frame it has `observation.state` and `action` (`joint_1.pos` to `joint_7.pos` in rad,
 /// `ee_x.pos` to `ee_z.pos` in metres, `ee_qx.pos` to `ee_qw.pos`, and `gripper.pos` in metres),
