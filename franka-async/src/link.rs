@@ -6,7 +6,7 @@ use std::sync::Arc;
 use franka_rt::lifecycle::{CloseReason, MotionError};
 use franka_rt::sched::Granted;
 use franka_rt::stats::Stats;
-use franka_rt::thread::Lender;
+use franka_rt::thread::{CycleFeed, Lender};
 
 use crate::command_channel::Channel;
 use crate::input::{BridgeHandle, Input};
@@ -27,6 +27,7 @@ pub(crate) struct Link {
     pub(crate) stats: Arc<Stats>,
     pub(crate) granted: Arc<Granted>,
     pub(crate) lender: Lender,
+    pub(crate) cycles: CycleFeed,
 }
 
 impl Link {

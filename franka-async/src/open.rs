@@ -72,6 +72,7 @@ pub(crate) async fn open(
     let stats = session.handle.stats.clone();
     let granted = Arc::new(session.handle.granted.clone());
     let lender = session.handle.lender.clone();
+    let cycles = session.handle.cycles.clone();
     let model = Arc::new(connected_model::of(session.version, &channel, builder).await?);
     let mut lifecycle =
         Lifecycle::new(model.clone(), session.version).with_log_size(builder.log_size);
@@ -102,6 +103,7 @@ pub(crate) async fn open(
             stats,
             granted,
             lender,
+            cycles,
         },
         first: session.first,
         bridge: prepared,

@@ -1,6 +1,8 @@
 //! What every cycle saw and did ([`Robot::records`](crate::Robot::records),
-//! [`Engage::observer`](crate::Engage::observer)), and the log that an error carries.
+//! [`Robot::cycles`](crate::Robot::cycles), [`Engage::observer`](crate::Engage::observer)), and the
+//! log that an error carries.
 
 pub use franka_proto::RobotCommand;
 pub use franka_rt::driver::{Activity, ControlLog, LogEntry, Record};
 pub use franka_rt::session::{Bindings, Guard};
+pub use franka_rt::thread::{AttachError, CapturedCycle, CycleFeed, CycleReader};

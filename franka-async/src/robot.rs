@@ -14,6 +14,7 @@ use franka_rt::sched::Granted;
 use franka_rt::session::{GoalId, Margin};
 use franka_rt::stats::Stats;
 use franka_rt::supervision::Health;
+use franka_rt::thread::{AttachError, CycleReader};
 use tokio::sync::{broadcast, mpsc, oneshot};
 use tokio_util::sync::DropGuard;
 
@@ -113,6 +114,18 @@ impl Robot {
     /// many it missed. Closes when the connection does.
     pub fn records(&self) -> broadcast::Receiver<Record> {
         self.link().subscriptions().records()
+    }
+
+    /// Every cycle of the control thread from now on, with record, whole state and time of receipt:
+    /// for a recorder, on a thread of its own. No task passes the cycles on, so a busy runtime
+    /// costs none of them. The ring holds `capacity` cycles, usually
+    /// [`CycleFeed::DEFAULT_CAPACITY`](crate::record::CycleFeed::DEFAULT_CAPACITY); what does not fit is counted ([`CycleReader::lost`]). Ends
+    /// with the connection. Takes a few milliseconds for the memory of the ring.
+    ///
+    /// # Errors
+    /// [`AttachError`]: a capacity out of range, as many readers as there can be, no connection.
+    pub fn cycles(&self, capacity: usize) -> Result<CycleReader, AttachError> {
+        self.link().cycles.attach(capacity)
     }
 
     /// The measured pose of the end effector, `O_T_EE` of the newest state.

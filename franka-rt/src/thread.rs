@@ -25,6 +25,7 @@
 
 mod borrower;
 mod cycle;
+mod cycle_feed;
 mod driven;
 mod fault;
 mod handle;
@@ -39,8 +40,12 @@ use std::sync::Arc;
 use std::sync::mpsc;
 use std::time::Instant;
 
-use franka_proto::{RobotState, Version};
+use franka_proto::Version;
 
+pub use self::cycle_feed::{
+    AttachError, CapturedCycle, CycleFeed, CyclePublisher, CycleReader, CycleWriter, READERS_MAX,
+    cycle_feed,
+};
 pub use self::driven::Core;
 pub use self::fault::LinkFault;
 pub use self::handle::{Handle, Lost, Notice, StateReader, StateSequence, Thread};
@@ -137,7 +142,7 @@ pub fn spawn<C: Core>(
     let (orders, order_queue) = queue::queue(capacity.orders);
     let (notice_queue, notices) = queue::queue(capacity.notices);
     let (record_queue, records) = queue::queue(capacity.records);
-    let datagram = Datagram([0; RobotState::MAX_SIZE]);
+    let (cycle_feed, cycles) = cycle_feed(version);
     let (state_queue, states) = queue::queue(capacity.states);
     let (state_slot, state_reader) = slot::slot();
     let handoff = Arc::new(Handoff::new(exchange::TICK));
@@ -154,8 +159,9 @@ pub fn spawn<C: Core>(
         notices: notice_queue,
         records: record_queue,
         sequence: state_queue,
+        cycles,
         states: state_slot,
-        datagram: Box::new(datagram),
+        datagram: Box::new(Datagram::ZERO),
         meter,
         laps: Laps::start(now),
         event_fd: event_fd.clone(),
@@ -224,6 +230,7 @@ pub fn spawn<C: Core>(
             version,
             size,
         },
+        cycles: cycle_feed,
         event_fd,
         state_wakeups,
         stats,

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 
 use franka_async::error::Lapse;
 use franka_async::goal::OnTimeout;
-use franka_async::record::Guard;
+use franka_async::record::{CapturedCycle, Guard};
 use franka_async::{Engage, MotionError, MotionReport, Pose, Robot};
 use franka_sim::{Running, Sim, Tool};
 use tokio::runtime::{Builder, Runtime};
@@ -119,6 +119,39 @@ fn blocking_every_worker_for_two_seconds_loses_no_cycle_of_a_motion() {
         drop(release);
     });
     assert_every_state_was_answered(&report);
+}
+
+/// The ring holds the whole motion, so that only a reader that needs a worker could lose cycles.
+#[test]
+fn blocking_every_worker_loses_no_cycle_of_a_reader_on_a_thread_of_its_own() {
+    let _alone = alone();
+    let setting = Setting::patient();
+    let mut reader = setting.robot.cycles(65_536).expect("there is room");
+    setting.moves_beside(|setting| {
+        while reader.pop().is_some() {}
+        let release = setting.block_workers();
+        let begun = setting.time();
+        setting.wait(2000);
+        let taken: Vec<_> = std::iter::from_fn(|| reader.pop()).collect();
+        drop(release);
+        let times = taken.iter().map(|cycle| cycle.record.time);
+        let last = times.clone().last().expect("states came");
+        assert!(
+            last > begun + 1990,
+            "{last}, {begun}: of the time of the block"
+        );
+        let first = taken[0].record.time;
+        assert!(times.eq(first..=last), "each once and in order");
+        let moves = |cycle: &&CapturedCycle| cycle.record.pose_target.is_some();
+        assert!(
+            taken.iter().any(|cycle| moves(&cycle)),
+            "the motion goes on"
+        );
+    });
+    while reader.wait(SOON) {
+        reader.pop();
+    }
+    assert!(reader.has_ended() && reader.lost() == 0);
 }
 
 #[test]

@@ -74,6 +74,32 @@ fn a_new_target_moves_the_reference_in_the_cycle_after_the_one_that_reads_it() {
 }
 
 #[test]
+fn the_record_has_the_target_where_it_is_in_its_cycle() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let turned = Target::Joints(core::array::from_fn(|i| READY[i] + 0.1));
+        let pose = Translation3::new(0.0, 0.0, 0.05) * lockstep.arm_pose();
+        let (q, dq) = (READY.into(), [0.01; 7]);
+        let moving = Target::MovingJoints { q, dq };
+        let mut recorded = |target| {
+            let goal = lockstep.goal(target, OnArrival::Hold);
+            lockstep.submit(goal).expect("within reach");
+            lockstep.run(50);
+            let record = lockstep.client.record;
+            (record.q_target.map(Target::Joints), record.pose_target)
+        };
+        assert_eq!(recorded(turned), (Some(turned), None));
+        assert_eq!(recorded(Target::Pose(pose)), (None, Some(pose)));
+        let (Some(Target::Joints(moved)), None) = recorded(moving) else {
+            panic!("it heads for joint positions");
+        };
+        let way = moved[0] - READY[0];
+        assert!(way > 0.01 * 0.04 && way < 0.01 * 0.06, "{way} after 50 ms");
+        assert_eq!(recorded(Target::Rest), (None, None));
+    });
+}
+
+#[test]
 fn the_hand_moves_on_a_straight_line() {
     for_each_robot(|ready| {
         let mut lockstep = ready();

@@ -17,10 +17,12 @@ use franka_rt::driver::{ControlLog, Driver, Event, LinkTimeout, MotionId, Order,
 use franka_rt::exchange;
 use franka_rt::sched::{Realtime, Scheduling};
 use franka_rt::stats::{Arrival, CycleTimes, MotionStatistics};
-use franka_rt::thread::{self, Core, Handle, Notice, ThreadConfig};
+use franka_rt::thread::{self, Core, CycleFeed, Handle, Notice, ThreadConfig};
 use franka_tests::broken_socket::BrokenSocket;
 
 const VERSION: Version = Version::V10;
+
+const CAPACITY: usize = CycleFeed::<Record>::DEFAULT_CAPACITY;
 
 /// A driver that answers every state, and reports how often its thread has called the allocator.
 struct Watched {
@@ -128,7 +130,7 @@ fn peer(last: u8, port: u16) -> UdpSocket {
 }
 
 /// Runs a thread for some seconds with all kinds of input, among them one order `order`, failing
-/// receives, and a borrower that runs no turn.
+/// receives, a borrower that runs no turn, and readers of its cycles that come and go.
 /// Returns the thread's calls of the allocator and the number of its cycles.
 fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
     let calls = Arc::new(AtomicU64::new(0));
@@ -147,10 +149,13 @@ fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
         mut notices,
         mut records,
         stats,
+        cycles,
         lender,
         thread,
         ..
     } = handle;
+    let mut drained = cycles.attach(CAPACITY).expect("there is room");
+    let mut changing = cycles.attach(1).expect("there is room");
     let (robot, stranger) = (peer(1, port), peer(2, port));
     let mut bytes = vec![0; RobotState::MAX_SIZE];
     for message_id in 1..=2_000u64 {
@@ -161,6 +166,11 @@ fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
         let size = state.encode(VERSION, &mut bytes).expect("there is room");
         robot.send(&bytes[..size]).expect("loopback");
         let round = message_id / 500 + 1;
+        if message_id % 100 == 0 {
+            assert!(changing.lost() > 0, "it is full for most of the time");
+            drop(changing);
+            changing = cycles.attach(1).expect("one was dropped");
+        }
         match message_id % 500 {
             50 => {
                 let lease = lender.borrow().expect("the cycle is not lent");
@@ -191,9 +201,11 @@ fn calls_of_a_busy_thread(order: u64) -> (u64, u64) {
         }
         while notices.pop().is_some() {}
         while records.pop().is_some() {}
+        while drained.pop().is_some() {}
         std::thread::sleep(Duration::from_millis(1));
     }
     thread.join().map(drop).expect("nothing panics");
+    assert_eq!(drained.lost(), 0);
     assert!(stats.commands.get() > 500, "{stats:?}");
     assert!(
         stats.states_lost.get() > 0,
@@ -242,6 +254,7 @@ fn turns_and_writes_on_a_borrowing_thread_neither_allocate_nor_free() {
         torques: Some(Torques([0.1; 7])),
     };
     let mut bytes = vec![0; RobotState::MAX_SIZE];
+    let cycles = handle.cycles.attach(CAPACITY).expect("there is room");
     let mut lease = handle.lender.borrow().expect("the cycle is not lent");
     let (mut calls, mut read, mut written) = (0, 0, 0);
     for message_id in 1..=TURNS {
@@ -255,6 +268,7 @@ fn turns_and_writes_on_a_borrowing_thread_neither_allocate_nor_free() {
     }
     // The ring is full: each state leaves a record.
     assert!(handle.stats.records_lost.get() > TURNS / 2);
+    assert_eq!(cycles.waiting() as u64 + cycles.lost(), TURNS);
     drop(lease);
     handle.thread.join().map(drop).expect("nothing panics");
     assert_eq!((read, written), (TURNS, TURNS));

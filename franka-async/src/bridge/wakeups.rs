@@ -77,6 +77,8 @@ impl Bridge {
                     self.lifecycle.on_event(event, now);
                 }
                 Notice::Link(fault) => tracing::warn!(%fault, "control link"),
+                // Freed here, which the thread may not do.
+                Notice::Detached(ring) => drop(ring),
             }
         }
     }

@@ -6,7 +6,7 @@ use franka_proto::{RobotState, Version};
 
 use crate::control::{ActiveControl, AsynchronousPositions, Callback, Command, Failure};
 use crate::driver::Record;
-use crate::session::{SessionCommand, SessionEvent, TargetSession, Trace};
+use crate::session::{SessionCommand, SessionEvent, Target, TargetSession, Trace};
 use crate::team::MemberFault;
 use crate::together::Gate;
 
@@ -98,6 +98,7 @@ impl Program {
                 let Trace {
                     goal,
                     reference,
+                    target,
                     elapsed,
                     remaining,
                     compensation,
@@ -107,6 +108,11 @@ impl Program {
                 record.q_ref = reference.q.into();
                 record.dq_ref = reference.dq.into();
                 record.ddq_ref = reference.ddq.into();
+                match target.map(Target::place) {
+                    Some(Target::Joints(q)) => record.q_target = Some(q),
+                    Some(Target::Pose(pose)) => record.pose_target = Some(pose),
+                    _ => {}
+                }
                 record.elapsed = elapsed;
                 record.remaining = remaining;
                 record.compensation = compensation.into();

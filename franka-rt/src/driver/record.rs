@@ -3,6 +3,7 @@
 use core::time::Duration;
 
 use franka_proto::{Errors, RobotMode, RobotState};
+use nalgebra::Isometry3;
 
 use crate::session::Bindings;
 use crate::stats::Slack;
@@ -32,12 +33,20 @@ pub struct Record {
     pub q: [f64; 7],
     /// Measured joint velocities, `[rad/s]`.
     pub dq: [f64; 7],
-    /// Reference joint positions, `[rad]`; zero outside target control, as are the next two.
+    /// Reference joint positions, `[rad]`; zero outside target control, as are the next two. The
+    /// reference pose of the end effector is the pose at these.
     pub q_ref: [f64; 7],
     /// Reference joint velocities, `[rad/s]`.
     pub dq_ref: [f64; 7],
     /// Reference joint accelerations, `[rad/s^2]`.
     pub ddq_ref: [f64; 7],
+    /// Joint positions that the reference heads for, `[rad]`; `None` where it heads for a pose, to
+    /// rest or where a hand guides the arm, and outside target control. A target that moves: where
+    /// it is now.
+    pub q_target: Option<[f64; 7]>,
+    /// Pose that the reference heads for, as [`Self::q_target`]: of the end effector in the base
+    /// frame, or of the object that the hand holds, `[m]`.
+    pub pose_target: Option<Isometry3<f64>>,
     /// Time since the goal was first seen.
     pub elapsed: Duration,
     /// Time until the reference meets the goal's target or the last point of its chunk, or rests

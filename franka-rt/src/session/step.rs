@@ -5,7 +5,7 @@ use core::time::Duration;
 use franka_model::JointVector;
 
 use super::reference::Reference;
-use super::{Bindings, GoalId};
+use super::{Bindings, GoalId, Target};
 use crate::control::{MotionCommand, Torques};
 
 /// What a session answers a state with.
@@ -22,6 +22,8 @@ pub(crate) struct SessionStep {
 pub(crate) struct Trace {
     pub(crate) goal: GoalId,
     pub(crate) reference: Reference,
+    /// What it heads for, where that is now; `None` where no goal is followed.
+    pub(crate) target: Option<Target>,
     /// Since the goal was first seen.
     pub(crate) elapsed: Duration,
     /// Until the reference meets the goal's target.

@@ -7,6 +7,7 @@ use std::time::Instant;
 use franka_proto::{DecodeError, RobotCommand, RobotState, Version};
 
 use super::Core;
+use super::cycle_feed::CyclePublisher;
 use super::fault::{Latch, LinkFault};
 use super::handle::{Datagram, Notice};
 use super::lifetime::Lifetime;
@@ -25,10 +26,12 @@ pub(super) struct Cycle<C: Core> {
     /// Size of a state, in bytes.
     pub(super) size: usize,
     pub(super) orders: Receiver<C::Order>,
-    pub(super) notices: Sender<Notice<C::Event>>,
+    pub(super) notices: Sender<Notice<C::Event, C::Record>>,
     pub(super) records: Sender<C::Record>,
     /// All states, as they came.
     pub(super) sequence: Sender<Datagram>,
+    /// All cycles, for those who attach to them.
+    pub(super) cycles: CyclePublisher<C::Record>,
     /// The newest state.
     pub(super) states: SlotWriter<Datagram>,
     /// The buffer through which a state gets into both.
@@ -55,6 +58,7 @@ impl<C: Core> Cycle<C> {
         let now = Instant::now();
         self.laps = Laps::start(now);
         self.take_orders();
+        self.cycles.take_attached();
         self.laps.end(Phase::Orders);
         let decoded = reception
             .fresh
@@ -64,7 +68,7 @@ impl<C: Core> Cycle<C> {
         if let Some(Ok(state)) = &decoded {
             self.laps.end(Phase::Decode);
             sent = self.answer(state, now, reception.skipped);
-            self.publish();
+            self.publish(now);
         } else {
             // Only time spent in the receive counts as silence. If the host held this thread up
             // after it, states may lie in the socket: the next turn reads them first.
@@ -75,7 +79,7 @@ impl<C: Core> Cycle<C> {
         }
         self.count(&reception);
         let fault = self.fault_of(&reception, decoded.and_then(Result::err));
-        let told = self.report(reception.fresh, fault) | self.pass_events_on();
+        let told = self.report(reception.fresh, fault) | self.pass_events_on() | self.detach();
         let due = reception.fresh && self.is_wakeup_due();
         if due || told {
             self.event_fd.notify();
@@ -161,15 +165,18 @@ impl<C: Core> Cycle<C> {
         departed
     }
 
-    fn publish(&mut self) {
-        self.datagram.0[..self.size].copy_from_slice(self.exchange.state());
+    /// Passes the newest state on, which was received at `now`.
+    fn publish(&mut self, now: Instant) {
+        self.datagram.set(self.exchange.state());
         self.states.write(&self.datagram);
         if self.sequence.push(*self.datagram).is_err() {
             self.stats().states_lost.add(1);
         }
-        if self.records.push(self.core.record()).is_err() {
+        let record = self.core.record();
+        if self.records.push(record).is_err() {
             self.stats().records_lost.add(1);
         }
+        self.cycles.push(record, self.exchange.state(), now);
     }
 
     fn stats(&self) -> &Stats {
@@ -241,6 +248,12 @@ impl<C: Core> Cycle<C> {
     fn pass_events_on(&mut self) -> bool {
         let event = || self.core.take_event().map(Notice::Core);
         self.notices.push_from(EVENTS_PER_CYCLE, event) > 0
+    }
+
+    /// Gives away the ring of a reader of cycles that was dropped; returns whether there was one.
+    fn detach(&mut self) -> bool {
+        let detached = || self.cycles.take_detached().map(Notice::Detached);
+        self.notices.push_from(1, detached) > 0
     }
 }
 

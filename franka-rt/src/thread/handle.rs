@@ -7,9 +7,10 @@ use std::thread::JoinHandle;
 
 use franka_proto::{RobotState, Version};
 
+use super::cycle_feed::{CycleFeed, CycleWriter};
 use super::handoff::NotReturned;
 use super::lifetime::Lifetime;
-use crate::driver::Driver;
+use crate::driver::{Driver, Record};
 use crate::event_fd::EventFd;
 use crate::panic;
 use crate::queue::{Receiver, Sender};
@@ -27,7 +28,7 @@ pub struct Handle<C: Core = Driver> {
     /// [`crate::exchange::TICK`] while the robot is silent.
     pub orders: Sender<C::Order>,
     /// What the core and the loop report, oldest first.
-    pub notices: Receiver<Notice<C::Event>>,
+    pub notices: Receiver<Notice<C::Event, C::Record>>,
     /// One record per state, oldest first. When the queue is full they are lost, and counted in
     /// [`Stats::records_lost`].
     pub records: Receiver<C::Record>,
@@ -36,6 +37,8 @@ pub struct Handle<C: Core = Driver> {
     /// All states, oldest first. When the queue is full they are lost, and counted in
     /// [`Stats::states_lost`].
     pub sequence: StateSequence,
+    /// Attaches readers of every cycle while the thread runs.
+    pub cycles: CycleFeed<C::Record>,
     /// Notified after every cycle that left a notice, or a state while wake-ups are requested;
     /// after every fiftieth state without a request; and when the thread ends.
     pub event_fd: EventFd,
@@ -53,11 +56,13 @@ pub struct Handle<C: Core = Driver> {
 
 /// What the thread reports.
 #[derive(Debug)]
-pub enum Notice<E> {
+pub enum Notice<E, R = Record> {
     /// An event of the core. None is lost: they wait in the core while the queue is full.
     Core(E),
     /// A fault of the link. Reported when it begins, not in every cycle that it lasts.
     Link(LinkFault),
+    /// A reader of cycles was dropped. This has the memory of its ring.
+    Detached(CycleWriter<R>),
 }
 
 /// The running thread. Dropping it asks the thread to stop and does not wait.
@@ -209,6 +214,15 @@ const ATTEMPTS: usize = 16;
 /// thread a conversion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Datagram(pub(super) [u8; RobotState::MAX_SIZE]);
+
+impl Datagram {
+    pub(super) const ZERO: Self = Self([0; RobotState::MAX_SIZE]);
+
+    /// Takes the bytes of a state over; the rest stays as it was.
+    pub(super) fn set(&mut self, state: &[u8]) {
+        self.0[..state.len()].copy_from_slice(state);
+    }
+}
 
 impl Words for Datagram {
     const WORDS: usize = RobotState::MAX_SIZE.div_ceil(WORD);

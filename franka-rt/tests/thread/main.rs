@@ -4,6 +4,7 @@
 //! for a loaded machine with two processors, not for the code.
 
 mod cores;
+mod cycles;
 mod faults;
 mod lease;
 mod receiving;

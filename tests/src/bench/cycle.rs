@@ -8,6 +8,8 @@ use franka_proto::{MoveControllerMode, RobotCommand, RobotMode, RobotState, Vers
 use franka_rt::control::{Callback, Modes, Torques};
 use franka_rt::driver::{ControlLog, Driver, MotionId, Order, Program};
 
+use franka_rt::thread::cycle_feed;
+
 use super::timed;
 use crate::bench::{Benchmark, Statistic};
 use crate::lockstep::{Part, Wander};
@@ -29,6 +31,7 @@ pub fn all() -> Vec<Benchmark> {
             &[Statistic::P50, Statistic::P99],
         ),
         callback(),
+        push(),
     ]
 }
 
@@ -65,6 +68,36 @@ fn callback() -> Benchmark {
             timed(SAMPLES, BATCH, || {
                 motion.cycle();
             })
+        }),
+    }
+}
+
+/// What one reader of every cycle costs the thread: a record and a state into its ring, which the
+/// reader empties beside it, untimed.
+fn push() -> Benchmark {
+    let mut wander = Wander::new(1);
+    let (feed, mut publisher) = cycle_feed(VERSION);
+    let mut reader = feed.attach(CYCLES).expect("a length within the limits");
+    publisher.take_attached();
+    let mut bytes = vec![0; RobotState::MAX_SIZE];
+    Benchmark {
+        key: "record.push_ns",
+        statistics: &[Statistic::P50, Statistic::P99],
+        round: Box::new(move || {
+            let mut samples = Vec::with_capacity(CYCLES);
+            while samples.len() < CYCLES {
+                wander.tick_around(|_, work| work());
+                let client = &wander.lockstep.client;
+                let size = client
+                    .state
+                    .encode(VERSION, &mut bytes)
+                    .expect("the longest state");
+                let start = Instant::now();
+                publisher.push(client.record, &bytes[..size], start);
+                samples.push(start.elapsed().as_nanos() as u64);
+                reader.pop();
+            }
+            samples
         }),
     }
 }

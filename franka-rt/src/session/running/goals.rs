@@ -97,13 +97,18 @@ impl RunningSession {
         self.route.outdate();
     }
 
-    /// What the reference heads for at `now`. A goal that is slow on purpose is left quickly after
-    /// a reaction.
-    pub(super) fn aim(&self, model: &Model, now: u64) -> Aim {
+    /// What the reference heads for, where that is at `now`.
+    pub(super) fn target_at(&self, now: u64) -> Target {
         let since = now.saturating_sub(self.heard).min(Target::MOVES_ON_MS);
+        self.aim.after(since)
+    }
+
+    /// What the reference heads for at `now`, and how. A goal that is slow on purpose is left
+    /// quickly after a reaction.
+    pub(super) fn aim(&self, model: &Model, now: u64) -> Aim {
         let mut aim = Aim {
             goal: self.goal.id,
-            target: self.aim.after(since),
+            target: self.target_at(now),
             budget: self.goal.budget,
             // A stop is not to be paused.
             paused: (self.goal.paused || self.waits) && self.aim != Target::Rest || self.halted,

@@ -412,6 +412,7 @@ impl RunningSession {
             trace: Trace {
                 goal: self.goal.id,
                 reference: self.reference,
+                target: Some(self.target_at(state.message_id)),
                 elapsed: Duration::from_millis(state.message_id - self.since),
                 remaining: Duration::from_secs_f64(self.route.course.remaining(state.message_id)),
                 compensation: match &self.drive {

@@ -1,0 +1,330 @@
+//! Every cycle of a control thread, for readers that come and go while it runs: recorders.
+//!
+//! ```text
+//! CycleFeed::attach --queue--> CyclePublisher: READERS_MAX rings at most ----> a CycleReader each
+//!                                  |
+//!                                  +-- of a reader that was dropped --> Notice::Detached, freed elsewhere
+//! ```
+//!
+//! Each reader has a ring of its own, whose memory is laid out where it is attached. The thread
+//! copies each cycle into every ring and neither waits, allocates nor frees: a full ring drops the
+//! cycle and counts it.
+
+use core::time::Duration;
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
+
+use franka_proto::{RobotState, Version};
+
+use super::handle::Datagram;
+use crate::driver::Record;
+use crate::queue::{self, Full, Receiver, Sender};
+
+/// The most readers of one control thread at a time.
+pub const READERS_MAX: usize = 4;
+
+/// One cycle of the control thread: a state, and what was done with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct CapturedCycle<R = Record> {
+    /// What the driver saw and did.
+    pub record: R,
+    /// The state.
+    pub state: RobotState,
+    /// When the thread had received it, by this host's monotonic clock.
+    pub received: Instant,
+    /// Cycles just before this one that did not fit into the ring of this reader.
+    pub lost: u64,
+}
+
+impl<R> CapturedCycle<R> {
+    /// A cycle that follows the one before it without loss.
+    pub fn new(record: R, state: RobotState, received: Instant) -> Self {
+        Self {
+            record,
+            state,
+            received,
+            lost: 0,
+        }
+    }
+}
+
+/// Attaches readers to a running control thread. Clones attach to the same one.
+#[derive(Debug)]
+pub struct CycleFeed<R = Record> {
+    attached: Arc<Mutex<Sender<CycleWriter<R>>>>,
+    shared: Arc<Shared>,
+    version: Version,
+}
+
+impl<R> Clone for CycleFeed<R> {
+    fn clone(&self) -> Self {
+        Self {
+            attached: self.attached.clone(),
+            shared: self.shared.clone(),
+            version: self.version,
+        }
+    }
+}
+
+/// What both ends of a feed see.
+#[derive(Debug, Default)]
+struct Shared {
+    /// Readers that exist.
+    readers: AtomicUsize,
+    /// Set, with Release, when no cycle will come any more.
+    ended: AtomicBool,
+}
+
+impl Shared {
+    /// Acquire, pairs with the Release in the drop of [`CyclePublisher`]: who sees the end finds
+    /// every cycle that was pushed before it.
+    fn has_ended(&self) -> bool {
+        self.ended.load(Ordering::Acquire)
+    }
+}
+
+/// Why no reader was attached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AttachError {
+    /// There are as many readers as there can be. Drop one first.
+    #[error("{READERS_MAX} readers are attached to the control thread, and no more can be")]
+    TooMany,
+    /// The ring cannot have this length.
+    #[error("a ring of {got} cycles was asked for; possible are 1 to {}", CycleFeed::<()>::CAPACITY_MAX)]
+    Capacity {
+        /// What was asked for.
+        got: usize,
+    },
+    /// The thread has not taken the readers attached before: another thread has borrowed its cycle
+    /// and does not run it.
+    #[error("the control thread has not taken the readers that were attached before this one")]
+    Busy,
+    /// The thread has ended.
+    #[error("the control thread has ended")]
+    Ended,
+}
+
+impl<R: Send + 'static> CycleFeed<R> {
+    /// The length of a ring unless asked otherwise, in cycles: 4 s, 12 MB.
+    pub const DEFAULT_CAPACITY: usize = 4096;
+
+    /// The most that a ring can hold, in cycles: a minute, 200 MB.
+    pub const CAPACITY_MAX: usize = 65_536;
+
+    /// Attaches a reader with a ring of `capacity` cycles, usually [`Self::DEFAULT_CAPACITY`]. It
+    /// gets every cycle from one soon after the call on. Allocates the ring and writes to all of
+    /// it: some milliseconds.
+    ///
+    /// # Errors
+    /// [`AttachError`].
+    pub fn attach(&self, capacity: usize) -> Result<CycleReader<R>, AttachError> {
+        if !(1..=Self::CAPACITY_MAX).contains(&capacity) {
+            return Err(AttachError::Capacity { got: capacity });
+        }
+        let one_more = |readers| (readers < READERS_MAX).then_some(readers + 1);
+        // Relaxed, as in the drop of a reader: the number orders no other memory.
+        let counted =
+            self.shared
+                .readers
+                .fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_more);
+        counted.map_err(|_| AttachError::TooMany)?;
+        let (queue, receiver) = queue::queue(capacity);
+        let lost = Arc::<AtomicU64>::default();
+        // Counts one reader less when it is dropped, on an error as well.
+        let reader = CycleReader {
+            queue: receiver,
+            lost: lost.clone(),
+            shared: self.shared.clone(),
+            version: self.version,
+        };
+        let writer = CycleWriter {
+            queue,
+            lost,
+            gap: 0,
+        };
+        let attached = self.attached.lock();
+        let pushed = attached
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(writer);
+        if self.shared.has_ended() {
+            return Err(AttachError::Ended);
+        }
+        pushed.map_err(|Full(_)| AttachError::Busy)?;
+        Ok(reader)
+    }
+}
+
+/// Takes the cycles of a control thread, each once and in order. For an ordinary thread or task;
+/// dropping it detaches it.
+#[derive(Debug)]
+pub struct CycleReader<R = Record> {
+    queue: Receiver<Entry<R>>,
+    lost: Arc<AtomicU64>,
+    shared: Arc<Shared>,
+    version: Version,
+}
+
+impl<R> CycleReader<R> {
+    /// The oldest cycle that has not been taken. Never waits.
+    pub fn pop(&mut self) -> Option<CapturedCycle<R>> {
+        let entry = self.queue.pop()?;
+        // The thread passes on only what it has decoded itself.
+        let state =
+            RobotState::decode(self.version, &entry.datagram.0[..self.version.state_size()])
+                .ok()?;
+        Some(CapturedCycle {
+            record: entry.record,
+            state,
+            received: entry.received,
+            lost: entry.lost,
+        })
+    }
+
+    /// Blocks this thread until a cycle can be taken, and returns whether one can: not if none has
+    /// come within `timeout` or none will come any more. Looks every 5 ms: the control thread wakes
+    /// no one for this.
+    pub fn wait(&self, timeout: Duration) -> bool {
+        let begun = Instant::now();
+        loop {
+            // Asked first: what came before the end is then found.
+            let ended = self.shared.has_ended();
+            if self.waiting() > 0 {
+                return true;
+            }
+            let remaining = timeout.saturating_sub(begun.elapsed());
+            if ended || remaining.is_zero() {
+                return false;
+            }
+            std::thread::sleep(remaining.min(LOOK));
+        }
+    }
+
+    /// The number of cycles not taken yet.
+    pub fn waiting(&self) -> usize {
+        self.queue.waiting()
+    }
+
+    /// The number of cycles so far that did not fit into the ring.
+    pub fn lost(&self) -> u64 {
+        self.lost.load(Ordering::Relaxed)
+    }
+
+    /// Whether the thread has ended and every cycle was taken.
+    pub fn has_ended(&self) -> bool {
+        self.shared.has_ended() && self.waiting() == 0
+    }
+}
+
+impl<R> Drop for CycleReader<R> {
+    fn drop(&mut self) {
+        self.shared.readers.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+/// Time between two looks of a reader that waits.
+const LOOK: Duration = Duration::from_millis(5);
+
+/// The end of a reader's ring that the thread writes to. It holds memory: the thread gives it away
+/// to be freed.
+#[derive(Debug)]
+pub struct CycleWriter<R = Record> {
+    queue: Sender<Entry<R>>,
+    lost: Arc<AtomicU64>,
+    /// Cycles lost since the last one that fitted.
+    gap: u64,
+}
+
+impl<R: Copy> CycleWriter<R> {
+    fn push(&mut self, record: R, datagram: &Datagram, received: Instant) {
+        let entry = Entry {
+            record,
+            received,
+            lost: self.gap,
+            datagram: *datagram,
+        };
+        match self.queue.push(entry) {
+            Ok(()) => self.gap = 0,
+            Err(Full(_)) => {
+                self.gap += 1;
+                // There is one writer: a load and a store do. Relaxed, for it orders nothing.
+                let lost = self.lost.load(Ordering::Relaxed);
+                self.lost.store(lost + 1, Ordering::Relaxed);
+            }
+        }
+    }
+}
+
+/// A cycle in a ring. The state is decoded by the reader, which saves the thread a conversion.
+#[derive(Debug)]
+struct Entry<R> {
+    record: R,
+    received: Instant,
+    lost: u64,
+    datagram: Datagram,
+}
+
+/// Passes cycles on to the readers that are attached: the thread's end of a feed. None of its
+/// methods allocates, frees or waits; its drop does, when the thread ends.
+#[derive(Debug)]
+pub struct CyclePublisher<R = Record> {
+    attached: Receiver<CycleWriter<R>>,
+    writers: [Option<CycleWriter<R>>; READERS_MAX],
+    shared: Arc<Shared>,
+    /// The buffer through which a state gets into the rings.
+    datagram: Box<Datagram>,
+}
+
+/// The two ends of the cycles of one control thread, whose robot speaks `version`.
+pub fn cycle_feed<R>(version: Version) -> (CycleFeed<R>, CyclePublisher<R>) {
+    let (attached, receiver) = queue::queue(READERS_MAX);
+    let shared = Arc::<Shared>::default();
+    let feed = CycleFeed {
+        attached: Arc::new(Mutex::new(attached)),
+        shared: shared.clone(),
+        version,
+    };
+    let publisher = CyclePublisher {
+        attached: receiver,
+        writers: core::array::from_fn(|_| None),
+        shared,
+        datagram: Box::new(Datagram::ZERO),
+    };
+    (feed, publisher)
+}
+
+impl<R: Copy> CyclePublisher<R> {
+    /// Takes the readers that were attached, as far as there is room for them.
+    pub fn take_attached(&mut self) {
+        for free in self.writers.iter_mut().filter(|writer| writer.is_none()) {
+            *free = self.attached.pop();
+        }
+    }
+
+    /// Passes on a cycle: the record, the bytes of its state and when they were received.
+    pub fn push(&mut self, record: R, state: &[u8], received: Instant) {
+        if self.writers.iter().all(Option::is_none) {
+            return;
+        }
+        self.datagram.set(state);
+        for writer in self.writers.iter_mut().flatten() {
+            writer.push(record, &self.datagram, received);
+        }
+    }
+
+    /// Returns the end of a ring whose reader was dropped, to be freed where that is allowed.
+    pub fn take_detached(&mut self) -> Option<CycleWriter<R>> {
+        let detached = |writer: &mut CycleWriter<R>| writer.queue.is_abandoned();
+        self.writers
+            .iter_mut()
+            .find_map(|writer| writer.take_if(detached))
+    }
+}
+
+impl<R> Drop for CyclePublisher<R> {
+    fn drop(&mut self) {
+        self.shared.ended.store(true, Ordering::Release);
+    }
+}
