@@ -1,8 +1,13 @@
 //! Flight recorder for Franka robots: every cycle in an MCAP file, every reflex explained, every
 //! session replayed.
 
+mod cycle;
+pub mod event;
 #[cfg(feature = "export")]
 pub mod export;
 mod sample;
+pub mod schema;
 
+pub use cycle::{Cycle, HostTime};
+pub use event::{Event, EventKind, GripperState};
 pub use sample::Sample;

@@ -126,7 +126,8 @@ impl Slack {
         }
     }
 
-    pub(crate) fn from_nanos(nanos: i64) -> Self {
+    /// The slack of `nanos`, negative for an overrun.
+    pub fn from_nanos(nanos: i64) -> Self {
         Self { nanos }
     }
 

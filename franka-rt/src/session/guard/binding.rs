@@ -52,7 +52,8 @@ pub enum Guard {
 pub struct Bindings(u32);
 
 impl Guard {
-    const ALL: [Self; 17] = [
+    /// All guards.
+    pub const ALL: [Self; 17] = [
         Self::Leash,
         Self::InverseKinematics,
         Self::TorqueClamp,
@@ -77,6 +78,11 @@ impl Bindings {
     /// Adds `guard` where `binds`.
     pub(crate) fn set(&mut self, guard: Guard, binds: bool) {
         self.0 |= u32::from(binds) << guard as u32;
+    }
+
+    /// Adds `guard`.
+    pub fn insert(&mut self, guard: Guard) {
+        self.set(guard, true);
     }
 
     /// Whether `guard` bound the command.
@@ -109,7 +115,7 @@ impl<'de> serde::Deserialize<'de> for Bindings {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut bindings = Self::default();
         for guard in Vec::<Guard>::deserialize(deserializer)? {
-            bindings.set(guard, true);
+            bindings.insert(guard);
         }
         Ok(bindings)
     }

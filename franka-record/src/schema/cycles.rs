@@ -1,0 +1,418 @@
+//! Cycles and tools as messages, and back.
+
+use core::time::Duration;
+
+use franka_proto::{ControllerMode, Errors, MotionGeneratorMode, RobotMode, RobotState};
+use franka_rt::driver::Activity;
+use franka_rt::session::{Bindings, Guard};
+use franka_rt::stats::Slack;
+
+use super::arrays::{
+    get, get_exact, get_levels, isometry, matrix_of, pose, pose_of, put, put_levels,
+    put_unless_zero,
+};
+use super::franka;
+use crate::{Cycle, HostTime};
+
+impl franka::Cycle {
+    /// Takes over `cycle`, in place of what was there: the memory of the fields is used again.
+    pub fn set(&mut self, cycle: &Cycle) {
+        let (record, state) = (&cycle.record, &cycle.state);
+        self.host_time = cycle.time.as_nanos();
+        self.robot_time = record.time;
+        self.skipped = record.skipped;
+        self.activity = activity(record.activity).into();
+        self.robot_mode = i32::from(record.robot_mode.byte());
+        self.motion_generator_mode = generator_number(state.motion_generator_mode);
+        self.controller_mode = u32::from(state.controller_mode.byte());
+        self.errors = record.errors.bits();
+        self.reflex_reason = record.reflex_reason.bits();
+        self.success_rate = record.success_rate as f32;
+        self.goal = record.goal;
+
+        self.q.clear();
+        self.q.extend(record.q);
+        put(&mut self.dq, &record.dq);
+        put(&mut self.tau_j, &state.tau_J);
+        put(&mut self.dtau_j, &state.dtau_J);
+        put(&mut self.tau_ext, &state.tau_ext_hat_filtered);
+        put(&mut self.o_f_ext, &state.O_F_ext_hat_K);
+        put(&mut self.k_f_ext, &state.K_F_ext_hat_K);
+        self.o_t_ee = pose_of(&state.O_T_EE);
+        put(&mut self.theta, &state.theta);
+        put(&mut self.dtheta, &state.dtheta);
+        put(&mut self.elbow, &state.elbow);
+
+        put_levels(&mut self.joint_contact, &state.joint_contact);
+        put_levels(&mut self.joint_collision, &state.joint_collision);
+        put_levels(&mut self.cartesian_contact, &state.cartesian_contact);
+        put_levels(&mut self.cartesian_collision, &state.cartesian_collision);
+
+        put(&mut self.q_d, &state.q_d);
+        put(&mut self.dq_d, &state.dq_d);
+        put(&mut self.ddq_d, &state.ddq_d);
+        put(&mut self.tau_j_d, &state.tau_J_d);
+        self.o_t_ee_d = pose_of(&state.O_T_EE_d);
+        put(&mut self.o_d_p_ee_d, &state.O_dP_EE_d);
+
+        put_unless_zero(&mut self.q_ref, &record.q_ref);
+        put_unless_zero(&mut self.dq_ref, &record.dq_ref);
+        put_unless_zero(&mut self.ddq_ref, &record.ddq_ref);
+        self.reference = cycle.reference.as_ref().map(pose);
+        self.target = record.pose_target.as_ref().map(pose);
+        put(
+            &mut self.q_target,
+            record.q_target.as_ref().map_or(&[], |q| q),
+        );
+        self.elapsed = record.elapsed.as_secs_f32();
+        self.remaining = record.remaining.as_secs_f32();
+
+        put_unless_zero(&mut self.tau_c, &record.tau_c);
+        put_unless_zero(&mut self.compensation, &record.compensation);
+        self.guards.clear();
+        self.guards.extend(record.bindings.iter().map(guard_number));
+
+        self.late = record.late.as_secs_f32();
+        self.turnaround = record.turnaround.as_secs_f32();
+        self.slack = record
+            .slack
+            .map(|slack| (slack.as_nanos() as f64 * 1e-9) as f32);
+    }
+
+    /// The cycle of this message, with the tool that was on the arm.
+    pub fn to_cycle(&self, tool: Option<&franka::Tool>) -> Cycle {
+        let mut cycle = Cycle {
+            time: HostTime::from_nanos(self.host_time),
+            reference: self.reference.as_ref().and_then(isometry),
+            ..Cycle::default()
+        };
+        self.fill_record(&mut cycle);
+        self.fill_state(&mut cycle.state);
+        if let Some(tool) = tool {
+            tool.apply(&mut cycle.state);
+        }
+        cycle
+    }
+
+    fn fill_record(&self, cycle: &mut Cycle) {
+        let record = &mut cycle.record;
+        record.time = self.robot_time;
+        record.skipped = self.skipped;
+        record.activity = match self.activity() {
+            franka::Activity::Watching => Activity::Watching,
+            franka::Activity::Armed => Activity::Armed,
+            franka::Activity::Waiting => Activity::Waiting,
+            franka::Activity::Running => Activity::Running,
+            franka::Activity::Finishing => Activity::Finishing,
+            franka::Activity::Silent => Activity::Silent,
+        };
+        record.robot_mode = robot_mode(self.robot_mode);
+        record.errors = Errors::from_bits(self.errors);
+        record.reflex_reason = Errors::from_bits(self.reflex_reason);
+        record.success_rate = f64::from(self.success_rate);
+        record.goal = self.goal;
+        record.q = get_exact(&self.q);
+        record.dq = get(&self.dq);
+        record.q_ref = get(&self.q_ref);
+        record.dq_ref = get(&self.dq_ref);
+        record.ddq_ref = get(&self.ddq_ref);
+        record.q_target = (!self.q_target.is_empty()).then(|| get(&self.q_target));
+        record.pose_target = self.target.as_ref().and_then(isometry);
+        record.elapsed = seconds(self.elapsed);
+        record.remaining = seconds(self.remaining);
+        record.tau_c = get(&self.tau_c);
+        record.compensation = get(&self.compensation);
+        record.bindings = bindings(&self.guards);
+        record.late = seconds(self.late);
+        record.turnaround = seconds(self.turnaround);
+        record.slack = self
+            .slack
+            .map(|slack| Slack::from_nanos((f64::from(slack) * 1e9).round() as i64));
+    }
+
+    fn fill_state(&self, state: &mut RobotState) {
+        state.message_id = self.robot_time;
+        state.robot_mode = robot_mode(self.robot_mode);
+        state.motion_generator_mode = generator(self.motion_generator_mode);
+        // A larger number is in no file of ours.
+        let controller = u8::try_from(self.controller_mode).unwrap_or(u8::MAX);
+        state.controller_mode = ControllerMode::from_byte(controller);
+        state.errors = Errors::from_bits(self.errors);
+        state.reflex_reason = Errors::from_bits(self.reflex_reason);
+        state.control_command_success_rate = f64::from(self.success_rate);
+        state.q = get_exact(&self.q);
+        state.dq = get(&self.dq);
+        state.tau_J = get(&self.tau_j);
+        state.dtau_J = get(&self.dtau_j);
+        state.tau_ext_hat_filtered = get(&self.tau_ext);
+        state.O_F_ext_hat_K = get(&self.o_f_ext);
+        state.K_F_ext_hat_K = get(&self.k_f_ext);
+        state.O_T_EE = matrix_of(self.o_t_ee.as_ref());
+        state.theta = get(&self.theta);
+        state.dtheta = get(&self.dtheta);
+        state.elbow = get(&self.elbow);
+        state.joint_contact = get_levels(&self.joint_contact);
+        state.joint_collision = get_levels(&self.joint_collision);
+        state.cartesian_contact = get_levels(&self.cartesian_contact);
+        state.cartesian_collision = get_levels(&self.cartesian_collision);
+        state.q_d = get(&self.q_d);
+        state.dq_d = get(&self.dq_d);
+        state.ddq_d = get(&self.ddq_d);
+        state.tau_J_d = get(&self.tau_j_d);
+        state.O_T_EE_d = matrix_of(self.o_t_ee_d.as_ref());
+        state.O_dP_EE_d = get(&self.o_d_p_ee_d);
+    }
+}
+
+impl franka::Tool {
+    /// The tool that `state` names.
+    pub fn of(state: &RobotState) -> Self {
+        Self {
+            robot_time: state.message_id,
+            f_t_ee: state.F_T_EE.into(),
+            ee_t_k: state.EE_T_K.into(),
+            f_t_ne: state.F_T_NE.into(),
+            ne_t_ee: state.NE_T_EE.into(),
+            m_ee: state.m_ee,
+            i_ee: state.I_ee.into(),
+            f_x_cee: state.F_x_Cee.into(),
+            m_load: state.m_load,
+            i_load: state.I_load.into(),
+            f_x_cload: state.F_x_Cload.into(),
+        }
+    }
+
+    /// Whether `state` names the same tool.
+    pub fn is_of(&self, state: &RobotState) -> bool {
+        self.f_t_ee == state.F_T_EE
+            && self.ee_t_k == state.EE_T_K
+            && self.f_t_ne == state.F_T_NE
+            && self.ne_t_ee == state.NE_T_EE
+            && self.m_ee == state.m_ee
+            && self.i_ee == state.I_ee
+            && self.f_x_cee == state.F_x_Cee
+            && self.m_load == state.m_load
+            && self.i_load == state.I_load
+            && self.f_x_cload == state.F_x_Cload
+    }
+
+    /// Writes the tool into `state`.
+    pub fn apply(&self, state: &mut RobotState) {
+        state.F_T_EE = get_exact(&self.f_t_ee);
+        state.EE_T_K = get_exact(&self.ee_t_k);
+        state.F_T_NE = get_exact(&self.f_t_ne);
+        state.NE_T_EE = get_exact(&self.ne_t_ee);
+        state.m_ee = self.m_ee;
+        state.I_ee = get_exact(&self.i_ee);
+        state.F_x_Cee = get_exact(&self.f_x_cee);
+        state.m_load = self.m_load;
+        state.I_load = get_exact(&self.i_load);
+        state.F_x_Cload = get_exact(&self.f_x_cload);
+    }
+}
+
+fn activity(activity: Activity) -> franka::Activity {
+    match activity {
+        Activity::Armed => franka::Activity::Armed,
+        Activity::Waiting => franka::Activity::Waiting,
+        Activity::Running => franka::Activity::Running,
+        Activity::Finishing => franka::Activity::Finishing,
+        Activity::Silent => franka::Activity::Silent,
+        _ => franka::Activity::Watching,
+    }
+}
+
+/// The mode of a number; one without a meaning reads as `Other`.
+pub(super) fn robot_mode(number: i32) -> RobotMode {
+    u8::try_from(number).map_or(RobotMode::Other, RobotMode::from_byte)
+}
+
+fn generator_number(mode: MotionGeneratorMode) -> u32 {
+    match mode {
+        MotionGeneratorMode::Idle => 0,
+        MotionGeneratorMode::JointPosition => 1,
+        MotionGeneratorMode::JointVelocity => 2,
+        MotionGeneratorMode::CartesianPosition => 3,
+        MotionGeneratorMode::CartesianVelocity => 4,
+        MotionGeneratorMode::None => 5,
+        MotionGeneratorMode::Unknown(byte) => 256 + u32::from(byte),
+    }
+}
+
+fn generator(number: u32) -> MotionGeneratorMode {
+    match number {
+        0 => MotionGeneratorMode::Idle,
+        1 => MotionGeneratorMode::JointPosition,
+        2 => MotionGeneratorMode::JointVelocity,
+        3 => MotionGeneratorMode::CartesianPosition,
+        4 => MotionGeneratorMode::CartesianVelocity,
+        5 => MotionGeneratorMode::None,
+        unknown => MotionGeneratorMode::Unknown((unknown & 0xff) as u8),
+    }
+}
+
+/// The number of a guard in messages: one more than its own, as 0 is for a guard without a name.
+pub(super) fn guard_number(guard: Guard) -> i32 {
+    guard as i32 + 1
+}
+
+/// The guard of a number.
+pub(super) fn guard(number: i32) -> Option<Guard> {
+    let index = usize::try_from(number).ok()?.checked_sub(1)?;
+    Guard::ALL.get(index).copied()
+}
+
+/// The guards of their numbers; those without a meaning are left out.
+fn bindings(numbers: &[i32]) -> Bindings {
+    let mut bindings = Bindings::default();
+    for guard in numbers.iter().filter_map(|&number| guard(number)) {
+        bindings.insert(guard);
+    }
+    bindings
+}
+
+/// A time of a message; zero for one that is none.
+fn seconds(seconds: f32) -> Duration {
+    let seconds = Duration::try_from_secs_f64(f64::from(seconds)).unwrap_or_default();
+    // What an f32 resolves of a time: no more digits than there were.
+    Duration::from_nanos(u64::try_from(seconds.as_nanos()).unwrap_or(u64::MAX))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Isometry3, Vector3};
+    use prost::Message as _;
+
+    #[test]
+    fn guards_have_the_numbers_of_their_names() {
+        for named in Guard::ALL {
+            let number = guard_number(named);
+            let message = franka::Guard::try_from(number).unwrap();
+            assert_eq!(format!("{message:?}"), format!("{named:?}"));
+            assert_eq!(guard(number), Some(named));
+        }
+        assert_eq!(guard(Guard::ALL.len() as i32 + 1), None);
+        assert_eq!((guard(0), guard(-1)), (None, None));
+    }
+
+    #[test]
+    fn modes_keep_their_numbers() {
+        for mode in RobotMode::ALL {
+            let name = franka::RobotMode::try_from(i32::from(mode.byte())).unwrap();
+            assert_eq!(format!("{name:?}"), format!("{mode:?}"));
+            assert_eq!(robot_mode(name.into()), mode);
+        }
+        for byte in 0..=u8::MAX {
+            let mode = MotionGeneratorMode::Unknown(byte);
+            assert_eq!(generator(generator_number(mode)), mode);
+        }
+        for number in 0..6 {
+            assert_eq!(generator_number(generator(number)), number);
+        }
+    }
+
+    /// A cycle whose numbers all differ, and have few digits.
+    fn cycle() -> Cycle {
+        let mut next = 0.0;
+        let mut number = || {
+            next += 0.125;
+            next
+        };
+        let mut cycle = Cycle {
+            time: HostTime::from_nanos(1_700_000_000_123_456_789),
+            reference: Some(Isometry3::new(
+                Vector3::new(0.5, 0.25, -0.125),
+                Vector3::zeros(),
+            )),
+            ..Cycle::default()
+        };
+        let (record, state) = (&mut cycle.record, &mut cycle.state);
+        record.time = 77;
+        state.message_id = 77;
+        record.skipped = 3;
+        record.activity = Activity::Running;
+        record.robot_mode = RobotMode::Reflex;
+        state.robot_mode = RobotMode::Reflex;
+        state.motion_generator_mode = MotionGeneratorMode::None;
+        state.controller_mode = ControllerMode::ExternalController;
+        record.errors = Errors::from_bits(0b101);
+        state.errors = record.errors;
+        record.reflex_reason = Errors::from_bits(1 << 40);
+        state.reflex_reason = record.reflex_reason;
+        record.success_rate = 0.75;
+        state.control_command_success_rate = 0.75;
+        record.goal = 12;
+        record.q = core::array::from_fn(|joint| 0.1 * joint as f64 - 1.0 / 3.0);
+        state.q = record.q;
+        let mut seven = || core::array::from_fn::<f64, 7, _>(|_| number());
+        record.dq = seven();
+        state.dq = record.dq;
+        for field in [
+            &mut record.q_ref,
+            &mut record.dq_ref,
+            &mut record.ddq_ref,
+            &mut record.tau_c,
+            &mut record.compensation,
+            &mut state.tau_J,
+            &mut state.dtau_J,
+            &mut state.tau_ext_hat_filtered,
+            &mut state.theta,
+            &mut state.dtheta,
+            &mut state.q_d,
+            &mut state.dq_d,
+            &mut state.ddq_d,
+            &mut state.tau_J_d,
+        ] {
+            *field = seven();
+        }
+        for field in [
+            &mut state.O_F_ext_hat_K,
+            &mut state.K_F_ext_hat_K,
+            &mut state.O_dP_EE_d,
+        ] {
+            *field = core::array::from_fn(|_| number());
+        }
+        state.O_T_EE[12..15].copy_from_slice(&[0.5, -0.25, 0.75]);
+        state.O_T_EE_d[12..15].copy_from_slice(&[1.5, -1.25, 1.75]);
+        state.elbow = [0.5, -1.0];
+        state.joint_contact[2] = 1.0;
+        state.joint_collision[3] = 1.0;
+        state.cartesian_contact[4] = 1.0;
+        state.cartesian_collision[5] = 1.0;
+        record.pose_target = Some(Isometry3::translation(0.0, 1.0, 2.0));
+        record.q_target = Some([0.5; 7]);
+        record.bindings.insert(Guard::Leash);
+        record.bindings.insert(Guard::Team);
+        record.elapsed = Duration::from_millis(500);
+        record.remaining = Duration::from_millis(250);
+        record.late = Duration::ZERO;
+        record.turnaround = Duration::from_secs(1) / 8192;
+        record.slack = Some(Slack::from_nanos(-1_000_000_000 / 4));
+        state.m_load = 1.0 / 3.0;
+        state.F_T_EE[14] = 0.1034;
+        cycle
+    }
+
+    #[test]
+    fn a_cycle_survives_its_message() {
+        let cycle = cycle();
+        let mut message = franka::Cycle::default();
+        message.set(&Cycle::default());
+        message.set(&cycle);
+        let bytes = message.encode_to_vec();
+        let message = franka::Cycle::decode(&*bytes).unwrap();
+        let tool = franka::Tool::of(&cycle.state);
+        assert!(tool.is_of(&cycle.state));
+        assert_eq!(message.to_cycle(Some(&tool)), cycle);
+        message.to_cycle(None);
+    }
+
+    #[test]
+    fn a_cycle_without_numbers_survives() {
+        let cycle = Cycle::default();
+        let mut message = franka::Cycle::default();
+        message.set(&cycle);
+        assert_eq!(message.to_cycle(None), cycle);
+    }
+}
