@@ -7,9 +7,7 @@ pub mod event;
 pub mod export;
 mod sample;
 pub mod schema;
-mod source;
 
 pub use cycle::{Cycle, HostTime};
 pub use event::{Event, EventKind, GripperState};
 pub use sample::Sample;
-pub use source::{HostClock, Next, Source};
