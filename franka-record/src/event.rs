@@ -316,6 +316,15 @@ impl EventKind {
         }
     }
 
+    /// Whether the cycles around it are kept at the full rate where others are thinned out.
+    pub(crate) fn is_notable(&self) -> bool {
+        match self {
+            Self::LinkRestored { .. } | Self::Dropped { .. } | Self::Errors { .. } => true,
+            Self::Request(_) => false,
+            other => other.level() == Level::Error,
+        }
+    }
+
     /// Who or what it is about, for the `name` of a log.
     pub fn source(&self) -> &str {
         match self {

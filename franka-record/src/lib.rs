@@ -5,6 +5,7 @@ mod cycle;
 pub mod event;
 #[cfg(feature = "export")]
 pub mod export;
+pub mod recorder;
 mod sample;
 pub mod schema;
 

@@ -3,8 +3,10 @@
 mod arrays;
 mod cycles;
 mod events;
+mod topic;
 
 pub use prost::Message;
+pub(crate) use topic::{METADATA, ROBOT_METADATA, Topic};
 
 /// Foxglove's well-known messages, as far as a recording has them.
 #[allow(missing_docs, reason = "documented in the definitions")]

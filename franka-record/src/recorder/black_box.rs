@@ -1,0 +1,139 @@
+//! The last seconds in memory, as a file when something has ended a motion.
+
+use std::collections::VecDeque;
+
+use super::encoder::Message;
+use super::error::RecordError;
+use super::mcap_file::McapFile;
+use super::options::BlackBox;
+use super::session::Session;
+use crate::HostTime;
+
+/// The last seconds of a recording.
+#[derive(Debug)]
+pub(super) struct LastSeconds {
+    options: BlackBox,
+    messages: VecDeque<Message>,
+    /// The incident whose file is to be written.
+    incident: Option<Incident>,
+}
+
+/// What the file is named after.
+#[derive(Debug)]
+struct Incident {
+    time: HostTime,
+    robot: String,
+    why: String,
+}
+
+/// A file to be written.
+#[derive(Debug)]
+pub(super) struct Dump {
+    pub(super) name: String,
+    pub(super) bytes: Vec<u8>,
+}
+
+impl LastSeconds {
+    pub(super) fn new(options: BlackBox) -> Self {
+        Self {
+            options,
+            messages: VecDeque::new(),
+            incident: None,
+        }
+    }
+
+    pub(super) fn push(&mut self, message: Message) {
+        let now = message.time;
+        self.messages.push_back(message);
+        let past = now - self.options.before - self.options.after;
+        // A clock of a robot may be behind those of others: what is older than that goes anyway.
+        while self
+            .messages
+            .front()
+            .is_some_and(|oldest| oldest.time < past)
+        {
+            self.messages.pop_front();
+        }
+    }
+
+    /// Notes an incident. One that follows while a file is due is in that file.
+    pub(super) fn note(&mut self, time: HostTime, robot: &str, why: &str) {
+        self.incident.get_or_insert_with(|| Incident {
+            time,
+            robot: robot.to_owned(),
+            why: why.to_owned(),
+        });
+    }
+
+    /// The file that is due at `now`, if one is.
+    pub(super) fn dump(
+        &mut self,
+        now: HostTime,
+        session: &Session,
+    ) -> Option<Result<Dump, RecordError>> {
+        let after = self.options.after;
+        let incident = self
+            .incident
+            .take_if(|incident| incident.time + after <= now)?;
+        let written = write(session, &self.messages);
+        Some(written.map(|bytes| Dump {
+            name: incident.file_name(),
+            bytes,
+        }))
+    }
+}
+
+fn write(session: &Session, messages: &VecDeque<Message>) -> Result<Vec<u8>, RecordError> {
+    let mut file = McapFile::begin(session)?;
+    let mut bytes = Vec::new();
+    let mut flushed = HostTime::default();
+    for message in messages {
+        // Short chunks, as in any recording: a part can be read without the rest.
+        if message.time.since(flushed) >= super::options::FLUSH_MAX {
+            flushed = message.time;
+            bytes.append(&mut file.flush()?);
+        }
+        file.write(message)?;
+    }
+    bytes.append(&mut file.finish()?);
+    Ok(bytes)
+}
+
+impl Incident {
+    fn file_name(&self) -> String {
+        let time = self.time.to_string().replace(['-', ':'], "");
+        format!("{time}-{}-{}.mcap", self.robot, self.why)
+    }
+}
+
+/// Whether a file of this name is one of a black box: it begins with a time as above.
+pub(super) fn is_file_name(name: &str) -> bool {
+    let Some((time, rest)) = name.split_once('-') else {
+        return false;
+    };
+    let shape: String = time
+        .chars()
+        .map(|c| if c.is_ascii_digit() { '0' } else { c })
+        .collect();
+    shape == "00000000T000000.000Z" && (rest.ends_with(".mcap") || rest.ends_with(".mcap.part"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_named_by_time_robot_and_cause() {
+        let incident = Incident {
+            time: HostTime::from_nanos(1_709_210_096_123_000_000),
+            robot: "left".to_owned(),
+            why: "guard-deviation".to_owned(),
+        };
+        let name = incident.file_name();
+        assert_eq!(name, "20240229T123456.123Z-left-guard-deviation.mcap");
+        assert!(is_file_name(&name) && is_file_name(&format!("{name}.part")));
+        for other in ["run.mcap", "20240229-left-reflex.mcap", "notes-1.mcap", ""] {
+            assert!(!is_file_name(other), "{other}");
+        }
+    }
+}

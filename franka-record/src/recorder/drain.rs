@@ -1,0 +1,265 @@
+//! The thread that takes cycles out of the rings and puts files together.
+
+use core::time::Duration;
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
+
+use franka_rt::thread::CycleReader;
+
+use super::disk::Disk;
+use super::encoder::{Encoder, Message};
+use super::error::RecordError;
+use super::files::Files;
+use super::lock;
+use super::options::{RecordOptions, Robot};
+use super::session::RecordClock;
+use crate::{Cycle, Event, EventKind, GripperState, HostTime};
+
+/// What the thread is told.
+#[derive(Debug)]
+pub(super) enum Order {
+    Attach(Box<(Robot, CycleReader)>),
+    Event(usize, Box<Event>),
+    Gripper(usize, HostTime, GripperState),
+    Finish,
+}
+
+/// What the thread has taken so far, and what it is told beside the orders.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct DrainStatus {
+    pub(super) cycles: u64,
+    pub(super) dropped: u64,
+    pub(super) events_dropped: u64,
+    /// Whether to end.
+    pub(super) finish: bool,
+    /// Whether it has ended.
+    pub(super) ended: bool,
+}
+
+/// The thread's state.
+pub(super) struct Drain {
+    orders: Receiver<Order>,
+    status: Arc<Mutex<DrainStatus>>,
+    sources: Vec<Source>,
+    files: Files,
+    clock: RecordClock,
+    /// When the wall clock is compared again.
+    compare_due: Instant,
+    /// The wall clock minus recorded time, `[ns]`.
+    offset: i64,
+}
+
+/// A robot that is recorded.
+struct Source {
+    label: String,
+    cycles: CycleReader,
+    encoder: Encoder,
+    /// What is not a cycle, oldest first, until the cycles before it were taken.
+    waiting: Vec<Waiting>,
+    /// Messages on their way; empty between calls.
+    messages: Vec<Message>,
+}
+
+/// What is not a cycle.
+enum Waiting {
+    Event(Event),
+    Gripper(HostTime, GripperState),
+}
+
+impl Waiting {
+    fn time(&self) -> HostTime {
+        match self {
+            Self::Event(event) => event.time,
+            Self::Gripper(time, _) => *time,
+        }
+    }
+}
+
+impl Drain {
+    pub(super) fn new(
+        orders: Receiver<Order>,
+        clock: RecordClock,
+        options: RecordOptions,
+        path: Option<PathBuf>,
+        disk: Disk,
+        status: Arc<Mutex<DrainStatus>>,
+    ) -> Result<Self, RecordError> {
+        Ok(Self {
+            orders,
+            status,
+            sources: Vec::new(),
+            files: Files::begin(clock.now(), options, path, disk)?,
+            clock,
+            compare_due: Instant::now(),
+            offset: 0,
+        })
+    }
+
+    /// Runs until it is told to end, or nobody is left to tell it.
+    pub(super) fn run(mut self) {
+        loop {
+            let go_on = self.take_orders();
+            self.take_cycles();
+            self.compare_clocks();
+            self.files.tick(self.clock.now());
+            if !go_on {
+                break;
+            }
+        }
+        self.finish();
+    }
+
+    /// Waits for the time between two looks, and takes the orders there are. Returns whether to go
+    /// on.
+    fn take_orders(&mut self) -> bool {
+        let mut next = match self.orders.recv_timeout(LOOK) {
+            Ok(order) => Some(order),
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => return false,
+        };
+        while let Some(order) = next {
+            match order {
+                Order::Attach(attached) => self.attach(*attached),
+                Order::Event(robot, event) => self.wait(robot, Waiting::Event(*event)),
+                Order::Gripper(robot, time, state) => {
+                    self.wait(robot, Waiting::Gripper(time, state));
+                }
+                Order::Finish => return false,
+            }
+            next = match self.orders.try_recv() {
+                Ok(order) => Some(order),
+                Err(TryRecvError::Empty) => None,
+                Err(TryRecvError::Disconnected) => return false,
+            };
+        }
+        !lock(&self.status).finish
+    }
+
+    fn attach(&mut self, (robot, cycles): (Robot, CycleReader)) {
+        self.sources.push(Source {
+            label: robot.label().to_owned(),
+            cycles,
+            encoder: Encoder::new(self.sources.len(), &robot),
+            waiting: Vec::new(),
+            messages: Vec::new(),
+        });
+        self.files.add_robot(robot);
+    }
+
+    fn wait(&mut self, robot: usize, waiting: Waiting) {
+        if let Some(source) = self.sources.get_mut(robot) {
+            source.waiting.push(waiting);
+        }
+    }
+
+    fn take_cycles(&mut self) {
+        let (mut taken, mut dropped) = (0, 0);
+        for (index, source) in self.sources.iter_mut().enumerate() {
+            source.waiting.sort_by_key(Waiting::time);
+            // No more than there are now, so that the other robots have their turn.
+            for _ in 0..source.cycles.waiting() {
+                let Some(captured) = source.cycles.pop() else {
+                    break;
+                };
+                let cycle = Cycle {
+                    time: self.clock.at(captured.received),
+                    record: captured.record,
+                    state: captured.state,
+                    reference: None,
+                };
+                source.pass(cycle.time, &mut self.files);
+                taken += 1;
+                let missing = self.files.take_missing(index);
+                dropped += missing + captured.lost;
+                if missing + captured.lost > 0 {
+                    let cycles = missing + captured.lost;
+                    source.event(cycle.time, EventKind::Dropped { cycles }, &mut self.files);
+                }
+                self.files.flush_if_due(cycle.time);
+                if self.files.begins_chunk(index) {
+                    source.encoder.repeat_tool(cycle.time, &mut source.messages);
+                }
+                source.encoder.cycle(cycle, &mut source.messages);
+                self.files.pass(&mut source.messages);
+            }
+            // What is newer than a cycle that is still on its way is close to it.
+            source.pass(self.clock.now(), &mut self.files);
+        }
+        let mut status = lock(&self.status);
+        status.cycles += taken;
+        status.dropped += dropped;
+    }
+
+    /// Notes when the wall clock of this host was set.
+    fn compare_clocks(&mut self) {
+        let now = Instant::now();
+        if now < self.compare_due {
+            return;
+        }
+        self.compare_due = now + COMPARE_PERIOD;
+        let time = self.clock.now();
+        let offset = HostTime::now().as_nanos() as i64 - time.as_nanos() as i64;
+        if (offset - self.offset).abs() >= STEP_MIN {
+            self.offset = offset;
+            for source in &mut self.sources {
+                source.event(time, EventKind::ClockStep { by: offset }, &mut self.files);
+            }
+        }
+    }
+
+    fn finish(mut self) {
+        for (index, source) in self.sources.iter_mut().enumerate() {
+            source.pass(HostTime::from_nanos(u64::MAX), &mut self.files);
+            let missing = self.files.take_missing(index);
+            lock(&self.status).dropped += missing;
+        }
+        self.files.finish();
+        lock(&self.status).ended = true;
+    }
+}
+
+impl Source {
+    /// Passes on what is not a cycle, up to `time`.
+    fn pass(&mut self, time: HostTime, files: &mut Files) {
+        let count = self
+            .waiting
+            .partition_point(|waiting| waiting.time() <= time);
+        for waiting in self.waiting.drain(..count) {
+            match waiting {
+                Waiting::Event(event) => {
+                    self.encoder.event(&event, &mut self.messages);
+                    if let EventKind::Outcome(outcome) = &event.kind
+                        && event.kind.is_incident()
+                    {
+                        let why = outcome.ending.to_string();
+                        files.note_incident(event.time, &self.label, &why);
+                    }
+                }
+                Waiting::Gripper(time, state) => {
+                    self.encoder.gripper(time, &state, &mut self.messages);
+                }
+            }
+            files.pass(&mut self.messages);
+        }
+    }
+
+    fn event(&mut self, time: HostTime, kind: EventKind, files: &mut Files) {
+        let event = Event {
+            time,
+            robot_time: 0,
+            kind,
+        };
+        self.encoder.event(&event, &mut self.messages);
+        files.pass(&mut self.messages);
+    }
+}
+
+/// Time between two looks at the rings, which hold seconds.
+const LOOK: Duration = Duration::from_millis(20);
+
+const COMPARE_PERIOD: Duration = Duration::from_secs(1);
+
+/// A smaller change is one of a clock that is slewed, `[ns]`.
+const STEP_MIN: i64 = 100_000_000;

@@ -1,0 +1,192 @@
+//! Turns what comes from one robot into messages.
+
+use core::mem;
+use core::time::Duration;
+
+use super::frames::{Frames, timestamp};
+use super::options::Robot;
+use crate::schema::{Topic, foxglove, franka};
+use crate::{Cycle, Event, EventKind, GripperState, HostTime};
+use franka_model::{EndEffector, Frame, Model, transform};
+use franka_proto::{Errors, RobotMode};
+
+/// A message of a channel.
+#[derive(Clone, Debug)]
+pub(super) struct Message {
+    pub(super) robot: usize,
+    pub(super) topic: Topic,
+    pub(super) time: HostTime,
+    pub(super) data: Box<[u8]>,
+    /// Whether the cycles around it are worth keeping at the full rate.
+    pub(super) notable: bool,
+}
+
+/// The encoder of one robot. It finds changes of mode, errors, contacts and tool by itself.
+#[derive(Debug)]
+pub(super) struct Encoder {
+    robot: usize,
+    frames: Frames,
+    model: &'static Model,
+    /// Used again for each cycle, with the memory of its fields.
+    cycle: franka::Cycle,
+    /// As in the newest cycle; `None` before the first.
+    seen: Option<Seen>,
+    tool: Option<franka::Tool>,
+    /// When the channels of a lower rate are due again.
+    slow_due: HostTime,
+}
+
+/// What is compared from cycle to cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Seen {
+    robot_time: u64,
+    mode: RobotMode,
+    errors: Errors,
+    reflex_reason: Errors,
+    touched: [[f64; 7]; 2],
+    pressed: [[f64; 6]; 2],
+}
+
+impl Encoder {
+    pub(super) fn new(index: usize, robot: &Robot) -> Self {
+        Self {
+            robot: index,
+            frames: Frames::of(robot),
+            model: Model::of(robot.kind),
+            cycle: franka::Cycle::default(),
+            seen: None,
+            tool: None,
+            slow_due: HostTime::default(),
+        }
+    }
+
+    /// Appends the messages of a cycle.
+    pub(super) fn cycle(&mut self, mut cycle: Cycle, out: &mut Vec<Message>) {
+        let state = &cycle.state;
+        if cycle.reference.is_none() && cycle.record.q_ref != [0.0; 7] {
+            let ee = EndEffector::from_arrays(&state.F_T_EE, &state.EE_T_K);
+            let q_ref = cycle.record.q_ref.into();
+            let pose = self.model.pose(Frame::EndEffector, &q_ref, &ee);
+            cycle.reference = transform::isometry(&pose);
+        }
+        let notable = self.compare(&cycle, out);
+        if !self.tool.as_ref().is_some_and(|tool| tool.is_of(state)) {
+            self.tool = Some(franka::Tool::of(state));
+            self.repeat_tool(cycle.time, out);
+        }
+        let mut message = mem::take(&mut self.cycle);
+        message.set(&cycle);
+        self.put(Topic::Cycle, cycle.time, &message, out);
+        self.cycle = message;
+        if let Some(last) = out.last_mut() {
+            last.notable = notable;
+        }
+        if cycle.time >= self.slow_due {
+            self.slow_due = cycle.time + SLOW_PERIOD;
+            self.viewed(&cycle, out);
+        }
+    }
+
+    /// Appends the events of what has changed since the cycle before, and returns whether the
+    /// cycles around are worth keeping.
+    fn compare(&mut self, cycle: &Cycle, out: &mut Vec<Message>) -> bool {
+        let state = &cycle.state;
+        let now = Seen {
+            robot_time: cycle.record.time,
+            mode: state.robot_mode,
+            errors: state.errors,
+            reflex_reason: state.reflex_reason,
+            touched: [state.joint_contact, state.joint_collision],
+            pressed: [state.cartesian_contact, state.cartesian_collision],
+        };
+        let before = self.seen.replace(now);
+        let mut put = |kind| {
+            let event = Event {
+                time: cycle.time,
+                robot_time: cycle.record.time,
+                kind,
+            };
+            self.event(&event, out);
+        };
+        if before.is_none_or(|before| before.mode != now.mode) {
+            put(EventKind::Mode {
+                from: before.map_or(RobotMode::Other, |before| before.mode),
+                to: now.mode,
+            });
+        }
+        let errors = (now.errors, now.reflex_reason);
+        let none = (Errors::NONE, Errors::NONE);
+        if before.map_or(none, |before| (before.errors, before.reflex_reason)) != errors {
+            put(EventKind::Errors {
+                errors: now.errors,
+                reflex_reason: now.reflex_reason,
+            });
+        }
+        before.is_some_and(|before| (before.touched, before.pressed) != (now.touched, now.pressed))
+    }
+
+    /// Appends what viewers show.
+    fn viewed(&self, cycle: &Cycle, out: &mut Vec<Message>) {
+        let time = cycle.time;
+        self.put(Topic::Tf, time, &self.frames.transforms(cycle), out);
+        self.put(Topic::Joints, time, &self.frames.joints(cycle), out);
+        if let Some(target) = self.frames.target(cycle) {
+            self.put(Topic::Target, time, &target, out);
+        }
+        if let Some(scene) = self.frames.scene(cycle) {
+            self.put(Topic::Scene, time, &scene, out);
+        }
+    }
+
+    /// Appends an event, as a value and as text.
+    pub(super) fn event(&self, event: &Event, out: &mut Vec<Message>) {
+        let mut message = franka::Event::from(event);
+        if message.robot_time == 0 {
+            message.robot_time = self.seen.map_or(0, |seen| seen.robot_time);
+        }
+        self.put(Topic::Event, event.time, &message, out);
+        if let Some(last) = out.last_mut() {
+            last.notable = event.kind.is_notable();
+        }
+        let log = foxglove::Log {
+            timestamp: Some(timestamp(event.time)),
+            level: foxglove::log::Level::from(event.kind.level()).into(),
+            message: event.kind.to_string(),
+            name: event.kind.source().to_owned(),
+            file: String::new(),
+            line: 0,
+        };
+        self.put(Topic::Log, event.time, &log, out);
+    }
+
+    /// Appends a state of the gripper.
+    pub(super) fn gripper(&self, time: HostTime, state: &GripperState, out: &mut Vec<Message>) {
+        self.put(Topic::Gripper, time, &franka::Gripper::from(state), out);
+    }
+
+    /// Appends the tool, if it is known.
+    pub(super) fn repeat_tool(&self, time: HostTime, out: &mut Vec<Message>) {
+        if let Some(tool) = &self.tool {
+            self.put(Topic::Tool, time, tool, out);
+        }
+    }
+
+    fn put(
+        &self,
+        topic: Topic,
+        time: HostTime,
+        message: &impl prost::Message,
+        out: &mut Vec<Message>,
+    ) {
+        out.push(Message {
+            robot: self.robot,
+            topic,
+            time,
+            data: message.encode_to_vec().into(),
+            notable: false,
+        });
+    }
+}
+
+/// Of what viewers show: 50 Hz, as fast as a screen needs it.
+const SLOW_PERIOD: Duration = Duration::from_millis(20);

@@ -1,0 +1,305 @@
+//! Where messages go: the file of the recording, which is followed by others, and the last seconds.
+
+use core::mem;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use super::black_box::LastSeconds;
+use super::disk::Disk;
+use super::encoder::Message;
+use super::error::RecordError;
+use super::mcap_file::McapFile;
+use super::options::{RecordOptions, Robot};
+use super::session::Session;
+use super::thinning::Thinning;
+use crate::HostTime;
+use crate::schema::Topic;
+
+/// The files of a recording.
+pub(super) struct Files {
+    options: RecordOptions,
+    session: Session,
+    disk: Disk,
+    /// The file that grows; `None` without one, and after a failure.
+    open: Option<Open>,
+    /// Whether there was to be a file.
+    wanted: bool,
+    last_seconds: Option<LastSeconds>,
+    thinning: Option<Thinning>,
+    /// Time of the newest message.
+    newest: HostTime,
+    robots: Vec<RobotFiles>,
+    /// Chunks of the recording so far.
+    chunk: u64,
+}
+
+/// What is kept per robot.
+#[derive(Default)]
+struct RobotFiles {
+    /// Cycles that were not written, since the last call of [`Files::take_missing`].
+    missing: u64,
+    /// The chunk that has its tool.
+    chunk: Option<u64>,
+}
+
+/// The file that grows.
+struct Open {
+    file: McapFile,
+    /// The path of the first file of the recording, and the number of this one.
+    first: PathBuf,
+    number: u32,
+    bytes: u64,
+    /// Time of its first message.
+    began: Option<HostTime>,
+    /// Time of the newest message when it was last flushed, and when that was.
+    flushed: HostTime,
+    flushed_at: Instant,
+    /// Whether the disk is too far behind.
+    full: bool,
+}
+
+impl Files {
+    pub(super) fn begin(
+        now: HostTime,
+        options: RecordOptions,
+        path: Option<PathBuf>,
+        disk: Disk,
+    ) -> Result<Self, RecordError> {
+        let session = Session::new(now, &options);
+        let open = match path {
+            Some(path) => Some(Open::begin(path, 1, &session)?),
+            None => None,
+        };
+        Ok(Self {
+            session,
+            disk,
+            wanted: open.is_some(),
+            open,
+            last_seconds: options.black_box.clone().map(LastSeconds::new),
+            thinning: options.thinned.then(Thinning::default),
+            newest: HostTime::default(),
+            robots: Vec::new(),
+            chunk: 0,
+            options,
+        })
+    }
+
+    pub(super) fn add_robot(&mut self, robot: Robot) {
+        self.robots.push(RobotFiles::default());
+        let added = match &mut self.open {
+            Some(open) => open.file.add_robot(&robot),
+            None => Ok(()),
+        };
+        let added = added.and(self.session.add_robot(robot));
+        self.check(added);
+    }
+
+    /// Takes messages, which leaves none.
+    pub(super) fn pass(&mut self, messages: &mut Vec<Message>) {
+        for message in messages.drain(..) {
+            self.newest = self.newest.max(message.time);
+            if let Some(last_seconds) = &mut self.last_seconds {
+                last_seconds.push(message.clone());
+            }
+            match self.thinning.take() {
+                Some(mut thinning) => {
+                    thinning.push(message, |message| self.write(&message));
+                    self.thinning = Some(thinning);
+                }
+                None => self.write(&message),
+            }
+        }
+    }
+
+    fn write(&mut self, message: &Message) {
+        let is_cycle = message.topic == Topic::Cycle;
+        let written = match &mut self.open {
+            Some(open) if !(is_cycle && open.full) => {
+                open.began.get_or_insert(message.time);
+                open.file.write(message)
+            }
+            _ => {
+                if let Some(robot) = self.robots.get_mut(message.robot)
+                    && self.wanted
+                    && is_cycle
+                {
+                    robot.missing += 1;
+                }
+                Ok(())
+            }
+        };
+        self.check(written);
+    }
+
+    /// Cycles of a robot that were not written since the last call.
+    pub(super) fn take_missing(&mut self, robot: usize) -> u64 {
+        let open = self.open.as_ref();
+        let full = open.is_some_and(|open| open.full);
+        match self.robots.get_mut(robot) {
+            // Told once there is room for it.
+            Some(robot) if !full => mem::take(&mut robot.missing),
+            _ => 0,
+        }
+    }
+
+    /// Ends the chunk if messages of `now` are too late for it.
+    pub(super) fn flush_if_due(&mut self, now: HostTime) {
+        if let Some(open) = &self.open
+            && now.since(open.flushed) >= self.options.flush
+        {
+            self.newest = self.newest.max(now);
+            self.flush();
+        }
+    }
+
+    /// Whether the next messages of a robot are its first ones in a chunk; true once per chunk.
+    pub(super) fn begins_chunk(&mut self, robot: usize) -> bool {
+        let chunk = Some(self.chunk);
+        let robot = self.robots.get_mut(robot);
+        robot.is_some_and(|robot| mem::replace(&mut robot.chunk, chunk) != chunk)
+    }
+
+    pub(super) fn note_incident(&mut self, time: HostTime, robot: &str, why: &str) {
+        if let Some(last_seconds) = &mut self.last_seconds {
+            last_seconds.note(time, robot, why);
+        }
+    }
+
+    /// Writes what is due at `now`. Called some 50 times a second.
+    pub(super) fn tick(&mut self, now: HostTime) {
+        if !self.disk.is_well() {
+            self.open = None;
+        }
+        if let Some(open) = &self.open
+            && open.flushed_at.elapsed() >= self.options.flush
+        {
+            self.flush();
+        }
+        self.dump(now.max(self.newest));
+    }
+
+    fn dump(&mut self, now: HostTime) {
+        if let Some(last_seconds) = &mut self.last_seconds
+            && let Some(dump) = last_seconds.dump(now, &self.session)
+            && let Some(options) = &self.options.black_box
+        {
+            match dump {
+                Ok(dump) => {
+                    let directory = options.directory.clone();
+                    self.disk.black_box(directory, dump, options.keep);
+                }
+                Err(error) => self.disk.fail_black_box(error),
+            }
+        }
+    }
+
+    /// Ends the chunk, and the file if that is due.
+    fn flush(&mut self) {
+        let newest = self.newest;
+        let flushed = match &mut self.open {
+            Some(open) => open.flush(newest, &self.disk),
+            None => Ok(()),
+        };
+        self.chunk += 1;
+        self.check(flushed);
+        let rotation = self.options.rotation;
+        if let Some(open) = self.open.take_if(|open| {
+            let span = open.began.map(|began| newest.since(began));
+            rotation.bytes.is_some_and(|bytes| open.bytes >= bytes)
+                || rotation.time.is_some_and(|time| span >= Some(time))
+        }) {
+            let next = open.follow(&self.session, &self.disk);
+            match next {
+                Ok(next) => self.open = Some(next),
+                Err(error) => self.disk.fail(error),
+            }
+        }
+    }
+
+    /// Ends all files.
+    pub(super) fn finish(&mut self) {
+        if let Some(mut thinning) = self.thinning.take() {
+            thinning.finish(|message| self.write(&message));
+        }
+        self.dump(HostTime::from_nanos(u64::MAX));
+        if let Some(open) = self.open.take() {
+            match open.file.finish() {
+                Ok(bytes) => self.disk.append(bytes),
+                Err(error) => self.disk.fail(error),
+            }
+        }
+    }
+
+    /// Ends the recording if something could not be encoded.
+    fn check(&mut self, result: Result<(), RecordError>) {
+        if let Err(error) = result {
+            self.disk.fail(error);
+            self.open = None;
+        }
+    }
+}
+
+impl Open {
+    fn begin(first: PathBuf, number: u32, session: &Session) -> Result<Self, RecordError> {
+        Ok(Self {
+            file: McapFile::begin(session)?,
+            first,
+            number,
+            bytes: 0,
+            began: None,
+            flushed: HostTime::default(),
+            flushed_at: Instant::now(),
+            full: false,
+        })
+    }
+
+    fn flush(&mut self, newest: HostTime, disk: &Disk) -> Result<(), RecordError> {
+        let bytes = self.file.flush()?;
+        self.flushed = newest;
+        self.flushed_at = Instant::now();
+        self.bytes += bytes.len() as u64;
+        if !bytes.is_empty() {
+            disk.append(bytes);
+        }
+        self.full = disk.backlog() >= BACKLOG_MAX;
+        Ok(())
+    }
+
+    /// Ends this file and begins the next.
+    fn follow(self, session: &Session, disk: &Disk) -> Result<Self, RecordError> {
+        disk.append(self.file.finish()?);
+        let number = self.number + 1;
+        let next = Self::begin(self.first, number, session)?;
+        disk.open(numbered(&next.first, number), None);
+        Ok(next)
+    }
+}
+
+/// `run-0002.mcap` for the second file of `run.mcap`.
+fn numbered(first: &Path, number: u32) -> PathBuf {
+    let stem = first.file_stem().unwrap_or_default().to_string_lossy();
+    let name = match first.extension() {
+        Some(extension) => format!("{stem}-{number:04}.{}", extension.to_string_lossy()),
+        None => format!("{stem}-{number:04}"),
+    };
+    first.with_file_name(name)
+}
+
+/// Bytes that may wait for the disk: more than a minute of one robot.
+const BACKLOG_MAX: u64 = 64 << 20;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_that_follow_are_numbered() {
+        for (first, second) in [
+            ("run.mcap", "run-0002.mcap"),
+            ("a.b/run.of.today.mcap", "a.b/run.of.today-0002.mcap"),
+            ("run", "run-0002"),
+        ] {
+            assert_eq!(numbered(Path::new(first), 2), Path::new(second));
+        }
+    }
+}

@@ -1,0 +1,308 @@
+//! Writes every cycle of robots, and what happens to them, to files.
+//!
+//! ```text
+//! control thread --ring of cycles--+
+//!                                  +--> "franka-record": messages, chunks, last seconds --> "franka-disk": files
+//! RecordHandle --bounded queue-----+
+//! ```
+//!
+//! Both threads are ordinary ones. A slow disk delays the second one only: 64 MB wait for it, and
+//! then cycles are dropped, counted and the count written down. A disk that fails ends the
+//! recording and nothing else.
+
+mod black_box;
+mod disk;
+mod drain;
+mod encoder;
+mod error;
+mod files;
+mod frames;
+mod mcap_file;
+mod options;
+mod session;
+mod thinning;
+
+use core::time::Duration;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+
+use franka_rt::thread::CycleReader;
+
+use self::disk::{Disk, DiskStatus};
+use self::drain::{Drain, DrainStatus, Order};
+pub use self::error::RecordError;
+pub use self::options::{Attachment, BlackBox, RecordOptions, Robot, Rotation};
+pub use self::session::RecordClock;
+use crate::{Event, EventKind, GripperState, HostTime};
+
+/// Records robots to files, or the last seconds before an incident, or both.
+///
+/// ```no_run
+/// use franka_model::RobotKind;
+/// use franka_record::recorder::{RecordOptions, Recorder, Robot};
+/// # fn cycles() -> franka_rt::thread::CycleReader { unimplemented!() }
+///
+/// let recorder = Recorder::to_file("run.mcap", RecordOptions::default())?;
+/// let handle = recorder.attach(Robot::new(RobotKind::Fr3), cycles())?;
+/// handle.note("ready");
+/// // ... the robot moves ...
+/// let report = recorder.finish()?;
+/// println!("{} cycles, {} dropped", report.cycles, report.dropped);
+/// # Ok::<(), franka_record::recorder::RecordError>(())
+/// ```
+///
+/// Nothing it does can delay a cycle. Dropping it ends the recording in the background, as
+/// [`Recorder::finish`] does and waits for.
+#[derive(Debug)]
+pub struct Recorder {
+    orders: SyncSender<Order>,
+    clock: RecordClock,
+    disk: Arc<Mutex<DiskStatus>>,
+    drained: Arc<Mutex<DrainStatus>>,
+    /// Ends when the last byte is written.
+    done: Receiver<()>,
+    /// The robots so far, by index.
+    robots: Mutex<Vec<String>>,
+}
+
+impl Recorder {
+    /// Begins a recording in a new file at `path`.
+    ///
+    /// # Errors
+    /// [`RecordError::Exists`], [`RecordError::Create`] (the folder is missing or read-only),
+    /// [`RecordError::Option`], [`RecordError::Thread`].
+    pub fn to_file(path: impl AsRef<Path>, options: RecordOptions) -> Result<Self, RecordError> {
+        Self::start(Some(path.as_ref()), options)
+    }
+
+    /// Keeps the last seconds in memory only, and writes them when something ends a motion.
+    ///
+    /// # Errors
+    /// [`RecordError::Option`], [`RecordError::Thread`].
+    pub fn black_box(black_box: BlackBox) -> Result<Self, RecordError> {
+        let options = RecordOptions {
+            black_box: Some(black_box),
+            ..RecordOptions::default()
+        };
+        Self::start(None, options)
+    }
+
+    fn start(path: Option<&Path>, options: RecordOptions) -> Result<Self, RecordError> {
+        options.check()?;
+        // Made here, so that the caller has the error.
+        let file = path.map(disk::create).transpose()?;
+        let (orders, queue) = mpsc::sync_channel(ORDERS_MAX);
+        let (written, done) = mpsc::channel();
+        let clock = RecordClock::start();
+        let disk = Disk::start(options.sync, written)?;
+        let disk_status = disk.status();
+        let drained = Arc::<Mutex<DrainStatus>>::default();
+        if let Some(path) = path {
+            disk.open(path.to_owned(), file);
+        }
+        let drain = Drain::new(
+            queue,
+            clock,
+            options,
+            path.map(Path::to_owned),
+            disk,
+            drained.clone(),
+        )?;
+        thread::Builder::new()
+            .name("franka-record".to_owned())
+            .spawn(move || drain.run())
+            .map_err(|source| RecordError::Thread {
+                source: source.into(),
+            })?;
+        Ok(Self {
+            orders,
+            clock,
+            disk: disk_status,
+            drained,
+            done,
+            robots: Mutex::default(),
+        })
+    }
+
+    /// Records `robot`, whose cycles come out of `cycles`, until its thread ends or the recording
+    /// does. The handle takes what is not a cycle.
+    ///
+    /// # Errors
+    /// [`RecordError::SameName`], [`RecordError::Option`] for an invalid name, and
+    /// [`RecordError::Ended`].
+    pub fn attach(&self, robot: Robot, cycles: CycleReader) -> Result<RecordHandle, RecordError> {
+        robot.check()?;
+        let mut robots = lock(&self.robots);
+        if robots.contains(&robot.name) {
+            return Err(RecordError::SameName { name: robot.name });
+        }
+        let index = robots.len();
+        let name = robot.name.clone();
+        let order = Order::Attach(Box::new((robot, cycles)));
+        self.orders.send(order).map_err(|_| RecordError::Ended)?;
+        robots.push(name);
+        Ok(RecordHandle {
+            orders: self.orders.clone(),
+            clock: self.clock,
+            drained: self.drained.clone(),
+            robot: index,
+        })
+    }
+
+    /// The clock of recorded time.
+    pub fn clock(&self) -> RecordClock {
+        self.clock
+    }
+
+    /// What was recorded so far, and what has failed.
+    pub fn status(&self) -> RecordStatus {
+        let disk = lock(&self.disk).clone();
+        let drained = *lock(&self.drained);
+        RecordStatus {
+            cycles: drained.cycles,
+            dropped: drained.dropped,
+            events_dropped: drained.events_dropped,
+            bytes: disk.written,
+            waiting: disk.backlog,
+            files: disk.files,
+            black_boxes: disk.black_boxes,
+            error: disk.error,
+            black_box_error: disk.black_box_error,
+        }
+    }
+
+    /// Ends the recording and waits, 10 s at most, until all is on the disk.
+    ///
+    /// # Errors
+    /// As [`Recorder::finish_within`].
+    pub fn finish(self) -> Result<RecordStatus, RecordError> {
+        self.finish_within(FINISH_MAX)
+    }
+
+    /// Ends the recording and waits, up to `limit`, until all is on the disk.
+    ///
+    /// # Errors
+    /// [`RecordError::Write`] and others if the file could not be written to its end, and
+    /// [`RecordError::Unfinished`] if the disk was too slow. What was written is readable.
+    pub fn finish_within(self, limit: Duration) -> Result<RecordStatus, RecordError> {
+        lock(&self.drained).finish = true;
+        // Wakes the thread; if the queue is full it is awake.
+        let _ = self.orders.try_send(Order::Finish);
+        match self.done.recv_timeout(limit) {
+            Ok(()) | Err(RecvTimeoutError::Disconnected) => {}
+            Err(RecvTimeoutError::Timeout) => return Err(RecordError::Unfinished { limit }),
+        }
+        let status = self.status();
+        match status.error {
+            Some(error) => Err(error),
+            // The thread has panicked.
+            None if !lock(&self.drained).ended => Err(RecordError::Ended),
+            None => Ok(status),
+        }
+    }
+}
+
+impl Drop for Recorder {
+    fn drop(&mut self) {
+        lock(&self.drained).finish = true;
+    }
+}
+
+/// What was recorded so far, and what has failed.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct RecordStatus {
+    /// Cycles taken, of all robots.
+    pub cycles: u64,
+    /// Cycles for which there was no room: in the ring, as this host was busy, or in memory, as the
+    /// disk was. The file says where they are missing.
+    pub dropped: u64,
+    /// Events for which there was no room.
+    pub events_dropped: u64,
+    /// Bytes in the files of the recording.
+    pub bytes: u64,
+    /// Bytes that wait for the disk.
+    pub waiting: u64,
+    /// The files of the recording, oldest first.
+    pub files: Vec<PathBuf>,
+    /// The files of the black box that were written.
+    pub black_boxes: Vec<PathBuf>,
+    /// Why the recording ended early.
+    pub error: Option<RecordError>,
+    /// Why the newest black box could not be written.
+    pub black_box_error: Option<RecordError>,
+}
+
+/// Takes what is not a cycle of one robot. A cheap handle; none of its methods waits: what there is
+/// no room for is dropped and counted.
+#[derive(Clone, Debug)]
+pub struct RecordHandle {
+    orders: SyncSender<Order>,
+    clock: RecordClock,
+    drained: Arc<Mutex<DrainStatus>>,
+    robot: usize,
+}
+
+impl RecordHandle {
+    /// The clock of recorded time.
+    pub fn clock(&self) -> RecordClock {
+        self.clock
+    }
+
+    /// Records that something happens now.
+    pub fn event(&self, kind: EventKind) {
+        self.event_at(self.clock.now(), kind);
+    }
+
+    /// Records that something happened at `time`.
+    pub fn event_at(&self, time: HostTime, kind: EventKind) {
+        let event = Event {
+            time,
+            robot_time: 0,
+            kind,
+        };
+        self.order(Order::Event(self.robot, Box::new(event)));
+    }
+
+    /// Records a remark of the program.
+    pub fn note(&self, text: impl Into<String>) {
+        self.event(EventKind::Note(crate::event::Note {
+            source: "program".to_owned(),
+            text: text.into(),
+            ..Default::default()
+        }));
+    }
+
+    /// Records a state of the gripper, received now.
+    pub fn gripper(&self, state: GripperState) {
+        self.gripper_at(self.clock.now(), state);
+    }
+
+    /// Records a state of the gripper, received at `time`.
+    pub fn gripper_at(&self, time: HostTime, state: GripperState) {
+        self.order(Order::Gripper(self.robot, time, state));
+    }
+
+    /// Whether the recording has ended: nothing that is given to this handle is kept any more.
+    pub fn has_ended(&self) -> bool {
+        lock(&self.drained).ended
+    }
+
+    fn order(&self, order: Order) {
+        if self.orders.try_send(order).is_err() {
+            lock(&self.drained).events_dropped += 1;
+        }
+    }
+}
+
+/// Events that wait for the recorder, which looks 50 times a second.
+const ORDERS_MAX: usize = 4096;
+
+const FINISH_MAX: Duration = Duration::from_secs(10);
+
+/// Held for some assignments only, by ordinary threads.
+fn lock<T>(status: &Mutex<T>) -> MutexGuard<'_, T> {
+    status.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,210 @@
+//! What a recorder is asked for.
+
+use core::time::Duration;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use franka_model::RobotKind;
+
+use super::error::RecordError;
+
+/// How a recording is written.
+#[derive(Clone, Debug)]
+pub struct RecordOptions {
+    /// Cycles at the full rate only around what is notable, else every tenth; off by default.
+    ///
+    /// Notable are reflexes and other errors, contacts and collisions, a lost link, motions that
+    /// fail or are given up by a guard, lost cycles and remarks of level error: from 0.5 s before
+    /// to 1 s after. Messages are held back for 0.5 s to know that.
+    pub thinned: bool,
+    /// The longest time between two writes, 1 s by default and at most: what a crash can lose.
+    pub flush: Duration,
+    /// Whether each write is forced to the disk, so that a power cut loses no more than a crash.
+    /// On by default; it costs nothing to the robot, as a thread of its own waits for the disk.
+    pub sync: bool,
+    /// When a new file is begun: `run.mcap` is followed by `run-0002.mcap` and so on.
+    pub rotation: Rotation,
+    /// What is known beforehand about the recording, for its metadata.
+    pub metadata: BTreeMap<String, String>,
+    /// Files that go into every file of the recording.
+    pub attachments: Vec<Attachment>,
+    /// Whether the last seconds before an incident are written as a file of their own.
+    pub black_box: Option<BlackBox>,
+}
+
+impl Default for RecordOptions {
+    fn default() -> Self {
+        Self {
+            thinned: false,
+            flush: FLUSH_MAX,
+            sync: true,
+            rotation: Rotation::default(),
+            metadata: BTreeMap::new(),
+            attachments: Vec::new(),
+            black_box: None,
+        }
+    }
+}
+
+impl RecordOptions {
+    pub(super) fn check(&self) -> Result<(), RecordError> {
+        let invalid = |what, got: String, expected| {
+            Err(RecordError::Option {
+                what,
+                got,
+                expected,
+            })
+        };
+        if !(FLUSH_MIN..=FLUSH_MAX).contains(&self.flush) {
+            let got = format!("{:?}", self.flush);
+            return invalid("flush", got, "0.01 s to 1 s");
+        }
+        if let Some(bytes) = self.rotation.bytes
+            && bytes < ROTATION_MIN
+        {
+            return invalid("rotation.bytes", bytes.to_string(), "1000000 or more");
+        }
+        if let Some(time) = self.rotation.time
+            && time < FLUSH_MAX
+        {
+            return invalid("rotation.time", format!("{time:?}"), "1 s or more");
+        }
+        if let Some(black_box) = &self.black_box {
+            let BlackBox {
+                before,
+                after,
+                keep,
+                ..
+            } = black_box;
+            if !(FLUSH_MAX..=BEFORE_MAX).contains(before) {
+                let got = format!("{before:?}");
+                return invalid("black_box.before", got, "1 s to 300 s");
+            }
+            if *after > AFTER_MAX {
+                let got = format!("{after:?}");
+                return invalid("black_box.after", got, "at most 60 s");
+            }
+            if *keep == 0 {
+                return invalid("black_box.keep", keep.to_string(), "1 or more");
+            }
+        }
+        Ok(())
+    }
+}
+
+const FLUSH_MIN: Duration = Duration::from_millis(10);
+pub(super) const FLUSH_MAX: Duration = Duration::from_secs(1);
+
+/// Less than two seconds of one robot.
+const ROTATION_MIN: u64 = 1_000_000;
+
+/// Some 200 MB in memory.
+const BEFORE_MAX: Duration = Duration::from_secs(300);
+const AFTER_MAX: Duration = Duration::from_secs(60);
+
+/// When a new file is begun; never, by default.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rotation {
+    /// After a file has this many bytes.
+    pub bytes: Option<u64>,
+    /// After a file spans this time.
+    pub time: Option<Duration>,
+}
+
+/// A file inside the recording.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Attachment {
+    /// Its name, such as `options.json`.
+    pub name: String,
+    /// Its media type, such as `application/json`.
+    pub media_type: String,
+    /// Its bytes.
+    pub data: Vec<u8>,
+}
+
+/// The last seconds in memory, written to a file when a motion ends in a reflex, for a lost link or
+/// by a guard of the driver ([`Ending::is_incident`](crate::event::Ending::is_incident)).
+#[derive(Clone, Debug)]
+pub struct BlackBox {
+    /// Where the files go; made if it is not there. They are named by UTC, robot and cause:
+    /// `20260301T120000.123Z-fr3-reflex.mcap`.
+    pub directory: PathBuf,
+    /// How much is kept before the incident, 30 s by default: some 0.7 MB a second and robot.
+    pub before: Duration,
+    /// How much is added after it, 1 s by default. Another incident meanwhile gets no file of its
+    /// own.
+    pub after: Duration,
+    /// How many files are kept, 20 by default; the oldest are deleted.
+    pub keep: usize,
+}
+
+impl BlackBox {
+    /// A black box that writes to `directory`.
+    pub fn new(directory: impl Into<PathBuf>) -> Self {
+        Self {
+            directory: directory.into(),
+            before: Duration::from_secs(30),
+            after: Duration::from_secs(1),
+            keep: 20,
+        }
+    }
+}
+
+/// A robot that is recorded.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    /// Its name: letters, digits, `-` and `_`. Empty by default, which does for an only robot:
+    /// channels are then called `/cycle` and so on, and `/left/cycle` with the name `left`.
+    pub name: String,
+    /// Which robot it is.
+    pub kind: RobotKind,
+    /// Its description, if it is known; attached to the file.
+    pub urdf: Option<String>,
+    /// What else is known of it: address, version, options. For the metadata.
+    pub metadata: BTreeMap<String, String>,
+}
+
+impl Robot {
+    /// A robot without a name.
+    pub fn new(kind: RobotKind) -> Self {
+        Self {
+            name: String::new(),
+            kind,
+            urdf: None,
+            metadata: BTreeMap::new(),
+        }
+    }
+
+    /// The same robot, called `name`.
+    #[must_use]
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..self
+        }
+    }
+
+    pub(super) fn check(&self) -> Result<(), RecordError> {
+        let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+        if self.name.len() <= NAME_MAX && self.name.chars().all(allowed) {
+            Ok(())
+        } else {
+            Err(RecordError::Option {
+                what: "the name of a robot",
+                got: format!("{:?}", self.name),
+                expected: "at most 64 letters, digits, - and _",
+            })
+        }
+    }
+
+    /// What it is called in metadata and names of files.
+    pub(super) fn label(&self) -> &str {
+        match (self.name.as_str(), self.kind) {
+            ("", RobotKind::Fer) => "fer",
+            ("", _) => "fr3",
+            (name, _) => name,
+        }
+    }
+}
+
+const NAME_MAX: usize = 64;

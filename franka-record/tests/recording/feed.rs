@@ -1,0 +1,148 @@
+//! Robots whose cycles are made up: a pace, a seed and nothing else.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::{Duration, Instant};
+
+use franka_model::RobotKind;
+use franka_proto::{RobotMode, RobotState, Version};
+use franka_record::recorder::{RecordHandle, RecordOptions, Recorder, Robot};
+use franka_rt::driver::{Activity, Record};
+use franka_rt::thread::{CycleFeed, CyclePublisher, cycle_feed};
+
+/// A robot that moves in a circle and feeds a recorder.
+pub(crate) struct Arm {
+    version: Version,
+    publisher: CyclePublisher,
+    _feed: CycleFeed,
+    began: Instant,
+    ms: u64,
+    /// The state of the next cycle, but for what moves.
+    pub(crate) state: RobotState,
+}
+
+impl Arm {
+    /// Attaches an arm of this kind to a recorder.
+    pub(crate) fn attach(recorder: &Recorder, robot: Robot) -> (Self, RecordHandle) {
+        let version = match robot.kind {
+            RobotKind::Fer => Version::V5,
+            _ => Version::V10,
+        };
+        let (feed, mut publisher) = cycle_feed(version);
+        let reader = feed.attach(RING).unwrap();
+        publisher.take_attached();
+        let handle = recorder.attach(robot, reader).unwrap();
+        let arm = Self {
+            version,
+            publisher,
+            _feed: feed,
+            began: Instant::now(),
+            ms: 0,
+            state: RobotState {
+                robot_mode: RobotMode::Move,
+                m_ee: 0.73,
+                ..RobotState::default()
+            },
+        };
+        (arm, handle)
+    }
+
+    /// Feeds `count` cycles of a millisecond each, as fast as `recorder` takes them.
+    pub(crate) fn run(&mut self, recorder: &Recorder, count: u64) {
+        for cycle in 0..count {
+            // Less than half the ring is on its way.
+            if cycle % (RING as u64 / 4) == 0 {
+                self.wait(recorder);
+            }
+            self.step();
+        }
+        self.wait(recorder);
+    }
+
+    /// Waits until the recorder has taken every cycle.
+    pub(crate) fn wait(&self, recorder: &Recorder) {
+        let patience = Instant::now() + Duration::from_secs(60);
+        while recorder.status().cycles < self.ms {
+            assert!(Instant::now() < patience, "the recorder takes no cycles");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// Feeds one cycle.
+    pub(crate) fn step(&mut self) {
+        self.ms += 1;
+        let (state, record) = self.cycle();
+        let mut bytes = [0; RobotState::MAX_SIZE];
+        let length = state.encode(self.version, &mut bytes).unwrap();
+        let received = self.began + Duration::from_millis(self.ms);
+        self.publisher.push(record, &bytes[..length], received);
+    }
+
+    fn cycle(&self) -> (RobotState, Record) {
+        let t = self.ms as f64 * 1e-3;
+        let mut state = self.state;
+        state.message_id = self.ms;
+        for joint in 0..7 {
+            let phase = 0.7 * t + joint as f64;
+            state.q[joint] = 0.4 * phase.sin();
+            state.dq[joint] = 0.28 * phase.cos();
+            state.tau_J[joint] = 10.0 * phase.cos();
+            state.tau_ext_hat_filtered[joint] = 0.1 * (13.0 * phase).sin();
+        }
+        state.O_T_EE[12..15].copy_from_slice(&[0.5, 0.1 * t.sin(), 0.4]);
+        state.O_F_ext_hat_K[2] = 5.0 * t.sin();
+        let mut record = Record::default();
+        record.time = self.ms;
+        record.activity = Activity::Running;
+        record.robot_mode = state.robot_mode;
+        record.errors = state.errors;
+        record.reflex_reason = state.reflex_reason;
+        record.goal = 1;
+        record.q = state.q;
+        record.dq = state.dq;
+        record.q_ref = state.q;
+        record.tau_c = state.tau_J;
+        record.turnaround = Duration::from_micros(80);
+        (state, record)
+    }
+
+    /// Cycles so far.
+    pub(crate) fn cycles(&self) -> u64 {
+        self.ms
+    }
+}
+
+/// Length of the ring in cycles.
+const RING: usize = 4096;
+
+/// A directory that is removed in the end.
+pub(crate) struct Scratch(PathBuf);
+
+impl Scratch {
+    pub(crate) fn new() -> Self {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("franka-record-{}-{number}", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Options that do not wait for the disk.
+pub(crate) fn quick() -> RecordOptions {
+    RecordOptions {
+        sync: false,
+        ..RecordOptions::default()
+    }
+}

@@ -1,0 +1,4 @@
+//! Recordings written to files and read back.
+
+mod feed;
+mod files;
