@@ -110,7 +110,7 @@ def test_every_column_is_as_it_is_described(fr3: Robot) -> None:
 
 
 def test_columns_that_are_not_there_are_named(fr3: Robot) -> None:
-    with pytest.raises(ValueError, match='got the column "speed", expected some of q, q_d'):
+    with pytest.raises(ValueError, match='got the column "speed", expected some of time, q, q_d'):
         fr3.record(["speed"])
     recording = fr3.record(["q"])
     with pytest.raises(RuntimeError, match="this recording has not begun"):

@@ -38,11 +38,13 @@ impl Robot {
     #[pyo3(signature = (columns, *, longest = 3600.0))]
     fn record(&self, columns: Vec<String>, longest: f64) -> PyResult<Recording> {
         let mut chosen = Vec::with_capacity(columns.len());
-        for name in &columns {
+        // The time of each row is there in any case.
+        for name in columns.iter().filter(|name| *name != "time") {
             let column = find(name).ok_or_else(|| {
                 let known: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
                 let known = known.join(", ");
-                PyValueError::new_err(format!("got the column {name:?}, expected some of {known}"))
+                let expected = format!("expected some of time, {known}");
+                PyValueError::new_err(format!("got the column {name:?}, {expected}"))
             })?;
             if !chosen.iter().any(|it: &&Column| it.name == column.name) {
                 chosen.push(column);
