@@ -11,7 +11,7 @@ use crate::chunk::chunk;
 use crate::destination::{destination, is, offset, target_object, waypoints};
 use crate::follow::{self, Leader};
 use crate::goals::motion;
-use crate::motion::{Motion, Report, reference};
+use crate::motion::{Follow, Motion, Report, reference};
 use crate::operation::Operation;
 use crate::options::{Keywords, tuning};
 use crate::runtime::{self, Threaded};
@@ -57,7 +57,7 @@ impl Arm {
     ) -> PyResult<Py<Motion>> {
         let motion = motion(py, name, self.arm.robot(), options, begun)?;
         // The motion is new, so its session is not set yet.
-        let _ = motion.get().arm.set(self.id);
+        let _ = motion.get().member.arm.set(self.id);
         Ok(motion)
     }
 }
@@ -224,9 +224,14 @@ impl Arm {
         this: &Bound<'_, Self>,
         targets: &Bound<'_, PyAny>,
         options: Option<&Bound<'_, PyDict>>,
-    ) -> PyResult<Operation> {
+    ) -> PyResult<Py<Follow>> {
         let arm = Leader::Arm(this.get().session()?);
-        follow::operation(this, "Arm.follow", arm, targets, options)
+        let follow = follow::operation(this, "Arm.follow", arm, targets, options)?;
+        if let Some(member) = &follow.get().member {
+            // As above.
+            let _ = member.arm.set(this.get().id);
+        }
+        Ok(follow)
     }
 
     /// Changes `gains`, `limits`, `force_cap`, `leash`, `deviation` and `posture`, as far as they

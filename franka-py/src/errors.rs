@@ -109,8 +109,15 @@ fn set_control(exception: &Bound<'_, PyAny>, control: &ControlError) -> PyResult
         _ => Version::V10,
     };
     exception.setattr("log", ControlLog::new(control.log.clone(), version))?;
-    let diagnosis = control.diagnose().map(|diagnosis| diagnosis.to_string());
-    exception.setattr("diagnosis", diagnosis)
+    let diagnosis = control.diagnose();
+    let text = diagnosis.as_ref().map(ToString::to_string);
+    exception.setattr("diagnosis", text)?;
+    let fields = diagnosis.map(|diagnosis| {
+        let json = serde_json::to_string(&diagnosis).expect("numbers and names become JSON");
+        let python = exception.py().import("json")?;
+        python.call_method1("loads", (json,))
+    });
+    exception.setattr("findings", fields.transpose()?)
 }
 
 /// The name of what happened.

@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use franka_async::MotionError;
 use franka_async::goal::{Lead, Target};
-use franka_async::motion::Follow;
+use franka_async::motion::Follow as Following;
 use futures::{Stream, StreamExt, future, stream};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
@@ -14,7 +14,7 @@ use tokio::sync::{oneshot, watch};
 use crate::destination::target;
 use crate::errors::Raise;
 use crate::exit;
-use crate::motion::Report;
+use crate::motion::{Follow, Member, Report};
 use crate::operation::Operation;
 use crate::options::{Bounds, Keywords, Options, watchdog, with_options};
 
@@ -84,7 +84,7 @@ impl Leader {
         }
     }
 
-    fn follow(&self, targets: impl Stream<Item = Target> + Send + 'static) -> Follow {
+    fn follow(&self, targets: impl Stream<Item = Target> + Send + 'static) -> Following {
         match self {
             Self::Robot(robot) => robot.follow_stream(targets),
             Self::Arm(arm) => arm.follow_stream(targets),
@@ -99,7 +99,8 @@ pub(crate) fn operation(
     leader: Leader,
     targets: &Bound<'_, PyAny>,
     options: Option<&Bound<'_, PyDict>>,
-) -> PyResult<Operation> {
+) -> PyResult<Py<Follow>> {
+    let py = owner.py();
     let mut keywords = Keywords::new(name, options)?;
     let common = Options::of_goal(&mut keywords, leader.robot().model())?;
     let lead = keywords.take("lead")?;
@@ -107,7 +108,7 @@ pub(crate) fn operation(
     let given_up = keywords.take("watchdog")?;
     let given_up = given_up.map(|value| watchdog(&value)).transpose()?;
     keywords.end()?;
-    let configured = move |follow: Follow| {
+    let configured = move |follow: Following| {
         let mut follow = with_options!(follow, common);
         if let Some(lead) = lead {
             follow = follow.lead(Lead {
@@ -123,19 +124,14 @@ pub(crate) fn operation(
     };
     if let Ok(latest) = targets.cast::<Latest>() {
         let follow = configured(leader.follow(latest.get().targets()));
-        return Ok(Operation::new(
-            name,
-            async move { follow.await.map(Report) },
-        ));
+        let (operation, member) = Member::new(name, follow);
+        return Follow::new(py, operation, Some(member));
     }
     if targets.hasattr("__aiter__")? {
         // It follows a `Latest` that a coroutine sets, in the event loop.
-        let follow = owner
-            .py()
-            .import("franka_async.following")?
-            .getattr("follow")?;
+        let follow = py.import("franka_async.following")?.getattr("follow")?;
         let coroutine = follow.call1((owner.getattr("follow")?, targets, options))?;
-        return Ok(Operation::of_coroutine(name, coroutine.unbind()));
+        return Follow::new(py, Operation::of_coroutine(name, coroutine.unbind()), None);
     }
     let Ok(iterator) = targets.try_iter() else {
         return Err(PyTypeError::new_err(format!(
@@ -145,13 +141,14 @@ pub(crate) fn operation(
     };
     let (failed, failure) = oneshot::channel();
     let follow = configured(leader.follow(stepped(iterator.into_any().unbind(), failed)));
-    Ok(Operation::new(name, async move {
+    let operation = Operation::new(name, async move {
         tokio::select! {
             biased;
             Ok(error) = failure => Err(Failure::Iterator(error)),
             outcome = follow.into_future() => outcome.map(Report).map_err(Failure::Motion),
         }
-    }))
+    });
+    Follow::new(py, operation, None)
 }
 
 /// The targets of an iterator of Python, each taken on a thread that may wait, once the one before

@@ -7,8 +7,7 @@ use crate::arrays::vector;
 use crate::destination::{destination, offset, waypoints};
 use crate::engagement::Engagement;
 use crate::follow::{self, Leader};
-use crate::motion::{Motion, reference};
-use crate::operation::Operation;
+use crate::motion::{Follow, Motion, reference};
 use crate::options::{Keywords, Options, budget_object, with_options};
 use crate::robot::Robot;
 use crate::start::StartTicket;
@@ -120,7 +119,7 @@ impl Robot {
         this: &Bound<'_, Self>,
         targets: &Bound<'_, PyAny>,
         options: Option<&Bound<'_, PyDict>>,
-    ) -> PyResult<Operation> {
+    ) -> PyResult<Py<Follow>> {
         let robot = Leader::Robot(this.get().connected()?);
         follow::operation(this, "Robot.follow", robot, targets, options)
     }

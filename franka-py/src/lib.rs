@@ -37,6 +37,7 @@ mod motion;
 mod operation;
 mod options;
 mod otg;
+mod pose;
 mod record;
 mod robot;
 mod runtime;
@@ -54,6 +55,7 @@ mod vacuum_gripper;
 mod virtual_robots;
 
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 #[pymodule(gil_used = true)]
 mod _native {
@@ -96,11 +98,13 @@ mod _native {
     #[pymodule_export]
     use crate::model::{CartesianLimits, Clearance, Dynamics, JointLimits, Model, MotionLimits};
     #[pymodule_export]
-    use crate::motion::{Motion, MotionHandle};
+    use crate::motion::{Follow, Motion, MotionHandle};
     #[pymodule_export]
     use crate::operation::{_complete, Operation};
     #[pymodule_export]
     use crate::otg::{AxisLimits, Trajectory, plan_trajectory};
+    #[pymodule_export]
+    use crate::pose::{from_xyzw, rotated, to_xyzw};
     #[pymodule_export]
     use crate::record::{Recording, record_columns};
     #[pymodule_export]
@@ -126,8 +130,11 @@ mod _native {
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
         crate::condition::add_quantities(module)?;
         crate::gains::add_defaults(module)?;
+        crate::log::add_fields(module.py())?;
         crate::exit::register(module.py())?;
         let all = franka_async::state::Errors::from_flags(&[1; 41]);
+        let ready = <[f64; 7]>::from(franka_async::READY);
+        module.add("READY", PyTuple::new(module.py(), ready)?)?;
         module.add("ERROR_NAMES", crate::state::names(all))?;
         module.add("FLAT_LAYOUT", crate::state_views::FLAT_LAYOUT)?;
         let thresholds = crate::settings::COLLISION_THRESHOLDS;

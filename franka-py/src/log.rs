@@ -5,9 +5,9 @@ use std::sync::Arc;
 use franka_async::connection::Version;
 use franka_async::record;
 use pyo3::IntoPyObjectExt;
-use pyo3::exceptions::{PyAttributeError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyList, PySlice};
+use pyo3::types::{PyCFunction, PyDict, PyList, PySlice, PyTuple};
 
 use crate::arrays::{array, columns};
 use crate::state::RobotState;
@@ -27,25 +27,9 @@ impl ControlLog {
     pub(crate) fn new(log: Arc<record::ControlLog>, version: Version) -> Self {
         Self { log, version }
     }
-}
 
-#[pymethods]
-impl ControlLog {
-    /// The states, oldest first.
-    fn states(&self) -> Vec<RobotState> {
-        let entries = self.log.iter();
-        entries
-            .map(|entry| RobotState::new(entry.state, self.version))
-            .collect()
-    }
-
-    fn __getattr__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let class = py.get_type::<RobotState>();
-        let is_field = class.getattr_opt(name)?.is_some_and(|it| !it.is_callable());
-        if name.starts_with('_') || !is_field {
-            let text = format!("'ControlLog' object has no attribute {name:?}");
-            return Err(PyAttributeError::new_err(text));
-        }
+    /// A field of the states, as one array over the cycles.
+    fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         // One that shows the shape where there are no cycles.
         let shape = RobotState::new(Default::default(), self.version);
         let field = |state: RobotState| Bound::new(py, state)?.getattr(name);
@@ -61,6 +45,46 @@ impl ControlLog {
             true => none.get_item(PySlice::new(py, 0, 0, 1)),
             false => numpy.call_method1("array", (values,)),
         }
+    }
+}
+
+/// Gives `ControlLog` a property for each field of `RobotState`.
+pub(crate) fn add_fields(py: Python<'_>) -> PyResult<()> {
+    let (log, state) = (py.get_type::<ControlLog>(), py.get_type::<RobotState>());
+    let property = py.import("builtins")?.getattr("property")?;
+    for name in state.dir()? {
+        let name: String = name.extract()?;
+        let there = state.getattr(&name)?;
+        // Neither methods nor constants.
+        if there.get_type().name()? != "getset_descriptor" || name.starts_with('_') {
+            continue;
+        }
+        let doc = format!("A row for each cycle: {}", there.getattr("__doc__")?);
+        let attribute = name.clone();
+        let get = PyCFunction::new_closure(
+            py,
+            None,
+            None,
+            move |arguments: &Bound<'_, PyTuple>, _: Option<&Bound<'_, PyDict>>| {
+                let log = arguments.get_item(0)?;
+                let log = log.cast::<ControlLog>()?.get();
+                log.field(arguments.py(), &name).map(Bound::unbind)
+            },
+        )?;
+        let none = py.None();
+        log.setattr(&attribute, property.call1((get, &none, &none, doc))?)?;
+    }
+    Ok(())
+}
+
+#[pymethods]
+impl ControlLog {
+    /// The states, oldest first.
+    fn states(&self) -> Vec<RobotState> {
+        let entries = self.log.iter();
+        entries
+            .map(|entry| RobotState::new(entry.state, self.version))
+            .collect()
     }
 
     /// What had been sent before each state, `(N, ...)`; zeros before the first. `name` is

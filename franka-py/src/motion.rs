@@ -4,24 +4,24 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
 use franka_async::condition::Reacted;
-use franka_async::motion::{MotionHandle as Handle, Progress, Reference};
-use franka_async::realtime::{CycleTimes, Quantiles};
+use franka_async::motion::{MotionHandle as Handle, Outcome, Progress, Reference};
+use franka_async::realtime::{CycleTimes, Phases, Quantiles};
+use franka_async::team::MemberMotion;
 use franka_async::{MotionError, MotionReport};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyAny;
 
 use crate::arrays::{array, pose_array};
 use crate::operation::Operation;
+use crate::stats;
 
 /// A motion: it begins when it is awaited, and then arrives, with a `MotionReport`, or raises
 /// `MotionError`. Cancelling it brakes the arm.
 #[pyclass(frozen, extends = Operation, module = "franka_async")]
 pub(crate) struct Motion {
     handle: Handle,
-    /// Until it begins, on its own or as a part of a joint motion.
-    waiting: Arc<Mutex<Option<franka_async::Motion>>>,
-    /// Which `Arm` has made it.
-    pub(crate) arm: OnceLock<u64>,
+    pub(crate) member: Member,
 }
 
 impl Motion {
@@ -32,34 +32,98 @@ impl Motion {
         motion: franka_async::Motion,
     ) -> PyResult<Py<Self>> {
         let handle = motion.handle();
-        let waiting = Arc::new(Mutex::new(Some(motion)));
-        let taken = waiting.clone();
-        let work = async move {
-            // An operation that was taken apart never begins.
-            let motion = take(&taken).ok_or(MotionError::Stopped)?;
-            motion.await.map(Report)
-        };
-        let operation = Operation::new::<Report, MotionError>(name, work);
-        let motion = Self {
-            handle,
-            waiting,
-            arm: OnceLock::new(),
-        };
+        let (operation, member) = Member::new(name, motion);
+        let motion = Self { handle, member };
         Py::new(py, PyClassInitializer::from(operation).add_subclass(motion))
-    }
-
-    /// Takes the driver's motion out, for a joint motion to begin it; `None` if it has begun.
-    pub(crate) fn take(this: &Bound<'_, Self>) -> PyResult<Option<franka_async::Motion>> {
-        let motion = take(&this.get().waiting);
-        // It is awaited as a part of the joint motion.
-        if motion.is_some() {
-            this.call_method0("close")?;
-        }
-        Ok(motion)
     }
 }
 
-fn take(waiting: &Mutex<Option<franka_async::Motion>>) -> Option<franka_async::Motion> {
+/// Following targets: it begins when it is awaited, and ends at the last target, with a
+/// `MotionReport`, or raises `MotionError`. Cancelling it brakes the arm.
+#[pyclass(frozen, extends = Operation, module = "franka_async")]
+pub(crate) struct Follow {
+    /// `None` where Python has to be asked for the targets.
+    pub(crate) member: Option<Member>,
+}
+
+impl Follow {
+    pub(crate) fn new(
+        py: Python<'_>,
+        operation: Operation,
+        member: Option<Member>,
+    ) -> PyResult<Py<Self>> {
+        let follow = Self { member };
+        Py::new(py, PyClassInitializer::from(operation).add_subclass(follow))
+    }
+}
+
+/// What may be a part of a joint motion, until it begins.
+pub(crate) struct Member {
+    take: Box<dyn Fn() -> Option<MemberMotion> + Send + Sync>,
+    /// Which `Arm` has made it.
+    pub(crate) arm: OnceLock<u64>,
+}
+
+impl Member {
+    /// The operation `name` that awaits `motion`, and what takes that out of it.
+    pub(crate) fn new<M>(name: &'static str, motion: M) -> (Operation, Self)
+    where
+        M: IntoFuture<Output = Outcome, IntoFuture: Send> + Into<MemberMotion> + Send + 'static,
+    {
+        let waiting = Arc::new(Mutex::new(Some(motion)));
+        let taken = waiting.clone();
+        let operation = Operation::new(name, async move {
+            // An operation that was taken apart never begins.
+            let motion = take(&taken).ok_or(MotionError::Stopped)?;
+            motion.await.map(Report)
+        });
+        let member = Self {
+            take: Box::new(move || take(&waiting).map(Into::into)),
+            arm: OnceLock::new(),
+        };
+        (operation, member)
+    }
+
+    /// Takes the driver's motions out of a `Motion` or `Follow` of each of `arms`, for a joint
+    /// motion to begin them.
+    ///
+    /// # Errors
+    /// `ValueError` for one of another arm, for one that has begun, and for targets that Python
+    /// has to be asked for.
+    pub(crate) fn take_all(
+        motions: &[Bound<'_, PyAny>],
+        arms: impl Iterator<Item = u64>,
+    ) -> PyResult<Vec<MemberMotion>> {
+        for (number, (motion, arm)) in motions.iter().zip(arms).enumerate() {
+            let Some(member) = Self::of(motion)? else {
+                let text = format!("motion {number} follows an iterator, expected a Latest");
+                return Err(PyValueError::new_err(text));
+            };
+            if member.arm.get() != Some(&arm) {
+                let text = format!("motion {number} is not one of arms[{number}] of this team");
+                return Err(PyValueError::new_err(text));
+            }
+        }
+        let taken = motions.iter().map(|motion| {
+            let taken = Self::of(motion)?.and_then(|member| (member.take)());
+            let begun = "a motion has begun already: it takes one that was not awaited";
+            let taken = taken.ok_or_else(|| PyValueError::new_err(begun))?;
+            // It is awaited as a part of the joint motion.
+            motion.call_method0("close")?;
+            Ok(taken)
+        });
+        taken.collect()
+    }
+
+    fn of<'a>(motion: &'a Bound<'_, PyAny>) -> PyResult<Option<&'a Self>> {
+        match motion.cast::<Follow>() {
+            Ok(follow) => Ok(follow.get().member.as_ref()),
+            Err(_) => Ok(Some(&motion.cast::<Motion>()?.get().member)),
+        }
+    }
+}
+
+fn take<M>(waiting: &Mutex<Option<M>>) -> Option<M> {
     waiting
         .lock()
         .unwrap_or_else(PoisonError::into_inner)
@@ -209,10 +273,15 @@ fn reacted<'py>(py: Python<'py>, seen: &Reacted) -> PyResult<Bound<'py, PyAny>> 
 
 fn cycle<'py>(py: Python<'py>, times: &CycleTimes) -> PyResult<Bound<'py, PyAny>> {
     let seconds = |time: Duration| time.as_secs_f64();
+    let phases = |times: Phases| {
+        let fields = stats::phases(py, &times)?;
+        class(py, "Phases")?.call((), Some(&fields))
+    };
     class(py, "CycleTimes")?.call1((
         times.time,
         seconds(times.late),
         seconds(times.turnaround),
         times.slack.as_nanos() as f64 * 1e-9,
+        times.phases.map(phases).transpose()?,
     ))
 }

@@ -8,6 +8,7 @@ use franka_async::model::{Load, RobotKind};
 use franka_sim::arm::{Arm, Family};
 use franka_sim::network::{Conditions, Loss, Network, Stalls};
 use franka_sim::{Fingers, Running, Stopped, Suction, Tool};
+use futures::future::try_join_all;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyAny, PyDict};
@@ -60,6 +61,49 @@ impl Sim {
     #[pyo3(signature = (**options))]
     fn fer(py: Python<'_>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         Self::start(py, "Sim.fer", RobotKind::Fer, options)
+    }
+
+    /// Starts two to four robots, each `fr3` or `fer`, that begin every millisecond together, and
+    /// returns them in a list: where one waits for a command, all do. For arms of one program,
+    /// teams above all: `left, right = Sim.in_step("fr3", "fer", virtual_time=True)`. Options as of
+    /// `fr3`, the same for all, but for `address`. One that has stopped is not waited for.
+    #[staticmethod]
+    #[pyo3(signature = (*kinds, **options))]
+    fn in_step(
+        py: Python<'_>,
+        kinds: Vec<String>,
+        options: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Vec<Self>> {
+        let mut sims = Vec::with_capacity(kinds.len());
+        for name in &kinds {
+            let kind = match name.as_str() {
+                "fr3" => RobotKind::Fr3,
+                "fer" => RobotKind::Fer,
+                _ => {
+                    let text = format!("got the robot {name:?}, expected 'fr3' or 'fer'");
+                    return Err(PyValueError::new_err(text));
+                }
+            };
+            let mut keywords = Keywords::new("Sim.in_step", options)?;
+            sims.push((kind, configured(kind, &mut keywords)?));
+            keywords.end()?;
+        }
+        let (kinds, sims): (Vec<_>, Vec<_>) = sims.into_iter().unzip();
+        let sims = match sims.len() {
+            2 => together::<2>(sims),
+            3 => together::<3>(sims),
+            4 => together::<4>(sims),
+            count => {
+                let text = format!("got {count} robots, expected 2 to 4");
+                return Err(PyValueError::new_err(text));
+            }
+        };
+        let running = runtime::blocking(py, try_join_all(sims.into_iter().map(|sim| sim.start())))?;
+        let running = running.map_err(PyOSError::new_err)?;
+        let named = kinds.into_iter().zip(running);
+        Ok(named
+            .map(|(kind, running)| Self::new(kind, running))
+            .collect())
     }
 
     /// Where to connect to: `host:port`.
@@ -138,15 +182,19 @@ impl Sim {
         let sim = configured(kind, &mut keywords)?;
         keywords.end()?;
         let running = runtime::blocking(py, sim.start())?.map_err(PyOSError::new_err)?;
+        Ok(Self::new(kind, running))
+    }
+
+    fn new(kind: RobotKind, running: Running) -> Self {
         let hand = running.hand().map(|hand| hand.addr().to_string());
         let gripper = running.vacuum_gripper();
-        Ok(Self {
+        Self {
             kind,
             address: running.addr().to_string(),
             hand_address: hand,
             vacuum_gripper_address: gripper.map(|gripper| gripper.addr().to_string()),
             running: Threaded::new(Mutex::new(Some(running))),
-        })
+        }
     }
 
     fn running(&self) -> MutexGuard<'_, Option<Running>> {
@@ -181,6 +229,17 @@ impl Sim {
     ) -> PyResult<R> {
         self.with(py, async |running| running.with(act).await)
     }
+}
+
+/// The same robots, which begin each of their milliseconds together.
+///
+/// # Panics
+/// Unless there are `N`.
+fn together<const N: usize>(sims: Vec<franka_sim::Sim>) -> Vec<franka_sim::Sim> {
+    let Ok(sims) = <[franka_sim::Sim; N]>::try_from(sims) else {
+        panic!("there are {N}");
+    };
+    franka_sim::Sim::in_step(sims).into()
 }
 
 /// The robot that the keyword arguments describe.

@@ -119,7 +119,8 @@ fn times<'py>(py: Python<'py>, cycle: &CycleTimes) -> PyResult<Bound<'py, PyDict
     Ok(all)
 }
 
-fn phases<'py>(py: Python<'py>, phases: &Phases) -> PyResult<Bound<'py, PyDict>> {
+/// The times of the phases of a cycle, s.
+pub(crate) fn phases<'py>(py: Python<'py>, phases: &Phases) -> PyResult<Bound<'py, PyDict>> {
     let all = PyDict::new(py);
     for (name, time) in [
         ("orders", phases.orders),

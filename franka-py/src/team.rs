@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use franka_async::error::Lapse;
 use franka_async::motion::Outcome;
-use franka_async::team::{MEMBERS_MAX, SILENCE, Team as Joint, TeamStop};
+use franka_async::team::{MEMBERS_MAX, MemberMotion, SILENCE, Team as Joint, TeamStop};
 use franka_async::{Engage, MotionError, Pose};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -17,7 +17,7 @@ use crate::arm::Arm;
 use crate::arrays::{pose, pose_array};
 use crate::destination::destination;
 use crate::errors::{Raise, variant};
-use crate::motion::{Motion, Report};
+use crate::motion::{Member, Report};
 use crate::operation::{Operation, seconds};
 use crate::options::{Keywords, Options, with_options};
 use crate::robot::Robot;
@@ -116,25 +116,20 @@ impl Team {
             let options = Options::of_goal(&mut keywords, arm.robot().model())?;
             keywords.end()?;
             let target = destination("targets", target)?;
-            motions.push(with_options!(arm.move_to(target), options));
+            motions.push(with_options!(arm.move_to(target), options).into());
         }
         Ok(self.joint("Team.move_to", motions))
     }
 
     /// A motion of all arms: `motions` are one of each arm, in their order,
     /// `[team.arms[0].move_to(a), team.arms[1].move_by(b)]`, which are then not to be awaited
-    /// themselves. All begin together.
-    fn run(&self, motions: Vec<Bound<'_, Motion>>) -> PyResult<Operation> {
+    /// themselves. All begin together. An arm may follow a `Latest`, `team.arms[1].follow(latest)`:
+    /// it begins with the first target, and the motion ends when the others have arrived and the
+    /// `Latest` is closed.
+    fn run(&self, motions: Vec<Bound<'_, PyAny>>) -> PyResult<Operation> {
         self.check_count("motions", motions.len())?;
-        for (member, (arm, motion)) in self.arms.iter().zip(&motions).enumerate() {
-            if motion.get().arm.get() != Some(&arm.get().id) {
-                let text = format!("motion {member} is not one of arms[{member}] of this team");
-                return Err(PyValueError::new_err(text));
-            }
-        }
-        let taken: PyResult<Option<Vec<_>>> = motions.iter().map(Motion::take).collect();
-        let begun = "a motion has begun already: it takes one that was not awaited";
-        let motions = taken?.ok_or_else(|| PyValueError::new_err(begun))?;
+        let arms = self.arms.iter().map(|arm| arm.get().id);
+        let motions = Member::take_all(&motions, arms)?;
         Ok(self.joint("Team.run", motions))
     }
 
@@ -232,7 +227,7 @@ impl Team {
         Err(PyTypeError::new_err(text))
     }
 
-    fn joint(&self, name: &'static str, motions: Vec<franka_async::Motion>) -> Operation {
+    fn joint(&self, name: &'static str, motions: Vec<MemberMotion>) -> Operation {
         let members = Arc::clone(&self.members);
         Operation::new(name, async move {
             let running: Outcomes = with_team!(&*members, team => {

@@ -57,6 +57,17 @@ int32_t no_velocity(const franka_async_law_cycle *cycle, const double *p, double
     return counted(p, memory);
 }
 
+int32_t hold_pose_and_elbow(const franka_async_law_cycle *cycle, const double *p, double *memory, double *output) {
+    if (memory[0] == 0.0) for (int i = 0; i < 2; ++i) memory[17 + i] = cycle->elbow_c[i];
+    for (int i = 0; i < 2; ++i) output[16 + i] = memory[17 + i];
+    return hold_pose(cycle, p, memory, output);
+}
+
+int32_t no_twist_and_no_elbow(const franka_async_law_cycle *cycle, const double *p, double *memory, double *output) {
+    for (int i = 0; i < 6; ++i) output[i] = 0.0;
+    return 0;
+}
+
 int32_t give_up(const franka_async_law_cycle *cycle, const double *p, double *memory, double *output) {
     for (int i = 0; i < 7; ++i) output[i] = 0.0;
     return cycle->time > 0.0505 ? -42 : 0;
@@ -215,6 +226,23 @@ def test_every_kind_of_command_can_come_from_a_law(start: Start, library: ctypes
             law = Law(code, command=command, parameters=[50.0], memory=np.zeros(17))  # type: ignore[arg-type]
             await robot.run_law(law, controller="cartesian_impedance")
             assert law.memory[0] == 50.0, command
+
+    on(start, program)
+
+
+@ROBOTS
+def test_a_law_may_say_where_the_elbow_is(start: Start, library: ctypes.CDLL) -> None:
+    async def program(robot: Robot) -> None:
+        law = Law(library.hold_pose_and_elbow, command="cartesian_pose", elbow=True, parameters=[50.0], memory=np.zeros(19))
+        output, _ = law.step(robot.state())
+        assert output.shape == (18,) and output[16:] == pytest.approx(robot.state().elbow_c)
+        await robot.run_law(law, controller="cartesian_impedance")
+        assert law.memory[0] == 50.0
+        with pytest.raises(MotionError) as invalid:
+            await robot.run_law(library.no_twist_and_no_elbow, command="cartesian_velocities", elbow=True)
+        assert invalid.value.kind == "invalid", "one that is not written is not a number"
+        with pytest.raises(ValueError, match="elbow is True, expected False for \"torques\""):
+            Law(library.hold_pose, elbow=True)
 
     on(start, program)
 

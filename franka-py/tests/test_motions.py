@@ -183,6 +183,8 @@ def test_a_report_has_what_happened(robot: Robot) -> None:
     assert report.compensation is not None and report.compensation.shape == (7,)
     assert report.turnaround is not None and 0.0 < report.turnaround.p50 <= report.turnaround.max
     assert report.worst_cycle is not None and report.worst_cycle.time_ms > 0
+    phases = report.worst_cycle.phases
+    assert phases is not None and 0.0 < phases.program < 1.0 and 0.0 < phases.send < 1.0
     same: MotionReport = pickle.loads(pickle.dumps(report))
     assert same == report and report != robot.move_by([0.0, 0.0, -0.02]).wait()
     assert repr(report).startswith("MotionReport(duration=")
@@ -314,9 +316,10 @@ def test_a_reflex_comes_out_of_the_motion_at_once_with_its_log(live: Sim) -> Non
             assert error.log.states()[-1].current_errors == error.log.current_errors[-1]
             lines = error.to_csv().strip().splitlines()
             assert len(lines) == cycles + 1 and "q" in lines[0]
-            assert "cartesian_reflex" in error.diagnosis
-            with pytest.raises(AttributeError):
-                _ = error.log.nothing
+            assert error.diagnosis is not None and "cartesian_reflex" in error.diagnosis
+            assert error.findings is not None and error.findings["cycles"] == cycles
+            assert {"q", "O_T_EE", "robot_mode"} <= set(dir(error.log)) and not hasattr(error.log, "FLAT_LEN")
+            assert "(7,)" in (type(error.log).q.__doc__ or "")
             with pytest.raises(MotionError):
                 await robot.move_by([0.0, 0.0, 0.02])
             await robot.recover()

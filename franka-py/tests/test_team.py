@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 import franka_async
-from franka_async import MotionError, MotionReport, Robot, Sim, Team, TeamError, start_tickets
+from franka_async import Follow, Latest, Motion, MotionError, MotionReport, Robot, Sim, Team, TeamError, start_tickets
 
 # Simulators whose time does not go in step: a robot that waits for the machine is no fault here.
 SILENCE = 10.0
@@ -41,6 +41,51 @@ def test_both_arms_arrive_and_each_has_its_report(fr3: Robot, fer: Robot) -> Non
             assert len(reports) == 2
 
     asyncio.run(main())
+
+
+def test_an_arm_follows_while_the_other_moves() -> None:
+    async def main(left: Robot, right: Robot) -> None:
+        async with left, right, await Team.engage(left, right, silence=SILENCE) as team:
+            one, other = team.arms
+            targets = Latest()
+            joint = asyncio.ensure_future(team.run([one.move_by([0.0, 0.0, 0.04]), other.follow(targets)]))
+            start, end = right.pose(), up(right, 0.02)
+            await asyncio.sleep(0.05)
+            # Both wait for the first target.
+            assert np.abs(left.state().dq).max() < 0.02
+            for height in np.linspace(start[2, 3], end[2, 3], 20):
+                start[2, 3] = height
+                targets.set(start)
+                await asyncio.sleep(0.002)
+            targets.close()
+            reports = await joint
+            assert len(reports) == 2
+            np.testing.assert_allclose(right.pose()[:3, 3], end[:3, 3], atol=6e-3)
+            motions: list[Motion | Follow] = [one.hold(), other.follow(iter([end]))]
+            with pytest.raises(ValueError, match="motion 1 follows an iterator, expected a Latest"):
+                team.run(motions)
+            for motion in motions:
+                motion.close()
+            with pytest.raises(TypeError):
+                team.run([one.hold, other.hold])  # type: ignore[list-item]
+
+    left, right = Sim.in_step("fr3", "fer", virtual_time=True)
+    with left, right:
+        asyncio.run(main(Robot(left.address, realtime="ignore"), Robot(right.address, realtime="ignore")))
+
+
+def test_robots_in_step_have_the_same_time() -> None:
+    sims = Sim.in_step("fr3", "fr3", "fer", virtual_time=True)
+    with sims[0], sims[1], sims[2]:
+        for _ in range(100):
+            times = [sim.state().time_ms for sim in sims]
+            assert max(times) - min(times) <= 60, "between two looks"
+    with pytest.raises(ValueError, match="got 1 robots, expected 2 to 4"):
+        Sim.in_step("fr3")
+    with pytest.raises(ValueError, match="got the robot \"ur5\", expected 'fr3' or 'fer'"):
+        Sim.in_step("fr3", "ur5")  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="in_step"):
+        Sim.in_step("fr3", "fr3", idea=True)  # type: ignore[call-arg]
 
 
 def test_the_fault_of_one_brakes_the_other_and_is_the_cause(fr3: Robot, sim_fr3: Sim, fer: Robot) -> None:

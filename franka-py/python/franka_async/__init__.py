@@ -1,9 +1,10 @@
 """Driver for Franka robots: motions are awaitables, states are numpy arrays, control stays on a real-time thread."""
 
-from . import condition, laws, otg, tools
+from . import condition, laws, otg, pose, tools
 from ._native import (
     COLLISION_THRESHOLDS,
     FLAT_LAYOUT,
+    READY,
     ActiveControl,
     Arm,
     AsynchronousControl,
@@ -13,6 +14,7 @@ from ._native import (
     Deadman,
     Dynamics,
     Engagement,
+    Follow,
     Gripper,
     GripperState,
     IdentificationPlan,
@@ -70,16 +72,18 @@ from .goal import (
     Waypoint,
 )
 from .motion import (
+    CycleTimes,
     MotionReport,
+    Phases,
     PoseError,
     Progress,
+    Quantiles,
     Reacted,
     Reference,
 )
 from .simulation import Network
-from .streams import Reading, Stream
 from .settings import VirtualWall
-from .streams import Stream
+from .streams import Reading, Stream
 from .supervision import Backoff, CloseReason, Event, Health, Policy, Reflex
 
 __all__ = [
@@ -100,12 +104,14 @@ __all__ = [
     "ConnectError",
     "ControlError",
     "ControlLog",
+    "CycleTimes",
     "Deadman",
     "Deviation",
     "Dynamics",
     "Engagement",
     "Event",
     "FLAT_LAYOUT",
+    "Follow",
     "FrankaError",
     "Gains",
     "Gripper",
@@ -131,10 +137,13 @@ __all__ = [
     "Network",
     "Offset",
     "Operation",
+    "Phases",
     "Plane",
     "Policy",
     "PoseError",
     "Progress",
+    "Quantiles",
+    "READY",
     "Reacted",
     "ReadError",
     "Reading",
@@ -161,6 +170,7 @@ __all__ = [
     "enable_logging",
     "laws",
     "otg",
+    "pose",
     "record_columns",
     "start_tickets",
     "tools",

@@ -6,7 +6,7 @@ in Python.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ._native import ControlLog
@@ -92,8 +92,11 @@ class ControlError(MotionError):
     log: ControlLog
     """The last cycles of the motion."""
 
-    diagnosis: str
-    """Which limit was exceeded, by how much, since when, and what to change."""
+    diagnosis: str | None
+    """Which limit was exceeded, by how much, since when, and what to change; ``None`` if no limit was."""
+
+    findings: dict[str, Any] | None
+    """The diagnosis as data, for programs: ``finding``, ``causes``, ``advice`` and more, as lists, ``dict`` and numbers."""
 
     def to_csv(self) -> str:
         """Returns the log as comma-separated values, a line for each cycle."""

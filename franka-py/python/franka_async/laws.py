@@ -39,7 +39,7 @@ FINISH = 1
 RAISED = -(2**31)
 """What a law made by :func:`compiled` returns for an exception in it."""
 
-_OUTPUT = 16
+_OUTPUT = 18
 
 _CTYPES_FUNCTION: Any = vars(ctypes)["_CFuncPtr"]
 
@@ -74,7 +74,7 @@ def header() -> Path:
 def compiled(function: Callable[[Any, Any, Any, Any], int]) -> Any:
     """Compiles ``function(cycle, parameters, memory, output) -> int`` with numba into code for :class:`franka_async.Law`.
 
-    ``cycle`` has the fields of :data:`CYCLE` as attributes; the others are arrays. ``output`` has 16 numbers, of which the first
+    ``cycle`` has the fields of :data:`CYCLE` as attributes; the others are arrays. ``output`` has 18 numbers, of which the first
     ones are the command; a pose is row by row. Divisions by zero give infinity. An exception in it stops the robot, with
     :data:`RAISED` as the code.
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["CycleTimes", "MotionReport", "PoseError", "Progress", "Quantiles", "Reacted", "Reference"]
+__all__ = ["CycleTimes", "MotionReport", "Phases", "PoseError", "Progress", "Quantiles", "Reacted", "Reference"]
 
 
 @dataclass(frozen=True)
@@ -57,6 +57,29 @@ class Quantiles:
 
 
 @dataclass(frozen=True)
+class Phases:
+    """Where the time of one cycle went, s."""
+
+    orders: float
+    """Orders from outside the control thread."""
+
+    decode: float
+    """The state, read from its bytes."""
+
+    program: float
+    """Law and guards, a compiled law, or under active control what the program did until it wrote."""
+
+    send: float
+    """The command, written into bytes and sent."""
+
+    publish: float
+    """What follows the command: log, newest state, records, events."""
+
+    prepare: float
+    """What the next answer does not need the next state for: goals, plans, the generator."""
+
+
+@dataclass(frozen=True)
 class CycleTimes:
     """The times of one cycle of control, s."""
 
@@ -71,6 +94,9 @@ class CycleTimes:
 
     slack: float
     """What was left until the next state was due; negative if the command left later."""
+
+    phases: Phases | None
+    """Where the time went."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,8 +24,9 @@ pub(crate) const MOST: usize = 256;
 /// The numbers that cross between threads: as many as are used, then zeros.
 pub(crate) type Numbers = [f64; MOST];
 
-/// The numbers of an output: as many as the command has, the widest of which is a pose.
-pub(crate) type Output = [f64; 16];
+/// The numbers of an output: as many as the command has, the widest of which is a pose with an
+/// elbow.
+pub(crate) type Output = [f64; 18];
 
 /// What is called: `(cycle, parameters, memory, output)`. It returns 0 to go on, a positive number
 /// for the last command, and a negative one to stop the robot, which is the error's code.
@@ -269,7 +270,7 @@ impl Running {
         cycle.dt = step.as_secs_f64();
         cycle.time += cycle.dt;
         cycle.update(state, self.version, &self.model);
-        let mut output = [f64::NAN; 16];
+        let mut output = [f64::NAN; 18];
         let (parameters, memory) = (self.parameters.as_ptr(), self.memory.as_mut_ptr());
         // SAFETY: the pointers are to as many numbers as the lengths say or more, alive and not
         // aliased during the call; `Code::new` has vouched for the function.

@@ -34,8 +34,10 @@ use function::{Code, MOST, Numbers, Output, Running, Setup};
 /// `code` is a `numba.cfunc`, what `franka_async.laws.compiled` makes, a function of a library that
 /// `ctypes` or `cffi` has loaded, or an address as an integer, whose code the program then has to
 /// keep. `command` is what the law's output is: `torques`, `joint_positions`, `joint_velocities`,
-/// `cartesian_pose` or `cartesian_velocities`. `parameters` and `memory`, `(n,)` with 256 numbers
-/// at most, are what the law finds in its first cycle.
+/// `cartesian_pose` or `cartesian_velocities`. With `elbow=True` the latter two have that of the
+/// elbow behind them: position of joint 3, rad, and the sign of joint 4; otherwise it is left to
+/// the robot. `parameters` and `memory`, `(n,)` with 256 numbers at most, are what the law finds
+/// in its first cycle.
 ///
 /// The function runs on the real-time thread, with some 300 us to answer: it must not lock,
 /// allocate, print or wait, and nothing guards against code that writes where it should not.
@@ -43,6 +45,8 @@ use function::{Code, MOST, Numbers, Output, Running, Setup};
 pub(crate) struct Law {
     code: Arc<Code>,
     command: CommandKind,
+    /// Whether the output has an elbow.
+    elbow: bool,
     parameters: Mutex<Parameters>,
     memory: Vec<f64>,
     /// The memory of the newest run.
@@ -61,15 +65,22 @@ struct Parameters {
 #[pymethods]
 impl Law {
     #[new]
-    #[pyo3(signature = (code, *, command = "torques", parameters = None, memory = None))]
+    #[pyo3(signature = (
+        code, *, command = "torques", elbow = false, parameters = None, memory = None,
+    ))]
     fn new(
         py: Python<'_>,
         code: &Bound<'_, PyAny>,
         command: &str,
+        elbow: bool,
         parameters: Option<&Bound<'_, PyAny>>,
         memory: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let command = CommandKind::of(command)?;
+        if elbow && elbow_at(command).is_none() {
+            let text = format!("elbow is True, expected False for {:?}", command.name());
+            return Err(PyValueError::new_err(text));
+        }
         let parameters = numbers("parameters", parameters)?;
         let memory = numbers("memory", memory)?;
         let laws = py.import("franka_async.laws")?;
@@ -82,6 +93,7 @@ impl Law {
         Ok(Self {
             code: Arc::new(code),
             command,
+            elbow,
             parameters: Mutex::new(Parameters {
                 newest: parameters,
                 writer,
@@ -132,9 +144,10 @@ impl Law {
     }
 
     /// Calls the law once, with `state` and `dt` seconds after the state before, without a robot.
-    /// Returns its output, `(7,)`, `(4, 4)` or `(6,)`, and what it returned. Numbers that it did
-    /// not write are NaN. Time and memory go on from call to call; `reset()` begins anew. Model
-    /// terms are those of the vendor's constants for the kind of robot that the state is from.
+    /// Returns its output, `(7,)`, `(4, 4)` or `(6,)`, or with an elbow as it was written, `(18,)`
+    /// or `(8,)`; and what it returned. Numbers that it did not write are NaN. Time and memory go
+    /// on from call to call; `reset()` begins anew. Model terms are those of the vendor's
+    /// constants for the kind of robot that the state is from.
     #[pyo3(signature = (state, dt = 0.001))]
     fn step<'py>(
         &self,
@@ -152,7 +165,7 @@ impl Law {
             self.running(Arc::new(Model::of(kind).clone()), state.version)
         });
         let (output, code) = running.call(&state.state, dt);
-        Ok((shaped(py, self.command, &output)?, code))
+        Ok((self.shaped(py, &output)?, code))
     }
 
     /// Has the next `step` begin with time 0 and the memory that the law was made with.
@@ -189,6 +202,8 @@ impl Law {
     fn control(&self, robot: &franka_async::Robot) -> Control {
         let model = Arc::new(robot.model().clone());
         let mut law = self.running(model, robot.version());
+        let elbow = elbow_at(self.command).filter(|_| self.elbow);
+        let elbow = move |o: &Output| elbow.map(|at| [o[at], o[at + 1]]);
         match self.command {
             CommandKind::Torques => {
                 robot.control_torques(move |s, dt| law.next(s, dt, |o| Torques(first(o))))
@@ -202,24 +217,40 @@ impl Law {
             CommandKind::CartesianPose => robot.control_cartesian_pose(move |s, dt| {
                 law.next(s, dt, |o| CartesianPose {
                     O_T_EE: transposed(o),
-                    elbow: None,
+                    elbow: elbow(o),
                 })
             }),
             CommandKind::CartesianVelocities => robot.control_cartesian_velocities(move |s, dt| {
                 law.next(s, dt, |o| CartesianVelocities {
                     O_dP_EE: first(o),
-                    elbow: None,
+                    elbow: elbow(o),
                 })
             }),
         }
+    }
+
+    /// The output as an array of the command's shape.
+    fn shaped<'py>(
+        &self,
+        py: Python<'py>,
+        output: &Output,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let shape: &[usize] = match (self.command, self.elbow) {
+            (CommandKind::CartesianPose, false) => &[4, 4],
+            (CommandKind::CartesianPose, true) => &[18],
+            (CommandKind::CartesianVelocities, false) => &[6],
+            (CommandKind::CartesianVelocities, true) => &[8],
+            _ => &[7],
+        };
+        array(py, &output[..shape.iter().product()]).reshape(shape)
     }
 }
 
 #[pymethods]
 impl Robot {
     /// Control by a law that needs no interpreter in the cycle, a `Law`, or code that one is made
-    /// of with `command`, `parameters` and `memory`. Resolves with a `MotionReport` when the law
-    /// has returned a positive number and the robot has ended the motion.
+    /// of with `command`, `elbow`, `parameters` and `memory`. Resolves with a `MotionReport` when
+    /// the law has returned a positive number and the robot has ended the motion.
     ///
     /// `controller` is which of the robot's own controllers follows, where no torques are
     /// commanded. `limit_rate` is whether commands pass the limiter: by default on a Franka Emika
@@ -230,8 +261,8 @@ impl Robot {
     /// its `code`, of the kind `invalid` for output that is not finite, and `busy` while anything
     /// else controls the arm. Cancelling has the robot stop.
     #[pyo3(signature = (
-        law, *, command = None, parameters = None, memory = None, controller = "joint_impedance",
-        limit_rate = None, cutoff_frequency = None,
+        law, *, command = None, elbow = false, parameters = None, memory = None,
+        controller = "joint_impedance", limit_rate = None, cutoff_frequency = None,
     ))]
     #[expect(clippy::too_many_arguments, reason = "keywords")]
     fn run_law(
@@ -239,6 +270,7 @@ impl Robot {
         py: Python<'_>,
         law: &Bound<'_, PyAny>,
         command: Option<&str>,
+        elbow: bool,
         parameters: Option<&Bound<'_, PyAny>>,
         memory: Option<&Bound<'_, PyAny>>,
         controller: &str,
@@ -247,15 +279,15 @@ impl Robot {
     ) -> PyResult<Operation> {
         let controller = self::controller(controller)?;
         let law = match law.cast::<Law>() {
-            Ok(_) if command.is_some() || parameters.is_some() || memory.is_some() => {
+            Ok(_) if command.is_some() || elbow || parameters.is_some() || memory.is_some() => {
                 return Err(PyValueError::new_err(
-                    "command, parameters and memory belong to the Law that was given",
+                    "command, elbow, parameters and memory belong to the Law that was given",
                 ));
             }
             Ok(law) => law.clone(),
             Err(_) => {
                 let command = command.unwrap_or("torques");
-                Bound::new(py, Law::new(py, law, command, parameters, memory)?)?
+                Bound::new(py, Law::new(py, law, command, elbow, parameters, memory)?)?
             }
         };
         let robot = self.connected()?;
@@ -297,18 +329,13 @@ fn numbers(name: &str, argument: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>
     Ok(values)
 }
 
-/// The output as an array of the command's shape.
-fn shaped<'py>(
-    py: Python<'py>,
-    command: CommandKind,
-    output: &Output,
-) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-    let shape: &[usize] = match command {
-        CommandKind::CartesianPose => &[4, 4],
-        CommandKind::CartesianVelocities => &[6],
-        _ => &[7],
-    };
-    array(py, &output[..shape.iter().product()]).reshape(shape)
+/// Where the elbow is in the output, for commands that have one.
+fn elbow_at(command: CommandKind) -> Option<usize> {
+    match command {
+        CommandKind::CartesianPose => Some(16),
+        CommandKind::CartesianVelocities => Some(6),
+        _ => None,
+    }
 }
 
 fn first<const N: usize>(output: &Output) -> [f64; N] {

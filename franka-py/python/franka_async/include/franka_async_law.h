@@ -17,6 +17,8 @@
  *                 joint_velocities      7   rad/s
  *                 cartesian_pose       16   pose of the end effector in the base frame, row by row
  *                 cartesian_velocities  6   twist of the end effector in the base frame, m/s, then rad/s
+ *               A law that was made with elbow=True writes two more behind a pose or a twist: position of joint 3, rad, and
+ *               sign of joint 4, -1 or 1.
  *
  * It has some 300 us for that, and must not allocate, lock, print, wait, raise a signal or unwind. It may write to memory and
  * output, up to their lengths, and nowhere else. It may be called on different threads, one after the other.

@@ -32,19 +32,6 @@ def normalised(quaternion: Array) -> Array:
     return quaternion / length
 
 
-def matrix(target: Array) -> Array:
-    """Returns the pose, (4, 4), of a position and a quaternion, (7,)."""
-    x, y, z, w = target[3:]
-    pose = np.eye(4)
-    pose[:3, :3] = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    pose[:3, 3] = target[:3]
-    return pose
-
-
 def numbers(name: str, values: npt.ArrayLike, *counts: int) -> Array:
     """Returns a vector of one of these lengths. Raises ``ValueError`` for another and for numbers that are not finite."""
     array = np.array(values, dtype=np.float64)

@@ -13,9 +13,10 @@ import numpy.typing as npt
 
 from ... import _native
 from ...goal import Joints
+from ...pose import from_xyzw
 from .._waiting import wait
 from ._errors import FrankaError, translated
-from ._rotation import Array, matrix, normalised, numbers, rotated_by
+from ._rotation import Array, normalised, numbers, rotated_by
 
 _STOPPED = (
     "franka: this target control was stopped; start a new one with Robot.cartesian_targets() or Robot.joint_targets()."
@@ -157,7 +158,7 @@ class CartesianTargets(_Targets):
 
     def target_pose(self) -> Array:
         """Returns the target as a pose, (4, 4)."""
-        return matrix(self._target)
+        return from_xyzw(self._target[:3], self._target[3:])
 
 
 class JointTargets(_Targets):
