@@ -11,10 +11,13 @@ from pathlib import Path
 import franka_async
 
 PACKAGE = Path(franka_async.__file__).parent
-STUB = PACKAGE / "sync.pyi"
+STUB = PACKAGE / "sync" / "__init__.pyi"
 
-WAITED = {"Motion": "MotionReport", "Engagement": "Arm"}
+WAITED = {"Motion": "MotionReport", "Follow": "MotionReport", "Engagement": "Arm"}
 """What awaiting these gives."""
+
+ARGUMENTS = {("Team", "run"): "Sequence[Callable[[_native.Arm], Motion | Follow]]"}
+"""What methods take in the place of their argument."""
 
 CONTEXT = {"__aenter__": "__enter__", "__aexit__": "__exit__"}
 
@@ -28,12 +31,15 @@ def stub() -> str:
     classes = {node.name: node for node in tree.body if isinstance(node, ast.ClassDef)}
     private = [node for node in tree.body if isinstance(node, ast.AnnAssign) and ast.unparse(node.target).startswith("_")]
     body: list[ast.stmt] = []
-    for name in sync.__all__:
+    made = [name for name in sync.__all__ if name in classes]
+    for name in made:
         for method in (member for member in classes[name].body if isinstance(member, ast.FunctionDef)):
             if method.name == "__new__":
                 method.name, method.returns = "__init__", ast.Constant(None)
                 method.args.args[0].arg = "self"
             method.name = CONTEXT.get(method.name, method.name)
+            if (name, method.name) in ARGUMENTS:
+                method.args.args[1].annotation = ast.parse(ARGUMENTS[name, method.name], mode="eval").body
             method.returns = waited(method.returns)
         body.append(classes[name])
     used = {node.id for part in body for node in ast.walk(part) if isinstance(node, ast.Name)}
@@ -45,9 +51,10 @@ def stub() -> str:
         if isinstance(node, ast.Import):
             lines += [ast.unparse(node)] if any((alias.asname or alias.name) in used for alias in node.names) else []
         elif names:
-            lines.append(f"from {'.' * node.level}{node.module or ''} import {', '.join(names)}")
-    native = sorted((used & classes.keys()) - set(sync.__all__))
-    lines.append(f"from ._native import {', '.join(native)}")
+            level = node.level + 1 if node.level else 0
+            lines.append(f"from {'.' * level}{node.module or ''} import {', '.join(names)}")
+    native = sorted((used & classes.keys()) - set(made))
+    lines += [f"from .._native import {', '.join(native)}", "from .. import _native", "from . import tools as tools"]
     lines += ["", f"__all__ = {sync.__all__!r}", ""]
     return "\n".join(lines + [ast.unparse(node) + "\n" for node in private + body])
 

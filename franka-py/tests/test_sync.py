@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
 import signal
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from conftest import until
-from sync_stub import STUB, stub
+from sync_stub import PACKAGE, STUB, stub
 
-from franka_async import FrankaError, Joints, Latest, MotionError, Sim, sync
+import franka_async
+from franka_async import FrankaError, Joints, Latest, MotionError, Sim, _native, sync
 
 
 def test_a_program_without_an_event_loop(sim: Sim) -> None:
@@ -83,3 +87,60 @@ def test_ctrl_c_ends_what_waits(live: Sim) -> None:
 
 def test_the_stub_is_that_of_the_native_classes() -> None:
     assert STUB.read_text() == stub(), "run tests/sync_stub.py"
+
+
+def test_whatever_waits_has_a_twin_with_every_name() -> None:
+    tree = ast.parse((PACKAGE / "_native.pyi").read_text())
+    awaitables = {"Operation", "Motion", "Follow", "Engagement"}
+    checked = []
+    for node in (node for node in tree.body if isinstance(node, ast.ClassDef)):
+        methods = [method for method in node.body if isinstance(method, ast.FunctionDef)]
+        returned = {method.name: ast.unparse(method.returns).split("[")[0] for method in methods if method.returns}
+        waiting = {name for name, what in returned.items() if what in awaitables} - {"__aenter__", "__aexit__"}
+        native = getattr(_native, node.name)
+        if not waiting or node.name == "Source":
+            assert hasattr(native, "__enter__") or "__aenter__" not in returned or node.name in awaitables, node.name
+            continue
+        twin = getattr(sync, node.name)
+        wanted = {name for name in vars(native) if not name.startswith("_")}
+        wanted |= {name.replace("a", "", 1) for name in vars(native) if name in ("__aenter__", "__aexit__")}
+        assert wanted <= set(vars(twin)), node.name
+        checked.append(node.name)
+    assert set(checked) == {name for name in sync.__all__ if isinstance(getattr(sync, name), type)}
+
+
+def test_every_coroutine_function_has_a_twin() -> None:
+    modules = [franka_async, franka_async.tools, franka_async.otg, franka_async.laws, franka_async.condition, franka_async.pose]
+    for module in modules:
+        here = module.__name__.removeprefix("franka_async").lstrip(".")
+        for name in module.__all__:
+            if inspect.iscoroutinefunction(getattr(module, name)):
+                twin = getattr(getattr(sync, here), name)
+                assert not inspect.iscoroutinefunction(twin)
+    assert set(sync.tools.__all__) == set(franka_async.tools.__all__)
+
+
+def test_tools_and_a_team(sim_fr3: Sim, sim_fer: Sim, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FRANKA_TOOLS", str(tmp_path / "tools.json"))
+    with (
+        sync.Robot(sim_fr3.address, realtime="ignore") as left,
+        sync.Robot(sim_fer.address, realtime="ignore") as right,
+    ):
+        sync.tools.save("brush", sync.tools.Tool(mass=0.3, center=[0.0, 0.0, 0.05]))
+        assert sync.tools.load(left, "brush").mass == 0.3
+        until(lambda: abs(left.state().m_load - 0.3) < 1e-6)
+        sync.tools.unload(left)
+        with sync.Team.engage(left, right, silence=10.0) as team:
+            assert isinstance(team, sync.Team) and len(team) == 2
+            up = np.eye(4)
+            up[2, 3] = 0.03
+            reports = team.move_to([up @ left.pose(), up @ right.pose()])
+            assert len(reports) == 2
+            arm = team.arms[0]
+            assert isinstance(arm, sync.Arm)
+            arm.move_by([0.0, 0.0, -0.01])
+            height = right.pose()[2, 3]
+            team.run([lambda arm: arm.hold(), lambda arm: arm.move_by([0.0, 0.0, -0.03])])
+            assert right.pose()[2, 3] < height - 0.02
+            with pytest.raises(TypeError, match="got 1 motions, expected 2: one for each arm"):
+                team.run([lambda arm: arm.hold()])

@@ -152,7 +152,10 @@ async def identify(robot: Robot, *, frame: ArrayLike = _IDENTITY) -> Tool:
     ``IdentifyError``, ``MotionError``, and ``ValueError`` if what is there is too light to be told from none. Cancelling brakes the
     arm.
     """
-    found = await robot.identify().run()
+    return _found(await robot.identify().run(), frame)
+
+
+def _found(found: Identified, frame: ArrayLike) -> Tool:
     if found.center is None:
         raise ValueError(
             f"found {found.mass:.3f} kg with a deviation of {found.mass_deviation:.3f} kg: too light to be a tool"

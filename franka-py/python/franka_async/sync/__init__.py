@@ -10,17 +10,29 @@
             arm.move_by([0.0, 0.1, 0.0])
 
 Ctrl-C brakes the arm and raises ``KeyboardInterrupt``. Other threads run meanwhile, and may call ``robot.stop()``. Names, arguments
-and exceptions are those of ``franka_async``; so are the classes that are not here.
+and exceptions are those of ``franka_async``; so are the classes that are not here. One method differs: ``Team.run`` takes a function
+for each arm, ``team.run([lambda arm: arm.move_to(a), lambda arm: arm.move_by(b)])``, since a motion that was made would wait here.
 """
 
 from __future__ import annotations
 
 import functools
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from . import _native
+from .. import _native
 
-__all__ = ["Arm", "Gripper", "IdentificationPlan", "Robot", "VacuumGripper"]
+__all__ = [
+    "Arm",
+    "AsynchronousControl",
+    "Gripper",
+    "IdentificationPlan",
+    "Robot",
+    "Team",
+    "TeamGrasp",
+    "VacuumGripper",
+    "tools",
+]
 
 _waiting: dict[type, type] = {}
 """The class of this module for a class of the package."""
@@ -42,6 +54,8 @@ def _result(result: Any) -> Any:
     """What a method returns here for what it returns there."""
     if isinstance(result, _native.Operation):
         result = result.wait()
+    if type(result) is list:
+        return [_result(part) for part in result]
     if type(result) not in _waiting:
         return result
     waiting = object.__new__(_waiting[type(result)])
@@ -60,8 +74,15 @@ def _class(of: type) -> Any:
 
         return call
 
+    def function(there: Any) -> Any:
+        @functools.wraps(there)
+        def call(*arguments: Any, **keywords: Any) -> Any:
+            return _result(there(*(getattr(argument, "_awaiting", argument) for argument in arguments), **keywords))
+
+        return staticmethod(call)
+
     def field(name: str, there: Any) -> Any:
-        return property(lambda self: getattr(self._awaiting, name), doc=there.__doc__)
+        return property(lambda self: _result(getattr(self._awaiting, name)), doc=there.__doc__)
 
     def __init__(self: Any, *arguments: Any, **keywords: Any) -> None:
         self._awaiting = of(*arguments, **keywords)
@@ -72,6 +93,10 @@ def _class(of: type) -> Any:
     for name, there in vars(of).items():
         if name in ("__aenter__", "__aexit__"):
             members[name.replace("a", "", 1)] = method(name, there)
+        elif name in ("__enter__", "__exit__", "__len__"):
+            members[name] = method(name, there)
+        elif isinstance(there, staticmethod):
+            members[name] = function(there.__func__)
         elif not name.startswith("_"):
             members[name] = method(name, there) if callable(there) else field(name, there)
     _waiting[of] = type(of.__name__, (_Waiting,), members)
@@ -79,7 +104,25 @@ def _class(of: type) -> Any:
 
 
 Arm = _class(_native.Arm)
+AsynchronousControl = _class(_native.AsynchronousControl)
 Gripper = _class(_native.Gripper)
 IdentificationPlan = _class(_native.IdentificationPlan)
 Robot = _class(_native.Robot)
+Team = _class(_native.Team)
+TeamGrasp = _class(_native.TeamGrasp)
 VacuumGripper = _class(_native.VacuumGripper)
+
+
+def _run(self: Any, motions: Sequence[Callable[[_native.Arm], _native.Motion | _native.Follow]]) -> Any:
+    """A motion of all arms, which begin together: a function for each, which gets its arm as the class of ``franka_async`` and
+    returns a motion of it that has not begun. Returns and raises as ``move_to``.
+    """
+    arms = self._awaiting.arms
+    if len(motions) != len(arms):
+        raise TypeError(f"got {len(motions)} motions, expected {len(arms)}: one for each arm")
+    return _result(self._awaiting.run([motion(arm) for motion, arm in zip(motions, arms, strict=True)]))
+
+
+Team.run = _run
+
+from . import tools  # noqa: E402 - it names the classes above

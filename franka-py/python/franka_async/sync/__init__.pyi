@@ -5,17 +5,21 @@ from typing import Any, Literal, TypeAlias, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Unpack
-from .goal import Budget, Chunk, Controller, Destination, Gains, Joints, Margin, Target, Waypoint
-from .motion import MotionReport, Reference
-from .options import EngageOptions, FollowOptions, MotionOptions, TuneOptions
-from .settings import VirtualWall
-from .streams import Reading, Stream
-from .supervision import CloseReason, Event, Health, Policy, Reflex
-from ._native import ActiveControl, AsynchronousControl, GripperState, Identified, Latest, Model, Recording, RobotState, VacuumGripperState
+from ..goal import Budget, Chunk, Controller, Destination, Gains, Joints, Margin, Target, Waypoint
+from ..motion import MotionReport, Reference
+from ..options import EngageOptions, FollowOptions, GoalOptions, MotionOptions, SessionOptions, TuneOptions
+from ..settings import VirtualWall
+from ..streams import Reading, Stream
+from ..supervision import CloseReason, Event, Health, Policy, Reflex
+from .._native import ActiveControl, Follow, GripperState, Identified, Latest, Model, Motion, Recording, RobotState, VacuumGripperState
+from .. import _native
+from . import tools as tools
 
-__all__ = ['Arm', 'Gripper', 'IdentificationPlan', 'Robot', 'VacuumGripper']
+__all__ = ['Arm', 'AsynchronousControl', 'Gripper', 'IdentificationPlan', 'Robot', 'Team', 'TeamGrasp', 'VacuumGripper', 'tools']
 
 _Array: TypeAlias = NDArray[np.float64]
+
+_Command: TypeAlias = Literal['torques', 'joint_positions', 'joint_velocities', 'cartesian_pose', 'cartesian_velocities']
 
 @final
 class Arm:
@@ -73,6 +77,28 @@ class Arm:
         ...
 
     def __exit__(self, kind: object=None, *_rest: object) -> None:
+        ...
+
+@final
+class AsynchronousControl:
+    """A motion between sparse joint targets that the robot itself plans."""
+
+    def set_target(self, q: ArrayLike) -> None:
+        ...
+
+    def status(self) -> tuple[Literal['idle', 'executing', 'target_reached', 'aborted'], str | None]:
+        ...
+
+    def reached(self) -> None:
+        ...
+
+    def stop(self) -> None:
+        ...
+
+    def __enter__(self) -> AsynchronousControl:
+        ...
+
+    def __exit__(self, *_exception: object) -> None:
         ...
 
 @final
@@ -310,10 +336,59 @@ class Robot:
     def asynchronous_joint_positions(self, maximum_joint_velocities: ArrayLike | None=None, goal_tolerance: float | None=None) -> AsynchronousControl:
         ...
 
-    def run_law(self, law: Any, *, command: str | None=None, parameters: ArrayLike | None=None, memory: ArrayLike | None=None, controller: Controller='joint_impedance', limit_rate: bool | None=None, cutoff_frequency: float | None=None) -> MotionReport:
+    def run_law(self, law: Any, *, command: _Command | None=None, elbow: bool=False, parameters: ArrayLike | None=None, memory: ArrayLike | None=None, controller: Controller='joint_impedance', limit_rate: bool | None=None, cutoff_frequency: float | None=None) -> MotionReport:
         ...
 
     def model(self) -> Model:
+        ...
+
+@final
+class Team:
+    """Two to four arms as one: motions that begin together, one stop."""
+
+    @staticmethod
+    def engage(*robots: Robot, silence: float=..., **options: Unpack[SessionOptions]) -> Team:
+        ...
+
+    @property
+    def arms(self) -> list[Arm]:
+        ...
+
+    def move_to(self, targets: Sequence[Destination], **options: Unpack[GoalOptions]) -> list[MotionReport]:
+        ...
+
+    def run(self, motions: Sequence[Callable[[_native.Arm], Motion | Follow]]) -> list[MotionReport]:
+        ...
+
+    def stop(self) -> None:
+        ...
+
+    def stopped(self) -> str | tuple[str, int] | None:
+        ...
+
+    def grasp(self, bases: Sequence[ArrayLike], object: ArrayLike) -> TeamGrasp:
+        ...
+
+    def disengage(self) -> list[MotionReport]:
+        ...
+
+    def __enter__(self) -> Team:
+        ...
+
+    def __exit__(self, kind: object=None, *_rest: object) -> None:
+        ...
+
+    def __len__(self) -> int:
+        ...
+
+@final
+class TeamGrasp:
+    """An object that all arms of a team hold."""
+
+    def move_to(self, object: ArrayLike, **options: Unpack[GoalOptions]) -> list[MotionReport]:
+        ...
+
+    def measured(self) -> list[_Array]:
         ...
 
 @final
