@@ -1,5 +1,6 @@
-//! The names of `franka-async`: few at the root, none in two places, and no other crate of ours
-//! named by the examples, the book and the README.
+//! The names of `franka-async`: few at the root, none in two places, each with its name in Python
+//! or the reason why it has none, and no other crate of ours named by the examples, the book and
+//! the README.
 //!
 //! ```text
 //! lib.rs ── pub mod x; ──> files ── pub use a::B, pub struct C ──> module, name, path of the item
@@ -35,6 +36,10 @@ const NAMESAKES: [&str; 7] = [
     "collision",
 ];
 
+/// What each name is in Python: `name = franka_async.Name`, or `name: why it is not there`. The
+/// tests of the package look the former up.
+const IN_PYTHON: &str = "franka-py/tests/rust_names.txt";
+
 /// Crates of ours that programs depend on.
 const FOR_PROGRAMS: [&str; 3] = ["franka-async", "franka-sim", "franka-examples"];
 
@@ -45,6 +50,9 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
     let names = Names::of(root)?;
     let at_root = names.modules[""].len();
     let mut found = names.faults();
+    let table = workspace.root().join(IN_PYTHON);
+    let table = fs::read_to_string(&table).with_context(|| format!("cannot read {IN_PYTHON}"))?;
+    found.extend(names.untold(&table));
     for text in [workspace.root().join("README.md")]
         .into_iter()
         .chain(files(&workspace.root().join("docs/src"))?)
@@ -165,6 +173,31 @@ impl Names {
     fn insert(&mut self, module: &str, name: String, path: String) {
         let names = self.modules.entry(module.to_owned()).or_default();
         names.insert(name, path);
+    }
+
+    /// A line for each name that the table does not have, and for each one that is not there.
+    fn untold(&self, table: &str) -> Vec<String> {
+        let told = |line: &str| {
+            let end = line.find(" = ").or_else(|| line.find(": "))?;
+            Some(line[..end].to_owned())
+        };
+        let lines = table.lines().filter(|line| !line.starts_with('#'));
+        let told: BTreeSet<String> = lines.filter_map(told).collect();
+        let modules = self
+            .modules
+            .iter()
+            .filter(|(module, _)| **module != PRELUDE);
+        let names: BTreeSet<String> = modules
+            .flat_map(|(module, names)| names.keys().map(|name| join(module, name)))
+            .filter(|name| !self.modules.contains_key(name))
+            .collect();
+        let missing = names.difference(&told);
+        let missing = missing.map(|name| {
+            format!("{IN_PYTHON} lacks {name} (`{name} = franka_async.X` or `{name}: why not`)")
+        });
+        let gone = told.difference(&names);
+        let gone = gone.map(|name| format!("{IN_PYTHON} has {name}, which is not there"));
+        missing.chain(gone).collect()
     }
 
     /// A line for each rule that is not kept.
@@ -288,6 +321,23 @@ mod tests {
         assert_eq!(found, ["x::a::B is in two places: m::B and n::a"]);
         let found = faults("pub mod m { pub struct B; } pub mod n { pub use x::y::B; }");
         assert_eq!(found, ["one name, two things: m::B, n::B"]);
+    }
+
+    #[test]
+    fn each_name_has_one_in_python_or_a_reason() {
+        let mut names = Names::default();
+        let source = "pub use a::B; pub mod m { pub fn f() {} } pub mod prelude {}";
+        let items = syn::parse_file(source).expect("it is Rust").items;
+        names.scan(&items, "", Path::new("")).expect("it is read");
+        let told = "B = franka_async.B\nm::f: a generic function\n";
+        assert_eq!(names.untold(told), Vec::<String>::new());
+        let found = names.untold("# see: above\nB = franka_async.B\nm::g: gone\n");
+        assert!(found[0].contains(" lacks m::f "), "{found:?}");
+        assert!(
+            found[1].ends_with("has m::g, which is not there"),
+            "{found:?}"
+        );
+        assert_eq!(found.len(), 2);
     }
 
     #[test]
