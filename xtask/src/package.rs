@@ -79,7 +79,7 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
 fn types(workspace: &Workspace, interpreter: &Path) -> anyhow::Result<()> {
     let mut check = module(workspace, interpreter, "mypy");
     check.args(["--strict", "--config-file", "franka-py/pyproject.toml"]);
-    check.arg("franka-py/tests");
+    check.args(["franka-py/tests", "franka-py/examples"]);
     workspace.run(&mut check)?;
     let mut stubs = module(workspace, interpreter, "mypy.stubtest");
     stubs.args(["--mypy-config-file", "franka-py/pyproject.toml"]);
