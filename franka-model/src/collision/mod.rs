@@ -90,7 +90,7 @@ impl Body {
     }
 
     /// The number of joints that move it.
-    fn joints(self) -> usize {
+    pub(crate) fn joints(self) -> usize {
         match self {
             Self::Link(link) => usize::from(link),
             Self::Tool => 7,
@@ -125,14 +125,14 @@ pub struct Placed<'a> {
 }
 
 /// Capsules of any shape: those of the largest arm and of a tool.
-const CAPACITY: usize = capsules::ARM_MAX + shape::TOOL_MAX;
+pub(crate) const CAPACITY: usize = capsules::ARM_MAX + shape::TOOL_MAX;
 
 impl<'a> Shape<'a> {
     /// The shape at the joint positions `q`, `[rad]`.
     pub fn at(&self, q: &JointVector) -> Placed<'a> {
         let chain = Chain::at(q);
         let mut segments = [Segment::EMPTY; CAPACITY];
-        for (segment, LinkCapsule { link, capsule }) in segments.iter_mut().zip(self.arm) {
+        for (segment, LinkCapsule { link, capsule, .. }) in segments.iter_mut().zip(self.arm) {
             *segment = match link {
                 0 => Segment::of(capsule, |p| p - Vector3::new(0.0, 0.0, SHOULDER)),
                 link => {
@@ -214,6 +214,25 @@ impl Placed<'_> {
     /// The capsules in the base frame, base to tool.
     pub fn capsules(&self) -> impl Iterator<Item = (Body, Capsule)> + '_ {
         (0..self.shape.len()).map(|i| (self.body(i), self.segments[i].capsule()))
+    }
+
+    /// Capsules along the surface of the arm, for what lies on it: as [`Self::capsules`], without
+    /// what makes them contain the links. From the shoulder.
+    pub(crate) fn surfaces(&self) -> impl Iterator<Item = (Body, Capsule)> + '_ {
+        (0..self.shape.len()).map(|i| {
+            let segment = &self.segments[i];
+            let margin = self.shape.arm.get(i).map_or(0.0, |capsule| capsule.margin);
+            let capsule = Capsule {
+                start: segment.start,
+                end: segment.start + segment.along,
+                radius: segment.radius - margin,
+            };
+            (self.body(i), capsule)
+        })
+    }
+
+    pub(crate) fn chain(&self) -> &Chain {
+        &self.chain
     }
 
     fn body(&self, i: usize) -> Body {
