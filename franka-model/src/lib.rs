@@ -26,6 +26,7 @@
 //! | [`operational_space`] | the inertia that is felt at a point and in a direction |
 //! | [`layout`] | arrays as libfranka has them |
 //! | [`collision`] | distances to itself, planes and boxes, with gradients |
+//! | [`contact`] | where a contact is, and its force, from external torques |
 //! | `urdf` (a feature) | models from the description that a robot serves |
 //! | `model_library` (a feature) | the code that a Franka Emika Robot computes with |
 //!
@@ -86,6 +87,7 @@ mod scalar;
 
 pub mod analytic_ik;
 pub mod collision;
+pub mod contact;
 pub mod differential_ik;
 pub mod elbow;
 pub mod frame;

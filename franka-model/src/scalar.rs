@@ -19,3 +19,15 @@ pub(crate) fn acos(x: f64) -> f64 {
 pub(crate) fn atan2(y: f64, x: f64) -> f64 {
     RealField::atan2(y, x)
 }
+
+pub(crate) fn ln(x: f64) -> f64 {
+    ComplexField::ln(x)
+}
+
+pub(crate) fn exp(x: f64) -> f64 {
+    ComplexField::exp(x)
+}
+
+pub(crate) fn tanh(x: f64) -> f64 {
+    ComplexField::tanh(x)
+}

@@ -5,6 +5,7 @@ mod cancelling;
 #[cfg(feature = "mujoco")]
 mod carrying;
 mod clearance;
+mod contact;
 mod diagnosis;
 mod endings;
 mod engaged;

@@ -5,6 +5,7 @@
 //! |---|---|
 //! | [`mod@bench`] | what the work of one control cycle costs |
 //! | [`broken_socket`] | receives that fail on a socket of another thread |
+//! | [`contacts`] | random pushes on a simulated arm, and what its torques tell of them |
 //! | [`cycle_counts`] | cycles, calls and success rates that a control function counts |
 //! | [`figures`] | figures of what was measured |
 //! | [`lockstep`] | driver, command session and simulated robot in one thread on virtual time |
@@ -16,6 +17,7 @@ use std::time::Duration;
 
 pub mod bench;
 pub mod broken_socket;
+pub mod contacts;
 pub mod cycle_counts;
 pub mod figures;
 pub mod golden;
