@@ -7,11 +7,11 @@
 //! ```
 //!
 //! A point force `f` on link `k` turns joints 1 to `k`, each by `axis · ((p − origin) × f)`, and
-//! no joint further out. [`locate`] asks of every patch of the surface of the arm (two to
-//! four centimetres wide, on the capsules that were fitted to the links) which force there explains the
+//! no joint further out. [`locate`] asks of every patch of the surface of the arm (two to four
+//! centimetres wide, on the capsules that were fitted to the links) which force there explains the
 //! torques best, and how well. A contact pushes: the force points into the surface, and is the less
 //! likely the more it leans away from the normal. The probabilities of the patches of a body add up
-//! to that of the body, and their mean is the place.
+//! to that of the body, and the mean of those around the best one is the place.
 //!
 //! # What can be known
 //!
