@@ -6,9 +6,12 @@ pub mod event;
 #[cfg(feature = "export")]
 pub mod export;
 pub mod recorder;
+pub mod recording;
 mod sample;
 pub mod schema;
 
 pub use cycle::{Cycle, HostTime};
 pub use event::{Event, EventKind, GripperState};
+pub use recorder::Recorder;
+pub use recording::Recording;
 pub use sample::Sample;

@@ -71,17 +71,18 @@ impl Arm {
     /// Feeds one cycle.
     pub(crate) fn step(&mut self) {
         self.ms += 1;
-        let (state, record) = self.cycle();
+        let (state, record) = self.cycle_at(self.ms);
         let mut bytes = [0; RobotState::MAX_SIZE];
         let length = state.encode(self.version, &mut bytes).unwrap();
         let received = self.began + Duration::from_millis(self.ms);
         self.publisher.push(record, &bytes[..length], received);
     }
 
-    fn cycle(&self) -> (RobotState, Record) {
-        let t = self.ms as f64 * 1e-3;
+    /// State and record of a cycle.
+    pub(crate) fn cycle_at(&self, ms: u64) -> (RobotState, Record) {
+        let t = ms as f64 * 1e-3;
         let mut state = self.state;
-        state.message_id = self.ms;
+        state.message_id = ms;
         for joint in 0..7 {
             let phase = 0.7 * t + joint as f64;
             state.q[joint] = 0.4 * phase.sin();
@@ -92,7 +93,7 @@ impl Arm {
         state.O_T_EE[12..15].copy_from_slice(&[0.5, 0.1 * t.sin(), 0.4]);
         state.O_F_ext_hat_K[2] = 5.0 * t.sin();
         let mut record = Record::default();
-        record.time = self.ms;
+        record.time = ms;
         record.activity = Activity::Running;
         record.robot_mode = state.robot_mode;
         record.errors = state.errors;

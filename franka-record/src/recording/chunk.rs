@@ -1,0 +1,91 @@
+//! The records of one chunk.
+
+use std::io::Read as _;
+
+use super::bytes::Bytes;
+use super::error::ReadError;
+use super::index::ChunkEntry;
+use super::wire::{self, ChunkHeader, Fields, HEADER, op};
+
+/// A chunk in memory, decompressed.
+#[derive(Clone, Debug)]
+pub(super) struct Chunk {
+    pub(super) offset: u64,
+    records: Vec<u8>,
+    next: usize,
+}
+
+impl Chunk {
+    /// Reads a chunk and checks it.
+    pub(super) fn read(bytes: &Bytes, entry: &ChunkEntry) -> Result<Self, ReadError> {
+        let offset = entry.offset;
+        let damaged = |reason: &str| {
+            Err(ReadError::Chunk {
+                offset,
+                reason: reason.to_owned(),
+            })
+        };
+        let Some(record) = bytes.read(offset, entry.length)? else {
+            return damaged("it goes beyond the end of the file");
+        };
+        let Some((op::CHUNK, body, _)) = wire::split(&record) else {
+            return damaged("it is no chunk");
+        };
+        let mut fields = Fields(body);
+        let Some(header) = ChunkHeader::read(&mut fields) else {
+            return damaged("its header is too short");
+        };
+        let compressed = usize::try_from(header.compressed_size).ok();
+        let Some(data) = compressed.and_then(|length| fields.bytes(length)) else {
+            return damaged("its data is too short");
+        };
+        let records = match header.compression {
+            "" => data.to_vec(),
+            "lz4" => match decompress(data, header.size) {
+                Ok(records) => records,
+                Err(reason) => return damaged(&reason),
+            },
+            other => {
+                return damaged(&format!(
+                    "it is compressed with {other:?}; lz4 and no compression can be read"
+                ));
+            }
+        };
+        if records.len() as u64 != header.size {
+            return damaged("its data has another length than it says");
+        }
+        if header.crc != 0 && crc32fast::hash(&records) != header.crc {
+            return damaged("its checksum is wrong");
+        }
+        Ok(Self {
+            offset,
+            records,
+            next: 0,
+        })
+    }
+
+    /// The next record: its kind and its body. `None` at the end, or where no record can be read.
+    pub(super) fn next(&mut self) -> Option<(u8, &[u8])> {
+        let (kind, body, _) = wire::split(self.records.get(self.next..)?)?;
+        self.next += HEADER as usize + body.len();
+        Some((kind, body))
+    }
+
+    /// Whether records are left that cannot be read.
+    pub(super) fn is_cut(&self) -> bool {
+        self.next < self.records.len()
+    }
+}
+
+/// At most one byte more than `size` of LZ4 frames. The memory grows with what comes out.
+fn decompress(data: &[u8], size: u64) -> Result<Vec<u8>, String> {
+    let mut records = Vec::new();
+    let decoder = lz4::Decoder::new(data).map_err(|error| error.to_string())?;
+    match decoder
+        .take(size.saturating_add(1))
+        .read_to_end(&mut records)
+    {
+        Ok(_) => Ok(records),
+        Err(error) => Err(format!("its compressed data: {error}")),
+    }
+}

@@ -1,0 +1,65 @@
+//! Why a recording cannot be read.
+
+use std::io;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Why a recording, or a part of it, cannot be read.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The file cannot be opened, or written in a recovery.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: Arc<io::Error>,
+    },
+    /// It is no MCAP file.
+    #[error("not an MCAP file: it begins with {got:02x?}")]
+    NotMcap {
+        /// The bytes at its beginning.
+        got: Vec<u8>,
+    },
+    /// The system cannot read on.
+    #[error("cannot read the recording: {source}")]
+    Read {
+        /// What the system says.
+        source: Arc<io::Error>,
+    },
+    /// A chunk is damaged. Those after it can be read.
+    #[error("the chunk at byte {offset} is damaged: {reason}")]
+    Chunk {
+        /// Where it begins.
+        offset: u64,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A message is none of its kind. Those after it can be read.
+    #[error("a message of {topic} in the chunk at byte {offset} is damaged: {reason}")]
+    Message {
+        /// Its channel.
+        topic: String,
+        /// Where its chunk begins.
+        offset: u64,
+        /// What is wrong.
+        reason: String,
+    },
+    /// There is no robot of that name in the recording.
+    #[error("no robot is called {name:?} in this recording; there are {robots:?}")]
+    NoRobot {
+        /// What was asked for.
+        name: String,
+        /// Those that there are.
+        robots: Vec<String>,
+    },
+}
+
+impl From<io::Error> for ReadError {
+    fn from(source: io::Error) -> Self {
+        Self::Read {
+            source: source.into(),
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! Where the chunks of a recording are: by its summary, or by going through it.
+
+use std::collections::BTreeMap;
+
+use super::bytes::Bytes;
+use super::error::ReadError;
+use super::wire::{self, ChunkHeader, Fields, HEADER, MAGIC, op};
+
+/// Where everything is.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Index {
+    /// Chunks, in the order of the file.
+    pub(super) chunks: Vec<ChunkEntry>,
+    pub(super) attachments: Vec<Entry>,
+    pub(super) metadata: Vec<Entry>,
+    /// Bodies of schema and channel records outside of chunks.
+    pub(super) described: Vec<(u8, Vec<u8>)>,
+    /// Why the file is not as it was to be, if it is not.
+    pub(super) damage: Option<String>,
+}
+
+/// Where a chunk is: its whole record.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ChunkEntry {
+    pub(super) offset: u64,
+    pub(super) length: u64,
+    pub(super) begin: u64,
+    pub(super) end: u64,
+}
+
+/// Where a record is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    pub(super) offset: u64,
+    pub(super) length: u64,
+}
+
+impl Index {
+    /// The index of a file.
+    pub(super) fn of(bytes: &Bytes) -> Result<Self, ReadError> {
+        let first = bytes.read(0, bytes.length().min(MAGIC.len() as u64))?;
+        let first = first.unwrap_or_default();
+        if first != MAGIC {
+            return Err(ReadError::NotMcap { got: first });
+        }
+        match Self::of_summary(bytes)? {
+            Ok(index) => Ok(index),
+            Err(why) => {
+                let mut index = Self::of_records(bytes)?;
+                index.damage.get_or_insert(why);
+                Ok(index)
+            }
+        }
+    }
+
+    /// The index that the file ends with, or why it has none that can be relied on.
+    fn of_summary(bytes: &Bytes) -> Result<Result<Self, String>, ReadError> {
+        let missing = |what: &str| Ok(Err(format!("its end is missing: {what}")));
+        let Some(start) = bytes.length().checked_sub(FOOTER_LENGTH) else {
+            return missing("it is too short");
+        };
+        let Some(footer) = bytes.read(start, FOOTER_LENGTH)? else {
+            return missing("it is cut while it is read");
+        };
+        let Some((op::FOOTER, body, magic)) = wire::split(&footer) else {
+            return missing("no footer");
+        };
+        if magic != MAGIC {
+            return missing("no magic bytes");
+        }
+        let mut fields = Fields(body);
+        let (Some(summary_start), Some(_), Some(crc)) = (fields.u64(), fields.u64(), fields.u32())
+        else {
+            return missing("a short footer");
+        };
+        let length = start.checked_sub(summary_start);
+        let Some(length) = length.filter(|_| summary_start > 0) else {
+            return missing("no summary");
+        };
+        let Some(summary) = bytes.read(summary_start, length)? else {
+            return missing("no summary");
+        };
+        if crc != 0 {
+            // With the part of the footer before the checksum itself.
+            let mut hasher = crc32fast::Hasher::new();
+            hasher.update(&summary);
+            hasher.update(&footer[..HEADER as usize + 16]);
+            if hasher.finalize() != crc {
+                return Ok(Err("its summary is damaged".to_owned()));
+            }
+        }
+        Ok(Self::read_summary(&summary, summary_start)
+            .ok_or_else(|| "its summary is damaged".to_owned()))
+    }
+
+    fn read_summary(mut summary: &[u8], data_end: u64) -> Option<Self> {
+        let mut index = Self::default();
+        while !summary.is_empty() {
+            let (kind, body, rest) = wire::split(summary)?;
+            summary = rest;
+            let mut fields = Fields(body);
+            match kind {
+                op::CHUNK_INDEX => {
+                    let (begin, end) = (fields.u64()?, fields.u64()?);
+                    let (offset, length) = (fields.u64()?, fields.u64()?);
+                    index.chunks.push(ChunkEntry {
+                        offset,
+                        length,
+                        begin,
+                        end,
+                    });
+                }
+                op::ATTACHMENT_INDEX => index.attachments.push(entry(&mut fields)?),
+                op::METADATA_INDEX => index.metadata.push(entry(&mut fields)?),
+                op::SCHEMA | op::CHANNEL => index.described.push((kind, body.to_owned())),
+                _ => {}
+            }
+        }
+        // One that lies elsewhere is no index of this file.
+        let inside = |offset: u64, length| {
+            offset
+                .checked_add(length)
+                .is_some_and(|end: u64| end <= data_end)
+        };
+        let chunks = index.chunks.iter().all(|c| inside(c.offset, c.length));
+        let mut entries = index.attachments.iter().chain(&index.metadata);
+        (chunks && entries.all(|entry| inside(entry.offset, entry.length))).then_some(index)
+    }
+
+    /// The index found by going from record to record, up to where that ends.
+    fn of_records(bytes: &Bytes) -> Result<Self, ReadError> {
+        let mut index = Self::default();
+        let mut offset = MAGIC.len() as u64;
+        loop {
+            let Some(header) = bytes.read(offset, HEADER)? else {
+                index.damage = Some(format!("its end is missing after byte {offset}"));
+                break;
+            };
+            let Some((kind, body)) = wire::header(&header) else {
+                break; // never: the length is right
+            };
+            let end = offset.checked_add(HEADER).and_then(|o| o.checked_add(body));
+            let Some(end) = end.filter(|end| *end <= bytes.length() && kind != 0) else {
+                index.damage = Some(format!("its end is missing after byte {offset}"));
+                break;
+            };
+            let length = end - offset;
+            match kind {
+                op::CHUNK => {
+                    let part = body.min(ChunkHeader::LENGTH_MAX);
+                    let part = bytes.read(offset + HEADER, part)?.unwrap_or_default();
+                    // One without a header is found to be damaged when it is read.
+                    let times = ChunkHeader::read(&mut Fields(&part));
+                    let (begin, end) = times.map_or((0, u64::MAX), |c| (c.begin, c.end));
+                    index.chunks.push(ChunkEntry {
+                        offset,
+                        length,
+                        begin,
+                        end,
+                    });
+                }
+                op::ATTACHMENT => index.attachments.push(Entry { offset, length }),
+                op::METADATA => index.metadata.push(Entry { offset, length }),
+                op::SCHEMA | op::CHANNEL => {
+                    let body = bytes.read(offset + HEADER, body)?.unwrap_or_default();
+                    index.described.push((kind, body));
+                }
+                op::DATA_END | op::FOOTER => break,
+                _ => {}
+            }
+            offset = end;
+        }
+        Ok(index)
+    }
+}
+
+fn entry(fields: &mut Fields<'_>) -> Option<Entry> {
+    Some(Entry {
+        offset: fields.u64()?,
+        length: fields.u64()?,
+    })
+}
+
+/// Length of the footer with the magic bytes after it.
+const FOOTER_LENGTH: u64 = HEADER + 8 + 8 + 4 + 8;
+
+/// The channels of a recording: what their messages are.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Channels {
+    schemas: BTreeMap<u16, String>,
+    channels: BTreeMap<u16, ChannelEntry>,
+}
+
+/// A channel of a recording.
+#[derive(Clone, Debug)]
+pub(super) struct ChannelEntry {
+    pub(super) name: String,
+    schema: u16,
+    protobuf: bool,
+}
+
+impl Channels {
+    /// Takes a record that describes a schema or a channel; others are ignored. Returns whether it
+    /// could be read.
+    pub(super) fn take(&mut self, kind: u8, body: &[u8]) -> bool {
+        match kind {
+            op::SCHEMA => match wire::Schema::read(body) {
+                Some(schema) => {
+                    self.schemas.insert(schema.id, schema.name.to_owned());
+                    true
+                }
+                None => false,
+            },
+            op::CHANNEL => match wire::Channel::read(body) {
+                Some(channel) => {
+                    let entry = ChannelEntry {
+                        name: channel.topic.to_owned(),
+                        schema: channel.schema,
+                        protobuf: channel.encoding == "protobuf",
+                    };
+                    self.channels.insert(channel.id, entry);
+                    true
+                }
+                None => false,
+            },
+            _ => true,
+        }
+    }
+
+    /// The identifier of the channel of this name, whose messages have this schema.
+    pub(super) fn find(&self, name: &str, schema: &str) -> Option<u16> {
+        let fits = |channel: &ChannelEntry| {
+            channel.name == name
+                && channel.protobuf
+                && self.schemas.get(&channel.schema).map(String::as_str) == Some(schema)
+        };
+        let mut channels = self.channels.iter();
+        channels.find_map(|(id, channel)| fits(channel).then_some(*id))
+    }
+}

@@ -1,0 +1,314 @@
+//! Reads recordings back.
+//!
+//! ```no_run
+//! use franka_record::Recording;
+//!
+//! let recording = Recording::open("run.mcap")?;
+//! if let Some(damage) = recording.damage() {
+//!     println!("{damage}");
+//! }
+//! let (begin, _) = recording.span().unwrap_or_default();
+//! let robot = recording.robot("")?;
+//! for cycle in robot.from(begin + std::time::Duration::from_secs(60)).cycles() {
+//!     let cycle = cycle?;
+//!     println!("{} {:.3?}", cycle.time, cycle.state.q);
+//! }
+//! for event in robot.events() {
+//!     let event = event?;
+//!     println!("{} {}", event.time, event.kind);
+//! }
+//! # Ok::<(), franka_record::recording::ReadError>(())
+//! ```
+//!
+//! A part of a recording is found by the index at the end of the file, and no more than that part
+//! is read. Where the end is missing, the file is gone through once, from chunk to chunk.
+
+mod bytes;
+mod chunk;
+mod error;
+mod index;
+mod messages;
+mod recover;
+mod resample;
+mod wire;
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::path::Path;
+
+use franka_model::RobotKind;
+
+use self::bytes::Bytes;
+use self::chunk::Chunk;
+pub use self::error::ReadError;
+use self::index::{Channels, Index};
+pub use self::messages::{Cycles, Events, GripperStates};
+pub use self::recover::Recovery;
+pub use self::resample::Resampled;
+use self::wire::{AttachmentHeader, Fields, op};
+use crate::HostTime;
+use crate::schema::{METADATA, ROBOT_METADATA, Topic};
+
+/// A recording that was opened.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    bytes: Bytes,
+    index: Index,
+    channels: Channels,
+    metadata: BTreeMap<String, String>,
+    robots: Vec<RecordedRobot>,
+    damage: Option<String>,
+}
+
+/// A robot of a recording.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct RecordedRobot {
+    /// Its name; empty for an only robot.
+    pub name: String,
+    /// Which robot it is; `None` if the file does not say, or this version does not know it.
+    pub kind: Option<RobotKind>,
+    /// What else was known of it.
+    pub metadata: BTreeMap<String, String>,
+}
+
+impl Recording {
+    /// Opens a recording. One whose end is missing is read as far as it goes:
+    /// [`Recording::damage`].
+    ///
+    /// # Errors
+    /// [`ReadError::File`], [`ReadError::NotMcap`], [`ReadError::Read`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+        let path = path.as_ref();
+        let bytes = File::open(path).and_then(Bytes::of_file);
+        Self::read(bytes.map_err(|source| ReadError::File {
+            path: path.to_owned(),
+            source: source.into(),
+        })?)
+    }
+
+    /// As [`Recording::open`], for the bytes of a file in memory.
+    ///
+    /// # Errors
+    /// [`ReadError::NotMcap`].
+    pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, ReadError> {
+        Self::read(Bytes::of_memory(bytes))
+    }
+
+    fn read(bytes: Bytes) -> Result<Self, ReadError> {
+        let index = Index::of(&bytes)?;
+        let mut recording = Self {
+            bytes,
+            channels: Channels::default(),
+            metadata: BTreeMap::new(),
+            robots: Vec::new(),
+            damage: index.damage.clone(),
+            index,
+        };
+        recording.read_metadata()?;
+        recording.read_channels()?;
+        Ok(recording)
+    }
+
+    fn read_metadata(&mut self) -> Result<(), ReadError> {
+        for entry in &self.index.metadata {
+            let record = self.bytes.read(entry.offset, entry.length)?;
+            let Some((op::METADATA, body, _)) = record.as_deref().and_then(wire::split) else {
+                continue;
+            };
+            let mut fields = Fields(body);
+            let (Some(name), Some(metadata)) = (fields.text(), fields.map()) else {
+                continue;
+            };
+            if name == METADATA {
+                self.metadata = metadata;
+            } else if let Some(robot) = name.strip_prefix(ROBOT_METADATA) {
+                let kind = metadata.get("kind").and_then(|kind| {
+                    let mut kinds = RobotKind::ALL.into_iter();
+                    kinds.find(|known| format!("{known:?}") == *kind)
+                });
+                self.robots.push(RecordedRobot {
+                    name: robot.to_owned(),
+                    kind,
+                    metadata,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Finds the channels: in the summary, or else in the chunks, the first of which describe them.
+    fn read_channels(&mut self) -> Result<(), ReadError> {
+        for (kind, body) in &self.index.described {
+            self.channels.take(*kind, body);
+        }
+        // Without a summary, chunks describe them: the one in which a robot was attached.
+        for entry in &self.index.chunks {
+            if self.knows_channels() {
+                break;
+            }
+            match Chunk::read(&self.bytes, entry) {
+                Ok(mut chunk) => {
+                    while let Some((kind, body)) = chunk.next() {
+                        self.channels.take(kind, body);
+                    }
+                }
+                // It is told again where it is read.
+                Err(ReadError::Chunk { .. }) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the channels of every robot are known.
+    fn knows_channels(&self) -> bool {
+        let schema = Topic::Gripper.schema();
+        self.robots.iter().all(|robot| {
+            // The last one to be described.
+            let name = Topic::Gripper.channel(&robot.name);
+            self.channels.find(&name, &schema).is_some()
+        })
+    }
+
+    /// Why the file is not as its writer was to leave it: its end is missing after a power cut, a
+    /// crash or on a full disk, or its index is damaged. What was flushed can be read all the same.
+    pub fn damage(&self) -> Option<&str> {
+        self.damage.as_deref()
+    }
+
+    /// Time of the first and the last message; `None` if there is none.
+    pub fn span(&self) -> Option<(HostTime, HostTime)> {
+        let chunks = || self.index.chunks.iter().filter(|chunk| chunk.end > 0);
+        let begin = chunks().map(|chunk| chunk.begin).min()?;
+        let end = chunks().map(|chunk| chunk.end).max()?;
+        Some((HostTime::from_nanos(begin), HostTime::from_nanos(end)))
+    }
+
+    /// The metadata of the whole recording: versions, host, kernel, options.
+    pub fn metadata(&self) -> &BTreeMap<String, String> {
+        &self.metadata
+    }
+
+    /// The robots of the recording.
+    pub fn robots(&self) -> &[RecordedRobot] {
+        &self.robots
+    }
+
+    /// Returns what was recorded of one robot. An only robot has no name unless it was given one.
+    ///
+    /// # Errors
+    /// [`ReadError::NoRobot`].
+    pub fn robot(&self, name: &str) -> Result<RobotRecording<'_>, ReadError> {
+        if self.robots.iter().any(|robot| robot.name == name) {
+            Ok(RobotRecording {
+                recording: self,
+                name: name.to_owned(),
+                from: HostTime::default(),
+                to: HostTime::from_nanos(u64::MAX),
+            })
+        } else {
+            Err(ReadError::NoRobot {
+                name: name.to_owned(),
+                robots: self.robots.iter().map(|robot| robot.name.clone()).collect(),
+            })
+        }
+    }
+
+    /// The names of the files inside.
+    ///
+    /// # Errors
+    /// [`ReadError::Read`].
+    pub fn attachments(&self) -> Result<Vec<String>, ReadError> {
+        let mut names = Vec::new();
+        for entry in &self.index.attachments {
+            if let Some(record) = self.bytes.read(entry.offset, entry.length)?
+                && let Some((name, _)) = attachment(&record)
+            {
+                names.push(name.to_owned());
+            }
+        }
+        Ok(names)
+    }
+
+    /// The bytes of a file inside; `None` if there is none of that name, or it is damaged.
+    ///
+    /// # Errors
+    /// [`ReadError::Read`].
+    pub fn attachment(&self, name: &str) -> Result<Option<Vec<u8>>, ReadError> {
+        for entry in &self.index.attachments {
+            if let Some(record) = self.bytes.read(entry.offset, entry.length)?
+                && let Some((found, data)) = attachment(&record)
+                && found == name
+            {
+                return Ok(Some(data.to_owned()));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// Name and bytes of an attachment.
+fn attachment(record: &[u8]) -> Option<(&str, &[u8])> {
+    let (op::ATTACHMENT, body, _) = wire::split(record)? else {
+        return None;
+    };
+    let mut fields = Fields(body);
+    let name = AttachmentHeader::read(&mut fields)?.name;
+    let length = usize::try_from(fields.u64()?).ok()?;
+    let data = fields.bytes(length)?;
+    let checked = &body[..body.len() - fields.0.len()];
+    let crc = fields.u32()?;
+    (crc == 0 || crc32fast::hash(checked) == crc).then_some((name, data))
+}
+
+/// What was recorded of one robot, from one time to another; from its beginning to its end at
+/// first.
+#[derive(Clone, Debug)]
+pub struct RobotRecording<'a> {
+    recording: &'a Recording,
+    name: String,
+    from: HostTime,
+    to: HostTime,
+}
+
+impl RobotRecording<'_> {
+    /// What came at `time` and after it.
+    #[must_use]
+    pub fn from(&self, time: HostTime) -> Self {
+        Self {
+            from: self.from.max(time),
+            ..self.clone()
+        }
+    }
+
+    /// What came before `time` and at it.
+    #[must_use]
+    pub fn to(&self, time: HostTime) -> Self {
+        Self {
+            to: self.to.min(time),
+            ..self.clone()
+        }
+    }
+
+    /// The cycles, oldest first. After an error the iterator goes on behind what is damaged.
+    pub fn cycles(&self) -> Cycles {
+        Cycles::of(self)
+    }
+
+    /// The events, oldest first; as [`RobotRecording::cycles`].
+    pub fn events(&self) -> Events {
+        Events::of(self)
+    }
+
+    /// The states of the gripper, oldest first; as [`RobotRecording::cycles`].
+    pub fn gripper_states(&self) -> GripperStates {
+        GripperStates::of(self)
+    }
+
+    /// Cycles at `rate` per second of the robot's clock: at each time the newest one that came
+    /// before. Where cycles are missing, that is an old one.
+    pub fn resampled(&self, rate: f64) -> Resampled {
+        Resampled::of(self.cycles(), rate)
+    }
+}

@@ -1,0 +1,199 @@
+//! A file without an end made whole again.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::BufWriter;
+use std::path::Path;
+
+use mcap::records::{MessageHeader, Metadata};
+use mcap::{Attachment, Compression, McapError, WriteOptions};
+
+use super::Recording;
+use super::bytes::Bytes;
+use super::chunk::Chunk;
+use super::error::ReadError;
+use super::index::Index;
+use super::wire::{self, AttachmentHeader, Fields, op};
+
+/// What was recovered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Recovery {
+    /// Messages in the new file.
+    pub messages: u64,
+    /// Chunks that were whole.
+    pub chunks: u64,
+    /// Chunks that were not, and are left out.
+    pub lost: u64,
+    /// What was wrong with the file; `None` if nothing was.
+    pub damage: Option<String>,
+}
+
+impl Recording {
+    /// Writes all that is whole in the MCAP file `damaged` to a new file, with the index that was
+    /// missing: every message of every whole chunk, attachments and metadata, as the standard
+    /// tool's `mcap recover` does. It does so for any MCAP file that is compressed with LZ4 or not
+    /// at all.
+    ///
+    /// # Errors
+    /// [`ReadError::NotMcap`], [`ReadError::Read`], and [`ReadError::File`] if there is a file at
+    /// `whole` already or it cannot be written; it is then removed again.
+    pub fn recover(
+        damaged: impl AsRef<Path>,
+        whole: impl AsRef<Path>,
+    ) -> Result<Recovery, ReadError> {
+        let (damaged, whole) = (damaged.as_ref(), whole.as_ref());
+        let of_file = |path: &Path, source: std::io::Error| ReadError::File {
+            path: path.to_owned(),
+            source: source.into(),
+        };
+        let bytes = File::open(damaged)
+            .and_then(Bytes::of_file)
+            .map_err(|error| of_file(damaged, error))?;
+        let index = Index::of(&bytes)?;
+        let file = OpenOptions::new()
+            .write(true)
+            .create_new(true)
+            .open(whole)
+            .map_err(|error| of_file(whole, error))?;
+        let written = write(&bytes, &index, file);
+        if written.is_err() {
+            // What is there has no use, and its error was told.
+            let _ = fs::remove_file(whole);
+        }
+        written.map_err(|failure| match failure {
+            Failure::Read(error) => error,
+            Failure::Write(error) => of_file(whole, std::io::Error::other(error)),
+        })
+    }
+}
+
+enum Failure {
+    Read(ReadError),
+    Write(McapError),
+}
+
+impl From<ReadError> for Failure {
+    fn from(error: ReadError) -> Self {
+        Self::Read(error)
+    }
+}
+
+impl From<McapError> for Failure {
+    fn from(error: McapError) -> Self {
+        Self::Write(error)
+    }
+}
+
+type Writer = mcap::Writer<BufWriter<File>>;
+
+fn write(bytes: &Bytes, index: &Index, file: File) -> Result<Recovery, Failure> {
+    let options = WriteOptions::new()
+        .compression(Some(Compression::Lz4))
+        .library(concat!("franka-record ", env!("CARGO_PKG_VERSION")));
+    let mut writer = options.create(BufWriter::new(file))?;
+    let mut recovery = Recovery {
+        messages: 0,
+        chunks: 0,
+        lost: 0,
+        damage: index.damage.clone(),
+    };
+    for entry in index.metadata.iter().chain(&index.attachments) {
+        if let Some(record) = bytes
+            .read(entry.offset, entry.length)
+            .map_err(ReadError::from)?
+        {
+            copy_outside(&mut writer, &record)?;
+        }
+    }
+    for (kind, body) in &index.described {
+        describe(&mut writer, *kind, body)?;
+    }
+    for entry in &index.chunks {
+        let mut chunk = match Chunk::read(bytes, entry) {
+            Ok(chunk) => chunk,
+            Err(ReadError::Chunk { .. }) => {
+                recovery.lost += 1;
+                continue;
+            }
+            Err(error) => return Err(error.into()),
+        };
+        recovery.chunks += 1;
+        while let Some((kind, body)) = chunk.next() {
+            if kind == op::MESSAGE {
+                recovery.messages += u64::from(copy_message(&mut writer, body)?);
+            } else {
+                describe(&mut writer, kind, body)?;
+            }
+        }
+    }
+    writer.finish()?;
+    Ok(recovery)
+}
+
+/// Copies a message, unless its channel is unknown. Returns whether it was.
+fn copy_message(writer: &mut Writer, body: &[u8]) -> Result<bool, McapError> {
+    let Some(message) = wire::Message::read(body) else {
+        return Ok(false);
+    };
+    let header = MessageHeader {
+        channel_id: message.channel,
+        sequence: message.sequence,
+        log_time: message.log_time,
+        publish_time: message.publish_time,
+    };
+    match writer.write_to_known_channel(&header, message.data) {
+        Ok(()) => Ok(true),
+        Err(McapError::UnknownChannel(..)) => Ok(false),
+        Err(error) => Err(error),
+    }
+}
+
+/// Copies a schema or a channel. One that contradicts an earlier one is left out.
+fn describe(writer: &mut Writer, kind: u8, body: &[u8]) -> Result<(), McapError> {
+    let added = match kind {
+        op::SCHEMA => wire::Schema::read(body).map(|schema| {
+            writer.add_schema_with_id(schema.id, schema.name, schema.encoding, schema.data)
+        }),
+        op::CHANNEL => wire::Channel::read(body).map(|channel| {
+            writer.add_channel_with_id(
+                channel.id,
+                channel.schema,
+                channel.topic,
+                channel.encoding,
+                &channel.metadata,
+            )
+        }),
+        _ => None,
+    };
+    match added {
+        Some(Err(error @ McapError::Io(_))) => Err(error),
+        _ => Ok(()),
+    }
+}
+
+/// Copies metadata or an attachment; a damaged one is left out.
+fn copy_outside(writer: &mut Writer, record: &[u8]) -> Result<(), McapError> {
+    match wire::split(record) {
+        Some((op::METADATA, body, _)) => {
+            let mut fields = Fields(body);
+            if let (Some(name), Some(metadata)) = (fields.text(), fields.map()) {
+                let name = name.to_owned();
+                writer.write_metadata(&Metadata { name, metadata })?;
+            }
+        }
+        Some((op::ATTACHMENT, body, _)) => {
+            let header = AttachmentHeader::read(&mut Fields(body));
+            if let (Some(header), Some((_, data))) = (header, super::attachment(record)) {
+                writer.attach(&Attachment {
+                    log_time: header.log_time,
+                    create_time: header.create_time,
+                    name: header.name.to_owned(),
+                    media_type: header.media_type.to_owned(),
+                    data: data.into(),
+                })?;
+            }
+        }
+        _ => {}
+    }
+    Ok(())
+}

@@ -1,0 +1,81 @@
+//! Cycles at another rate.
+
+use super::{Cycles, ReadError};
+use crate::Cycle;
+
+/// Cycles at a steady rate: [`RobotRecording::resampled`](super::RobotRecording::resampled).
+#[derive(Debug)]
+pub struct Resampled {
+    cycles: Cycles,
+    /// Time between two samples, `[ms]` of the robot's clock.
+    period: f64,
+    /// The newest cycle that is not after the next sample.
+    held: Option<Cycle>,
+    /// The cycle after that.
+    next: Option<Cycle>,
+    /// The robot's time of the first sample, and the samples since.
+    first: u64,
+    samples: u64,
+}
+
+impl Resampled {
+    pub(super) fn of(cycles: Cycles, rate: f64) -> Self {
+        // A rate that is none gives every cycle.
+        let period = if rate > 0.0 { 1e3 / rate } else { 1.0 };
+        Self {
+            cycles,
+            period: period.max(1.0),
+            held: None,
+            next: None,
+            first: 0,
+            samples: 0,
+        }
+    }
+
+    fn begin(&mut self, cycle: Cycle) {
+        self.first = cycle.record.time;
+        self.samples = 0;
+        self.held = Some(cycle);
+    }
+
+    fn due(&self) -> f64 {
+        self.first as f64 + self.samples as f64 * self.period
+    }
+}
+
+impl Iterator for Resampled {
+    type Item = Result<Cycle, ReadError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let due = self.due();
+            if let (Some(held), Some(next)) = (self.held, self.next) {
+                let (before, after) = (held.record.time, next.record.time);
+                // The robot was started again, or its cycles are missing for long.
+                if after < before || after - before > GAP_MAX_MS {
+                    self.next = None;
+                    self.begin(next);
+                    self.samples = 1;
+                    return Some(Ok(next));
+                }
+                if after as f64 > due {
+                    self.samples += 1;
+                    return Some(Ok(held));
+                }
+                (self.held, self.next) = (self.next, None);
+            }
+            match self.cycles.next() {
+                Some(Ok(cycle)) if self.held.is_none() => self.begin(cycle),
+                Some(Ok(cycle)) => self.next = Some(cycle),
+                Some(Err(error)) => return Some(Err(error)),
+                None => {
+                    let last = self.held.take()?;
+                    return (last.record.time as f64 >= due).then_some(Ok(last));
+                }
+            }
+        }
+    }
+}
+
+/// Longest gap that an old cycle stands for, `[ms]`.
+const GAP_MAX_MS: u64 = 10_000;

@@ -1,0 +1,211 @@
+//! Files that are cut, damaged or left by a killed program.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use franka_model::RobotKind;
+use franka_record::Recording;
+use franka_record::recorder::{RecordOptions, Recorder, Robot};
+use franka_record::recording::ReadError;
+use rand::rngs::SmallRng;
+use rand::{Rng as _, SeedableRng as _};
+
+use crate::feed::{Arm, Scratch, quick};
+
+/// A short recording, and where its chunks end.
+fn recording(scratch: &Scratch) -> (Vec<u8>, Vec<usize>) {
+    let path = scratch.path("whole.mcap");
+    let options = RecordOptions {
+        flush: Duration::from_millis(15),
+        ..quick()
+    };
+    let recorder = Recorder::to_file(&path, options).unwrap();
+    let (mut arm, _handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
+    arm.run(&recorder, CYCLES as u64);
+    recorder.finish().unwrap();
+    let bytes = std::fs::read(path).unwrap();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    let ends = summary
+        .chunk_indexes
+        .iter()
+        .map(|chunk| (chunk.chunk_start_offset + chunk.chunk_length) as usize)
+        .collect();
+    (bytes, ends)
+}
+
+/// Cycles per whole chunk of these bytes, as the crate of the format reads them.
+fn cycles_by_standard(bytes: &[u8]) -> usize {
+    use mcap::read::{ChunkFlattener, Options};
+    let mut records =
+        ChunkFlattener::new_with_options(bytes, Options::IgnoreEndMagic.into()).unwrap();
+    let mut channel = None;
+    let mut count = 0;
+    while let Some(Ok(record)) = records.next() {
+        match record {
+            mcap::records::Record::Channel(found) if found.topic == "/cycle" => {
+                channel = Some(found.id);
+            }
+            mcap::records::Record::Message { header, .. } => {
+                count += usize::from(Some(header.channel_id) == channel);
+            }
+            _ => {}
+        }
+    }
+    count
+}
+
+#[test]
+fn a_file_that_is_cut_keeps_every_chunk_before_the_cut() {
+    let scratch = Scratch::new();
+    let (bytes, ends) = recording(&scratch);
+    let cycles: Vec<_> = ends
+        .iter()
+        .map(|end| cycles_by_standard(&bytes[..*end]))
+        .collect();
+    assert!(ends.len() > 20, "{ends:?}");
+    assert_eq!(cycles.last(), Some(&CYCLES));
+    let mut random = SmallRng::seed_from_u64(19);
+    for _ in 0..1000 {
+        let cut = random.random_range(8..bytes.len());
+        let recording = Recording::from_bytes(bytes[..cut].to_vec()).unwrap();
+        assert!(recording.damage().is_some(), "cut at {cut}");
+        let whole = ends.iter().rposition(|end| *end <= cut);
+        let expected = whole.map_or(0, |chunk| cycles[chunk]);
+        let read = match recording.robot("") {
+            Ok(robot) => robot.cycles().map(Result::unwrap).count(),
+            Err(ReadError::NoRobot { .. }) => 0,
+            Err(error) => panic!("cut at {cut}: {error}"),
+        };
+        assert_eq!(read, expected, "cut at {cut}");
+    }
+}
+
+#[test]
+fn damaged_bytes_are_told_and_the_rest_is_read() {
+    let scratch = Scratch::new();
+    let (bytes, _) = recording(&scratch);
+    let mut random = SmallRng::seed_from_u64(20);
+    for _ in 0..300 {
+        let mut damaged = bytes.clone();
+        for _ in 0..random.random_range(1..4) {
+            let at = random.random_range(0..damaged.len());
+            damaged[at] ^= 1 << random.random_range(0..8);
+        }
+        // What does not begin as such a file is none.
+        let Ok(recording) = Recording::from_bytes(damaged) else {
+            continue;
+        };
+        let Ok(robot) = recording.robot("") else {
+            continue;
+        };
+        let times: BTreeSet<_> = robot
+            .cycles()
+            .filter_map(Result::ok)
+            .map(|cycle| cycle.record.time)
+            .collect();
+        // Three chunks of 15 at most, if the file can be gone through at all.
+        let gone_through = recording.damage().is_none();
+        assert!(
+            !gone_through || times.len() >= CYCLES - 45,
+            "{}",
+            times.len()
+        );
+        assert!(robot.events().count() < CYCLES);
+    }
+}
+
+#[test]
+fn a_recovered_file_is_whole_and_has_the_same_messages() {
+    let scratch = Scratch::new();
+    let (bytes, ends) = recording(&scratch);
+    let cut = ends[ends.len() / 2] + 100;
+    let (damaged, whole) = (scratch.path("cut.mcap"), scratch.path("recovered.mcap"));
+    std::fs::write(&damaged, &bytes[..cut]).unwrap();
+    let recovery = Recording::recover(&damaged, &whole).unwrap();
+    assert_eq!(
+        (recovery.chunks, recovery.lost),
+        (ends.len() as u64 / 2 + 1, 0)
+    );
+    assert!(recovery.damage.is_some());
+
+    let recovered = std::fs::read(&whole).unwrap();
+    // The standard reader takes it without leniency.
+    let standard = mcap::MessageStream::new(&recovered).unwrap();
+    let messages = standard.inspect(|message| assert!(message.is_ok())).count();
+    assert_eq!(messages as u64, recovery.messages);
+    let (before, after) = (
+        Recording::open(&damaged).unwrap(),
+        Recording::open(&whole).unwrap(),
+    );
+    assert_eq!(after.damage(), None);
+    assert_eq!(after.metadata(), before.metadata());
+    let cycles = |recording: &Recording| -> Vec<_> {
+        let robot = recording.robot("").unwrap();
+        robot.cycles().map(Result::unwrap).collect()
+    };
+    assert!(cycles(&before) == cycles(&after));
+    let again = Recording::recover(&damaged, &whole).unwrap_err();
+    assert!(matches!(again, ReadError::File { .. }), "{again}");
+}
+
+#[test]
+fn a_file_of_another_kind_is_refused_with_what_it_begins_with() {
+    let error = Recording::from_bytes(b"PK\x03\x04 and more".to_vec()).unwrap_err();
+    assert!(error.to_string().contains("50, 4b"), "{error}");
+    let error = Recording::from_bytes(Vec::new()).unwrap_err();
+    assert!(matches!(error, ReadError::NotMcap { .. }), "{error}");
+    let error = Recording::open("/nowhere/run.mcap").unwrap_err();
+    assert!(matches!(error, ReadError::File { .. }), "{error}");
+}
+
+#[test]
+fn what_a_killed_program_has_flushed_is_readable() {
+    if let Some(path) = std::env::var_os(CHILD) {
+        record_for_ever(Path::new(&path));
+    }
+    let scratch = Scratch::new();
+    let path = scratch.path("killed.mcap");
+    let mut child = Command::new(std::env::current_exe().unwrap())
+        .args([
+            "--exact",
+            "damaged::what_a_killed_program_has_flushed_is_readable",
+        ])
+        .env(CHILD, &path)
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let patience = Instant::now() + Duration::from_secs(60);
+    while std::fs::metadata(&path).map_or(0, |file| file.len()) < 1_000_000 {
+        assert!(Instant::now() < patience, "nothing was recorded");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+
+    let recording = Recording::open(&path).unwrap();
+    assert!(recording.damage().is_some());
+    let robot = recording.robot("").unwrap();
+    let times: Vec<_> = robot
+        .cycles()
+        .map(|cycle| cycle.unwrap().record.time)
+        .collect();
+    assert!(times.len() > 1000, "{}", times.len());
+    assert_eq!(times, (1..=times.len() as u64).collect::<Vec<_>>());
+}
+
+/// Records until the process is killed.
+fn record_for_ever(path: &Path) -> ! {
+    let recorder = Recorder::to_file(path, RecordOptions::default()).unwrap();
+    let (mut arm, _handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
+    loop {
+        arm.run(&recorder, 1000);
+    }
+}
+
+/// Cycles of the recording.
+const CYCLES: usize = 500;
+
+/// Names the file to the process that is to be killed.
+const CHILD: &str = "FRANKA_RECORD_CHILD";
