@@ -1,6 +1,7 @@
 //! Flight recorder for Franka robots: every cycle in an MCAP file, every reflex explained, every
 //! session replayed.
 
+pub mod cassette;
 mod cycle;
 pub mod event;
 #[cfg(feature = "export")]

@@ -1,0 +1,91 @@
+//! What differs between the devices: ports, framing, names of commands.
+
+use std::fmt;
+
+use franka_proto::framing::{FrameError, Message, next_message};
+use franka_proto::{Protocol as _, Version, gripper, vacuum};
+
+/// A device with a TCP service of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Device {
+    /// The arm.
+    Robot,
+    /// The Franka Hand.
+    Hand,
+    /// The vacuum gripper.
+    VacuumGripper,
+}
+
+impl Device {
+    /// All devices, by port.
+    pub const ALL: [Self; 3] = [Self::Robot, Self::Hand, Self::VacuumGripper];
+
+    /// The TCP port of the device.
+    #[must_use]
+    pub fn port(self) -> u16 {
+        match self {
+            Self::Robot => Version::TCP_PORT,
+            Self::Hand => gripper::Version::TCP_PORT,
+            Self::VacuumGripper => vacuum::Version::TCP_PORT,
+        }
+    }
+
+    /// The device with this TCP port, if there is one.
+    #[must_use]
+    pub fn with_port(port: u16) -> Option<Self> {
+        Self::ALL.into_iter().find(|device| device.port() == port)
+    }
+
+    /// The first message of a stream, `None` while it is incomplete.
+    pub(crate) fn next_message(self, stream: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
+        match self {
+            Self::Robot => next_message(stream),
+            Self::Hand | Self::VacuumGripper => gripper::next_message(stream),
+        }
+    }
+
+    /// Where a message's id stands: behind the command, which is shorter for the end effectors.
+    pub(crate) fn id_range(self) -> std::ops::Range<usize> {
+        match self {
+            Self::Robot => 4..8,
+            Self::Hand | Self::VacuumGripper => 2..6,
+        }
+    }
+
+    /// Length of the counter of milliseconds with which a state begins, in bytes.
+    pub(crate) fn counter_size(self) -> usize {
+        match self {
+            Self::Robot => 8,
+            Self::Hand | Self::VacuumGripper => 4,
+        }
+    }
+
+    /// The name of a request for messages; `version` is the one that `Connect` announced.
+    pub(crate) fn request_name(self, version: u16, message: &Message<'_>) -> String {
+        let number = message.header.command;
+        let known = match self {
+            Self::Robot => Version::from_number(version)
+                .and_then(|version| version.command_from_number(number))
+                .map(|command| command.to_string()),
+            Self::Hand => gripper::Version::V3
+                .decode_request(message)
+                .ok()
+                .map(|request| gripper::Version::command_of(&request).to_string()),
+            Self::VacuumGripper => vacuum::Version::V1
+                .decode_request(message)
+                .ok()
+                .map(|request| vacuum::Version::command_of(&request).to_string()),
+        };
+        known.unwrap_or_else(|| format!("command {number}"))
+    }
+}
+
+impl fmt::Display for Device {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Robot => "robot",
+            Self::Hand => "hand",
+            Self::VacuumGripper => "vacuum gripper",
+        })
+    }
+}

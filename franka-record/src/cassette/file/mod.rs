@@ -1,0 +1,171 @@
+//! The file of a cassette: MCAP, one channel per connection, transport and direction.
+
+mod read;
+mod write;
+
+pub use write::CassetteWriter;
+
+/// Why a cassette cannot be written or read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CassetteError {
+    /// The file cannot be opened, read or written.
+    #[error("cannot access the cassette: {0}")]
+    Io(#[from] std::io::Error),
+    /// The file is no MCAP file, or cannot be written.
+    #[error("not a readable MCAP file: {0}")]
+    Mcap(#[from] mcap::McapError),
+    /// The file is MCAP, and no cassette.
+    #[error("not a cassette: no metadata record `{START}` before the first message")]
+    NotACassette,
+    /// A later version of the format.
+    #[error("the cassette has version {got:?} of the format, and this program reads {VERSION}")]
+    Version {
+        /// The version that the file states.
+        got: String,
+    },
+    /// A channel that no cassette has.
+    #[error(
+        "the cassette has the channel {topic:?}, expected /tcp/PORT/CONNECTION/in or out, or /udp/.."
+    )]
+    Channel {
+        /// The name of the channel.
+        topic: String,
+    },
+}
+
+pub(super) const START: &str = "franka cassette";
+pub(super) const END: &str = "franka cassette end";
+pub(super) const VERSION: &str = "1";
+pub(super) const MESSAGE_ENCODING: &str = "franka";
+
+#[cfg(test)]
+mod tests {
+    use std::cell::RefCell;
+    use std::io::{Cursor, Seek, Write};
+    use std::rc::Rc;
+    use std::time::Duration;
+
+    use super::*;
+    use crate::cassette::{Cassette, Connection, Device, Event, Payload, Side};
+
+    fn sample() -> Cassette {
+        let at = Duration::from_micros;
+        let event = |time, from, what| Event {
+            at: at(time),
+            from,
+            what,
+        };
+        let mut robot = Connection::new(Device::Robot);
+        robot.events = vec![
+            event(1, Side::Client, Payload::Stream(vec![1, 2, 3])),
+            event(2, Side::Robot, Payload::Stream(vec![4])),
+            event(2, Side::Robot, Payload::Datagram(vec![])),
+            event(3, Side::Client, Payload::Datagram(vec![5; 400])),
+            event(9, Side::Client, Payload::End),
+        ];
+        let mut hand = Connection::new(Device::Hand);
+        hand.events = vec![event(4, Side::Client, Payload::Stream(vec![7; 14]))];
+        let mut again = Connection::new(Device::Robot);
+        again.events = vec![event(10, Side::Robot, Payload::End)];
+        Cassette {
+            started: 1_700_000_000_000_000_000,
+            connections: vec![robot, hand, again],
+            dropped: 0,
+            damage: None,
+        }
+    }
+
+    #[test]
+    fn a_cassette_is_read_as_it_was_written() {
+        let cassette = sample();
+        let file = cassette.to_bytes().unwrap();
+        assert_eq!(Cassette::read(&file).unwrap(), cassette);
+    }
+
+    #[test]
+    fn missing_events_are_counted_at_their_connection() {
+        let cassette = sample();
+        let mut writer = CassetteWriter::new(Cursor::new(Vec::new()), 5).unwrap();
+        let [first, second, ..] = &cassette.connections[0].events[..] else {
+            panic!("five events")
+        };
+        writer.write(0, Device::Robot, first).unwrap();
+        writer
+            .note_dropped(0, Device::Robot, Side::Client, true, 2)
+            .unwrap();
+        writer.write(0, Device::Robot, first).unwrap();
+        writer.write(0, Device::Robot, second).unwrap();
+        // Nothing follows on this channel, so that only the end of the file counts it.
+        writer
+            .note_dropped(0, Device::Robot, Side::Robot, true, 1)
+            .unwrap();
+        let file = writer.finish().unwrap().into_inner();
+        let read = Cassette::read(&file).unwrap();
+        assert_eq!(read.connections[0].missing_stream, 2);
+        assert_eq!(read.connections[0].missing_datagrams, 0);
+        assert_eq!(read.dropped, 3);
+    }
+
+    /// A file in memory of which the length can be seen while it is written.
+    #[derive(Clone, Default)]
+    struct Shared(Rc<RefCell<Cursor<Vec<u8>>>>);
+
+    impl Write for Shared {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            self.0.borrow_mut().write(bytes)
+        }
+
+        fn flush(&mut self) -> std::io::Result<()> {
+            Ok(())
+        }
+    }
+
+    impl Seek for Shared {
+        fn seek(&mut self, to: std::io::SeekFrom) -> std::io::Result<u64> {
+            self.0.borrow_mut().seek(to)
+        }
+    }
+
+    /// Of a file cut off anywhere, every chunk that is whole is read.
+    #[test]
+    fn a_file_that_was_cut_off_is_read_as_far_as_it_goes() {
+        let file = Shared::default();
+        let mut writer = CassetteWriter::new(file.clone(), 0).unwrap();
+        let mut ends = Vec::new();
+        for number in 0..20_u8 {
+            let event = Event {
+                at: Duration::from_millis(number.into()),
+                from: Side::Robot,
+                what: Payload::Datagram(vec![number; 50]),
+            };
+            writer.write(0, Device::Robot, &event).unwrap();
+            writer.flush().unwrap();
+            ends.push(file.0.borrow().get_ref().len());
+        }
+        writer.finish().unwrap();
+        let file = file.0.take().into_inner();
+        for length in 0..file.len() {
+            let whole = ends.iter().filter(|end| **end <= length).count();
+            match Cassette::read(&file[..length]) {
+                Ok(cassette) => {
+                    let read = cassette.connections.first();
+                    let events = read.map_or(0, |connection| connection.events.len());
+                    assert!(events >= whole, "{events} of {whole} at {length}");
+                    assert!(cassette.damage.is_some(), "cut at {length}");
+                }
+                Err(error) => assert_eq!(whole, 0, "cut at {length}: {error}"),
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_cassette_says_so() {
+        let error = Cassette::read(b"GIF89a").unwrap_err();
+        assert!(matches!(error, CassetteError::Mcap(_)), "{error}");
+        let mut other = mcap::Writer::new(Cursor::new(Vec::new())).unwrap();
+        other.finish().unwrap();
+        let error = Cassette::read(&other.into_inner().into_inner()).unwrap_err();
+        assert!(matches!(error, CassetteError::NotACassette), "{error}");
+    }
+}

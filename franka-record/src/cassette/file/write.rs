@@ -1,0 +1,213 @@
+//! Writes the file of a cassette.
+
+use std::collections::BTreeMap;
+use std::io::{Cursor, Seek, Write};
+use std::time::Duration;
+
+use mcap::records::MessageHeader;
+
+use super::{CassetteError, END, MESSAGE_ENCODING, START, VERSION};
+use crate::cassette::{Cassette, Device, Event, Payload, Side};
+
+/// Writes a cassette while the session goes on.
+///
+/// The file is MCAP, so its own tools read it (`mcap info`, `mcap recover`). Version 1:
+///
+/// | record | content |
+/// |---|---|
+/// | metadata `franka cassette` | `version` (1), `started` (nanoseconds since the Unix epoch) |
+/// | channel `/tcp/1337/1/in` | the stream of the first connection to port 1337, client to robot, as it arrived; an empty message is its end |
+/// | channel `/tcp/1337/1/out` | robot to client |
+/// | channels `/udp/1337/1/in`, `/udp/1337/1/out` | the datagrams that belong to the connection |
+/// | metadata `franka cassette end` | `dropped`: events that are missing |
+///
+/// Channels have no schema, and the message encoding `franka`. `log_time` is `started` plus a
+/// monotonic clock, so it does not step when the wall clock is set. `sequence` counts the events of
+/// a channel, missing ones included.
+#[derive(Debug)]
+pub struct CassetteWriter<W: Write + Seek> {
+    mcap: Mcap<W>,
+    started: u64,
+    channels: BTreeMap<(usize, bool, bool), Channel>,
+    devices: BTreeMap<usize, (Device, usize)>,
+    dropped: u64,
+}
+
+struct Mcap<W: Write + Seek>(mcap::Writer<W>);
+
+impl<W: Write + Seek> std::fmt::Debug for Mcap<W> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Writer").finish_non_exhaustive()
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Channel {
+    id: u16,
+    sequence: u32,
+}
+
+impl<W: Write + Seek> CassetteWriter<W> {
+    /// A writer of a cassette that begins at `started`, in nanoseconds since the Unix epoch.
+    ///
+    /// # Errors
+    /// [`CassetteError`] if the beginning cannot be written.
+    pub fn new(file: W, started: u64) -> Result<Self, CassetteError> {
+        let options = mcap::WriteOptions::new()
+            .compression(Some(mcap::Compression::Lz4))
+            .chunk_size(Some(CHUNK_SIZE))
+            .library(concat!("franka-record ", env!("CARGO_PKG_VERSION")));
+        let mut writer = options.create(file)?;
+        writer.write_metadata(&metadata(
+            START,
+            [
+                ("version", VERSION.to_owned()),
+                ("started", started.to_string()),
+            ],
+        ))?;
+        Ok(Self {
+            mcap: Mcap(writer),
+            started,
+            channels: BTreeMap::new(),
+            devices: BTreeMap::new(),
+            dropped: 0,
+        })
+    }
+
+    /// Writes an event of the connection with this number (any number that no other connection
+    /// has). The device of a connection is that of its first event.
+    ///
+    /// # Errors
+    /// [`CassetteError`] if the file cannot be written.
+    pub fn write(
+        &mut self,
+        connection: usize,
+        device: Device,
+        event: &Event,
+    ) -> Result<(), CassetteError> {
+        let (stream, bytes) = match &event.what {
+            // An empty message stands for the end.
+            Payload::Stream(bytes) if bytes.is_empty() => return Ok(()),
+            Payload::Stream(bytes) => (true, bytes.as_slice()),
+            Payload::End => (true, &[][..]),
+            Payload::Datagram(bytes) => (false, bytes.as_slice()),
+        };
+        let key = (connection, stream, event.from == Side::Client);
+        let channel = match self.channels.get(&key) {
+            Some(&channel) => channel,
+            None => self.open(key, device)?,
+        };
+        self.channels.insert(
+            key,
+            Channel {
+                sequence: channel.sequence.wrapping_add(1),
+                ..channel
+            },
+        );
+        let time = self.started.saturating_add(nanoseconds(event.at));
+        let header = MessageHeader {
+            channel_id: channel.id,
+            sequence: channel.sequence,
+            log_time: time,
+            publish_time: time,
+        };
+        self.mcap.0.write_to_known_channel(&header, bytes)?;
+        Ok(())
+    }
+
+    /// Notes that an event of a connection is missing.
+    ///
+    /// # Errors
+    /// [`CassetteError`] if the file cannot be written.
+    pub fn note_dropped(
+        &mut self,
+        connection: usize,
+        device: Device,
+        from: Side,
+        stream: bool,
+        count: u32,
+    ) -> Result<(), CassetteError> {
+        let key = (connection, stream, from == Side::Client);
+        if !self.channels.contains_key(&key) {
+            self.open(key, device)?;
+        }
+        if let Some(channel) = self.channels.get_mut(&key) {
+            channel.sequence = channel.sequence.wrapping_add(count);
+        }
+        self.dropped += u64::from(count);
+        Ok(())
+    }
+
+    /// Ends the chunk: the file can be read so far, whatever happens next.
+    ///
+    /// # Errors
+    /// [`CassetteError`] if the file cannot be written.
+    pub fn flush(&mut self) -> Result<(), CassetteError> {
+        Ok(self.mcap.0.flush()?)
+    }
+
+    /// Writes the end of the file.
+    ///
+    /// # Errors
+    /// [`CassetteError`] if the file cannot be written.
+    pub fn finish(mut self) -> Result<W, CassetteError> {
+        let end = metadata(END, [("dropped", self.dropped.to_string())]);
+        self.mcap.0.write_metadata(&end)?;
+        self.mcap.0.finish()?;
+        Ok(self.mcap.0.into_inner())
+    }
+
+    fn open(&mut self, key: (usize, bool, bool), device: Device) -> Result<Channel, CassetteError> {
+        let (connection, stream, client) = key;
+        let same = self.devices.values().filter(|(other, _)| *other == device);
+        let number = same.count() + 1;
+        let (device, number) = *self.devices.entry(connection).or_insert((device, number));
+        let transport = if stream { "tcp" } else { "udp" };
+        let direction = if client { "in" } else { "out" };
+        let topic = format!("/{transport}/{}/{number}/{direction}", device.port());
+        let id = self
+            .mcap
+            .0
+            .add_channel(0, &topic, MESSAGE_ENCODING, &BTreeMap::new())?;
+        let channel = Channel { id, sequence: 0 };
+        self.channels.insert(key, channel);
+        Ok(channel)
+    }
+}
+
+impl Cassette {
+    /// The file of this cassette.
+    ///
+    /// # Errors
+    /// [`CassetteError`] if there are more channels than a file can have.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, CassetteError> {
+        let mut writer = CassetteWriter::new(Cursor::new(Vec::new()), self.started)?;
+        let mut order: Vec<_> = Vec::new();
+        for (number, connection) in self.connections.iter().enumerate() {
+            order.extend(connection.events.iter().map(|event| (number, event)));
+        }
+        // A stable sort: events of one time keep their order.
+        order.sort_by_key(|(_, event)| event.at);
+        for (number, event) in order {
+            writer.write(number, self.connections[number].device, event)?;
+        }
+        writer.dropped = self.dropped;
+        Ok(writer.finish()?.into_inner())
+    }
+}
+
+fn metadata<const N: usize>(name: &str, fields: [(&str, String); N]) -> mcap::records::Metadata {
+    let fields = fields.map(|(key, value)| (key.to_owned(), value));
+    mcap::records::Metadata {
+        name: name.to_owned(),
+        metadata: BTreeMap::from(fields),
+    }
+}
+
+/// Nanoseconds as a file has them; 584 years are enough.
+fn nanoseconds(time: Duration) -> u64 {
+    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
+}
+
+/// Uncompressed, in bytes: half a second of a robot's states.
+const CHUNK_SIZE: u64 = 1 << 20;

@@ -1,0 +1,221 @@
+//! The packets of a capture, with their times and addresses.
+
+use std::io::Cursor;
+use std::net::{IpAddr, SocketAddr};
+
+use etherparse::defrag::IpDefragPool;
+use etherparse::{IpNumber, NetSlice, SlicedPacket, TransportSlice, UdpSlice};
+use pcap_parser::traits::{PcapNGPacketBlock as _, PcapReaderIterator};
+use pcap_parser::{Block, Linktype, PcapBlockOwned, PcapError, create_reader};
+
+use super::CaptureError;
+
+/// The packets of a file, in its order. Those that are neither TCP nor UDP come as [`Body::Other`].
+pub(super) struct Packets<'a> {
+    reader: Box<dyn PcapReaderIterator + 'a>,
+    interfaces: Vec<Interface>,
+    fragments: IpDefragPool<(), ()>,
+    damage: Option<String>,
+}
+
+#[derive(Clone, Copy)]
+struct Interface {
+    link: Linktype,
+    /// Units per second, and seconds to add.
+    resolution: u64,
+    offset: i64,
+}
+
+/// A packet.
+pub(super) struct Packet {
+    /// In nanoseconds since the Unix epoch.
+    pub(super) time: u64,
+    pub(super) body: Body,
+}
+
+pub(super) enum Body {
+    Tcp(Segment),
+    Udp {
+        from: SocketAddr,
+        to: SocketAddr,
+        payload: Vec<u8>,
+    },
+    Other,
+}
+
+pub(super) struct Segment {
+    pub(super) from: SocketAddr,
+    pub(super) to: SocketAddr,
+    pub(super) sequence: u32,
+    pub(super) opens: bool,
+    pub(super) ends: bool,
+    pub(super) resets: bool,
+    pub(super) payload: Vec<u8>,
+}
+
+impl<'a> Packets<'a> {
+    pub(super) fn new(file: &'a [u8]) -> Result<Self, CaptureError> {
+        let capacity = file.len().clamp(BUFFER_MIN, BUFFER_MAX);
+        let reader = create_reader(capacity, Cursor::new(file));
+        let reader = reader.map_err(|error| CaptureError::Format {
+            what: describe(&error),
+        })?;
+        Ok(Self {
+            reader,
+            interfaces: Vec::new(),
+            fragments: IpDefragPool::new(),
+            damage: None,
+        })
+    }
+
+    /// Why the file ends before its end, if it does.
+    pub(super) fn damage(self) -> Option<String> {
+        self.damage
+    }
+
+    pub(super) fn next(&mut self) -> Option<Packet> {
+        loop {
+            let exhausted = self.reader.reader_exhausted();
+            match self.reader.next() {
+                Ok((size, block)) => {
+                    let packet = on_block(block, &mut self.interfaces, &mut self.fragments);
+                    self.reader.consume(size);
+                    if packet.is_some() {
+                        return packet;
+                    }
+                }
+                Err(PcapError::Eof) => return None,
+                Err(PcapError::Incomplete(_)) if !exhausted => {
+                    let refilled = self.reader.refill().map_err(|error| describe(&error));
+                    if let Err(what) = refilled {
+                        self.damage = Some(what);
+                        return None;
+                    }
+                }
+                Err(error) => {
+                    self.damage = Some(describe(&error));
+                    return None;
+                }
+            }
+        }
+    }
+}
+
+fn on_block(
+    block: PcapBlockOwned<'_>,
+    interfaces: &mut Vec<Interface>,
+    fragments: &mut IpDefragPool<(), ()>,
+) -> Option<Packet> {
+    let (interface, ticks, data) = match &block {
+        PcapBlockOwned::LegacyHeader(header) => {
+            let nanoseconds = header.is_nanosecond_precision();
+            interfaces.push(Interface {
+                link: header.network,
+                resolution: if nanoseconds {
+                    1_000_000_000
+                } else {
+                    1_000_000
+                },
+                offset: 0,
+            });
+            return None;
+        }
+        PcapBlockOwned::Legacy(block) => {
+            let interface = *interfaces.first()?;
+            let seconds = u64::from(block.ts_sec) * interface.resolution;
+            (interface, seconds + u64::from(block.ts_usec), block.data)
+        }
+        PcapBlockOwned::NG(Block::SectionHeader(_)) => {
+            interfaces.clear();
+            return None;
+        }
+        PcapBlockOwned::NG(Block::InterfaceDescription(block)) => {
+            interfaces.push(Interface {
+                link: block.linktype,
+                resolution: block.ts_resolution().unwrap_or_default().max(1),
+                offset: block.ts_offset(),
+            });
+            return None;
+        }
+        PcapBlockOwned::NG(Block::EnhancedPacket(block)) => {
+            let interface = *interfaces.get(usize::try_from(block.if_id).ok()?)?;
+            let ticks = u64::from(block.ts_high) << 32 | u64::from(block.ts_low);
+            (interface, ticks, block.packet_data())
+        }
+        // A simple packet has no time; nothing writes them for the network.
+        PcapBlockOwned::NG(_) => return None,
+    };
+    let nanoseconds = i128::from(ticks) * 1_000_000_000 / i128::from(interface.resolution)
+        + i128::from(interface.offset) * 1_000_000_000;
+    Some(Packet {
+        time: u64::try_from(nanoseconds).unwrap_or_default(),
+        body: body(interface.link, data, fragments).unwrap_or(Body::Other),
+    })
+}
+
+/// What a packet carries; `None` if that cannot be read.
+fn body(link: Linktype, data: &[u8], fragments: &mut IpDefragPool<(), ()>) -> Option<Body> {
+    let sliced = match link {
+        Linktype::ETHERNET => SlicedPacket::from_ethernet(data),
+        Linktype::LINUX_SLL => SlicedPacket::from_linux_sll(data),
+        // A header of 20 bytes, and one of 4; behind them IP, or what from_ip refuses.
+        Linktype::LINUX_SLL2 => SlicedPacket::from_ip(data.get(20..)?),
+        Linktype::NULL | Linktype::LOOP => SlicedPacket::from_ip(data.get(4..)?),
+        _ => SlicedPacket::from_ip(data),
+    };
+    let sliced = sliced.ok()?;
+    let (source, destination): (IpAddr, IpAddr) = match sliced.net.as_ref()? {
+        NetSlice::Ipv4(ip) => (
+            ip.header().source_addr().into(),
+            ip.header().destination_addr().into(),
+        ),
+        NetSlice::Ipv6(ip) => (
+            ip.header().source_addr().into(),
+            ip.header().destination_addr().into(),
+        ),
+        NetSlice::Arp(_) => return None,
+    };
+    let datagram = |udp: &UdpSlice<'_>| Body::Udp {
+        from: (source, udp.source_port()).into(),
+        to: (destination, udp.destination_port()).into(),
+        payload: udp.payload().to_vec(),
+    };
+    match &sliced.transport {
+        Some(TransportSlice::Tcp(tcp)) => Some(Body::Tcp(Segment {
+            from: (source, tcp.source_port()).into(),
+            to: (destination, tcp.destination_port()).into(),
+            sequence: tcp.sequence_number(),
+            opens: tcp.syn(),
+            ends: tcp.fin(),
+            resets: tcp.rst(),
+            payload: tcp.payload().to_vec(),
+        })),
+        Some(TransportSlice::Udp(udp)) => Some(datagram(udp)),
+        _ => {
+            let whole = fragments.process_sliced_packet(&sliced, (), ()).ok()??;
+            let udp = (whole.ip_number == IpNumber::UDP)
+                .then(|| UdpSlice::from_slice(&whole.payload).ok())
+                .flatten();
+            let body = udp.as_ref().map(datagram);
+            fragments.return_buf(whole);
+            body
+        }
+    }
+}
+
+fn describe(error: &PcapError<&[u8]>) -> String {
+    match error {
+        PcapError::Incomplete(_) | PcapError::UnexpectedEof | PcapError::Eof => {
+            "it ends in the middle of a record".to_owned()
+        }
+        PcapError::HeaderNotRecognized => "it begins like neither".to_owned(),
+        error => format!("{error:?}").chars().take(ERROR_LENGTH).collect(),
+    }
+}
+
+/// Bounds of the reader's buffer: at least a header, at most more than any record.
+const BUFFER_MIN: usize = 64;
+const BUFFER_MAX: usize = 1 << 20;
+
+/// An error of the parser may hold what it did not understand.
+const ERROR_LENGTH: usize = 100;

@@ -1,0 +1,423 @@
+//! One recorded connection, played to a client: bytes and time in, bytes out.
+
+mod matching;
+
+use std::collections::{HashMap, VecDeque};
+use std::fmt;
+use std::time::Duration;
+
+use super::options::{Matching, Pace, PlayOptions};
+use super::script::{Script, Step, Unplayable, counter};
+use super::{Connection, Device};
+
+/// What a player sends.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Output {
+    /// Bytes over TCP.
+    Stream(Vec<u8>),
+    /// A datagram over UDP, to [`Player::udp_port`] of the client.
+    Datagram(Vec<u8>),
+    /// The end of the TCP stream.
+    End,
+}
+
+/// A client did something else than in the recording.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the client of the {device} left the recording: got {got}, expected {expected}")]
+pub struct Mismatch {
+    /// The device of the connection.
+    pub device: Device,
+    /// What the client did.
+    pub got: String,
+    /// What it did in the recording.
+    pub expected: String,
+}
+
+/// What a player has done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Tally {
+    /// Requests that came as recorded.
+    pub requests: u64,
+    /// Commands that came.
+    pub commands: u64,
+    /// States sent, held ones included.
+    pub states: u64,
+    /// States that were repeated because a request was awaited.
+    pub held: u64,
+}
+
+/// A recorded connection that is played to a client.
+///
+/// * Input: [`Self::on_stream`], [`Self::on_datagram`], [`Self::on_end`].
+/// * Output: [`Self::poll`] until it returns `None`, after every input and at [`Self::deadline`].
+///
+/// `now` is the time since any moment, and never goes back. An error is final.
+#[derive(Clone, Debug)]
+pub struct Player {
+    script: Script,
+    options: PlayOptions,
+    /// The next step.
+    position: usize,
+    /// When it is due by the recording.
+    due: Duration,
+    /// Since when the client is awaited, if it is.
+    blocked: Option<Duration>,
+    /// Requests and commands before these steps have come.
+    requested: usize,
+    commanded: usize,
+    client_ended: bool,
+    udp_port: Option<u16>,
+    received: Vec<u8>,
+    /// From recorded ids of requests to those of this client.
+    ids: HashMap<[u8; 4], [u8; 4]>,
+    last_state: Option<(Duration, Vec<u8>)>,
+    /// How far the ids of states are ahead of the recorded ones.
+    shift: u64,
+    /// Ids of states sent, and the recorded ones; `None` if held.
+    sent: VecDeque<(u64, Option<u64>)>,
+    /// Whether a command did not come in time, and no other has come since.
+    silent: bool,
+    failure: Option<Mismatch>,
+    tally: Tally,
+}
+
+impl Player {
+    /// A player of a recorded connection, which begins at `now`.
+    ///
+    /// # Errors
+    /// [`Unplayable`] if the recording is incomplete or not of a client.
+    pub fn new(
+        connection: &Connection,
+        options: PlayOptions,
+        now: Duration,
+    ) -> Result<Self, Unplayable> {
+        Ok(Self {
+            script: Script::new(connection)?,
+            options,
+            position: 0,
+            due: now,
+            blocked: None,
+            requested: 0,
+            commanded: 0,
+            client_ended: false,
+            udp_port: None,
+            received: Vec::new(),
+            ids: HashMap::new(),
+            last_state: None,
+            shift: 0,
+            sent: VecDeque::new(),
+            silent: false,
+            failure: None,
+            tally: Tally::default(),
+        })
+    }
+
+    /// The port on which the client expects datagrams, once it has sent `Connect`.
+    #[must_use]
+    pub fn udp_port(&self) -> Option<u16> {
+        self.udp_port
+    }
+
+    /// Whether everything has been played.
+    #[must_use]
+    pub fn is_finished(&self) -> bool {
+        self.position == self.script.steps.len()
+    }
+
+    /// What the client has to do next, for messages.
+    #[must_use]
+    pub fn awaited(&self) -> String {
+        self.expected(self.position)
+    }
+
+    /// What has been played.
+    #[must_use]
+    pub fn tally(&self) -> Tally {
+        self.tally
+    }
+
+    /// Takes in bytes of the client's stream.
+    ///
+    /// # Errors
+    /// [`Mismatch`] if they hold another request than the recording.
+    pub fn on_stream(&mut self, bytes: &[u8]) -> Result<(), Mismatch> {
+        self.checked()?;
+        self.received.extend_from_slice(bytes);
+        let received = std::mem::take(&mut self.received);
+        let mut rest = received.as_slice();
+        loop {
+            match self.script.device.next_message(rest) {
+                Ok(Some(message)) => {
+                    let (whole, behind) = rest.split_at(message.size());
+                    self.on_request(whole)?;
+                    rest = behind;
+                }
+                Ok(None) => break,
+                Err(error) => {
+                    let expected = self.expected(self.requested);
+                    return self.fail(error.to_string(), expected);
+                }
+            }
+        }
+        self.received = rest.to_vec();
+        Ok(())
+    }
+
+    /// Takes in a datagram of the client.
+    ///
+    /// # Errors
+    /// [`Mismatch`] if it is another command than the recorded one.
+    pub fn on_datagram(&mut self, datagram: &[u8]) -> Result<(), Mismatch> {
+        self.checked()?;
+        self.silent = false;
+        let got = counter(self.script.device, datagram);
+        let sent = got.and_then(|id| self.sent.iter().rev().find(|(sent, _)| *sent == id));
+        let recorded = match sent {
+            // The recording has no command for a state that it does not have.
+            Some((_, None)) if !self.script.finishes(datagram) => return Ok(()),
+            Some((_, None)) => None,
+            Some((_, recorded)) => *recorded,
+            None => got.map(|id| id.wrapping_sub(self.shift)),
+        };
+        self.tally.commands += 1;
+        match self.options.matching {
+            Matching::Strict => self.compare_command(recorded, datagram),
+            Matching::Lenient => {
+                self.accept_command(recorded, datagram);
+                Ok(())
+            }
+        }
+    }
+
+    /// Takes note that the client has closed its stream.
+    ///
+    /// # Errors
+    /// [`Mismatch`] if the recording has more requests, or with [`Matching::Strict`] commands.
+    pub fn on_end(&mut self) -> Result<(), Mismatch> {
+        self.checked()?;
+        self.client_ended = true;
+        let request = self.next_request();
+        let command = self.next_command();
+        let strict = self.options.matching == Matching::Strict;
+        if let Some(missing) = request.or(command.filter(|_| strict)) {
+            let expected = self.expected(missing);
+            return self.fail("the end of the connection".to_owned(), expected);
+        }
+        self.position = self.script.steps.len();
+        Ok(())
+    }
+
+    /// What to send next; `None` if that is nothing before [`Self::deadline`] or the next input.
+    ///
+    /// # Errors
+    /// [`Mismatch`] if the client left the recording, or did not command in time.
+    pub fn poll(&mut self, now: Duration) -> Result<Option<Output>, Mismatch> {
+        self.checked()?;
+        while let Some((_, step)) = self.script.steps.get(self.position) {
+            match step {
+                Step::Request(_) if self.position < self.requested => self.pass(now),
+                Step::Request(_) | Step::ClientEnd => return Ok(self.hold(now)),
+                Step::Command(_) => match self.command_gate(now)? {
+                    Gate::Open => self.pass(now),
+                    Gate::Hold => return Ok(self.hold(now)),
+                    Gate::Wait => return Ok(None),
+                },
+                Step::Reply(_) | Step::State(_) | Step::RobotEnd => {
+                    if self.options.pace != Pace::Lockstep && now < self.due {
+                        return Ok(None);
+                    }
+                    let output = self.perform(now);
+                    self.pass(now);
+                    return Ok(Some(output));
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// When [`Self::poll`] has something to do if there is no input; `None` if never.
+    #[must_use]
+    pub fn deadline(&self) -> Option<Duration> {
+        let held = || {
+            let (at, _) = self.last_state.as_ref()?;
+            Some(*at + self.script.interval)
+        };
+        match &self.script.steps.get(self.position)?.1 {
+            Step::Reply(_) | Step::State(_) | Step::RobotEnd => Some(self.due),
+            Step::Request(_) | Step::ClientEnd => held(),
+            Step::Command(_) if self.is_unfinished_motion(self.position) => held(),
+            Step::Command(_) => self.blocked.map(|since| since + self.options.patience),
+        }
+    }
+
+    /// Whether the step of a command that has not come may be passed.
+    fn command_gate(&mut self, now: Duration) -> Result<Gate, Mismatch> {
+        if self.position < self.commanded {
+            return Ok(Gate::Open);
+        }
+        if self.is_unfinished_motion(self.position) {
+            return Ok(Gate::Hold);
+        }
+        // A client that is ahead with its next request may command no more before it is answered.
+        let ahead = self.requested > self.position;
+        if self.options.pace == Pace::Recorded || self.silent || ahead {
+            return Ok(Gate::Open);
+        }
+        let since = *self.blocked.get_or_insert(now);
+        if self.options.pace == Pace::Lockstep || now < since + self.options.patience {
+            return Ok(Gate::Wait);
+        }
+        match self.options.matching {
+            Matching::Lenient => self.silent = true,
+            Matching::Strict => {
+                let expected = self.expected(self.position);
+                self.fail(format!("none within {:?}", self.options.patience), expected)?;
+            }
+        }
+        Ok(Gate::Open)
+    }
+
+    /// Whether a step is the last command of a motion and a lenient play waits for it as for a
+    /// request.
+    fn is_unfinished_motion(&self, step: usize) -> bool {
+        let waits = self.options.matching == Matching::Lenient && step >= self.commanded;
+        waits
+            && matches!(&self.script.steps[step].1, Step::Command(bytes) if self.script.finishes(bytes))
+    }
+
+    /// Goes on to the next step, which is due as long after this one as in the recording. What the
+    /// client kept waiting moves everything after it.
+    fn pass(&mut self, now: Duration) {
+        let steps = &self.script.steps;
+        let (at, step) = &steps[self.position];
+        let next = steps.get(self.position + 1).map_or(*at, |(next, _)| *next);
+        let waited = self.blocked.take().is_some();
+        let answered = matches!(step, Step::Command(_)) && self.position < self.commanded;
+        if answered && self.options.pace == Pace::Answered {
+            self.due = now;
+        } else {
+            let base = if waited { now } else { self.due };
+            self.due = base + next.saturating_sub(*at);
+        }
+        self.position += 1;
+    }
+
+    /// Does what the robot did in this step.
+    fn perform(&mut self, now: Duration) -> Output {
+        match self.script.steps[self.position].1.clone() {
+            Step::Reply(mut bytes) => {
+                let range = self.script.device.id_range();
+                if let Some(id) = bytes.get_mut(range)
+                    && let Some(actual) = self.ids.get(&*id)
+                {
+                    id.copy_from_slice(actual);
+                }
+                Output::Stream(bytes)
+            }
+            Step::State(bytes) => {
+                let recorded = counter(self.script.device, &bytes);
+                self.send_state(now, bytes, recorded, self.shift)
+            }
+            _ => Output::End,
+        }
+    }
+
+    /// Repeats the last state if it is time, as the client is awaited.
+    fn hold(&mut self, now: Duration) -> Option<Output> {
+        self.blocked.get_or_insert(now);
+        if self.options.pace == Pace::Lockstep {
+            return None;
+        }
+        let (at, state) = self.last_state.take()?;
+        if now < at + self.script.interval {
+            self.last_state = Some((at, state));
+            return None;
+        }
+        self.shift = self.shift.wrapping_add(1);
+        self.tally.held += 1;
+        Some(self.send_state(now, state, None, 1))
+    }
+
+    /// A state with its id moved by `ahead`.
+    fn send_state(
+        &mut self,
+        now: Duration,
+        mut state: Vec<u8>,
+        recorded: Option<u64>,
+        ahead: u64,
+    ) -> Output {
+        let size = self.script.device.counter_size();
+        if let Some(id) = counter(self.script.device, &state) {
+            let id = id.wrapping_add(ahead);
+            state[..size].copy_from_slice(&id.to_le_bytes()[..size]);
+            if self.sent.len() == REMEMBERED {
+                self.sent.pop_front();
+            }
+            self.sent.push_back((id, recorded));
+        }
+        self.tally.states += 1;
+        self.last_state = Some((now, state.clone()));
+        Output::Datagram(state)
+    }
+
+    fn next_request(&self) -> Option<usize> {
+        self.next_step(self.requested, |step| matches!(step, Step::Request(_)))
+    }
+
+    fn next_command(&self) -> Option<usize> {
+        self.next_step(self.commanded, |step| matches!(step, Step::Command(_)))
+    }
+
+    fn next_step(&self, from: usize, is: impl Fn(&Step) -> bool) -> Option<usize> {
+        let steps = self.script.steps.get(from..)?;
+        let found = steps.iter().position(|(_, step)| is(step))?;
+        Some(from + found)
+    }
+
+    /// What the client has to do in the first step of its own from `step` on.
+    fn expected(&self, step: usize) -> String {
+        let is_clients =
+            |step: &Step| matches!(step, Step::Request(_) | Step::Command(_) | Step::ClientEnd);
+        match self.next_step(step, is_clients) {
+            Some(step) => self.script.describe(&self.script.steps[step].1),
+            None => "nothing more".to_owned(),
+        }
+    }
+
+    fn checked(&self) -> Result<(), Mismatch> {
+        self.failure.clone().map_or(Ok(()), Err)
+    }
+
+    fn fail(&mut self, got: String, expected: String) -> Result<(), Mismatch> {
+        let device = self.script.device;
+        self.failure = Some(Mismatch {
+            device,
+            got,
+            expected,
+        });
+        self.checked()
+    }
+}
+
+/// Whether a step of the client may be passed.
+enum Gate {
+    Open,
+    /// Wait, and send states meanwhile.
+    Hold,
+    /// Wait, and send nothing.
+    Wait,
+}
+
+impl fmt::Display for Tally {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} requests and {} commands came, {} states sent, {} of them held",
+            self.requests, self.commands, self.states, self.held
+        )
+    }
+}
+
+/// Ids of states that are remembered, in states: four seconds. No client answers older ones.
+const REMEMBERED: usize = 4096;

@@ -1,0 +1,395 @@
+//! A cassette as a robot: players on sockets.
+
+use std::collections::BTreeMap;
+use std::io::{self, Read as _, Write as _};
+use std::net::{IpAddr, Shutdown, SocketAddr, TcpListener, TcpStream, UdpSocket};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use super::tap::TICK;
+use super::{
+    Cassette, Connection, Device, Mismatch, Output, PlayOptions, Player, Tally, Unplayable,
+};
+
+/// A server that plays a cassette to any client.
+///
+/// The first connection of a client to a device gets the first one of the recording, and so on. Each
+/// is played by itself: two connections, such as those of an arm and its hand, are in step only as
+/// far as the client keeps them so.
+#[derive(Debug)]
+pub struct CassetteServer {
+    shared: Arc<Shared>,
+    listeners: Vec<JoinHandle<()>>,
+    addresses: BTreeMap<Device, SocketAddr>,
+}
+
+/// What was played.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct PlayReport {
+    /// Each connection that was played to its end, in the order of their ends.
+    pub played: Vec<(Device, Tally)>,
+}
+
+/// Why a cassette was not played to its end.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlayError {
+    /// A client did something else than the recorded one.
+    #[error(transparent)]
+    Mismatch(#[from] Mismatch),
+    /// A client opened a connection that the recording does not have.
+    #[error("a client opened connection {got} to the {device}, the recording has {recorded}")]
+    Connection {
+        /// The device.
+        device: Device,
+        /// The number of the connection, from 1.
+        got: usize,
+        /// How many connections to the device were recorded.
+        recorded: usize,
+    },
+    /// The recording cannot be played.
+    #[error(transparent)]
+    Unplayable(#[from] Unplayable),
+    /// No client came, or it did not come to the end.
+    #[error(
+        "after {patience:?}, {played} of {recorded} connections have been played; next is {awaited}"
+    )]
+    Unfinished {
+        /// How long it was waited for.
+        patience: Duration,
+        /// Connections that were played to their end.
+        played: usize,
+        /// Connections of the recording.
+        recorded: usize,
+        /// What a client has to do next.
+        awaited: String,
+    },
+    /// A socket failed.
+    #[error("cannot play: {0}")]
+    Io(#[from] io::Error),
+}
+
+#[derive(Debug)]
+struct Shared {
+    stop: AtomicBool,
+    recorded: usize,
+    state: Mutex<State>,
+    changed: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    report: PlayReport,
+    failure: Option<PlayError>,
+    /// What the connections that are being played wait for.
+    awaited: BTreeMap<(Device, usize), String>,
+}
+
+impl Shared {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn is_over(&self) -> bool {
+        // Relaxed: the flag guards no data.
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Ends the play.
+    fn fail(&self, error: PlayError) {
+        self.state().failure.get_or_insert(error);
+        self.stop.store(true, Ordering::Relaxed);
+        self.changed.notify_all();
+    }
+}
+
+impl CassetteServer {
+    /// Starts to serve a cassette at `ip`, at the devices' own ports.
+    ///
+    /// # Errors
+    /// [`PlayError`] if a recorded connection cannot be played, or a port is not free.
+    pub fn start(cassette: Cassette, ip: IpAddr, options: PlayOptions) -> Result<Self, PlayError> {
+        let at = |device: Device| SocketAddr::new(ip, device.port());
+        Self::start_at(cassette, at, options)
+    }
+
+    /// Starts to serve a cassette, each device at its address; port 0 takes any free one.
+    ///
+    /// # Errors
+    /// Those of [`Self::start`].
+    pub fn start_at(
+        cassette: Cassette,
+        address: impl Fn(Device) -> SocketAddr,
+        options: PlayOptions,
+    ) -> Result<Self, PlayError> {
+        let recorded = cassette.connections.len();
+        let mut devices: BTreeMap<Device, Vec<Connection>> = BTreeMap::new();
+        for connection in cassette.connections {
+            // Says now what cannot be played.
+            Player::new(&connection, options, Duration::ZERO)?;
+            devices
+                .entry(connection.device)
+                .or_default()
+                .push(connection);
+        }
+        let mut this = Self {
+            shared: Arc::new(Shared {
+                stop: AtomicBool::new(false),
+                recorded,
+                state: Mutex::default(),
+                changed: Condvar::new(),
+            }),
+            listeners: Vec::new(),
+            addresses: BTreeMap::new(),
+        };
+        for (device, connections) in devices {
+            let listener = TcpListener::bind(address(device))?;
+            listener.set_nonblocking(true)?;
+            this.addresses.insert(device, listener.local_addr()?);
+            let shared = this.shared.clone();
+            let serve = move || accept(&listener, device, connections, options, &shared);
+            let name = format!("cassette {device}");
+            let thread = std::thread::Builder::new().name(name).spawn(serve)?;
+            this.listeners.push(thread);
+        }
+        Ok(this)
+    }
+
+    /// Where a device is served; `None` if the cassette has no connection to it.
+    #[must_use]
+    pub fn address(&self, device: Device) -> Option<SocketAddr> {
+        self.addresses.get(&device).copied()
+    }
+
+    /// Waits until every recorded connection has been played, and ends.
+    ///
+    /// # Errors
+    /// [`PlayError`] if a client left the recording, or if `patience` passes before.
+    pub fn finish(self, patience: Duration) -> Result<PlayReport, PlayError> {
+        let recorded = self.shared.recorded;
+        let going_on =
+            |state: &mut State| state.failure.is_none() && state.report.played.len() < recorded;
+        let state = self.shared.state();
+        let waited = self
+            .shared
+            .changed
+            .wait_timeout_while(state, patience, going_on);
+        let (mut state, _) = waited.unwrap_or_else(PoisonError::into_inner);
+        if let Some(failure) = state.failure.take() {
+            return Err(failure);
+        }
+        let played = state.report.played.len();
+        if played < recorded {
+            let awaited = state.awaited.values().next().cloned();
+            return Err(PlayError::Unfinished {
+                patience,
+                played,
+                recorded,
+                awaited: awaited.unwrap_or_else(|| "a connection".to_owned()),
+            });
+        }
+        Ok(std::mem::take(&mut state.report))
+    }
+}
+
+impl Drop for CassetteServer {
+    fn drop(&mut self) {
+        self.shared.stop.store(true, Ordering::Relaxed);
+        for listener in self.listeners.drain(..) {
+            let _ = listener.join();
+        }
+    }
+}
+
+/// Takes clients of a device until the play is over.
+fn accept(
+    listener: &TcpListener,
+    device: Device,
+    connections: Vec<Connection>,
+    options: PlayOptions,
+    shared: &Arc<Shared>,
+) {
+    let recorded = connections.len();
+    let mut connections = connections.into_iter();
+    let mut threads = Vec::new();
+    while !shared.is_over() {
+        let Ok((client, _)) = listener.accept() else {
+            std::thread::sleep(ACCEPT_TICK);
+            continue;
+        };
+        let number = recorded - connections.len() + 1;
+        let Some(connection) = connections.next() else {
+            shared.fail(PlayError::Connection {
+                device,
+                got: number,
+                recorded,
+            });
+            break;
+        };
+        let playing = shared.clone();
+        let play = move || {
+            let outcome = play(&client, &connection, number, options, &playing);
+            // It may be closed already.
+            let _ = client.shutdown(Shutdown::Both);
+            let mut state = playing.state();
+            state.awaited.remove(&(device, number));
+            match outcome {
+                Ok(Some(tally)) => state.report.played.push((device, tally)),
+                Ok(None) => {}
+                Err(error) => {
+                    drop(state);
+                    return playing.fail(error);
+                }
+            }
+            drop(state);
+            playing.changed.notify_all();
+        };
+        let name = format!("cassette {device} {number}");
+        match std::thread::Builder::new().name(name).spawn(play) {
+            Ok(thread) => threads.push(thread),
+            Err(error) => shared.fail(error.into()),
+        }
+    }
+    for thread in threads {
+        let _ = thread.join();
+    }
+}
+
+/// What a client sends.
+enum Input {
+    Stream(Vec<u8>),
+    Datagram(Vec<u8>),
+    End,
+}
+
+/// Plays a connection to a client; `None` if the play ends before.
+fn play(
+    mut client: &TcpStream,
+    connection: &Connection,
+    number: usize,
+    options: PlayOptions,
+    shared: &Shared,
+) -> Result<Option<Tally>, PlayError> {
+    client.set_nonblocking(false)?;
+    client.set_nodelay(true)?;
+    client.set_read_timeout(Some(TICK))?;
+    let udp = UdpSocket::bind((client.local_addr()?.ip(), 0))?;
+    udp.set_read_timeout(Some(TICK))?;
+    let ip = client.peer_addr()?.ip();
+    let over = AtomicBool::new(false);
+    let stopped = || over.load(Ordering::Relaxed) || shared.is_over();
+    let (sender, inputs) = sync_channel(INPUTS);
+    std::thread::scope(|scope| {
+        let from_udp = sender.clone();
+        scope.spawn(|| read_datagrams(&udp, ip, from_udp, &stopped));
+        scope.spawn(|| read_stream(client, sender, &stopped));
+        let mut player = Player::new(connection, options, Duration::ZERO)?;
+        let mut send = |output: Output, port: Option<u16>| match output {
+            Output::Stream(bytes) => client.write_all(&bytes),
+            Output::End => client.shutdown(Shutdown::Write),
+            Output::Datagram(bytes) => match port {
+                // A client that is leaving may have closed its port.
+                Some(port) => udp.send_to(&bytes, (ip, port)).map(drop).or(Ok(())),
+                None => Ok(()),
+            },
+        };
+        let outcome = drive(&mut player, &inputs, &mut send, &stopped, |awaited| {
+            let key = (connection.device, number);
+            shared.state().awaited.insert(key, awaited);
+        });
+        over.store(true, Ordering::Relaxed);
+        // Readers that wait for room in the queue end with it.
+        drop(inputs);
+        outcome
+    })
+}
+
+/// Brings together a player, a clock, and what a client sends.
+fn drive(
+    player: &mut Player,
+    inputs: &Receiver<Input>,
+    send: &mut impl FnMut(Output, Option<u16>) -> io::Result<()>,
+    stopped: &impl Fn() -> bool,
+    mut awaits: impl FnMut(String),
+) -> Result<Option<Tally>, PlayError> {
+    let start = Instant::now();
+    awaits(player.awaited());
+    loop {
+        while let Some(output) = player.poll(start.elapsed())? {
+            if send(output, player.udp_port()).is_err() {
+                // The client has gone: what is missing shows at the end of its stream.
+                break;
+            }
+        }
+        if player.is_finished() {
+            return Ok(Some(player.tally()));
+        }
+        if stopped() {
+            return Ok(None);
+        }
+        let deadline = player.deadline();
+        let wait = deadline.map_or(TICK, |deadline| deadline.saturating_sub(start.elapsed()));
+        match inputs.recv_timeout(wait.min(TICK)) {
+            Ok(Input::Stream(bytes)) => {
+                player.on_stream(&bytes)?;
+                awaits(player.awaited());
+            }
+            Ok(Input::Datagram(bytes)) => player.on_datagram(&bytes)?,
+            Ok(Input::End) => player.on_end()?,
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return Ok(None),
+        }
+    }
+}
+
+fn read_stream(mut client: &TcpStream, inputs: SyncSender<Input>, stopped: &impl Fn() -> bool) {
+    let mut buffer = [0; 4096];
+    while !stopped() {
+        let input = match client.read(&mut buffer) {
+            Ok(0) => Input::End,
+            Ok(length) => Input::Stream(buffer[..length].to_vec()),
+            Err(error) if is_timeout(&error) => continue,
+            Err(_) => Input::End,
+        };
+        let end = matches!(input, Input::End);
+        if inputs.send(input).is_err() || end {
+            return;
+        }
+    }
+}
+
+fn read_datagrams(
+    udp: &UdpSocket,
+    client: IpAddr,
+    inputs: SyncSender<Input>,
+    stopped: &impl Fn() -> bool,
+) {
+    let mut buffer = [0; 4096];
+    while !stopped() {
+        // Errors other than a timeout mean that a datagram of ours reached a closed port.
+        let Ok((length, sender)) = udp.recv_from(&mut buffer) else {
+            continue;
+        };
+        let input = Input::Datagram(buffer[..length].to_vec());
+        if sender.ip() == client && inputs.send(input).is_err() {
+            return;
+        }
+    }
+}
+
+fn is_timeout(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
+    )
+}
+
+/// A client connects rarely, and waits a second for it.
+const ACCEPT_TICK: Duration = Duration::from_millis(5);
+
+/// What may wait for the player; readers wait if it is full.
+const INPUTS: usize = 256;

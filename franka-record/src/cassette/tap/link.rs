@@ -1,0 +1,314 @@
+//! One client's connection through the tap: two streams and two directions of datagrams.
+
+use std::io::{self, Read as _, Write as _};
+use std::net::{IpAddr, Shutdown, SocketAddr, TcpStream, UdpSocket};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::{Duration, Instant};
+
+use franka_proto::wire::service::ConnectRequest;
+use zerocopy::FromBytes as _;
+
+use super::journal::{Lane, Recorder, Source};
+use super::{Route, TICK};
+use crate::cassette::{Device, Payload, Side};
+
+/// What the threads of a link share.
+struct Link<'a> {
+    stop: &'a AtomicBool,
+    /// When the first of the two streams ended.
+    ended: OnceLock<Instant>,
+    /// Whether both have.
+    over: AtomicBool,
+    /// Where the client expects datagrams.
+    client: OnceLock<SocketAddr>,
+    /// Where the robot sends datagrams from; commands go there.
+    robot: Mutex<Option<SocketAddr>>,
+}
+
+impl Link<'_> {
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed) || self.over.load(Ordering::Relaxed)
+    }
+
+    /// Whether a stream that is silent is to be closed: the other has ended, and this one did not
+    /// follow, as after a power cut.
+    fn abandoned(&self) -> bool {
+        let ended = self.ended.get();
+        self.stopped() || ended.is_some_and(|ended| ended.elapsed() > LINGER)
+    }
+}
+
+/// Forwards until both sides have closed, or the tap is stopped. A robot that cannot be reached
+/// shows as a connection that ends at once.
+pub(super) fn serve(
+    client: TcpStream,
+    route: Route,
+    connection: usize,
+    recorder: &Recorder,
+    stop: &AtomicBool,
+) {
+    let lane = |from, stream| {
+        recorder.lane(Source {
+            connection,
+            device: route.device,
+            from,
+            stream,
+        })
+    };
+    let mut refused = lane(Side::Robot, true);
+    if forward(&client, route, &lane, stop).is_err() {
+        refused.note(refused.now(), Payload::End);
+    }
+    // It may be closed already.
+    let _ = client.shutdown(Shutdown::Both);
+}
+
+fn forward(
+    client: &TcpStream,
+    route: Route,
+    lane: &(impl Fn(Side, bool) -> Lane + Sync),
+    stop: &AtomicBool,
+) -> io::Result<()> {
+    let robot = TcpStream::connect_timeout(&route.robot, CONNECT_TIME_MAX)?;
+    // Inherited from the listener on some systems.
+    client.set_nonblocking(false)?;
+    for stream in [client, &robot] {
+        stream.set_nodelay(true)?;
+        stream.set_read_timeout(Some(TICK))?;
+    }
+    // A client accepts states only from the robot's address, which for it is the tap's.
+    let to_client = UdpSocket::bind((client.local_addr()?.ip(), 0))?;
+    let to_robot = UdpSocket::bind((robot.local_addr()?.ip(), 0))?;
+    for socket in [&to_client, &to_robot] {
+        socket.set_read_timeout(Some(TICK))?;
+    }
+    let port = to_robot.local_addr()?.port();
+    let client_ip = client.peer_addr()?.ip();
+    let link = Link {
+        stop,
+        ended: OnceLock::new(),
+        over: AtomicBool::new(false),
+        client: OnceLock::new(),
+        robot: Mutex::new(None),
+    };
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let lane = lane(Side::Robot, false);
+            pass_states(&link, route.robot.ip(), &to_robot, &to_client, lane);
+        });
+        scope.spawn(|| {
+            let lane = lane(Side::Client, false);
+            pass_commands(&link, client_ip, &to_client, &to_robot, lane);
+        });
+        let down = scope.spawn(|| {
+            let unchanged = |bytes: &[u8]| bytes.to_vec();
+            copy(&link, &robot, client, lane(Side::Robot, true), unchanged);
+        });
+        let mut handshake = Handshake::new(route.device, port);
+        let announce = |bytes: &[u8]| {
+            let bytes = handshake.pass(bytes);
+            if let Some(port) = handshake.announced {
+                link.client.get_or_init(|| (client_ip, port).into());
+            }
+            bytes
+        };
+        copy(&link, client, &robot, lane(Side::Client, true), announce);
+        let _ = down.join();
+        link.over.store(true, Ordering::Relaxed);
+    });
+    Ok(())
+}
+
+/// Forwards a stream and its end. A broken stream counts as ended.
+fn copy(
+    link: &Link<'_>,
+    mut from: &TcpStream,
+    mut to: &TcpStream,
+    mut lane: Lane,
+    mut passed: impl FnMut(&[u8]) -> Vec<u8>,
+) {
+    let mut buffer = vec![0; STREAM_BUFFER];
+    loop {
+        match from.read(&mut buffer) {
+            Ok(0) => break,
+            Ok(length) => {
+                let at = lane.now();
+                let received = &buffer[..length];
+                let sent = to.write_all(&passed(received));
+                lane.note(at, Payload::Stream(received.to_vec()));
+                if sent.is_err() {
+                    // Who receives is gone, so the sender is told by the end of its own.
+                    let _ = from.shutdown(Shutdown::Both);
+                    break;
+                }
+            }
+            Err(error) if is_timeout(&error) && !link.abandoned() => {}
+            Err(_) => break,
+        }
+    }
+    lane.note(lane.now(), Payload::End);
+    link.ended.get_or_init(Instant::now);
+    let _ = to.shutdown(Shutdown::Write);
+}
+
+/// Forwards datagrams of the robot.
+fn pass_states(link: &Link<'_>, robot: IpAddr, from: &UdpSocket, to: &UdpSocket, mut lane: Lane) {
+    let mut buffer = vec![0; DATAGRAM_BUFFER];
+    while !link.stopped() {
+        let Some((length, sender)) = received(from, &mut buffer) else {
+            continue;
+        };
+        if sender.ip() != robot {
+            continue;
+        }
+        let at = lane.now();
+        if let Some(client) = link.client.get() {
+            // A client that is leaving may have closed its port.
+            let _ = to.send_to(&buffer[..length], client);
+        }
+        *link.robot.lock().unwrap_or_else(PoisonError::into_inner) = Some(sender);
+        lane.note(at, Payload::Datagram(buffer[..length].to_vec()));
+    }
+}
+
+/// Forwards datagrams of the client to where the newest state came from.
+fn pass_commands(
+    link: &Link<'_>,
+    client: IpAddr,
+    from: &UdpSocket,
+    to: &UdpSocket,
+    mut lane: Lane,
+) {
+    let mut buffer = vec![0; DATAGRAM_BUFFER];
+    while !link.stopped() {
+        let Some((length, sender)) = received(from, &mut buffer) else {
+            continue;
+        };
+        if sender.ip() != client {
+            continue;
+        }
+        let at = lane.now();
+        let robot = *link.robot.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(robot) = robot {
+            let _ = to.send_to(&buffer[..length], robot);
+        }
+        lane.note(at, Payload::Datagram(buffer[..length].to_vec()));
+    }
+}
+
+/// A datagram and its sender; `None` if none came for a while.
+fn received(socket: &UdpSocket, buffer: &mut [u8]) -> Option<(usize, SocketAddr)> {
+    match socket.recv_from(buffer) {
+        Ok(received) => Some(received),
+        Err(error) => {
+            // Anything else, such as a datagram of ours that reached a closed port, comes at once.
+            if !is_timeout(&error) && error.kind() != io::ErrorKind::ConnectionRefused {
+                std::thread::sleep(TICK);
+            }
+            None
+        }
+    }
+}
+
+fn is_timeout(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
+    )
+}
+
+/// The client's stream up to `Connect`, in which the port is replaced.
+struct Handshake {
+    device: Device,
+    port: u16,
+    waiting: Option<Vec<u8>>,
+    announced: Option<u16>,
+}
+
+impl Handshake {
+    fn new(device: Device, port: u16) -> Self {
+        Self {
+            device,
+            port,
+            waiting: Some(Vec::new()),
+            announced: None,
+        }
+    }
+
+    /// The bytes to forward for these.
+    fn pass(&mut self, bytes: &[u8]) -> Vec<u8> {
+        let Some(mut waiting) = self.waiting.take() else {
+            return bytes.to_vec();
+        };
+        waiting.extend_from_slice(bytes);
+        match self.device.next_message(&waiting) {
+            Ok(None) => {
+                self.waiting = Some(waiting);
+                Vec::new()
+            }
+            Ok(Some(message)) if message.header.command == 0 => {
+                let payload = message.size() - message.payload.len();
+                let request = ConnectRequest::mut_from_prefix(&mut waiting[payload..]);
+                if let Ok((request, _)) = request {
+                    self.announced = Some(request.udp_port.get());
+                    request.udp_port = self.port.into();
+                }
+                waiting
+            }
+            // Not a client; the robot says what it thinks of it.
+            Ok(Some(_)) | Err(_) => waiting,
+        }
+    }
+}
+
+/// How long a robot has to take a connection.
+const CONNECT_TIME_MAX: Duration = Duration::from_secs(1);
+
+/// How long one side may stay open after the other has closed.
+const LINGER: Duration = Duration::from_secs(1);
+
+/// A model library of protocol 5 has a megabyte; anything else fits at once.
+const STREAM_BUFFER: usize = 64 << 10;
+
+/// Above any datagram: 2373 bytes are the longest.
+const DATAGRAM_BUFFER: usize = 4096;
+
+#[cfg(test)]
+mod tests {
+    use franka_proto::client::Session;
+    use franka_proto::{Protocol, Version, gripper, vacuum};
+
+    use super::*;
+
+    /// However the stream is cut.
+    fn check<P: Protocol>(device: Device, version: P) {
+        let hello = Session::new(version).connect(4711);
+        let expected = Session::new(version).connect(815);
+        for cut in 0..hello.as_bytes().len() {
+            let mut handshake = Handshake::new(device, 815);
+            let (first, second) = hello.as_bytes().split_at(cut);
+            let mut passed = handshake.pass(first);
+            passed.extend(handshake.pass(second));
+            passed.extend(handshake.pass(&[9, 9]));
+            assert_eq!(passed, [expected.as_bytes(), &[9, 9]].concat());
+            assert_eq!(handshake.announced, Some(4711));
+        }
+    }
+
+    #[test]
+    fn the_port_of_the_client_is_replaced() {
+        check(Device::Robot, Version::V5);
+        check(Device::Robot, Version::V10);
+        check(Device::Hand, gripper::Version::V3);
+        check(Device::VacuumGripper, vacuum::Version::V1);
+    }
+
+    #[test]
+    fn a_stream_without_connect_passes_as_it_is() {
+        let mut handshake = Handshake::new(Device::Robot, 815);
+        let garbage = [0xff; 30];
+        assert_eq!(handshake.pass(&garbage), garbage);
+        assert_eq!(handshake.announced, None);
+    }
+}

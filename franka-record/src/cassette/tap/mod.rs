@@ -1,0 +1,189 @@
+//! A tap between clients and a robot: it forwards everything and records what passes.
+
+mod journal;
+mod link;
+
+use std::io;
+use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use self::journal::Journal;
+use super::{CassetteError, CassetteWriter, Device};
+
+/// A tap on the connections to a robot and its end effectors, on threads of its own.
+///
+/// A client connects to the tap as to the robot, and the tap to the robot. Bytes pass unchanged, but
+/// for the UDP port in `Connect`: states and commands pass through the tap as well. What is recorded
+/// is what the sender sent. Recording takes place on one more thread, and never keeps bytes waiting:
+/// what it cannot keep up with is counted as missing.
+///
+/// Dropping it ends all connections, as [`Self::finish`] does.
+#[derive(Debug)]
+pub struct Tap {
+    stop: Arc<AtomicBool>,
+    listeners: Vec<JoinHandle<()>>,
+    addresses: Vec<(Device, SocketAddr)>,
+    connections: Arc<AtomicUsize>,
+    journal: Option<Journal>,
+}
+
+/// Where clients of a device connect to, and where the device is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Route {
+    /// The device.
+    pub device: Device,
+    /// Where to listen; port 0 takes any free one.
+    pub listen: SocketAddr,
+    /// The device, or a simulator of it.
+    pub robot: SocketAddr,
+}
+
+/// What a tap has recorded.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct TapReport {
+    /// Connections of clients.
+    pub connections: usize,
+    /// Events in the file.
+    pub events: u64,
+    /// Events that are missing in the file.
+    pub dropped: u64,
+}
+
+impl Route {
+    /// The routes of an arm, its Hand and its vacuum gripper at their own ports.
+    #[must_use]
+    pub fn all(robot: IpAddr, listen: IpAddr) -> [Self; 3] {
+        Device::ALL.map(|device| Self {
+            device,
+            listen: (listen, device.port()).into(),
+            robot: (robot, device.port()).into(),
+        })
+    }
+}
+
+impl Tap {
+    /// Starts a tap that records into a new file at `path`.
+    ///
+    /// # Errors
+    /// [`CassetteError`] if an address is not free or the file cannot be created. An existing file
+    /// is not overwritten.
+    pub fn start(routes: &[Route], path: impl AsRef<Path>) -> Result<Self, CassetteError> {
+        let listeners = routes.iter().map(|route| {
+            let listener = TcpListener::bind(route.listen)?;
+            listener.set_nonblocking(true)?;
+            Ok((listener, *route))
+        });
+        let listeners = listeners.collect::<io::Result<Vec<_>>>()?;
+        let file = std::fs::File::create_new(path)?;
+        let started = SystemTime::now().duration_since(UNIX_EPOCH);
+        let started = started.map_or(0, |time| u64::try_from(time.as_nanos()).unwrap_or_default());
+        let writer = CassetteWriter::new(io::BufWriter::new(file), started)?;
+        let journal = Journal::start(writer)?;
+        let mut this = Self {
+            stop: Arc::default(),
+            listeners: Vec::new(),
+            addresses: Vec::new(),
+            connections: Arc::default(),
+            journal: Some(journal),
+        };
+        for (listener, route) in listeners {
+            this.addresses.push((route.device, listener.local_addr()?));
+            let (stop, connections) = (this.stop.clone(), this.connections.clone());
+            let recorder = this.journal.as_ref().map(Journal::recorder);
+            let recorder = recorder.expect("it was put there above");
+            let accept = move || accept(&listener, route, &connections, &recorder, &stop);
+            let name = format!("tap {}", route.device);
+            let thread = std::thread::Builder::new().name(name).spawn(accept)?;
+            this.listeners.push(thread);
+        }
+        Ok(this)
+    }
+
+    /// Where clients of a device connect to; `None` if the tap has no route for it.
+    #[must_use]
+    pub fn address(&self, device: Device) -> Option<SocketAddr> {
+        let mut addresses = self.addresses.iter();
+        let found = addresses.find(|(other, _)| *other == device);
+        found.map(|(_, address)| *address)
+    }
+
+    /// Ends all connections and the file.
+    ///
+    /// # Errors
+    /// [`CassetteError`] if the file could not be written; everything was forwarded all the same.
+    pub fn finish(mut self) -> Result<TapReport, CassetteError> {
+        self.end()
+    }
+
+    fn end(&mut self) -> Result<TapReport, CassetteError> {
+        // Relaxed: the threads are joined below, and the flag guards no data.
+        self.stop.store(true, Ordering::Relaxed);
+        for listener in self.listeners.drain(..) {
+            // A panic there has been printed; what was recorded before is worth keeping.
+            let _ = listener.join();
+        }
+        let Some(journal) = self.journal.take() else {
+            return Ok(TapReport::default());
+        };
+        let (events, dropped) = journal.finish()?;
+        Ok(TapReport {
+            connections: self.connections.load(Ordering::Relaxed),
+            events,
+            dropped,
+        })
+    }
+}
+
+impl Drop for Tap {
+    fn drop(&mut self) {
+        // Who wants to know of errors calls `finish`.
+        let _ = self.end();
+    }
+}
+
+/// Takes clients until the tap is stopped, then ends their connections.
+fn accept(
+    listener: &TcpListener,
+    route: Route,
+    connections: &AtomicUsize,
+    recorder: &journal::Recorder,
+    stop: &Arc<AtomicBool>,
+) {
+    let mut threads: Vec<JoinHandle<()>> = Vec::new();
+    while !stop.load(Ordering::Relaxed) {
+        let Ok((client, _)) = listener.accept() else {
+            // No client, or one that has gone already.
+            std::thread::sleep(TICK);
+            continue;
+        };
+        let number = connections.fetch_add(1, Ordering::Relaxed);
+        threads.retain(|thread| !thread.is_finished());
+        threads.extend(start(client, number, route, recorder, stop));
+    }
+    for thread in threads {
+        let _ = thread.join();
+    }
+}
+
+/// Starts to serve a client. One that cannot be served sees the end of its connection.
+fn start(
+    client: TcpStream,
+    number: usize,
+    route: Route,
+    recorder: &journal::Recorder,
+    stop: &Arc<AtomicBool>,
+) -> Option<JoinHandle<()>> {
+    let (recorder, stop) = (recorder.clone(), stop.clone());
+    let serve = move || link::serve(client, route, number, &recorder, &stop);
+    let name = format!("tap {} {number}", route.device);
+    let thread = std::thread::Builder::new().name(name).spawn(serve);
+    thread.ok()
+}
+
+/// How often threads look whether to stop.
+pub(super) const TICK: Duration = Duration::from_millis(20);
