@@ -7,7 +7,10 @@ use franka_async::{Realtime, Robot};
 use franka_proto::framing::next_message;
 use franka_proto::{Version, client, server};
 
+use franka_record::cassette::Device;
+
 use crate::for_each_version;
+use crate::tape::Tape;
 
 /// Over a real socket, which refuses the connection. `tests/live/connecting.rs` has more such
 /// cases.
@@ -37,6 +40,8 @@ fn scenario_17_a_robot_of_the_other_version_names_both() {
         };
         let mut session = client::Session::new(version);
         let hello = session.connect(40_000);
+        let mut tape = Tape::new(Device::Robot);
+        tape.on_request(hello.as_bytes());
         let hello = next_message(hello.as_bytes()).expect("well-formed");
         let mut robot = server::Session::new(other);
         let event = robot.on_message(hello.expect("whole"));
@@ -48,7 +53,8 @@ fn scenario_17_a_robot_of_the_other_version_names_both() {
             panic!("{event:?}")
         };
         assert_eq!(announced, version.number());
-        let reply = next_message(reply.as_bytes()).expect("well-formed");
+        let reply = tape.reply(reply.as_bytes().to_vec());
+        let reply = next_message(&reply).expect("well-formed");
         let event = session.on_message(reply.expect("whole"));
         let Ok(client::Event::Incompatible(error)) = event else {
             panic!("{event:?}")

@@ -3,18 +3,23 @@
 use franka_proto::gripper::{self, Grasp, Reply, Status, next_message};
 use franka_proto::vacuum::{self, Profile, Vacuum};
 use franka_proto::{Outgoing, Protocol, ServiceCommand, client, server};
+use franka_record::cassette::Device;
+
+use crate::tape::{Tape, recorded_and_replayed};
 
 /// Two sessions after their handshake, and the messages between them.
 struct Connection<P: Protocol> {
     client: client::Session<P>,
     device: server::Session<P>,
+    tape: Tape,
 }
 
 impl<P: for<'a> Protocol<Reply<'a> = Reply>> Connection<P> {
-    fn open(version: P) -> Self {
+    fn open(version: P, device: Device) -> Self {
         let mut this = Self {
             client: client::Session::new(version),
             device: server::Session::new(version),
+            tape: Tape::new(device),
         };
         let hello = this.client.connect(40_000);
         let event = this.at_device(&hello);
@@ -25,21 +30,17 @@ impl<P: for<'a> Protocol<Reply<'a> = Reply>> Connection<P> {
             panic!("{event:?}")
         };
         assert_eq!(udp_port, 40_000);
-        let event = this.at_client(&reply);
+        let reply = this.tape.reply(reply.as_bytes().to_vec());
+        let event = at_client(&mut this.client, &reply);
         assert!(matches!(event, client::Event::Connected { .. }));
         this
     }
 
     fn at_device(&mut self, sent: &Outgoing) -> server::Event<P> {
+        self.tape.on_request(sent.as_bytes());
         let message = next_message(sent.as_bytes()).expect("well-formed");
         let event = self.device.on_message(message.expect("whole"));
         event.expect("the client keeps to the protocol")
-    }
-
-    fn at_client<'a>(&mut self, sent: &'a Outgoing) -> client::Event<'a, P> {
-        let message = next_message(sent.as_bytes()).expect("well-formed");
-        let event = self.client.on_message(message.expect("whole"));
-        event.expect("the device keeps to the protocol")
     }
 
     /// The result of a request that the device answers with `status`.
@@ -52,7 +53,8 @@ impl<P: for<'a> Protocol<Reply<'a> = Reply>> Connection<P> {
         assert_eq!((id, &got), (sent.id(), request));
         let reply = self.device.reply(id, Reply::Done(status));
         let reply = reply.expect("it is being waited for");
-        let event = self.at_client(&reply);
+        let reply = self.tape.reply(reply.as_bytes().to_vec());
+        let event = at_client(&mut self.client, &reply);
         let client::Event::Reply {
             id: answered,
             command,
@@ -68,9 +70,12 @@ impl<P: for<'a> Protocol<Reply<'a> = Reply>> Connection<P> {
             .map_err(|failure| failure.to_string())
     }
 
-    fn check(version: P, requests: &[P::Request]) {
+    fn check(version: P, device: Device, requests: &[P::Request]) {
+        recorded_and_replayed(|| Self::open(version, device).check_all(requests));
+    }
+
+    fn check_all(mut self, requests: &[P::Request]) {
         let service = P::Command::SERVICE;
-        let mut connection = Self::open(version);
         for request in requests {
             for (status, expected) in [
                 (Status::Success, Ok(true)),
@@ -78,11 +83,20 @@ impl<P: for<'a> Protocol<Reply<'a> = Reply>> Connection<P> {
                 (Status::Fail, Err(format!("{service}: Command failed!"))),
                 (Status::Aborted, Err(format!("{service}: Command aborted!"))),
             ] {
-                let result = connection.answered(request, status);
+                let result = self.answered(request, status);
                 assert_eq!(result, expected, "{request:?}");
             }
         }
     }
+}
+
+fn at_client<'a, P: Protocol>(
+    client: &mut client::Session<P>,
+    sent: &'a [u8],
+) -> client::Event<'a, P> {
+    let message = next_message(sent).expect("well-formed");
+    let event = client.on_message(message.expect("whole"));
+    event.expect("the device keeps to the protocol")
 }
 
 /// `tests/live/hands.rs` tests the same of the async client, over sockets, and also an unknown
@@ -92,6 +106,7 @@ fn scenario_18_every_answer_to_every_command_of_the_hand() {
     assert_eq!(gripper::Command::SERVICE, "libfranka gripper");
     Connection::check(
         gripper::Version::V3,
+        Device::Hand,
         &[
             gripper::Request::Homing,
             gripper::Request::Grasp(Grasp::new(0.05, 0.1, 20.0)),
@@ -109,6 +124,7 @@ fn scenario_18_every_answer_to_every_command_of_the_vacuum_gripper() {
     assert_eq!(vacuum::Command::SERVICE, "libfranka vacuum gripper");
     Connection::check(
         vacuum::Version::V1,
+        Device::VacuumGripper,
         &[
             vacuum::Request::Vacuum(Vacuum {
                 vacuum: 50,

@@ -12,6 +12,8 @@
 //! | [`connecting`] | 17: no robot, or one of another version |
 //! | [`end_effectors`] | 18: the Hand and the vacuum gripper |
 //!
+//! Each scenario runs twice: beside the scripted robot, and beside the [cassette](tape) of that.
+//!
 //! Client and robot share one thread and a counted clock, see [`pair::Pair`]. They exchange bytes
 //! only: messages go through the sessions of both sides, datagrams over loopback through the socket
 //! code of the control thread. Where this driver differs from libfranka on purpose, the test says
@@ -27,6 +29,7 @@ mod pair;
 mod receiving;
 mod robot;
 mod starting;
+mod tape;
 
 use franka_proto::Version;
 
@@ -34,6 +37,6 @@ use franka_proto::Version;
 fn for_each_version(scenario: impl Fn(Version)) {
     for version in Version::ALL {
         println!("protocol {version}");
-        scenario(version);
+        tape::recorded_and_replayed(|| scenario(version));
     }
 }

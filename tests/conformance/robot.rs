@@ -10,12 +10,16 @@ use franka_proto::{
     CommandId, ControllerMode, MotionGeneratorMode, MoveRequest, MoveStatus, Reply, Request,
     RobotCommand, RobotMode, RobotState, StopStatus, Version,
 };
+use franka_record::cassette::Device;
+
+use crate::tape::Tape;
 
 /// The robot's side of the protocol, and a state that the test fills in.
 pub(crate) struct ScriptedRobot {
     /// The next state; its id increases by one with every state sent.
     pub(crate) state: RobotState,
     session: Session,
+    tape: Tape,
     udp: UdpSocket,
     client: Option<SocketAddr>,
     received: Vec<u8>,
@@ -31,6 +35,7 @@ impl ScriptedRobot {
         let mut robot = Self {
             state: RobotState::default(),
             session: Session::new(version),
+            tape: Tape::new(Device::Robot),
             udp,
             client: None,
             received: Vec::new(),
@@ -43,6 +48,7 @@ impl ScriptedRobot {
 
     /// Processes bytes of the client's stream.
     pub(crate) fn on_bytes(&mut self, bytes: &[u8]) {
+        self.tape.on_request(bytes);
         self.received.extend_from_slice(bytes);
         while let Some(message) = next_message(&self.received).expect("whole messages") {
             let size = message.size();
@@ -51,7 +57,8 @@ impl ScriptedRobot {
                     udp_port, reply, ..
                 } => {
                     self.client = Some((Ipv4Addr::LOCALHOST, udp_port).into());
-                    self.to_client.extend_from_slice(reply.as_bytes());
+                    let reply = self.tape.reply(reply.as_bytes().to_vec());
+                    self.to_client.extend(reply);
                 }
                 Event::Request { id, request } => self.requests.push_back((id, request)),
                 other => panic!("{other:?}"),
@@ -68,7 +75,8 @@ impl ScriptedRobot {
     /// Answers a request.
     pub(crate) fn reply(&mut self, id: CommandId, reply: Reply<'_>) {
         let reply = self.session.reply(id, reply).expect("a fitting answer");
-        self.to_client.extend_from_slice(reply.as_bytes());
+        let reply = self.tape.reply(reply.as_bytes().to_vec());
+        self.to_client.extend(reply);
     }
 
     /// Answers a `Move`, or reports its end.
@@ -80,8 +88,8 @@ impl ScriptedRobot {
     pub(crate) fn reply_model(&mut self, id: CommandId, text: &str) {
         let header = self.session.model_header(id, text.len());
         let header = header.expect("a fitting answer");
-        self.to_client.extend_from_slice(header.as_bytes());
-        self.to_client.extend_from_slice(text.as_bytes());
+        let reply = [header.as_bytes(), text.as_bytes()].concat();
+        self.to_client.extend(self.tape.reply(reply));
     }
 
     /// Returns the oldest unread request.
@@ -140,9 +148,8 @@ impl ScriptedRobot {
         let size = self.state.encode(self.session.version(), &mut datagram);
         let size = size.expect("it fits");
         let client = self.client.expect("a client has connected");
-        self.udp
-            .send_to(&datagram[..size], client)
-            .expect("loopback");
+        let state = self.tape.send_state(&datagram[..size]);
+        self.udp.send_to(&state, client).expect("loopback");
     }
 
     /// Returns the oldest unread command.
@@ -152,6 +159,7 @@ impl ScriptedRobot {
         match self.udp.recv(&mut datagram) {
             Ok(size) => {
                 assert_eq!(size, version.command_size());
+                self.tape.on_command(&datagram[..size]);
                 let command = RobotCommand::decode(version, &datagram[..size]);
                 Some(command.expect("a command of this version"))
             }
