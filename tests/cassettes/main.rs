@@ -2,6 +2,8 @@
 //! the same as captures of the network, and before Wireshark's dissector.
 
 mod damaged;
+mod dissector;
 mod latency;
 mod playing;
 mod recorded;
+mod tables;
