@@ -1,5 +1,5 @@
-//! Writes the golden messages as seeds of all targets: `seeds DIRECTORY` makes
-//! `DIRECTORY/<target>/<message>`.
+//! Writes the golden messages and the cassettes of the tests as seeds of the targets: `seeds DIRECTORY`
+//! makes `DIRECTORY/<target>/<seed>`.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
@@ -17,6 +17,24 @@ fn main() -> io::Result<()> {
         fs::create_dir_all(&target)?;
         fs::write(target.join(&seed.name), &seed.bytes)?;
     }
-    println!("{} seeds in {}", seeds.len(), directory.display());
+    let target = directory.join("cassette");
+    fs::create_dir_all(&target)?;
+    let mut cassettes = 0;
+    for entry in fs::read_dir(vectors.join("../cassettes"))? {
+        let path = entry?.path();
+        if path
+            .extension()
+            .is_some_and(|extension| extension == "mcap")
+        {
+            let name = path.file_name().expect("an entry has a name");
+            fs::copy(&path, target.join(name))?;
+            cassettes += 1;
+        }
+    }
+    println!(
+        "{} seeds in {}",
+        seeds.len() + cassettes,
+        directory.display()
+    );
     Ok(())
 }
