@@ -3,7 +3,8 @@
 use franka_record::cassette::{Cassette, Pace, PlayOptions, Player, pcap};
 use std::time::Duration;
 
-// A cassette, or a capture of the network: read, written again the same, and played as far as it goes.
+// A cassette, or a capture of the network: read, written again the same, and played as far as it
+// goes.
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let cassette = Cassette::read(bytes).ok();
     for cassette in cassette.into_iter().chain(pcap::from_capture(bytes)) {

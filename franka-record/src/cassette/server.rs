@@ -16,9 +16,9 @@ use super::{
 
 /// A server that plays a cassette to any client.
 ///
-/// The first connection of a client to a device gets the first one of the recording, and so on. Each
-/// is played by itself: two connections, such as those of an arm and its hand, are in step only as
-/// far as the client keeps them so.
+/// The first connection of a client to a device gets the first one of the recording, and so on.
+/// Each is played by itself: two connections, such as those of an arm and its hand, are in step
+/// only as far as the client keeps them so.
 #[derive(Debug)]
 pub struct CassetteServer {
     shared: Arc<Shared>,

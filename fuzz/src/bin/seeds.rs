@@ -1,5 +1,5 @@
-//! Writes the golden messages and the cassettes of the tests as seeds of the targets: `seeds DIRECTORY`
-//! makes `DIRECTORY/<target>/<seed>`.
+//! Writes the golden messages and the cassettes of the tests as seeds of the targets: `seeds
+//! DIRECTORY` makes `DIRECTORY/<target>/<seed>`.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};

@@ -204,6 +204,6 @@ fn parse_topic(topic: &str) -> Option<(bool, (Device, usize), Side)> {
     complete.then_some((stream, (device, number), from))
 }
 
-/// The longest record that a reader takes: above any chunk and message written here. Without a bound,
-/// a damaged length would have it ask for memory without end.
+/// The longest record that a reader takes: above any chunk and message written here. Without a
+/// bound, a damaged length would have it ask for memory without end.
 const RECORD_LENGTH_MAX: usize = 64 << 20;

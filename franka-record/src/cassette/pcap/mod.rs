@@ -1,7 +1,8 @@
 //! Captures of the network (pcap, pcapng) to cassettes and back.
 //!
 //! ```text
-//! file -> packets: time, addresses, TCP segment or UDP datagram -> sessions: streams in order, datagrams by Connect -> Cassette
+//! file -> packets:  time, addresses, TCP segment or UDP datagram
+//!      -> sessions: streams in order, datagrams by Connect -> Cassette
 //! Cassette -> packets of raw IPv4 -> pcap
 //! ```
 
@@ -39,8 +40,8 @@ pub enum CaptureError {
 /// Segments of TCP are put in order and repeated ones left out; fragments of IP, in which states of
 /// protocol 5 come, are put together. Segments that were not captured are counted in
 /// [`Connection::missing_stream`](super::Connection::missing_stream). Datagrams belong to the
-/// connection whose `Connect` announced their port, which therefore has to be in the capture. A file
-/// that was cut off is read as far as it goes: see [`Cassette::damage`].
+/// connection whose `Connect` announced their port, which therefore has to be in the capture. A
+/// file that was cut off is read as far as it goes: see [`Cassette::damage`].
 ///
 /// # Errors
 /// [`CaptureError`] if the bytes are no capture, or none of a client and a robot.

@@ -16,10 +16,10 @@ use super::{CassetteError, CassetteWriter, Device};
 
 /// A tap on the connections to a robot and its end effectors, on threads of its own.
 ///
-/// A client connects to the tap as to the robot, and the tap to the robot. Bytes pass unchanged, but
-/// for the UDP port in `Connect`: states and commands pass through the tap as well. What is recorded
-/// is what the sender sent. Recording takes place on one more thread, and never keeps bytes waiting:
-/// what it cannot keep up with is counted as missing.
+/// A client connects to the tap as to the robot, and the tap to the robot. Bytes pass unchanged,
+/// but for the UDP port in `Connect`: states and commands pass through the tap as well. What is
+/// recorded is what the sender sent. Recording takes place on one more thread, and never keeps
+/// bytes waiting: what it cannot keep up with is counted as missing.
 ///
 /// Dropping it ends all connections, as [`Self::finish`] does.
 #[derive(Debug)]
