@@ -1,5 +1,6 @@
 //! One-command tasks of this workspace: `cargo xtask test`, `cargo xtask vectors [DIR]`,
-//! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask arms`, `cargo xtask mujoco`.
+//! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask arms`, `cargo xtask wheels`,
+//! `cargo xtask mujoco`.
 //!
 //! | module | task |
 //! |---|---|
@@ -9,7 +10,7 @@
 //! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
 //! | [`mujoco`] | the native library of the simulator's MuJoCo plant |
 //! | [`names`] | the step that counts the names of the driver's root |
-//! | [`package`] | the step that builds and tests the Python package |
+//! | [`package`] | the step that builds and tests the Python package, and its wheels |
 //! | [`peers`] | the step that drives the simulator with other clients |
 //! | [`python`] | virtual environments, for these two |
 //! | [`realtime`] | the right to real-time scheduling |
@@ -107,6 +108,13 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
+    /// Build the wheels of the Python package for every platform that this machine can build for,
+    /// with the C library's oldest version that will do, and import those that can run here.
+    Wheels {
+        /// Build for these targets only (may be repeated or separated by commas).
+        #[arg(long, value_delimiter = ',')]
+        only: Vec<String>,
+    },
     /// Fetch the native library that the simulator's feature `mujoco` links to.
     Mujoco,
 }
@@ -168,6 +176,7 @@ fn run(task: Task) -> anyhow::Result<()> {
             command.arg(workspace.target().join("arms.json"));
             workspace.run(&mut command)
         }
+        Task::Wheels { only } => package::wheels::run(&workspace, &only),
         Task::Mujoco => mujoco::provide(&workspace),
     }
 }

@@ -1,5 +1,6 @@
 //! Virtual environments of Python, kept inside the tree.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -39,6 +40,22 @@ impl Python {
         Err(format!(
             "Python {range} with the modules venv and ensurepip is needed: {found}"
         ))
+    }
+
+    /// One interpreter of each of these versions that is on this machine, the oldest first.
+    pub(crate) fn all(versions: RangeInclusive<Version>) -> Vec<Self> {
+        let mut found = BTreeMap::new();
+        for program in PROGRAMS {
+            if let Some(version) = probe(program).filter(|version| versions.contains(version)) {
+                found.entry(version).or_insert(Self { program, version });
+            }
+        }
+        found.into_values().collect()
+    }
+
+    /// Its version.
+    pub(crate) fn version(&self) -> Version {
+        self.version
     }
 
     /// Makes the virtual environment `name` in the build directory, installs `requirements` in it
@@ -130,6 +147,8 @@ const PROBE: &str =
 /// Interpreters to try: the one that `python3` names first, then older ones beside it.
 const PROGRAMS: &[&str] = &[
     "python3",
+    "python3.14",
+    "python3.13",
     "python3.12",
     "python3.11",
     "python3.10",

@@ -1,6 +1,9 @@
 //! The Python package: builds its wheel, installs it into a virtual environment of its own, and
-//! runs its tests and the checks of its types.
+//! runs its tests and the checks of its types and of its [`wheels`].
 
+pub(crate) mod wheels;
+
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::thread;
@@ -44,7 +47,11 @@ fn install(
         .join(requirements)
         .join("requirements.txt");
     let interpreter = python.environment(workspace, environment, &requirements)?;
-    let wheels = workspace.target().join("wheels").join(profile);
+    let wheels = built(workspace, profile);
+    if wheels.exists() {
+        // What an earlier version left is not taken for this one.
+        fs::remove_dir_all(&wheels)?;
+    }
     let mut build = module(workspace, &interpreter, "maturin");
     build.args(["build", "--quiet", "--locked", "--profile", profile]);
     build.args(["--manifest-path", "franka-py/Cargo.toml", "--out"]);
@@ -66,13 +73,21 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
         Err(why) => return Outcome::without(why),
     };
     thread::scope(|scope| {
-        let types = scope.spawn(|| types(workspace, &interpreter));
+        let beside = scope.spawn(|| {
+            types(workspace, &interpreter)?;
+            let wheel = wheels::only_wheel(&built(workspace, "dev"))?;
+            wheels::check(workspace, &wheel)
+        });
         let mut tests = module(workspace, &interpreter, "pytest");
         tests.args(["--quiet", "franka-py/tests"]);
         workspace.run(&mut tests)?;
-        types.join().expect("no panic")
-    })?;
-    Ok(Outcome::Passed)
+        beside.join().expect("no panic")
+    })
+}
+
+/// Where the wheel for this machine is built.
+fn built(workspace: &Workspace, profile: &str) -> PathBuf {
+    workspace.target().join("wheels").join(profile)
 }
 
 /// Checks the tests and examples against the stubs, and the stubs against the package.
@@ -89,7 +104,7 @@ fn types(workspace: &Workspace, interpreter: &Path) -> anyhow::Result<()> {
 }
 
 /// A module of the virtual environment as a program.
-fn module(workspace: &Workspace, interpreter: &Path, name: &str) -> Command {
+pub(crate) fn module(workspace: &Workspace, interpreter: &Path, name: &str) -> Command {
     let mut command = workspace.program(interpreter);
     command.args(["-m", name]);
     command
@@ -101,7 +116,7 @@ pub(crate) fn directory(workspace: &Workspace) -> PathBuf {
 }
 
 /// The oldest Python that the wheel is for.
-const OLDEST: Version = (3, 10);
+pub(crate) const OLDEST: Version = (3, 10);
 
 /// The newest Python that all packages have wheels for which the package is measured with.
 const NEWEST_OF_ALL: Version = (3, 12);
