@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 from ... import errors
+from .._translation import translation
 
 
 class FrankaError(Exception):
@@ -28,15 +26,6 @@ class ControlException(FrankaError):
 
 
 PREEMPTED = "libfranka: Move command preempted!"
-
-
-@contextmanager
-def translated() -> Iterator[None]:
-    """Raises the exceptions of the original in the place of those of this package."""
-    try:
-        yield
-    except errors.FrankaError as error:
-        raise _exception(error) from error
 
 
 def _exception(error: errors.FrankaError) -> FrankaError:
@@ -73,3 +62,7 @@ _OF_MOTION = {
     "violation": "protocol",
     "protocol": "protocol",
 }
+
+
+translated = translation(_exception)
+"""A context that raises the exceptions of the original in the place of those of this package."""

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 from ... import errors
+from .._translation import translation
 
 
 class FrankaException(Exception):
@@ -38,15 +36,6 @@ SILENT = "libfranka: UDP receive: Timeout"
 
 # What a command cannot be sent for is an argument's fault: the texts of it begin like these.
 _ARGUMENT = ("Commanding value is infinite or NaN", "libfranka: Attempt to set invalid", "Invalid ")
-
-
-@contextmanager
-def translated() -> Iterator[None]:
-    """Raises the exceptions of the original in the place of those of this package."""
-    try:
-        yield
-    except errors.FrankaError as error:
-        raise _exception(error) from error
 
 
 def _exception(error: errors.FrankaError) -> Exception:
@@ -89,3 +78,7 @@ def _of_motion(kind: str, text: str) -> Exception:
         case "link_lost" | "connection_closed":
             return NetworkException(text)
     return ControlException(text)
+
+
+translated = translation(_exception)
+"""A context that raises the exceptions of the original in the place of those of this package."""

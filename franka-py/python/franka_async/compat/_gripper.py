@@ -1,0 +1,50 @@
+"""What the Hands of both packages have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+
+from .. import _native
+from ._waiting import changed, wait
+
+VERSION = 3
+"""The version that every Hand speaks; a connection to one that speaks another is refused."""
+
+
+class Fingers:
+    """A connected Hand. Calls that wait leave the interpreter to other threads, and ``stop`` may come from one."""
+
+    _translated: Callable[[], AbstractContextManager[None]]
+    """Raises the exceptions of the original in the place of those of this package."""
+
+    def _connect(self, gripper: _native.Gripper) -> None:
+        self._gripper = gripper
+        with self._translated():
+            wait(gripper.connect())
+
+    def homing(self) -> bool:
+        """Finds how wide the fingers open; returns whether that succeeded."""
+        return self._act(self._gripper.homing)
+
+    def grasp(
+        self, width: float, speed: float, force: float, epsilon_inner: float = 0.005, epsilon_outer: float = 0.005
+    ) -> bool:
+        """Grasps an object of this width, m, at this speed, m/s, with this force, N; returns whether it holds it."""
+        return self._act(lambda: self._gripper.grasp(width, speed, force, epsilon_inner, epsilon_outer))
+
+    def stop(self) -> bool:
+        """Stops the fingers; returns whether that succeeded."""
+        return self._act(self._gripper.stop)
+
+    def _move(self, width: float, speed: float) -> bool:
+        return self._act(lambda: self._gripper.move_to(width, speed))
+
+    def _act(self, action: Callable[[], _native.Operation[bool]]) -> bool:
+        with self._translated():
+            return bool(wait(action()))
+
+    def _next(self) -> _native.GripperState | None:
+        """Waits for the next state; ``None`` if none comes."""
+        with self._translated():
+            return changed(self._gripper.state, lambda state: state.time)
