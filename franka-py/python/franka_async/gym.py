@@ -19,12 +19,15 @@ Observations are ``RobotState.flat()``, ``(69,)``, laid out as ``FLAT_LAYOUT`` s
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._native import FLAT_LAYOUT, RobotState, VirtualRobots
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 try:
     import gymnasium
@@ -33,7 +36,17 @@ try:
 except ImportError as _cause:
     raise ImportError("franka_async.gym needs Gymnasium: pip install 'franka-async[gym]'") from _cause
 
-__all__ = ["ActionKind", "FrankaEnv", "FrankaVectorEnv", "Reward", "Start", "Terminate", "part"]
+__all__ = [
+    "ActionKind",
+    "EnvOptions",
+    "FrankaEnv",
+    "FrankaVectorEnv",
+    "Reward",
+    "Start",
+    "Terminate",
+    "VectorOptions",
+    "part",
+]
 
 Array: TypeAlias = NDArray[np.float64]
 
@@ -57,6 +70,48 @@ def part(observation: Array, name: str) -> Array:
     raise ValueError(f"name is {name!r}, expected one of {', '.join(known for known, _, _ in FLAT_LAYOUT)}")
 
 
+class EnvOptions(TypedDict, total=False):
+    """Options of an environment."""
+
+    action: ActionKind
+    """What an action means, ``joint_velocity`` by default: see ``VirtualRobots``."""
+
+    cycles: int
+    """Milliseconds of the robot's time in a step, 20 by default."""
+
+    action_scale: ArrayLike | None
+    """What an action of 1 is, a number or one for each axis: by default as far as the robot comes in one step at ``speed``, and a
+    tenth of the greatest torque."""
+
+    arm: Literal["realistic", "ideal", "nominal", "bad", "sampled"]
+    """``realistic`` by default; ``sampled`` is another realistic one in each episode."""
+
+    hand: bool
+    """Whether the robot has a Franka Hand, as it has by default."""
+
+    speed: float
+    """The share of its greatest velocity, 0.5 by default."""
+
+    start: Start | None
+    """Draws the joint positions of an episode's beginning: the ready pose unless given, or ``options={"q": ...}`` of ``reset``."""
+
+    reward: Reward | None
+    """Called after each step; 0 without it."""
+
+    terminate: Terminate | None
+    """Called after each step, also for observations of a robot that has stopped itself."""
+
+    max_steps: int | None
+    """Truncates episodes."""
+
+
+class VectorOptions(EnvOptions, total=False):
+    """Options of many environments."""
+
+    threads: int
+    """So many share the work of a step, 1 by default."""
+
+
 class _Episodes:
     """What the two environments have in common: robots, hooks, and the count of steps."""
 
@@ -65,17 +120,17 @@ class _Episodes:
         count: int,
         robot: Literal["fr3", "fer"],
         *,
-        action: ActionKind,
-        cycles: int,
-        action_scale: ArrayLike | None,
-        arm: Literal["realistic", "ideal", "nominal", "bad", "sampled"],
-        hand: bool,
-        speed: float,
-        threads: int,
-        start: Start | None,
-        reward: Reward | None,
-        terminate: Terminate | None,
-        max_steps: int | None,
+        action: ActionKind = "joint_velocity",
+        cycles: int = 20,
+        action_scale: ArrayLike | None = None,
+        arm: Literal["realistic", "ideal", "nominal", "bad", "sampled"] = "realistic",
+        hand: bool = True,
+        speed: float = 0.5,
+        threads: int = 1,
+        start: Start | None = None,
+        reward: Reward | None = None,
+        terminate: Terminate | None = None,
+        max_steps: int | None = None,
     ) -> None:
         if cycles < 1:
             raise ValueError(f"cycles is {cycles}, expected 1 or more")
@@ -146,48 +201,13 @@ def _per_robot(name: str, returned: ArrayLike, count: int) -> NDArray[Any]:
 class FrankaEnv(gymnasium.Env[Array, Array]):
     """One simulated robot.
 
-    ``robot`` is ``fr3`` or ``fer``; ``action`` says what an action means, and ``action_scale``, a number or one for each axis,
-    what an action of 1 is: by default as far as the robot comes in one step at ``speed``, the share of its greatest velocity, and
-    a tenth of the greatest torque. A step takes ``cycles`` milliseconds of the robot's time. ``arm`` is ``realistic``, ``ideal``,
-    ``nominal``, ``bad``, or ``sampled``: another realistic one in each episode.
-
-    ``start`` draws the joint positions of an episode's beginning (the ready pose unless given, or ``options={"q": ...}`` of
-    ``reset``); ``reward`` and ``terminate`` are called after each step, the latter also for observations of a robot that has
-    stopped itself; ``max_steps`` truncates.
+    ``robot`` is ``fr3`` or ``fer``; ``EnvOptions`` has the keyword arguments.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}
 
-    def __init__(
-        self,
-        robot: Literal["fr3", "fer"] = "fr3",
-        *,
-        action: ActionKind = "joint_velocity",
-        cycles: int = 20,
-        action_scale: ArrayLike | None = None,
-        arm: Literal["realistic", "ideal", "nominal", "bad", "sampled"] = "realistic",
-        hand: bool = True,
-        speed: float = 0.5,
-        start: Start | None = None,
-        reward: Reward | None = None,
-        terminate: Terminate | None = None,
-        max_steps: int | None = None,
-    ) -> None:
-        self._episodes = _Episodes(
-            1,
-            robot,
-            action=action,
-            cycles=cycles,
-            action_scale=action_scale,
-            arm=arm,
-            hand=hand,
-            speed=speed,
-            threads=1,
-            start=start,
-            reward=reward,
-            terminate=terminate,
-            max_steps=max_steps,
-        )
+    def __init__(self, robot: Literal["fr3", "fer"] = "fr3", **options: Unpack[EnvOptions]) -> None:
+        self._episodes = _Episodes(1, robot, **options)
         self.action_space = self._episodes.action_space
         self.observation_space = self._episodes.observation_space
 
@@ -213,45 +233,14 @@ class FrankaEnv(gymnasium.Env[Array, Array]):
 class FrankaVectorEnv(VectorEnv[Array, Array, NDArray[Any]]):
     """Many simulated robots in one process, all stepped by one call while the interpreter is free for other threads.
 
-    Arguments as ``FrankaEnv``; ``reward`` and ``terminate`` get all robots at once, ``(n, 69)``. ``threads`` share the work of a
-    step. An episode that has ended begins anew with the next step, which ignores the action (``AutoresetMode.NEXT_STEP``).
+    Arguments as of ``FrankaEnv``, and ``threads``; ``reward`` and ``terminate`` get all robots at once, ``(n, 69)``. An episode that has ended begins anew with the next step, which ignores the action (``AutoresetMode.NEXT_STEP``).
     Robot i acts as a ``FrankaEnv`` that is reset with ``seed + i``.
     """
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
 
-    def __init__(
-        self,
-        num_envs: int,
-        robot: Literal["fr3", "fer"] = "fr3",
-        *,
-        action: ActionKind = "joint_velocity",
-        cycles: int = 20,
-        action_scale: ArrayLike | None = None,
-        arm: Literal["realistic", "ideal", "nominal", "bad", "sampled"] = "realistic",
-        hand: bool = True,
-        speed: float = 0.5,
-        threads: int = 1,
-        start: Start | None = None,
-        reward: Reward | None = None,
-        terminate: Terminate | None = None,
-        max_steps: int | None = None,
-    ) -> None:
-        self._episodes = _Episodes(
-            num_envs,
-            robot,
-            action=action,
-            cycles=cycles,
-            action_scale=action_scale,
-            arm=arm,
-            hand=hand,
-            speed=speed,
-            threads=threads,
-            start=start,
-            reward=reward,
-            terminate=terminate,
-            max_steps=max_steps,
-        )
+    def __init__(self, num_envs: int, robot: Literal["fr3", "fer"] = "fr3", **options: Unpack[VectorOptions]) -> None:
+        self._episodes = _Episodes(num_envs, robot, **options)
         self.num_envs = num_envs
         self.single_action_space = self._episodes.action_space
         self.single_observation_space = self._episodes.observation_space
