@@ -37,6 +37,10 @@ def parameters(p: Any, address: str, outcome: Any) -> None:
     outcome.attempt("EE", robot.set_EE, IDENTITY)
     outcome.attempt("load", robot.set_load, 0.5, [0.0, 0.0, 0.05], [0.001, 0, 0, 0, 0.001, 0, 0, 0, 0.001])
     outcome.attempt("no mass", robot.set_load, -0.5, [0.0, 0.0, 0.05], [0.001, 0, 0, 0, 0.001, 0, 0, 0, 0.001])
+    # A state that was sent before may still wait to be read.
+    end = time.monotonic() + 10.0
+    while robot.read_once().m_load == 0.0 and time.monotonic() < end:
+        pass
     outcome.note("mass", robot.read_once().m_load)
 
 
