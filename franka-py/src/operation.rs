@@ -255,6 +255,10 @@ impl Operation {
     /// Part of being a coroutine: goes on from the last `await`.
     fn send(&self, py: Python<'_>, value: Py<PyAny>) -> PyResult<Py<PyAny>> {
         let sent = self.iterator(py)?.call_method1("send", (value,));
+        if sent.is_err() {
+            // It has returned, or raised.
+            drop(self.replace(Stage::Over));
+        }
         Ok(sent?.unbind())
     }
 

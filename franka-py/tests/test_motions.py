@@ -328,6 +328,17 @@ def test_a_reflex_comes_out_of_the_motion_at_once_with_its_log(live: Sim) -> Non
     asyncio.run(asyncio.wait_for(main(), 60))
 
 
+def test_a_motion_is_awaited_once(robot: Robot) -> None:
+    async def main() -> None:
+        motion = robot.move_by([0.0, 0.0, 0.01])
+        await motion
+        assert repr(motion) == "<Robot.move_by over>"
+        with pytest.raises(RuntimeError, match=r"Robot.move_by\(\) was awaited already: call it again for another"):
+            await motion
+
+    asyncio.run(main())
+
+
 def test_an_arm_rests_after_a_stop(robot: Robot) -> None:
     robot.stop().wait()
     until(lambda: at_rest(robot))
