@@ -232,8 +232,7 @@ impl MotionHandle {
         self.0.set_paused(false);
     }
 
-    /// How far the motion has come; `None` before it has begun, after its end, and for a moment
-    /// where the host holds up the control thread while it tells.
+    /// How far the motion has come; `None` before it has begun and after its end.
     pub fn progress(&self) -> Option<Progress> {
         self.0.robot().link().course.progress(self.0.id())
     }

@@ -51,8 +51,8 @@ impl Newest {
 
     /// The newest state.
     pub(crate) fn state(&self) -> RobotState {
-        // The thread may be writing at each attempt, if the kernel stopped it there: then what was
-        // published has to do.
+        // Without one there is nothing newer than `first`; or the kernel has stopped this thread in
+        // the middle of each attempt.
         let newest = self.reader.clone().newest();
         newest.unwrap_or_else(|| {
             let publisher = self.publisher.upgrade();

@@ -141,8 +141,7 @@ impl Robot {
         pose_at(self.model(), &self.state(), q)
     }
 
-    /// Where target control has the arm go; `None` while it moves nothing, and for a moment where
-    /// the host holds up the control thread while it tells.
+    /// Where target control has the arm go; `None` while it moves nothing.
     pub fn reference(&self) -> Option<Reference> {
         let newest = self.link().course.reference()?;
         Some(Reference {

@@ -1,11 +1,14 @@
 //! One writer, any number of readers, newest value only: how goals enter the thread and states
 //! leave it.
 //!
-//! A sequence lock over `AtomicU64` words. The writer makes the count odd, stores the words, makes
-//! the count even. A reader that finds the count odd, or changed while it read, has a torn copy and
-//! throws it away. Writing never waits; a read is one attempt, so neither side can hold the other
-//! up, whatever their priorities. A cycle that meets a torn goal keeps the previous one; a task
-//! outside the thread may try again with [`SlotReader::read_retry`].
+//! A sequence lock over two buffers of `AtomicU64` words, which the values fill in turns. The
+//! writer makes the count odd, stores the words of the one buffer, makes the count even; the value
+//! before stays whole in the other one. So a writer that is held up in the middle of a write keeps
+//! no reader from the newest whole value. Only a reader that is itself held up, until the writer
+//! has finished the next value and begun the one after it, has a torn copy and throws it away.
+//! Writing never waits; a read is one attempt, so neither side can hold the other up, whatever
+//! their priorities. A cycle that meets a torn goal keeps the previous one; a task outside the
+//! thread may try again with [`SlotReader::read_retry`].
 //!
 //! ```
 //! use franka_rt::slot::{self, Read};
@@ -84,12 +87,12 @@ impl<const N: usize> Words for [f64; N] {
 pub fn slot<T: Words>() -> (SlotWriter<T>, SlotReader<T>) {
     let shared = Arc::new(Shared {
         count: AtomicU64::new(0),
-        words: (0..T::WORDS).map(|_| AtomicU64::new(0)).collect(),
+        buffers: [(); 2].map(|()| (0..T::WORDS).map(|_| AtomicU64::new(0)).collect()),
     });
     let scratch: Box<[u64]> = vec![0; T::WORDS].into();
     let writer = SlotWriter {
         shared: shared.clone(),
-        count: 0,
+        written: 0,
         scratch: scratch.clone(),
         value: core::marker::PhantomData,
     };
@@ -108,15 +111,22 @@ pub fn slot<T: Words>() -> (SlotWriter<T>, SlotReader<T>) {
 struct Shared {
     /// Twice the number of values written, plus one while a write is under way.
     count: AtomicU64,
-    words: Box<[AtomicU64]>,
+    /// Of the values with even numbers and of those with odd ones; the first value has number 1.
+    buffers: [Box<[AtomicU64]>; 2],
+}
+
+impl Shared {
+    fn buffer(&self, number: u64) -> &[AtomicU64] {
+        &self.buffers[usize::from(number % 2 == 1)]
+    }
 }
 
 /// The only writing end of a slot.
 #[derive(Debug)]
 pub struct SlotWriter<T> {
     shared: Arc<Shared>,
-    /// The writer's own copy of the count: no other thread changes it.
-    count: u64,
+    /// How many values have been written.
+    written: u64,
     scratch: Box<[u64]>,
     value: core::marker::PhantomData<fn(&T)>,
 }
@@ -125,17 +135,19 @@ impl<T: Words> SlotWriter<T> {
     /// Replaces the value. Wait-free: one store per word and two for the count.
     pub fn write(&mut self, value: &T) {
         value.store(&mut self.scratch);
-        // Relaxed: the word stores below carry it.
-        self.shared.count.store(self.count + 1, Ordering::Relaxed);
-        for (word, &new) in self.shared.words.iter().zip(&self.scratch) {
+        let number = self.written + 1;
+        // Release, as the last store of the write before: a reader that sees this one sees every
+        // word of that value.
+        self.shared.count.store(2 * number - 1, Ordering::Release);
+        for (word, &new) in self.shared.buffer(number).iter().zip(&self.scratch) {
             // Release, pairs with the Acquire load of this word: a reader that sees it also sees
             // the odd count.
             word.store(new, Ordering::Release);
         }
-        self.count += 2;
+        self.written = number;
         // Release, pairs with the reader's first load of the count: a reader that sees it sees
         // every word of this value.
-        self.shared.count.store(self.count, Ordering::Release);
+        self.shared.count.store(2 * number, Ordering::Release);
     }
 }
 
@@ -146,7 +158,7 @@ pub enum Read<T> {
     Newer(T),
     /// Nothing newer.
     Same,
-    /// A write came between. The next attempt may succeed.
+    /// The value was replaced twice while it was read. The next attempt may succeed.
     Torn,
 }
 
@@ -154,7 +166,7 @@ pub enum Read<T> {
 #[derive(Debug)]
 pub struct SlotReader<T> {
     shared: Arc<Shared>,
-    /// The count of the value returned last.
+    /// The number of the value returned last.
     seen: u64,
     scratch: Box<[u64]>,
     value: core::marker::PhantomData<fn() -> T>,
@@ -174,26 +186,23 @@ impl<T> Clone for SlotReader<T> {
 impl<T: Words> SlotReader<T> {
     /// Reads the newest value if this reader has not returned it yet. One attempt, wait-free.
     pub fn read_newer(&mut self) -> Read<T> {
-        // Acquire, pairs with the writer's last store: an even count comes with every word of its
-        // value.
-        let before = self.shared.count.load(Ordering::Acquire);
-        if before == self.seen {
+        // Acquire, pairs with both of the writer's stores: a count comes with every word of the
+        // newest whole value.
+        let newest = self.shared.count.load(Ordering::Acquire) / 2;
+        if newest == self.seen {
             return Read::Same;
         }
-        if before % 2 == 1 {
-            return Read::Torn;
-        }
-        for (copy, word) in self.scratch.iter_mut().zip(&self.shared.words) {
+        for (copy, word) in self.scratch.iter_mut().zip(self.shared.buffer(newest)) {
             // Acquire, pairs with the Release store of this word: if it belongs to a later value,
             // the load of the count below sees that value's odd count or a later one.
             *copy = word.load(Ordering::Acquire);
         }
-        // Relaxed: the loads above come first in program order and are Acquire, so this one cannot
-        // move before them.
-        if self.shared.count.load(Ordering::Relaxed) != before {
+        // The next value that fills this buffer is the one after next. Relaxed: the loads above
+        // come first in program order and are Acquire, so this one cannot move before them.
+        if self.shared.count.load(Ordering::Relaxed) > 2 * newest + 2 {
             return Read::Torn;
         }
-        self.seen = before;
+        self.seen = newest;
         Read::Newer(T::load(&self.scratch))
     }
 
@@ -239,16 +248,23 @@ mod tests {
         );
     }
 
+    /// A writer that is held up in the middle of a write: a reader gets the value before.
     #[test]
-    fn an_unfinished_write_reads_as_torn_and_keeps_what_was_seen() {
+    fn an_unfinished_write_leaves_the_value_before_readable() {
         let (mut writer, mut reader) = slot::<[u64; 1]>();
-        writer.write(&[1]);
-        assert_eq!(reader.read_newer(), Read::Newer([1]));
-        writer.shared.count.store(3, Ordering::Relaxed);
-        assert_eq!(reader.read_newer(), Read::Torn);
-        assert_eq!(reader.read_retry(5), Read::Torn);
-        writer.write(&[2]);
-        assert_eq!(reader.read_retry(5), Read::Newer([2]));
+        let begin = |writer: &SlotWriter<[u64; 1]>| {
+            let number = writer.written + 1;
+            writer.shared.count.store(2 * number - 1, Ordering::Relaxed);
+            writer.shared.buffer(number)[0].store(99, Ordering::Relaxed);
+        };
+        begin(&writer);
+        assert_eq!(reader.read_newer(), Read::Same, "there is no value yet");
+        for value in 1..5 {
+            writer.write(&[value]);
+            begin(&writer);
+            assert_eq!(reader.read_newer(), Read::Newer([value]));
+            assert_eq!(reader.read_newer(), Read::Same);
+        }
     }
 
     /// Every word of a value is the same number: a mix of two values would show.

@@ -72,8 +72,8 @@ impl Words for ReferenceState {
     }
 }
 
-/// Attempts to read before the writer counts as stopped in the middle of a value.
-const ATTEMPTS: usize = 1000;
+/// Attempts to read. One fails if this thread is held up until the value has been replaced twice.
+const ATTEMPTS: usize = 16;
 
 /// Reads the newest reference. Clones read independently of each other.
 #[derive(Clone, Debug)]

@@ -107,9 +107,8 @@ fn newest<T: Words>(slot: &SlotReader<T>) -> Option<T> {
     }
 }
 
-/// Attempts to read a value that is being replaced. A write takes some nanoseconds, once per
-/// millisecond.
-const ATTEMPTS: usize = 64;
+/// Attempts to read. One fails if this thread is held up until the value has been replaced twice.
+const ATTEMPTS: usize = 16;
 
 /// A count with one writer.
 #[derive(Debug, Default)]

@@ -166,7 +166,8 @@ pub struct StateReader {
 impl StateReader {
     /// The newest state, if this reader has not returned it yet. Never waits.
     ///
-    /// `None` also if a few attempts all met a write of the thread; another wake-up follows then.
+    /// `None` also if this thread was held up in the middle of each of a few attempts; another
+    /// wake-up follows then.
     pub fn newest(&mut self) -> Option<RobotState> {
         match self.slot.read_retry(ATTEMPTS) {
             // The thread publishes only what it has decoded itself.
@@ -206,8 +207,7 @@ impl StateSequence {
     }
 }
 
-/// Attempts to read a state that is being replaced. A write takes well under a microsecond, once
-/// per millisecond.
+/// Attempts to read. One fails if this thread is held up until the state has been replaced twice.
 const ATTEMPTS: usize = 16;
 
 /// The bytes of a state, at the front of the array. Each reader decodes them, which saves the

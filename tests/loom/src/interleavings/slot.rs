@@ -26,20 +26,34 @@ fn a_torn_value_never_surfaces_and_values_never_go_back() {
     loom::model(|| {
         let (mut writer, mut reader) = slot::<[u64; 2]>();
         let writing = thread::spawn(move || {
-            writer.write(&value(1));
-            writer.write(&value(2));
+            // The third value takes the place of the first.
+            for n in 1..=3 {
+                writer.write(&value(n));
+            }
         });
         let newest = read(&mut reader, 0);
         let newest = read(&mut reader, newest);
         writing.join().expect("the writer does not panic");
-        if newest < 2 {
+        if newest < 3 {
             assert_eq!(
                 reader.read_newer(),
-                Read::Newer(value(2)),
+                Read::Newer(value(3)),
                 "after the last write the newest value is there"
             );
         }
         assert_eq!(reader.read_newer(), Read::Same);
+    });
+}
+
+/// Wherever the writer is held up in one write: there is a whole value.
+#[test]
+fn a_write_under_way_keeps_no_reader_from_a_value() {
+    loom::model(|| {
+        let (mut writer, mut reader) = slot::<[u64; 2]>();
+        writer.write(&value(1));
+        let writing = thread::spawn(move || writer.write(&value(2)));
+        assert_ne!(read(&mut reader, 0), 0, "a whole value");
+        writing.join().expect("the writer does not panic");
     });
 }
 
