@@ -141,8 +141,9 @@ impl Builder {
         self
     }
 
-    /// Silence of the robot after which a running motion fails with `LinkLost`: 20 ms to 1 s, 1 s
-    /// by default. Anything else is refused as
+    /// Silence of the robot after which a running motion fails with `LinkLost`: 20 ms to 10 s, 1 s
+    /// by default. More than that is for a simulated robot on a busy host, which may hold it up for
+    /// as long. Anything else is refused as
     /// [`ConnectError::LinkTimeout`](crate::error::ConnectError::LinkTimeout). It is noticed late
     /// by a quarter of it at most.
     pub fn link_timeout(mut self, timeout: Duration) -> Self {

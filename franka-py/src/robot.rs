@@ -42,7 +42,8 @@ impl Robot {
     ///     protocol
     /// version, 5 or 10; negotiated if `None`. `connect_timeout` is for each step of connecting,
     /// and `link_timeout` the silence of the robot after which a motion fails with `link_lost`,
-    /// 0.02 to 1 s. `log_size` is how many cycles an error carries, 10000 at most.
+    /// 0.02 to 10 s, 1 s by default; more than that is for simulated robots on busy hosts.
+    /// `log_size` is how many cycles an error carries, 10000 at most.
     /// `nominal_model` computes with the vendor's constants whatever the robot says of itself.
     /// `known` is an `Identified` of this arm. `supervise` is a `Policy`, or `True` for the
     /// default one: lost connections are made again, and the robot is recovered as the policy

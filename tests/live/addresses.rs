@@ -156,14 +156,14 @@ async fn a_link_timeout_out_of_range_is_refused_with_the_range() {
     for timeout in [
         Duration::ZERO,
         Duration::from_millis(19),
-        Duration::from_secs(2),
+        Duration::from_secs(11),
     ] {
         // No server is needed there.
         let builder = Robot::builder("127.0.0.1:1").link_timeout(timeout);
         let error = builder.connect().await.expect_err("out of range");
         assert_eq!(
             error.to_string(),
-            format!("a link timeout of {timeout:?} is out of range: expected 20ms to 1s")
+            format!("a link timeout of {timeout:?} is out of range: expected 20ms to 10s")
         );
         assert_eq!(error.party(), Party::Caller);
     }

@@ -205,7 +205,7 @@ static HELD_UP: AtomicBool = AtomicBool::new(false);
 
 /// Stands for a host that does not run the interrupted thread for the link timeout.
 extern "C" fn hold_up(_: libc::c_int) {
-    std::thread::sleep(LinkTimeout::MAX);
+    std::thread::sleep(franka_rt::driver::LINK_TIMEOUT);
     let (robot, state) = MEANWHILE.get().expect("it is set before the signal");
     robot.send(state).expect("loopback");
     HELD_UP.store(true, Ordering::SeqCst);
