@@ -49,7 +49,8 @@ impl Sim {
     /// robot knows of. `load`, a tuple of mass and centre: what it does not know of. `hand`
     /// serves a Franka Hand and mounts it, `vacuum_gripper` a vacuum gripper, each at an
     /// address of its own. `network`, a `Network` between robot and clients. `address`, where
-    /// to listen. `enforce_limits`, whether commands outside the limits end in a reflex.
+    /// to listen; the grippers then listen on the ports that follow, as on a robot.
+    /// `enforce_limits`, whether commands outside the limits end in a reflex.
     #[staticmethod]
     #[pyo3(signature = (**options))]
     fn fr3(py: Python<'_>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
@@ -263,14 +264,25 @@ fn configured(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<franka_s
         config.payload = load.unwrap_or(config.payload);
         config.enforce_limits = enforce_limits.unwrap_or(config.enforce_limits);
     });
+    let address = keywords.value::<String>("address")?;
+    let address = address.map(|text| self::address(&text)).transpose()?;
+    if let Some(address) = address {
+        sim = sim.bind(address);
+    }
+    // As on a robot; beside a free one they are free, too.
+    let gripper_port = |place: u16| match address.map_or(0, |address| address.port()) {
+        0 => 0,
+        port => port.checked_add(place).unwrap_or(0),
+    };
     if keywords.value("hand")?.unwrap_or(false) {
-        sim = sim.tool(Tool::hand()).hand(Fingers::new(), 0);
+        let port = gripper_port(1);
+        sim = sim.tool(Tool::hand()).hand(Fingers::new(), port);
     }
     if let Some(tool) = keywords.take("tool")? {
         sim = sim.tool(self::tool(&tool)?);
     }
     if keywords.value("vacuum_gripper")?.unwrap_or(false) {
-        sim = sim.vacuum_gripper(Suction::new(), 0);
+        sim = sim.vacuum_gripper(Suction::new(), gripper_port(2));
     }
     let patience: Option<f64> = keywords.value("patience")?;
     let patience = patience.map(seconds).transpose()?;
@@ -282,14 +294,15 @@ fn configured(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<franka_s
     if let Some(network) = keywords.take("network")? {
         sim = sim.network(self::network(&network)?);
     }
-    if let Some(address) = keywords.value::<String>("address")? {
-        let address: SocketAddr = address.parse().map_err(|_| {
-            let text = format!("address is {address:?}, expected an IP address and a port");
-            PyValueError::new_err(text)
-        })?;
-        sim = sim.bind(address);
-    }
     Ok(sim)
+}
+
+/// Reads where to listen.
+fn address(text: &str) -> PyResult<SocketAddr> {
+    text.parse().map_err(|_| {
+        let text = format!("address is {text:?}, expected an IP address and a port");
+        PyValueError::new_err(text)
+    })
 }
 
 /// The arm that `arm`, `arm_seed` and `ideal` choose.
