@@ -7,7 +7,7 @@
 //! ```
 //!
 //! A point force `f` on link `k` turns joints 1 to `k`, each by `axis · ((p − origin) × f)`, and
-//! no joint further out. [`locate`] asks of every patch of the surface of the arm (two to four
+//! no joint further out. [`locate`] asks of every patch of the surface of the arm (1.5 to 4
 //! centimetres wide, on the capsules that were fitted to the links) which force there explains the
 //! torques best, and how well. A contact pushes: the force points into the surface, and is the less
 //! likely the more it leans away from the normal. The probabilities of the patches of a body add up

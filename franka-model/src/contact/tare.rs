@@ -10,7 +10,7 @@ use crate::scalar::tanh;
 /// than a gate are a contact: until they are back, and for a while after, nothing is learned.
 ///
 /// The first state counts as free of contact. A push that grows by less than the gate over the time
-/// constant (a third of a newton metre per second at joint 1) is taken for drift.
+/// constant (0.4 N·m/s at joint 1) is taken for drift.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tare {
     offset: JointVector,
