@@ -38,7 +38,10 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
             .enumerate()
             .map(|(n, (name, arguments))| script(workspace, interpreter, n, name, arguments))
     });
-    let programs = iter::once(beside).chain(scripts).collect();
+    let cassette = interpreter
+        .iter()
+        .map(|interpreter| cassette(workspace, interpreter));
+    let programs = iter::once(beside).chain(cassette).chain(scripts).collect();
     summarise(&side_by_side(programs))?;
     match interpreter {
         Ok(_) => Ok(Outcome::Passed),
@@ -71,6 +74,21 @@ fn script(
         name,
         command,
         simulator: Some(simulator),
+    }
+}
+
+/// The vendor's client against a cassette that it has recorded. Simulator, tap and cassette have
+/// addresses of their own, as it knows one port only.
+fn cassette(workspace: &Workspace, interpreter: &Path) -> Program {
+    let name = "cassette_peer";
+    let mut command = workspace.program(workspace.target().join("debug").join(name));
+    command.arg(interpreter);
+    command.arg(directory(workspace).join("pylibfranka_cassette.py"));
+    command.args((1..=3).map(|n| loopback_address(std::process::id(), SCRIPTS.len() + n)));
+    Program {
+        name,
+        command,
+        simulator: None,
     }
 }
 
