@@ -13,6 +13,15 @@ def connect(p: Any, address: str) -> Any:
     return p.Robot(address, p.RealtimeConfig.kIgnore)
 
 
+def shown(robot: Any, condition: Any) -> bool:
+    """Reads states until one shows it; the first ones may be older than the command before."""
+    end = time.monotonic() + 20.0
+    while not condition(robot.read_once()):
+        if time.monotonic() > end:
+            return False
+    return True
+
+
 def states(p: Any, address: str, outcome: Any) -> None:
     state = connect(p, address).read_once()
     for name in """q q_d dq dq_d ddq_d tau_J tau_J_d theta dtheta joint_contact joint_collision cartesian_contact
@@ -37,11 +46,7 @@ def parameters(p: Any, address: str, outcome: Any) -> None:
     outcome.attempt("EE", robot.set_EE, IDENTITY)
     outcome.attempt("load", robot.set_load, 0.5, [0.0, 0.0, 0.05], [0.001, 0, 0, 0, 0.001, 0, 0, 0, 0.001])
     outcome.attempt("no mass", robot.set_load, -0.5, [0.0, 0.0, 0.05], [0.001, 0, 0, 0, 0.001, 0, 0, 0, 0.001])
-    # A state that was sent before may still wait to be read.
-    end = time.monotonic() + 10.0
-    while robot.read_once().m_load == 0.0 and time.monotonic() < end:
-        pass
-    outcome.note("mass", robot.read_once().m_load)
+    outcome.note("mass", shown(robot, lambda state: state.m_load == 0.5))
 
 
 def model(p: Any, address: str, outcome: Any) -> None:

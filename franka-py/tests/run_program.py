@@ -25,12 +25,19 @@ class Outcome:
 
     def attempt(self, name: str, call: Any, *arguments: Any, **named: Any) -> Any:
         """Calls it, and notes by which class, whose base and with which text it raises, or that it does not."""
+        return self._call(True, name, call, *arguments, **named)
+
+    def usage(self, name: str, call: Any, *arguments: Any, **named: Any) -> Any:
+        """The same without the text."""
+        return self._call(False, name, call, *arguments, **named)
+
+    def _call(self, with_text: bool, name: str, call: Any, *arguments: Any, **named: Any) -> Any:
         try:
             result = call(*arguments, **named)
         except Exception as error:
             kind = getattr(error, "kind", None)
             described = [type(error).__name__, type(error).__mro__[1].__name__, kind]
-            text = "" if isinstance(error, TypeError) else str(error)
+            text = str(error) if with_text and not isinstance(error, TypeError) else ""
             self.notes.append((name, [*described, text]))
             return None
         self.notes.append((name, "returned"))

@@ -38,8 +38,8 @@ def programs_of(module: ModuleType) -> list[str]:
 def outcome(programs: str, program: str, package: str, kind: str) -> list[tuple[str, Any]]:
     """Runs a program with a package against a robot of its own; returns what it notes."""
     start = getattr(Sim, kind)
-    with start(virtual_time=True, ideal=True, hand=True, address=f"127.0.77.{next(HOSTS)}:1337") as sim:
-        address = sim.hand_address if program == "hand" else sim.address.removesuffix(":1337")
+    with start(virtual_time=True, patience=0.25, ideal=True, hand=True, address=f"127.0.77.{next(HOSTS)}:1337") as sim:
+        address = sim.address.removesuffix(":1337")
         command = [sys.executable, str(RUN), programs, program, package, str(address)]
         done = subprocess.run(command, capture_output=True, text=True, timeout=100, cwd=RUN.parent)
     assert done.returncode == 0, f"{package}: {done.stderr}"
@@ -62,22 +62,29 @@ def assert_same(ours: list[tuple[str, Any]], theirs: list[tuple[str, Any]]) -> N
             np.testing.assert_allclose(mine, other, rtol=1e-4, atol=TOLERANCE.get(name, 1e-3), err_msg=name)
 
 
-def beside(original: str, program: str) -> None:
+def beside(original: str, program: str, programs: str) -> None:
     if importlib.util.find_spec(original) is None:
         pytest.skip(f"{original} is not installed: there is none for this platform or version of Python")
-    programs = f"programs_{original}"
+    programs = f"{programs}_{original}"
     ours = outcome(programs, program, f"franka_async.compat.{original}", "fr3")
     assert_same(ours, outcome(programs, program, original, "fr3"))
 
 
 @pytest.mark.parametrize("program", programs_of(programs_pylibfranka))
 def test_programs_for_pylibfranka_have_the_same_outcome(program: str) -> None:
-    beside("pylibfranka", program)
+    beside("pylibfranka", program, "programs")
 
 
 @pytest.mark.parametrize("program", programs_of(programs_franka))
 def test_programs_for_franka_have_the_same_outcome(program: str) -> None:
-    beside("franka", program)
+    beside("franka", program, "programs")
+
+
+@pytest.mark.parametrize("program", ["everything", "hand"])
+@pytest.mark.parametrize("original", ["pylibfranka", "franka"])
+def test_every_use_and_misuse_has_the_same_outcome(original: str, program: str) -> None:
+    """But for the texts of errors, and what the book lists."""
+    beside(original, program, "usage")
 
 
 FR3_ONLY = {"asynchronous"}

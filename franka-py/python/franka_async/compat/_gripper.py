@@ -18,6 +18,9 @@ class Fingers:
     _translated: Callable[[], AbstractContextManager[None]]
     """Raises the exceptions of the original in the place of those of this package."""
 
+    _refused: Callable[[str], Exception]
+    """Makes the exception for a command that the Hand does not carry out."""
+
     def _connect(self, gripper: _native.Gripper) -> None:
         self._gripper = gripper
         with self._translated():
@@ -42,7 +45,11 @@ class Fingers:
 
     def _act(self, action: Callable[[], _native.Operation[bool]]) -> bool:
         with self._translated():
-            return bool(wait(action()))
+            try:
+                return bool(wait(action()))
+            except ValueError as error:
+                # The originals leave it to the Hand to say so.
+                raise self._refused("libfranka gripper: Command failed!") from error
 
     def _next(self) -> _native.GripperState | None:
         """Waits for the next state; ``None`` if none comes."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ... import errors
 from .._translation import translation
 
@@ -9,8 +11,8 @@ from .._translation import translation
 class FrankaError(Exception):
     """What can go wrong with a robot or the Hand."""
 
-    def __init__(self, text: str, kind: str = "invalid_operation") -> None:
-        super().__init__(text)
+    def __init__(self, *text: object, kind: str = "invalid_operation") -> None:
+        super().__init__(*text)
         self.kind = kind
         """network, protocol, incompatible_version, command, control, realtime, invalid_operation, invalid_argument or model."""
 
@@ -18,9 +20,9 @@ class FrankaError(Exception):
 class ControlException(FrankaError):
     """The robot ended a motion. ``__cause__`` has the log and the diagnosis."""
 
-    def __init__(self, text: str, reasons: list[str], move_status: str | None) -> None:
-        super().__init__(text, "control")
-        self.errors = reasons
+    def __init__(self, *text: object, reasons: Sequence[str] = (), move_status: str | None = None) -> None:
+        super().__init__(*text, kind="control")
+        self.errors = list(reasons)
         self.reason = "[" + ", ".join(f'"{reason}"' for reason in reasons) + "]"
         self.move_status = move_status
 
@@ -34,20 +36,20 @@ def _exception(error: errors.FrankaError) -> FrankaError:
         case errors.ControlError():
             preempted = error.move_status == "preempted"
             status = "".join(word.capitalize() for word in error.move_status.split("_"))
-            return ControlException(PREEMPTED if preempted else text, error.errors, status)
+            return ControlException(PREEMPTED if preempted else text, reasons=error.errors, move_status=status)
         case errors.MotionError() if kind in ("stopped", "superseded", "disengaged"):
-            return ControlException(PREEMPTED, [], "Preempted")
+            return ControlException(PREEMPTED, move_status="Preempted")
         case errors.MotionError():
-            return FrankaError(text, _OF_MOTION.get(kind, "control"))
+            return FrankaError(text, kind=_OF_MOTION.get(kind, "control"))
         case errors.ConnectError() if kind in ("realtime", "incompatible_version", "model"):
-            return FrankaError(text, kind)
+            return FrankaError(text, kind=kind)
         case errors.CommandError() if error.party in ("robot", "caller"):
-            return FrankaError(text, "command")
+            return FrankaError(text, kind="command")
         case errors.ActionError() if kind == "failure":
-            return FrankaError(text, "command")
+            return FrankaError(text, kind="command")
     if error.party == "peer":
-        return FrankaError(text, "protocol")
-    return FrankaError(text, "network")
+        return FrankaError(text, kind="protocol")
+    return FrankaError(text, kind="network")
 
 
 _OF_MOTION = {

@@ -13,6 +13,7 @@ class Gripper(Fingers):
     """A connected Hand. Calls that wait leave the interpreter to other threads, and ``stop`` may come from one."""
 
     _translated = staticmethod(translated)
+    _refused = staticmethod(lambda text: FrankaError(text, kind="command"))
 
     def __init__(self, address: str) -> None:
         self._connect(_native.Gripper(address))
@@ -30,5 +31,8 @@ class Gripper(Fingers):
         """Waits for the next state."""
         state = self._next()
         if state is None:
-            raise FrankaError("libfranka gripper: UDP receive: Timeout", "network")
+            raise FrankaError("libfranka gripper: UDP receive: Timeout", kind="network")
         return state
+
+    def __repr__(self) -> str:
+        return f"Gripper(server_version={self.server_version})"

@@ -9,13 +9,13 @@ Array = npt.NDArray[np.float64]
 
 
 def rotated_by(quaternion: npt.ArrayLike, rotation_vector: npt.ArrayLike) -> Array:
-    """Returns the quaternion turned about axes of the base: ``exp(r) q``."""
-    q = normalised(numbers("quaternion", quaternion, 4))
-    r = numbers("rotation_vector", rotation_vector, 3)
+    """Returns the quaternion turned about axes of the base: ``exp(r) q``. It keeps its length."""
+    q = vector("quaternion", quaternion, 4)
+    r = vector("rotation_vector", rotation_vector, 3)
     angle = float(np.linalg.norm(r))
     # sin(angle / 2) / angle, which is a half for no angle.
     turn = np.append(r * (0.5 * np.sinc(angle / (2.0 * np.pi))), np.cos(angle / 2.0))
-    return normalised(product(turn, q))
+    return product(turn, q)
 
 
 def product(a: Array, b: Array) -> Array:
@@ -27,17 +27,27 @@ def product(a: Array, b: Array) -> Array:
 def normalised(quaternion: Array) -> Array:
     """Returns it with length 1. Raises ``ValueError`` if it has none."""
     length = float(np.linalg.norm(quaternion))
-    if length < 1e-6:
+    if length < 1e-12:
         raise ValueError("franka: the orientation quaternion has zero length")
     return quaternion / length
 
 
 def numbers(name: str, values: npt.ArrayLike, *counts: int) -> Array:
-    """Returns a vector of one of these lengths. Raises ``ValueError`` for another and for numbers that are not finite."""
-    array = np.array(values, dtype=np.float64)
-    if array.ndim != 1 or array.shape[0] not in counts:
-        expected = " or ".join(map(str, counts))
-        raise ValueError(f"franka: {name} has {expected} elements, got the shape {array.shape}")
+    """Returns a vector of one of these lengths. Raises ``TypeError`` for what is no vector, and ``ValueError`` for another length and
+    for numbers that are not finite.
+    """
+    array = vector(name, values, *counts)
     if not np.isfinite(array).all():
         raise ValueError(f"franka: {name} must be finite, got {array.tolist()}")
+    return array
+
+
+def vector(name: str, values: npt.ArrayLike, *counts: int) -> Array:
+    """Returns a vector of one of these lengths, or of any. Raises ``TypeError`` or ``ValueError``."""
+    array = np.array(values, dtype=np.float64)
+    if array.ndim != 1:
+        raise TypeError(f"franka: {name} is a vector, got the shape {array.shape}")
+    if counts and array.shape[0] not in counts:
+        expected = " or ".join(map(str, counts))
+        raise ValueError(f"franka: {name} has {expected} elements, got {array.shape[0]}")
     return array

@@ -16,7 +16,7 @@ from ...goal import Joints
 from ...pose import from_xyzw
 from .._waiting import wait
 from ._errors import FrankaError, translated
-from ._rotation import Array, normalised, numbers, rotated_by
+from ._rotation import Array, normalised, numbers, rotated_by, vector
 
 _STOPPED = (
     "franka: this target control was stopped; start a new one with Robot.cartesian_targets() or Robot.joint_targets()."
@@ -35,6 +35,10 @@ class _Targets:
         # Which `follow` is the newest: an older one ends.
         self._following = 0
 
+    def _locked(self) -> threading.Lock:
+        self._arm.reference()  # Raises in a forked child, where a thread that is not there may hold the lock.
+        return self._lock
+
     def _goal(self, target: Array) -> Any:
         raise NotImplementedError
 
@@ -46,36 +50,39 @@ class _Targets:
 
     def _set(self, target: Array) -> None:
         if not self.running:
-            raise FrankaError(_STOPPED, "invalid_operation")
+            raise FrankaError(_STOPPED)
         with translated():
             self._arm.try_set(self._goal(target))
         self._target = target
 
     def move_to(self, target: npt.ArrayLike) -> None:
         """Moves the target there; never waits."""
-        with self._lock:
+        with self._locked():
             self._following += 1
             self._set(self._absolute(target))
 
     def move_by(self, delta: npt.ArrayLike) -> None:
         """Moves the target by so much, from where the target is; never waits."""
-        with self._lock:
+        with self._locked():
             self._following += 1
             self._set(self._moved(delta))
 
     def follow(self, chunk: npt.ArrayLike, dt: float = 0.02) -> None:
         """Moves the target along the rows, the first now and each one ``dt`` seconds after the one before, in the background. A
-        newer call ends it, as does a row that is refused.
+        newer call ends it, as does a row that cannot be reached.
         """
         if not (dt > 0.0 and np.isfinite(dt)):
             raise ValueError(f"franka: dt must be positive, got {dt}")
         rows = np.array(chunk, dtype=np.float64)
-        if rows.ndim != 2 or len(rows) == 0:
-            raise ValueError(f"franka: a chunk has rows of targets, got the shape {rows.shape}")
-        with self._lock:
+        if rows.ndim != 2:
+            raise TypeError(f"franka: a chunk has rows of targets, got the shape {rows.shape}")
+        with self._locked():
+            targets = [self._absolute(row) for row in rows]
             self._following += 1
             mine = self._following
-            self._set(self._absolute(rows[0]))
+            if not targets:
+                return
+            self._set(targets[0])
         background = threading.Thread(target=self._follow, args=(rows[1:], dt, mine), name="franka follow", daemon=True)
         background.start()
 
@@ -91,12 +98,18 @@ class _Targets:
                 continue
             return
 
+    def _check_not_stopped(self) -> None:
+        if self._is_stopped:
+            raise FrankaError(_STOPPED)
+
     def target(self) -> Array:
         """Returns the target, (7,)."""
+        self._check_not_stopped()
         return self._target.copy()
 
     def state(self) -> _native.RobotState:
         """Returns the newest state, without waiting."""
+        self._check_not_stopped()
         with translated():
             return self._robot.state()
 
@@ -109,7 +122,7 @@ class _Targets:
         """Waits until the arm rests at the last target, and ends the session. Raises what had ended it before. Without effect once
         it was stopped.
         """
-        with self._lock:
+        with self._locked():
             self._following += 1
             if self._is_stopped:
                 return
@@ -141,8 +154,8 @@ class CartesianTargets(_Targets):
         return target
 
     def _absolute(self, values: npt.ArrayLike) -> Array:
-        array = np.array(values, dtype=np.float64)
-        if array.shape not in ((3,), (7,)):
+        array = vector("a Cartesian target", values)
+        if array.size not in (3, 7):
             raise ValueError(
                 "franka: a Cartesian target has 3 elements (x, y, z in m) or 7 (plus a unit quaternion x, y, z, w), "
                 f"got {array.size}"
@@ -153,11 +166,12 @@ class CartesianTargets(_Targets):
 
     def _moved(self, delta: npt.ArrayLike) -> Array:
         way = numbers("a Cartesian delta", delta, 3, 6)
-        orientation = rotated_by(self._target[3:], way[3:]) if len(way) == 6 else self._target[3:]
+        orientation = normalised(rotated_by(self._target[3:], way[3:])) if len(way) == 6 else self._target[3:]
         return np.append(self._target[:3] + way[:3], orientation)
 
     def target_pose(self) -> Array:
         """Returns the target as a pose, (4, 4)."""
+        self._check_not_stopped()
         return from_xyzw(self._target[:3], self._target[3:])
 
 

@@ -20,6 +20,9 @@ from ._model import Model
 from ._robot import ActiveControlBase, Robot
 from ._state import ControllerMode, Duration, Errors, RealtimeConfig, RobotMode, RobotState
 
+__version__ = "0.21.3"
+"""The version of the original whose interface this is."""
+
 __all__ = [
     "ActiveControlBase",
     "AsyncPositionControlHandler",

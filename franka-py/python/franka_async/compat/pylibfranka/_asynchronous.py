@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ... import _native, errors
 from .._waiting import wait
-from ._commands import numbers
+from ._commands import number, numbers
 from ._robot import Robot
 from ._state import RobotState, _Number
 
@@ -32,6 +32,17 @@ _STATUS = {
 }
 
 
+def _seven(name: str, values: Sequence[float]) -> list[float]:
+    if len(values) != 7:
+        raise ValueError(f"{name} must have exactly7 values")  # As the original says it.
+    return numbers(name, values, 7)
+
+
+def _check(name: str, value: object, expected: type) -> None:
+    if not isinstance(value, expected):
+        raise TypeError(f"{name}: got {type(value).__name__}, expected {expected.__name__}")
+
+
 class AsyncPositionControlHandler:
     """A motion between sparse joint targets. Made by ``configure``."""
 
@@ -39,8 +50,8 @@ class AsyncPositionControlHandler:
         """Bounds of the joint velocities, 7, rad/s, and the distance that counts as reached, rad."""
 
         def __init__(self, maximum_joint_velocities: Sequence[float], goal_tolerance: float) -> None:
-            self.maximum_joint_velocities = numbers("Configuration()", maximum_joint_velocities, 7)
-            self.goal_tolerance = float(goal_tolerance)
+            self.maximum_joint_velocities = _seven("joint_velocities", maximum_joint_velocities)
+            self.goal_tolerance = number("goal_tolerance", goal_tolerance)
 
     @dataclass
     class ConfigurationResult:
@@ -53,7 +64,7 @@ class AsyncPositionControlHandler:
         """Where to go, 7, rad."""
 
         def __init__(self, joint_positions: Sequence[float]) -> None:
-            self.joint_positions = numbers("JointPositionTarget()", joint_positions, 7)
+            self.joint_positions = _seven("joint_positions", joint_positions)
 
     @dataclass
     class CommandResult:
@@ -77,16 +88,18 @@ class AsyncPositionControlHandler:
     def configure(robot: Robot, configuration: Configuration, /) -> ConfigurationResult:
         """Begins the motion; returns its handler."""
         result = AsyncPositionControlHandler.ConfigurationResult
+        _check("configuration", configuration, AsyncPositionControlHandler.Configuration)
         begin = robot._robot.asynchronous_joint_positions
         try:
             control = wait(begin(configuration.maximum_joint_velocities, configuration.goal_tolerance))
-        except errors.FrankaError as error:
+        except (errors.FrankaError, ValueError) as error:
             return result(None, str(error))
         return result(AsyncPositionControlHandler(control), None)
 
     def set_joint_position_target(self, target: JointPositionTarget, /) -> CommandResult:
         """Sends the robot to a target, wherever it was going before."""
         result = AsyncPositionControlHandler.CommandResult
+        _check("target", target, AsyncPositionControlHandler.JointPositionTarget)
         if self._control is None:
             return result(None, False, _ABORTED)
         try:

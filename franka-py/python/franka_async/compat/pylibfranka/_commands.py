@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any, ClassVar, SupportsFloat
 
 
-def numbers(what: str, values: Sequence[SupportsFloat], count: int) -> list[float]:
+def numbers(what: str, values: Iterable[SupportsFloat], count: int) -> list[float]:
     """Returns so many numbers as a list.
 
     Raises ``TypeError`` for anything else, as the original does.
     """
+    if isinstance(values, str | bytes | Mapping):
+        raise TypeError(f"{what}: got {type(values).__name__}, expected {count} numbers")
     try:
-        listed = [float(value) for value in values]
-    except (TypeError, ValueError) as error:
+        listed = [number(what, value) for value in values]
+    except TypeError as error:
         raise TypeError(f"{what}: got {values!r}, expected {count} numbers") from error
     if len(listed) != count:
         raise TypeError(f"{what}: got {len(listed)} numbers, expected {count}")
     return listed
+
+
+def number(what: str, value: SupportsFloat) -> float:
+    """Returns a number; text is none. Raises ``TypeError``."""
+    if isinstance(value, str | bytes):
+        raise TypeError(f"{what}: got {value!r}, expected a number")
+    return float(value)
 
 
 class _Numbers:
@@ -28,24 +37,37 @@ class _Numbers:
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
-        self.key = f"_{name}"
 
-    def __get__(self, command: object, owner: type | None = None) -> list[float]:
+    def __get__(self, command: Any, owner: type | None = None) -> list[float]:
         if command is None:
             return self  # type: ignore[return-value]
-        values: list[float] = getattr(command, self.key)
-        return list(values)
+        values: list[float] = command._values
+        return values.copy()
 
-    def __set__(self, command: Any, values: Sequence[SupportsFloat]) -> None:
-        setattr(command, self.key, numbers(f"{type(command).__name__}.{self.name}", values, self.count))
+    def __set__(self, command: Any, values: Iterable[SupportsFloat]) -> None:
+        command._values = numbers(f"{type(command).__name__}.{self.name}", values, self.count)
 
 
 class _Command:
+    __slots__ = ("__weakref__", "_is_last", "_values")
+
     _field: ClassVar[str]
 
-    def __init__(self, values: Sequence[SupportsFloat], /) -> None:
+    def __init__(self, values: Iterable[SupportsFloat], /) -> None:
         setattr(self, self._field, values)
-        self.motion_finished = False
+        self._is_last = False
+
+    @property
+    def motion_finished(self) -> bool:
+        """Whether this is the last command of the motion."""
+        return self._is_last
+
+    @motion_finished.setter
+    def motion_finished(self, finished: Any) -> None:
+        # What has a truth of its own, and None, as in the original; but no text and no list.
+        if finished is not None and not hasattr(finished, "__bool__"):
+            raise TypeError(f"motion_finished: got {finished!r}, expected a bool")
+        self._is_last = bool(finished)
 
     def values(self) -> list[float]:
         """Returns the numbers."""
@@ -56,12 +78,16 @@ class _Command:
 class Torques(_Command):
     """Joint torques without gravity and friction, 7, N m."""
 
+    __slots__ = ()
+
     _field = "tau_J"
     tau_J = _Numbers(7)
 
 
 class JointPositions(_Command):
     """Joint positions, 7, rad."""
+
+    __slots__ = ()
 
     _field = "q"
     q = _Numbers(7)
@@ -70,6 +96,8 @@ class JointPositions(_Command):
 class JointVelocities(_Command):
     """Joint velocities, 7, rad/s."""
 
+    __slots__ = ()
+
     _field = "dq"
     dq = _Numbers(7)
 
@@ -77,12 +105,16 @@ class JointVelocities(_Command):
 class CartesianPose(_Command):
     """A pose of the end effector in the base frame, 16, column by column."""
 
+    __slots__ = ()
+
     _field = "O_T_EE"
     O_T_EE = _Numbers(16)
 
 
 class CartesianVelocities(_Command):
     """A twist of the end effector in the base frame, 6, m/s and rad/s."""
+
+    __slots__ = ()
 
     _field = "O_dP_EE"
     O_dP_EE = _Numbers(6)

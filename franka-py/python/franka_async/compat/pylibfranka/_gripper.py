@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from ... import _native
 from .._gripper import VERSION, Fingers
-from ._exceptions import NetworkException, translated
+from ._exceptions import CommandException, NetworkException, translated
 from ._state import Duration
 
 
 class GripperState:
     """What the Hand says of itself."""
+
+    __slots__ = ("is_grasped", "max_width", "temperature", "time", "width")
 
     def __init__(self, state: _native.GripperState) -> None:
         self.width: float = state.width
@@ -23,6 +25,7 @@ class Gripper(Fingers):
     """A connected Hand. Every call that waits leaves the interpreter to other threads, and ``stop`` may come from one."""
 
     _translated = staticmethod(translated)
+    _refused = CommandException
 
     def __init__(self, franka_address: str) -> None:
         self._connect(_native.Gripper(franka_address))

@@ -20,29 +20,36 @@ class Model:
 
     def coriolis(self, robot_state: RobotState, /) -> list[float]:
         """Returns the torques of Coriolis and centrifugal forces, 7, N m."""
-        s = robot_state
+        s = _checked("coriolis", robot_state)
         load = (_square(s.I_total, 3), s.m_total, s.F_x_Ctotal)
         return _listed(self._model.coriolis(s.q, s.dq, *load))
 
     def gravity(self, robot_state: RobotState, /) -> list[float]:
         """Returns the torques that hold the arm against the gravity that it measures, 7, N m."""
-        s = robot_state
+        s = _checked("gravity", robot_state)
         return _listed(self._model.gravity(s.q, s.m_total, s.F_x_Ctotal, s.O_ddP_O))
 
     def mass(self, robot_state: RobotState, /) -> list[float]:
         """Returns the joint-space inertia, 49, kg m^2."""
-        s = robot_state
+        s = _checked("mass", robot_state)
         return _listed(self._model.mass(s.q, _square(s.I_total, 3), s.m_total, s.F_x_Ctotal))
 
     def zero_jacobian(self, *arguments: Any) -> list[float]:
         """Returns the zero Jacobian, 42, of the end effector, or of a frame that is given before the state: its number or name."""
-        *frame, s = arguments
-        if len(frame) > 1 or not isinstance(s, RobotState):
+        if len(arguments) not in (1, 2):
             raise TypeError("zero_jacobian() takes a RobotState, or a frame and a RobotState")
+        *frame, s = arguments
+        _checked("zero_jacobian", s)
         name: Any = frame[0] if frame else "ee"
         name = name if isinstance(name, str) else _FRAMES[int(name)]
         tool = (_square(s.F_T_EE, 4), _square(s.EE_T_K, 4))
         return _listed(self._model.zero_jacobian(name, s.q, *tool))
+
+
+def _checked(method: str, state: object) -> RobotState:
+    if not isinstance(state, RobotState):
+        raise TypeError(f"{method}(): got {type(state).__name__}, expected RobotState")
+    return state
 
 
 def _square(values: list[float], size: int) -> Any:

@@ -65,10 +65,10 @@ class ActiveControlBase:
         """Sends the command that answers the newest state; with ``motion_finished`` it ends the motion."""
         if not isinstance(command, Torques | JointPositions | JointVelocities | CartesianPose | CartesianVelocities):
             raise TypeError(f"writeOnce(): got {type(command).__name__}, expected Torques or a command to a motion generator")
-        if self._is_over:
-            raise ControlException(PREEMPTED if self._is_preempted else _AFTER)
         if not isinstance(command, self._command):
             raise ControlException(_WRONG)
+        if self._is_over:
+            raise ControlException(PREEMPTED if self._is_preempted else _AFTER)
         values: Any = command.values()
         if not all(map(math.isfinite, values)):
             raise ValueError("Commanding value is infinite or NaN.")
@@ -90,6 +90,8 @@ class Robot:
     def __init__(
         self, robot_ip_address: str, realtime_config: RealtimeConfig = RealtimeConfig.kEnforce
     ) -> None:
+        if not isinstance(realtime_config, RealtimeConfig):
+            raise TypeError(f"realtime_config: got {realtime_config!r}, expected RealtimeConfig")
         realtime: Any = "enforce" if realtime_config is RealtimeConfig.kEnforce else "ignore"
         self._robot = _native.Robot(robot_ip_address, realtime=realtime)
         self._active: weakref.ref[ActiveControlBase] | None = None
@@ -128,6 +130,9 @@ class Robot:
         return self._start(self._robot.active_cartesian_velocities, CartesianVelocities, control_type)
 
     def _start(self, begin: Callable[..., Any], command: type, *mode: ControllerMode) -> ActiveControlBase:
+        for one in mode:
+            if not isinstance(one, ControllerMode):
+                raise TypeError(f"control_type: got {one!r}, expected ControllerMode")
         with translated():
             control = wait(begin(*(_CONTROLLERS[one] for one in mode)))
         active = ActiveControlBase(control, command)
@@ -151,20 +156,17 @@ class Robot:
                 (upper_force_thresholds, 6),
             )
         ]
-        with translated():
-            wait(self._robot.set_collision_behavior(*thresholds))
+        self._set("Set Collision Behavior", lambda: self._robot.set_collision_behavior(*thresholds))
 
     def set_joint_impedance(self, K_theta: Sequence[float], /) -> None:
         """Sets the stiffness of the robot's joint impedance controller, 7, N m/rad."""
         stiffness = numbers("set_joint_impedance()", K_theta, 7)
-        with translated():
-            wait(self._robot.set_joint_impedance(stiffness))
+        self._set("Set Joint Impedance", lambda: self._robot.set_joint_impedance(stiffness))
 
     def set_cartesian_impedance(self, K_x: Sequence[float], /) -> None:
         """Sets the stiffness of the robot's Cartesian impedance controller, 6, N/m and N m/rad."""
         stiffness = numbers("set_cartesian_impedance()", K_x, 6)
-        with translated():
-            wait(self._robot.set_cartesian_impedance(stiffness))
+        self._set("Set Cartesian Impedance", lambda: self._robot.set_cartesian_impedance(stiffness))
 
     def set_K(self, EE_T_K: Sequence[float], /) -> None:
         """Sets the stiffness frame in the end effector's, 16, column by column."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ... import _native
+from ._commands import number, numbers
 
 
 class _Number(enum.Enum):
@@ -19,6 +20,11 @@ class _Number(enum.Enum):
 
     def __index__(self) -> int:
         return int(self.value)
+
+    @classmethod
+    def _missing_(cls, value: object) -> None:
+        if not isinstance(value, int):
+            raise TypeError(f"{cls.__name__}(): got {value!r}, expected a number")
 
 
 class ControllerMode(_Number):
@@ -50,6 +56,8 @@ class RobotMode(_Number):
 class Duration:
     """A time."""
 
+    __slots__ = ("_seconds",)
+
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
 
@@ -61,17 +69,15 @@ class Duration:
 class Errors:
     """The errors of a robot: 41 truth values, by the vendor's names in lower case."""
 
-    def __init__(self, names: list[str]) -> None:
-        self._names = names
+    __slots__ = ("_names", "_set")
+
+    def __init__(self, names: Iterable[str] = ()) -> None:
+        self._names = list(names)
         self._set = frozenset(name.lower() for name in names)
 
-    def __getattr__(self, name: str) -> bool:
-        if name in ERRORS:
-            return name in self._set
-        raise AttributeError(f"'Errors' object has no attribute {name!r}")
+    if TYPE_CHECKING:
 
-    def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *ERRORS]
+        def __getattr__(self, name: str) -> bool: ...
 
     def __bool__(self) -> bool:
         return bool(self._names)
@@ -84,6 +90,10 @@ class Errors:
 
 ERRORS = frozenset(name.lower() for name in _native.ERROR_NAMES)
 
+for _name in ERRORS:
+    # The vendor's library leaves the end out of one name.
+    setattr(Errors, _name.removesuffix("_flag"), property(lambda errors, name=_name: name in errors._set))
+
 _MODES = {
     "other": RobotMode.Other,
     "idle": RobotMode.Idle,
@@ -95,26 +105,30 @@ _MODES = {
 }
 
 
-def _vector(values: Any) -> list[float]:
+def _listed(values: Any) -> list[float]:
     listed: list[float] = np.ravel(values, order="F").tolist()
     return listed
 
 
-_LISTS = """
-    q q_d dq dq_d ddq_d tau_J tau_J_d dtau_J theta dtheta joint_contact joint_collision tau_ext_hat_filtered
-    cartesian_contact cartesian_collision O_F_ext_hat_K K_F_ext_hat_K O_dP_EE_d O_dP_EE_c O_ddP_EE_c O_ddP_O
-    F_x_Cee F_x_Cload F_x_Ctotal elbow elbow_d elbow_c delbow_c ddelbow_c
-    O_T_EE O_T_EE_d O_T_EE_c F_T_EE F_T_NE NE_T_EE EE_T_K I_ee I_load I_total
-""".split()
+class _Field:
+    """An attribute of a state, made when it is read first. A list is a new one each time."""
 
-_FIELDS: dict[str, Callable[[Any], Any]] = {
-    **dict.fromkeys(_LISTS, _vector),
-    **dict.fromkeys(["m_ee", "m_load", "m_total", "control_command_success_rate"], float),
-    "time": Duration,
-    "robot_mode": _MODES.__getitem__,
-    "current_errors": Errors,
-    "last_motion_errors": Errors,
-}
+    def __init__(self, name: str, make: Callable[[Any], Any], take: Callable[[Any], Any]) -> None:
+        self.name = name
+        self.make = make
+        self.take = take
+
+    def __get__(self, state: RobotState | None, owner: type) -> Any:
+        if state is None:
+            return self
+        values = state._values
+        if self.name not in values:
+            values[self.name] = self.make(getattr(state._state, self.name))
+        value = values[self.name]
+        return value.copy() if isinstance(value, list) else value
+
+    def __set__(self, state: RobotState, value: Any) -> None:
+        state._values[self.name] = self.take(value)
 
 
 class RobotState:
@@ -123,17 +137,47 @@ class RobotState:
     A program may set its attributes; the robot does not see that.
     """
 
+    __slots__ = ("__weakref__", "_state", "_values")
+
     def __init__(self, state: _native.RobotState) -> None:
         self._state = state
+        self._values: dict[str, Any] = {}
 
-    def __getattr__(self, name: str) -> Any:
-        """Makes an attribute when it is read first."""
-        make = _FIELDS.get(name)
-        if make is None:
-            raise AttributeError(f"'RobotState' object has no attribute {name!r}")
-        value = make(getattr(self._state, name))
-        self.__dict__[name] = value
+    if TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any: ...
+
+
+_LENGTHS = {
+    16: "O_T_EE O_T_EE_d O_T_EE_c F_T_EE F_T_NE NE_T_EE EE_T_K",
+    9: "I_ee I_load I_total",
+    7: "q q_d dq dq_d ddq_d tau_J tau_J_d dtau_J theta dtheta joint_contact joint_collision tau_ext_hat_filtered",
+    6: """cartesian_contact cartesian_collision O_F_ext_hat_K K_F_ext_hat_K O_dP_EE_d O_dP_EE_c O_ddP_EE_c""",
+    3: "O_ddP_O F_x_Cee F_x_Cload F_x_Ctotal",
+    2: "elbow elbow_d elbow_c delbow_c ddelbow_c",
+}
+
+
+def _taking(name: str, expected: type) -> Callable[[Any], Any]:
+    def take(value: Any) -> Any:
+        if not isinstance(value, expected):
+            raise TypeError(f"RobotState.{name}: got {type(value).__name__}, expected {expected.__name__}")
         return value
 
-    def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *_FIELDS]
+    return take
+
+
+def _fields() -> Iterable[_Field]:
+    for length, names in _LENGTHS.items():
+        for name in names.split():
+            yield _Field(name, _listed, lambda values, n=name, c=length: numbers(f"RobotState.{n}", values, c))
+    for name in ("m_ee", "m_load", "m_total", "control_command_success_rate"):
+        yield _Field(name, float, lambda value, n=name: number(f"RobotState.{n}", value))
+    yield _Field("time", Duration, _taking("time", Duration))
+    yield _Field("robot_mode", _MODES.__getitem__, _taking("robot_mode", RobotMode))
+    for name in ("current_errors", "last_motion_errors"):
+        yield _Field(name, Errors, _taking(name, Errors))
+
+
+for _field in _fields():
+    setattr(RobotState, _field.name, _field)
