@@ -39,6 +39,12 @@ def test_both_arms_arrive_and_each_has_its_report(fr3: Robot, fer: Robot) -> Non
             left, right = team.arms
             reports = await team.run([left.move_by([0.0, 0.0, -0.03]), right.move_by([0.0, 0.0, 0.02])])
             assert len(reports) == 2
+            # One that is only held keeps its place, and the other one not from moving; so do both.
+            for held in ((True, False), (False, True), (True, True)):
+                before = [robot.pose()[2, 3] for robot in (fr3, fer)]
+                await team.run([arm.hold() if hold else arm.move_by([0.0, 0.0, 0.02]) for arm, hold in zip(team.arms, held, strict=True)])
+                for robot, height, hold in zip((fr3, fer), before, held, strict=True):
+                    assert robot.pose()[2, 3] - height == pytest.approx(0.0 if hold else 0.02, abs=6e-3)
 
     asyncio.run(main())
 
