@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import signal
 import subprocess
 import sys
 from collections.abc import Awaitable, Callable, Iterator
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import pytest
 
@@ -14,12 +15,21 @@ from franka_async import Robot, Sim
 
 T = TypeVar("T")
 
+PATIENT: dict[str, Any] = {"realtime": "ignore", "link_timeout": 10.0}
+"""Options of a robot whose simulator the machine may hold up for longer than the second after which a link counts as lost."""
+
+
+@pytest.fixture(scope="session", autouse=True)
+def interruptible() -> None:
+    """Has Ctrl-C raise ``KeyboardInterrupt``, also where a shell runs the tests in the background, which has it ignored."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
 
 @pytest.fixture(params=["fr3", "fer"])
 def sim(request: pytest.FixtureRequest) -> Iterator[Sim]:
     """A simulated robot of each kind, with an arm as real ones are."""
     kind: str = request.param
-    # Two states that a busy machine reads at once cost this time each, and a second is a lost link.
+    # Two states that a busy machine reads at once cost this time each.
     with getattr(Sim, kind)(virtual_time=True, patience=0.25) as sim:
         yield sim
 
@@ -37,7 +47,7 @@ def robot(sim: Sim) -> Iterator[Robot]:
 
 def connection(sim: Sim) -> Robot:
     """A robot that is not connected yet."""
-    return Robot(sim.address, realtime="ignore")
+    return Robot(sim.address, **PATIENT)
 
 
 def at_rest(robot: Robot) -> bool:

@@ -7,6 +7,7 @@ import threading
 from collections.abc import Callable, Coroutine
 from typing import Any
 
+from conftest import PATIENT
 import franka_async
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ def on(start: Start, program: Callable[[Robot], Coroutine[Any, Any, None]]) -> N
 
     async def main() -> None:
         with start(virtual_time=True) as sim:
-            async with Robot(sim.address, realtime="ignore") as robot:
+            async with Robot(sim.address, **PATIENT) as robot:
                 await program(robot)
 
     asyncio.run(main())
@@ -230,7 +231,7 @@ def test_the_robot_itself_moves_to_sparse_targets() -> None:
     async def main() -> None:
         # Between targets no command comes that virtual time could wait for.
         with Sim.fr3() as sim:
-            async with Robot(sim.address, realtime="ignore") as robot:
+            async with Robot(sim.address, **PATIENT) as robot:
                 await program(robot)
 
     asyncio.run(main())

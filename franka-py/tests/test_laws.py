@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import PATIENT
 from franka_async import Law, Model, MotionError, Robot, Sim, laws
 from franka_async._native import _law_layout
 
@@ -37,8 +38,9 @@ int32_t spring(const franka_async_law_cycle *cycle, const double *p, double *mem
     return cycle->time > 0.4995 ? FRANKA_ASYNC_LAW_FINISH : FRANKA_ASYNC_LAW_GO_ON;
 }
 
-/* Stands still by each kind of command, and finishes after as many cycles as the parameter says. */
-static int32_t counted(const double *p, double *memory) { return ++memory[0] >= p[0]; }
+/* Stands still by each kind of command, and after as many cycles as the parameter says finishes, or gives up with the code of the
+   second one. */
+static int32_t counted(const double *p, double *memory) { return ++memory[0] < p[0] ? 0 : p[1] < 0.0 ? (int32_t)p[1] : 1; }
 
 int32_t hold_joints(const franka_async_law_cycle *cycle, const double *p, double *memory, double *output) {
     if (memory[0] == 0.0) for (int i = 0; i < 7; ++i) memory[1 + i] = cycle->q_d[i];
@@ -148,7 +150,7 @@ def on(start: Start, program: Callable[[Robot], Coroutine[Any, Any, None]]) -> N
 
     async def main() -> None:
         with start(virtual_time=True) as sim:
-            async with Robot(sim.address, realtime="ignore") as robot:
+            async with Robot(sim.address, **PATIENT) as robot:
                 await program(robot)
 
     asyncio.run(main())
@@ -223,9 +225,15 @@ def test_every_kind_of_command_can_come_from_a_law(start: Start, library: ctypes
             ("cartesian_pose", library.hold_pose),
             ("cartesian_velocities", library.no_velocity),
         ]:
-            law = Law(code, command=command, parameters=[50.0], memory=np.zeros(17))  # type: ignore[arg-type]
+            law = Law(code, command=command, parameters=[50.0, 0.0], memory=np.zeros(17))  # type: ignore[arg-type]
             await robot.run_law(law, controller="cartesian_impedance")
             assert law.memory[0] == 50.0, command
+            # Giving up has the robot stop; then it takes the next motion.
+            law.parameters = [30.0, -7.0]
+            with pytest.raises(MotionError) as given_up:
+                await robot.run_law(law, controller="joint_impedance")
+            assert (given_up.value.kind, given_up.value.code) == ("given_up", -7), command
+            assert law.memory[0] == 30.0, command
 
     on(start, program)
 
@@ -276,7 +284,7 @@ def test_a_negative_number_stops_the_robot_and_is_the_error(start: Start, librar
             await robot.run_law(library.give_up)
         assert (given_up.value.kind, given_up.value.code, given_up.value.party) == ("given_up", -42, "caller")
         # The robot takes the next motion.
-        await robot.run_law(library.no_velocity, parameters=[5.0], memory=[0.0])
+        await robot.run_law(library.no_velocity, parameters=[5.0, 0.0], memory=[0.0])
 
     on(start, program)
 
@@ -317,7 +325,7 @@ def test_cancelling_has_the_robot_stop(start: Start, library: ctypes.CDLL) -> No
         running.cancel()
         with pytest.raises(asyncio.CancelledError):
             await running
-        await robot.run_law(library.no_velocity, parameters=[5.0], memory=[0.0])
+        await robot.run_law(library.no_velocity, parameters=[5.0, 0.0], memory=[0.0])
 
     on(start, program)
 

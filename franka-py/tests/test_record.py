@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from conftest import PATIENT
 import franka_async
 from franka_async import Robot, record_columns
 
@@ -82,7 +83,7 @@ def test_only_the_first_seconds_are_kept_and_the_rest_is_counted(fr3: Robot) -> 
 
 
 def test_a_connection_that_ends_ends_it(sim_fr3: franka_async.Sim) -> None:
-    robot = Robot(sim_fr3.address, realtime="ignore").connect().wait()
+    robot = Robot(sim_fr3.address, **PATIENT).connect().wait()
     with robot.record(["q", "slack"]) as recording:
         while len(recording) < 10:
             pass

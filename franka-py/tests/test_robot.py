@@ -138,7 +138,7 @@ PROLOGUE = """
 import asyncio, os, signal, sys, threading, time
 import franka_async
 sim = franka_async.Sim.fr3(patience=5.0)
-robot = franka_async.Robot(sim.address, realtime="ignore").connect().wait()
+robot = franka_async.Robot(sim.address, realtime="ignore", link_timeout=10.0).connect().wait()
 def moving():
     end = time.monotonic() + 30
     while robot.reference() is None:

@@ -138,7 +138,7 @@ def test_a_network_that_fails_is_noticed() -> None:
             report = await robot.move_by([0.0, 0.0, 0.03])
             assert report.lost_states > 0
         cut = Network(cuts=[(1.0, 1e6)])
-        async with Sim.fr3(patience=0.05, network=cut) as sim, connection(sim) as robot:
+        async with Sim.fr3(patience=0.05, network=cut) as sim, Robot(sim.address, realtime="ignore") as robot:
             ended = await outcome(robot.move_by([0.0, 0.0, 0.2], speed=0.1))
             assert isinstance(ended, MotionError) and not isinstance(ended, ControlError), repr(ended)
             assert ended.party == "link"

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from conftest import PATIENT
 import franka_async
 from franka_async import Backoff, Event, Policy, Reflex, Robot, Sim
 
@@ -22,7 +23,7 @@ async def until(events: franka_async.Stream[Event], kind: str) -> Event:
 def test_events_of_a_reflex_and_the_recovery_by_policy(franka_sim: Sim) -> None:
     async def main() -> None:
         policy = Policy(recover=(3, 60.0), reconnect=None)
-        async with Robot(franka_sim.address, realtime="ignore", supervise=policy) as robot:
+        async with Robot(franka_sim.address, **PATIENT, supervise=policy) as robot:
             assert robot.health().is_ready
             events = robot.events()
             franka_sim.trip("cartesian_reflex")
@@ -78,7 +79,7 @@ def asking(sim: Sim, answers: list[Any]) -> tuple[Robot, list[Reflex], list[int]
         return answer
 
     policy = Policy(recover=(9, 60.0))
-    robot = Robot(sim.address, realtime="ignore", supervise=policy, ask_before_recovery=agrees)
+    robot = Robot(sim.address, **PATIENT, supervise=policy, ask_before_recovery=agrees)
     return robot, asked, threads
 
 
@@ -117,7 +118,7 @@ def test_a_function_that_waits_for_a_person_holds_up_no_shutdown(sim_fr3: Sim) -
         asked.set()
         return answered.wait(60)
 
-    robot = Robot(sim_fr3.address, realtime="ignore", supervise=Policy(recover=(1, 60.0)), ask_before_recovery=agrees)
+    robot = Robot(sim_fr3.address, **PATIENT, supervise=Policy(recover=(1, 60.0)), ask_before_recovery=agrees)
     robot.connect().wait()
     events = robot.events()
     sim_fr3.trip("joint_reflex")
@@ -132,7 +133,7 @@ def test_a_function_that_waits_for_a_person_holds_up_no_shutdown(sim_fr3: Sim) -
 def test_an_agreement_by_number(sim_fr3: Sim) -> None:
     async def main() -> None:
         policy = Policy(recover=(1, 60.0), ask_first=True)
-        async with Robot(sim_fr3.address, realtime="ignore", supervise=policy) as robot:
+        async with Robot(sim_fr3.address, **PATIENT, supervise=policy) as robot:
             events = robot.events()
             sim_fr3.trip("joint_reflex")
             await until(events, "reflex")
@@ -161,7 +162,7 @@ def test_a_user_stop_is_told(franka_robot: Robot, franka_sim: Sim) -> None:
 
 def test_a_lost_connection_has_a_reason(sim_fr3: Sim) -> None:
     async def main() -> None:
-        robot = await Robot(sim_fr3.address, realtime="ignore").connect()
+        robot = await Robot(sim_fr3.address, **PATIENT).connect()
         closed = asyncio.ensure_future(robot.closed())
         await asyncio.sleep(0)
         sim_fr3.stop()
@@ -174,7 +175,7 @@ def test_a_lost_connection_has_a_reason(sim_fr3: Sim) -> None:
 
 def test_a_supervisor_gives_up_when_told_to(sim_fr3: Sim) -> None:
     policy = Policy(reconnect=Backoff(first=0.01, most=0.01, jitter=0.0), give_up_after=0.1, seed=7)
-    robot = Robot(sim_fr3.address, realtime="ignore", supervise=policy).connect().wait()
+    robot = Robot(sim_fr3.address, **PATIENT, supervise=policy).connect().wait()
     events = robot.events()
     sim_fr3.stop()
     kinds = [event.kind for event in events]

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import until
+from conftest import PATIENT, until
 from sync_stub import PACKAGE, STUB, stub
 
 import franka_async
@@ -20,7 +20,7 @@ from franka_async import FrankaError, Joints, Latest, MotionError, Sim, _native,
 
 
 def test_a_program_without_an_event_loop(sim: Sim) -> None:
-    with sync.Robot(sim.address, realtime="ignore") as robot:
+    with sync.Robot(sim.address, **PATIENT) as robot:
         assert isinstance(robot, sync.Robot) and robot.is_connected and "Robot at" in repr(robot)
         height = robot.pose()[2, 3]
         report = robot.move_by([0.0, 0.0, 0.03])
@@ -54,7 +54,7 @@ def test_a_program_without_an_event_loop(sim: Sim) -> None:
 
 
 def test_a_stop_of_another_thread_ends_what_waits(live: Sim) -> None:
-    with sync.Robot(live.address, realtime="ignore") as robot:
+    with sync.Robot(live.address, **PATIENT) as robot:
 
         def stop() -> None:
             until(lambda: robot.reference() is not None)
@@ -69,7 +69,7 @@ def test_a_stop_of_another_thread_ends_what_waits(live: Sim) -> None:
 
 
 def test_ctrl_c_ends_what_waits(live: Sim) -> None:
-    with sync.Robot(live.address, realtime="ignore") as robot:
+    with sync.Robot(live.address, **PATIENT) as robot:
 
         def interrupt() -> None:
             until(lambda: robot.reference() is not None)
@@ -123,8 +123,8 @@ def test_every_coroutine_function_has_a_twin() -> None:
 def test_tools_and_a_team(sim_fr3: Sim, sim_fer: Sim, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("FRANKA_TOOLS", str(tmp_path / "tools.json"))
     with (
-        sync.Robot(sim_fr3.address, realtime="ignore") as left,
-        sync.Robot(sim_fer.address, realtime="ignore") as right,
+        sync.Robot(sim_fr3.address, **PATIENT) as left,
+        sync.Robot(sim_fer.address, **PATIENT) as right,
     ):
         sync.tools.save("brush", sync.tools.Tool(mass=0.3, center=[0.0, 0.0, 0.05]))
         assert sync.tools.load(left, "brush").mass == 0.3

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from conftest import PATIENT
 from franka_async import CommandError, Identified, Robot, Sim, tools
 from franka_async.tools import Tool, ToolFileError
 
@@ -158,7 +159,7 @@ def test_what_is_on_the_flange_is_found_and_declared(fr3: Robot, sim_fr3: Sim) -
         assert again == found and pickle.loads(pickle.dumps(found)) == found
         assert "load" in str(found)
         await fr3.shutdown()
-        async with Robot(sim_fr3.address, realtime="ignore", known=again) as later:
+        async with Robot(sim_fr3.address, **PATIENT, known=again) as later:
             await later.move_by([0.0, 0.0, 0.02])
 
     asyncio.run(main())

@@ -72,7 +72,8 @@ def _sim(kind: str, options: dict[str, Any]) -> Iterator[Sim]:
 def _robot(sim: Sim) -> Iterator[Robot]:
     import franka_async
 
-    robot = franka_async.Robot(sim.address, realtime="ignore")
+    # A busy machine may hold the simulator up for longer than the second after which a link counts as lost.
+    robot = franka_async.Robot(sim.address, realtime="ignore", link_timeout=10.0)
     robot.connect().wait()
     try:
         yield robot
