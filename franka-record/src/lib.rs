@@ -4,6 +4,7 @@
 pub mod cassette;
 mod cycle;
 pub mod event;
+pub mod explain;
 #[cfg(feature = "export")]
 pub mod export;
 pub mod recorder;

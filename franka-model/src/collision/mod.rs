@@ -72,6 +72,7 @@ use segment::Segment;
 
 /// What a capsule belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Body {
     /// Link 0 (the base) to 7.
     Link(u8),

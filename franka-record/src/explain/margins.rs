@@ -1,0 +1,182 @@
+//! The nearest approach to each limit, and the largest values.
+
+use franka_model::limits::CartesianLimits;
+use franka_model::{EndEffector, Frame, JointVector, Model};
+use franka_proto::RobotState;
+use franka_rt::driver::Record;
+
+/// How near something came to its limit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Approach {
+    /// The joint, 1 to 7; `None` of the end effector.
+    pub joint: Option<u8>,
+    /// What was measured.
+    pub value: f64,
+    /// The limit there, on the side of the value.
+    pub limit: f64,
+    /// From the value to the limit; negative beyond it.
+    pub margin: f64,
+    /// When, `[ms]` of the robot's clock.
+    pub time: u64,
+}
+
+/// The nearest approaches; `None` before any cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Margins {
+    /// Of a joint to the end of its range, for its range, `[rad]`.
+    pub position: Option<Approach>,
+    /// Of a joint's velocity to its limit at that position, as a share, `[rad/s]`.
+    pub velocity: Option<Approach>,
+    /// Of a joint's torque, gravity included, to its limit, as a share, `[N·m]`.
+    pub torque: Option<Approach>,
+    /// Of the end effector's velocity to the limit of Cartesian commands, `[m/s]`.
+    pub translation: Option<Approach>,
+    /// Of its rotation, `[rad/s]`.
+    pub rotation: Option<Approach>,
+}
+
+/// A largest value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Peak {
+    /// The joint, 1 to 7; `None` of the end effector.
+    pub joint: Option<u8>,
+    /// Its size.
+    pub value: f64,
+    /// When, `[ms]` of the robot's clock.
+    pub time: u64,
+}
+
+/// The largest values; `None` where nothing was seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Peaks {
+    /// External torque of a joint, less the tare, `[N·m]`.
+    pub external_torque: Option<Peak>,
+    /// Norm of the robot's estimate of the external force at the end effector, `[N]`.
+    pub force: Option<Peak>,
+    /// Difference of reference and measured position of a joint in target control, `[rad]`.
+    pub following_error: Option<Peak>,
+}
+
+impl Margins {
+    pub(super) fn cycle(&mut self, model: &Model, state: &RobotState) {
+        let limits = model.joint_limits();
+        let (q, dq) = (JointVector::from(state.q), JointVector::from(state.dq));
+        let (least, greatest) = limits.velocity_envelope(&q, 0.0);
+        let time = state.message_id;
+        for i in 0..7 {
+            let joint = Some(i as u8 + 1);
+            let (low, high) = (limits.lower[i], limits.upper[i]);
+            let limit = if q[i] < 0.5 * (low + high) { low } else { high };
+            let margin = (q[i] - low).min(high - q[i]);
+            let at = |value, limit, margin| Approach {
+                joint,
+                value,
+                limit,
+                margin,
+                time,
+            };
+            let range = high - low;
+            nearer(&mut self.position, at(q[i], limit, margin), |a| {
+                a.margin / (range_of(model, a)).unwrap_or(range)
+            });
+            let bound = if dq[i] < 0.0 { least[i] } else { greatest[i] };
+            let towards = (bound - dq[i]) * bound.signum();
+            nearer(&mut self.velocity, at(dq[i], bound, towards), share);
+            let tau = state.tau_J[i];
+            let bound = limits.torque[i].copysign(tau);
+            let left = limits.torque[i] - tau.abs();
+            nearer(&mut self.torque, at(tau, bound, left), share);
+        }
+        let (linear, angular) = speeds(model, state);
+        let cartesian = CartesianLimits::of(model.kind());
+        let at = |value, limit| Approach {
+            joint: None,
+            value,
+            limit,
+            margin: limit - value,
+            time,
+        };
+        let translation = at(linear, cartesian.translation.velocity);
+        nearer(&mut self.translation, translation, share);
+        nearer(
+            &mut self.rotation,
+            at(angular, cartesian.rotation.velocity),
+            share,
+        );
+    }
+}
+
+impl Peaks {
+    pub(super) fn cycle(
+        &mut self,
+        state: &RobotState,
+        record: Option<&Record>,
+        external: &JointVector,
+    ) {
+        let time = state.message_id;
+        for i in 0..7 {
+            let joint = Some(i as u8 + 1);
+            let at = |value: f64| Peak {
+                joint,
+                value: value.abs(),
+                time,
+            };
+            larger(&mut self.external_torque, at(external[i]));
+            // The reference is zero outside target control.
+            if let Some(record) = record.filter(|r| r.goal != 0 && r.q_ref != [0.0; 7]) {
+                larger(&mut self.following_error, at(record.q_ref[i] - state.q[i]));
+            }
+        }
+        let [x, y, z, ..] = state.O_F_ext_hat_K;
+        let value = nalgebra::Vector3::new(x, y, z).norm();
+        larger(
+            &mut self.force,
+            Peak {
+                joint: None,
+                value,
+                time,
+            },
+        );
+    }
+}
+
+/// Speeds of the end effector, `[m/s]`, `[rad/s]`.
+fn speeds(model: &Model, state: &RobotState) -> (f64, f64) {
+    let ee = EndEffector {
+        f_t_ee: nalgebra::Matrix4::from_column_slice(&state.F_T_EE),
+        ..EndEffector::default()
+    };
+    let jacobian = model.zero_jacobian(Frame::EndEffector, &state.q.into(), &ee);
+    let twist = jacobian * JointVector::from(state.dq);
+    (
+        twist.fixed_rows::<3>(0).norm(),
+        twist.fixed_rows::<3>(3).norm(),
+    )
+}
+
+fn range_of(model: &Model, approach: &Approach) -> Option<f64> {
+    let i = usize::from(approach.joint?) - 1;
+    let limits = model.joint_limits();
+    Some(limits.upper[i] - limits.lower[i])
+}
+
+/// What is left of the limit, as a share of it.
+fn share(approach: &Approach) -> f64 {
+    approach.margin / approach.limit.abs().max(f64::MIN_POSITIVE)
+}
+
+fn nearer(best: &mut Option<Approach>, new: Approach, by: impl Fn(&Approach) -> f64) {
+    if new.value.is_finite() && best.is_none_or(|best| by(&new) < by(&best)) {
+        *best = Some(new);
+    }
+}
+
+fn larger(best: &mut Option<Peak>, new: Peak) {
+    if new.value.is_finite() && best.is_none_or(|best| new.value > best.value) {
+        *best = Some(new);
+    }
+}

@@ -1,0 +1,173 @@
+//! An explanation as text.
+
+use core::fmt;
+
+use super::place::name;
+use super::{Approach, Explanation, Peak, Place};
+
+impl fmt::Display for Explanation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.cycles == 0 {
+            return write!(f, "no cycle: there is nothing to explain");
+        }
+        let seconds = (self.last - self.first) as f64 * 1e-3;
+        writeln!(
+            f,
+            "{} cycles in {seconds:.3} s, {} to {} ms of the robot's clock",
+            self.cycles, self.first, self.last
+        )?;
+        match &self.cause {
+            Some(cause) => {
+                writeln!(f, "\nWhy the robot stopped at {} ms", self.end)?;
+                for line in cause.text.lines() {
+                    writeln!(f, "  {line}")?;
+                }
+            }
+            None => writeln!(f, "\nThe robot did not stop by itself.")?,
+        }
+        if let Some(place) = &self.contact {
+            writeln!(f, "\nWhat touched the arm")?;
+            write!(f, "{place}")?;
+        }
+        writeln!(f, "\nWhat happened, ms before the end")?;
+        let shown = self.timeline.len().saturating_sub(SHOWN);
+        let left_out = self.moments_left_out + shown as u64;
+        if left_out > 0 {
+            writeln!(f, "  ({left_out} earlier)")?;
+        }
+        for moment in &self.timeline[shown..] {
+            let before = self.end as i128 - i128::from(moment.time);
+            // A text of several lines stays one entry.
+            let text = moment.text.replace('\n', " ");
+            writeln!(f, "  {:>8}  {text}", -before)?;
+        }
+        writeln!(f, "\nNearest to a limit")?;
+        for (what, approach, unit) in [
+            ("position", &self.margins.position, "rad"),
+            ("velocity", &self.margins.velocity, "rad/s"),
+            ("torque", &self.margins.torque, "N·m"),
+            ("translation", &self.margins.translation, "m/s"),
+            ("rotation", &self.margins.rotation, "rad/s"),
+        ] {
+            if let Some(approach) = approach {
+                self.approach(f, what, approach, unit)?;
+            }
+        }
+        writeln!(f, "\nPeaks")?;
+        for (what, peak, unit) in [
+            ("external torque", &self.peaks.external_torque, "N·m"),
+            ("external force", &self.peaks.force, "N"),
+            ("following error", &self.peaks.following_error, "rad"),
+        ] {
+            if let Some(Peak { joint, value, time }) = *peak {
+                let at = self.before(time);
+                writeln!(f, "  {what:<16} {:<14} {value:.3} {unit}, {at}", of(joint))?;
+            }
+        }
+        let lost = &self.lost;
+        if lost.states == 0 {
+            writeln!(f, "\nNo state was lost.")
+        } else {
+            writeln!(
+                f,
+                "\n{} states lost, {} in the last second; most in a row {}, {}",
+                lost.states,
+                lost.in_last_second,
+                lost.most_in_a_row,
+                self.before(lost.most_at)
+            )
+        }
+    }
+}
+
+impl Explanation {
+    fn approach(
+        &self,
+        f: &mut fmt::Formatter<'_>,
+        what: &str,
+        approach: &Approach,
+        unit: &str,
+    ) -> fmt::Result {
+        let Approach {
+            joint,
+            value,
+            limit,
+            margin,
+            time,
+        } = *approach;
+        let passed = if margin < 0.0 { ", beyond it" } else { "" };
+        let at = self.before(time);
+        writeln!(
+            f,
+            "  {what:<16} {:<14} {value:.3} of {limit:.3} {unit}{passed}, {at}",
+            of(joint)
+        )
+    }
+
+    /// `12 ms before the end`.
+    fn before(&self, time: u64) -> String {
+        match self.end as i128 - i128::from(time) {
+            0 => "at the end".to_owned(),
+            before if before > 0 => format!("{before} ms before the end"),
+            before => format!("{} ms after the end", -before),
+        }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(why) = &self.unknown {
+            writeln!(f, "  {why}")?;
+        }
+        if let Some(contact) = &self.contact {
+            let [x, y, z] = contact.point;
+            let [fx, fy, fz] = contact.force;
+            let lead = if self.unknown.is_some() {
+                "likeliest: "
+            } else {
+                ""
+            };
+            writeln!(
+                f,
+                "  {lead}{} ({:.0} %) at {x:.3}, {y:.3}, {z:.3} m, within {:.0} mm",
+                name(contact.body),
+                100.0 * contact.probability,
+                1e3 * contact.spread
+            )?;
+            writeln!(
+                f,
+                "  pushed by {:.1} N: {fx:.1}, {fy:.1}, {fz:.1} N",
+                contact.size()
+            )?;
+            if let Some((body, probability)) = contact.next
+                && probability >= 0.005
+            {
+                writeln!(f, "  or {} ({:.0} %)", name(body), 100.0 * probability)?;
+            }
+        }
+        if self.tared < SHORT {
+            let (tared, tool) = (
+                1e3 * self.tared,
+                if self.has_hand { ", with a Hand" } else { "" },
+            );
+            writeln!(
+                f,
+                "  (the torques of an untouched arm were seen for {tared:.0} ms only{tool})"
+            )?;
+        }
+        Ok(())
+    }
+}
+
+fn of(joint: Option<u8>) -> String {
+    match joint {
+        Some(joint) => format!("joint {joint}"),
+        None => "end effector".to_owned(),
+    }
+}
+
+/// Moments that the report shows, the newest.
+const SHOWN: usize = 40;
+
+/// A tare over less, `[s]`, is worth a remark.
+const SHORT: f64 = 0.2;

@@ -1,0 +1,232 @@
+//! Explanations of states made up. Of a simulated arm that is hit: `tests/lockstep/explain.rs`.
+
+use super::*;
+use crate::HostTime;
+use crate::event::{Ending, Goal, Note, Outcome};
+use franka_proto::{RobotError, RobotMode};
+
+fn state(message_id: u64) -> RobotState {
+    RobotState {
+        message_id,
+        q: franka_model::READY.into(),
+        robot_mode: RobotMode::Move,
+        m_ee: 0.73,
+        F_T_EE: franka_model::layout::pose(&nalgebra::Matrix4::identity()),
+        ..RobotState::default()
+    }
+}
+
+fn explained(states: impl IntoIterator<Item = RobotState>) -> Explanation {
+    let mut explainer = Explainer::new(Model::fr3());
+    for state in states {
+        explainer.push_state(&state);
+    }
+    explainer.finish()
+}
+
+/// Three seconds; a contact and a collision of joint 2 before a reflex at 2500 ms.
+fn hit() -> Vec<RobotState> {
+    (1..=3000)
+        .map(|time| {
+            let mut state = state(time);
+            state.dq[3] = 1e-3 * time as f64 * 0.3;
+            if time >= 2480 {
+                state.joint_contact[1] = 1.0;
+                state.tau_ext_hat_filtered[1] = 2.0 * (time - 2479) as f64;
+            }
+            if time >= 2495 {
+                state.joint_collision[1] = 1.0;
+            }
+            if time >= 2500 {
+                state.reflex_reason = RobotError::JointReflex.into();
+                state.errors = RobotError::JointReflex.into();
+                state.robot_mode = RobotMode::Reflex;
+                state.dq = [0.0; 7];
+            }
+            state
+        })
+        .collect()
+}
+
+#[test]
+fn first_edges_come_in_their_order_and_once() {
+    let explanation = explained(hit());
+    assert_eq!((explanation.end, explanation.cycles), (2500, 3000));
+    let kinds: Vec<_> = explanation
+        .timeline
+        .iter()
+        .map(|moment| (moment.time, moment.kind))
+        .collect();
+    assert_eq!(
+        kinds,
+        [
+            (1, MomentKind::Mode),
+            (2480, MomentKind::Contact),
+            (2495, MomentKind::Collision),
+            (2500, MomentKind::Mode),
+            (2500, MomentKind::Error),
+            (2500, MomentKind::Error),
+        ]
+    );
+    let cause = explanation.cause.expect("a reflex");
+    assert_eq!(cause.errors, RobotError::JointReflex.into());
+    assert!(cause.text.contains("joint_reflex"), "{}", cause.text);
+    // The window ends with the state that shows the reflex, though states go on.
+    let window = &explanation.last_second;
+    assert_eq!(window.first().map(|t| t.time), Some(1501));
+    assert_eq!(window.last().map(|t| t.time), Some(2500));
+}
+
+#[test]
+fn margins_and_peaks_name_joint_value_and_time() {
+    let mut states = hit();
+    let limits = Model::fr3().joint_limits();
+    states[999].q[5] = limits.upper[5] - 0.3;
+    states[1999].tau_J[6] = -11.0;
+    let explanation = explained(states);
+    let position = explanation.margins.position.expect("cycles");
+    assert_eq!((position.joint, position.time), (Some(6), 1000));
+    assert!((position.margin - 0.3).abs() < 1e-12, "{position:?}");
+    let velocity = explanation.margins.velocity.expect("cycles");
+    assert_eq!((velocity.joint, velocity.time), (Some(4), 2499));
+    assert!((velocity.value - 0.7497).abs() < 1e-12, "{velocity:?}");
+    let torque = explanation.margins.torque.expect("cycles");
+    assert_eq!((torque.joint, torque.time), (Some(7), 2000));
+    assert_eq!((torque.limit, torque.margin), (-12.0, 1.0));
+    let external = explanation.peaks.external_torque.expect("cycles");
+    assert_eq!((external.joint, external.time), (Some(2), 3000));
+    assert_eq!(explanation.peaks.following_error, None);
+}
+
+#[test]
+fn lost_states_are_counted_and_placed() {
+    let missing = |time: u64| (100..120).contains(&time) || (2400..2403).contains(&time);
+    let states = hit().into_iter().filter(|s| !missing(s.message_id));
+    let explanation = explained(states);
+    assert_eq!(
+        explanation.lost,
+        Lost {
+            states: 23,
+            most_in_a_row: 20,
+            most_at: 99,
+            in_last_second: 3,
+        }
+    );
+    let losses = explanation
+        .timeline
+        .iter()
+        .filter(|m| m.kind == MomentKind::Loss);
+    assert_eq!(losses.count(), 2);
+}
+
+#[test]
+fn events_tell_goals_and_the_diagnosis() {
+    let cycles = hit().into_iter().map(|state| {
+        let mut record = Record::default();
+        record.time = state.message_id;
+        record.goal = 7;
+        record.q_ref = state.q;
+        record.q_ref[2] += 0.02;
+        Cycle {
+            record,
+            state,
+            ..Cycle::default()
+        }
+    });
+    let event = |robot_time, kind| Event {
+        time: HostTime::default(),
+        robot_time,
+        kind,
+    };
+    let goal = Goal {
+        number: 7,
+        kind: "move_to".into(),
+        ..Goal::default()
+    };
+    let outcome = Outcome {
+        goal: 7,
+        ending: Ending::Reflex,
+        text: "reflex".into(),
+        duration: None,
+    };
+    let diagnosis = crate::event::Diagnosis {
+        text: "joint 2: external torque".into(),
+        ..Default::default()
+    };
+    let note = Note {
+        text: "a remark".into(),
+        ..Note::default()
+    };
+    let events = [
+        event(1, EventKind::Goal(goal)),
+        event(2501, EventKind::Outcome(outcome)),
+        event(2502, EventKind::Diagnosis(diagnosis)),
+        event(1200, EventKind::Note(note)),
+    ];
+    let explanation = Explanation::of(cycles.clone(), &events, Model::fr3());
+    let goals: Vec<_> = explanation
+        .timeline
+        .iter()
+        .filter(|moment| moment.kind == MomentKind::Goal)
+        .map(|moment| moment.text.as_str())
+        .collect();
+    assert_eq!(goals, ["move_to", "reflex: reflex"]);
+    let cause = explanation.cause.as_ref().expect("a reflex");
+    assert_eq!(cause.text, "joint 2: external torque");
+    let error = explanation.peaks.following_error.expect("a reference");
+    assert_eq!(error.joint, Some(3));
+    assert!((error.value - 0.02).abs() < 1e-12);
+    assert!(explanation.to_string().contains("a remark"));
+    // Without events the goal is seen in the records.
+    let explanation = Explanation::of(cycles, &[], Model::fr3());
+    assert!(explanation.to_string().contains("goal 7 begins"));
+}
+
+#[test]
+fn nothing_and_odd_numbers_are_taken() {
+    assert!(explained([]).to_string().contains("nothing to explain"));
+    assert!(explained([]).figure().contains("no cycles"));
+    let mut odd = state(1);
+    odd.q = [f64::NAN; 7];
+    odd.dq = [f64::INFINITY; 7];
+    odd.tau_J = [f64::NAN; 7];
+    odd.tau_ext_hat_filtered = [f64::NAN; 7];
+    let again = RobotState {
+        message_id: 1,
+        ..odd
+    };
+    let late = RobotState {
+        message_id: u64::MAX,
+        ..odd
+    };
+    let explanation = explained([odd, again, late]);
+    assert_eq!(explanation.cycles, 2);
+    let text = explanation.to_string();
+    assert!(text.contains("not finite"), "{text}");
+    assert!(explanation.figure().ends_with("</svg>"));
+}
+
+#[test]
+fn memory_is_bounded() {
+    let states = (1..=20_000).map(|i| {
+        // Mode and losses change all the time.
+        let mut state = state(i * 300);
+        if i % 2 == 0 {
+            state.robot_mode = RobotMode::Idle;
+        }
+        state
+    });
+    let explanation = explained(states);
+    assert_eq!(explanation.timeline.len(), MOMENTS_MAX);
+    assert_eq!(explanation.moments_left_out, 20_000 + 19_999 - 500);
+    assert!(explanation.last_second.len() <= 1000);
+}
+
+#[test]
+fn an_explanation_is_saved_and_read() {
+    let explanation = explained(hit());
+    let text = serde_json::to_string(&explanation).expect("plain data");
+    let read: Explanation = serde_json::from_str(&text).expect("what was written");
+    assert_eq!(read.timeline, explanation.timeline);
+    assert_eq!(read.figure(), explanation.figure());
+}

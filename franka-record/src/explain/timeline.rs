@@ -1,0 +1,203 @@
+//! What changed from cycle to cycle.
+
+use franka_proto::{Errors, RobotMode, RobotState};
+use franka_rt::driver::Record;
+use franka_rt::session::Guard;
+
+use super::MOMENTS_MAX;
+use crate::{Event, EventKind};
+
+/// Something that happened, and when.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Moment {
+    /// The cycle, `[ms]` of the robot's clock.
+    pub time: u64,
+    /// What kind of thing.
+    pub kind: MomentKind,
+    /// What, in words.
+    pub text: String,
+}
+
+/// Kinds of [`Moment`]s.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum MomentKind {
+    /// A goal was given, began or ended.
+    Goal,
+    /// The robot's mode changed.
+    Mode,
+    /// An external torque or force passed its lower threshold.
+    Contact,
+    /// And its upper one.
+    Collision,
+    /// Errors came or went.
+    Error,
+    /// A guard of the driver began to bind.
+    Guard,
+    /// States were lost.
+    Loss,
+    /// Anything else that was recorded.
+    Note,
+}
+
+/// Notes changes. What comes and goes is noted when it comes, and again if it had been gone for
+/// [`PAUSE`].
+#[derive(Clone, Debug, Default)]
+pub(super) struct Timeline {
+    moments: Vec<Moment>,
+    left_out: u64,
+    mode: Option<RobotMode>,
+    errors: Errors,
+    reflex_reason: Errors,
+    goal: u64,
+    /// Flags of joints and axes, and of guards: when each was last set.
+    contacts: [Option<u64>; AXES],
+    collisions: [Option<u64>; AXES],
+    guards: [Option<u64>; Guard::ALL.len()],
+    last_loss: Option<u64>,
+    /// Whether goals are told by events.
+    has_goals: bool,
+}
+
+impl Timeline {
+    pub(super) fn cycle(&mut self, state: &RobotState, record: Option<&Record>, lost: u64) {
+        let time = state.message_id;
+        if lost > 0 && appears(&mut self.last_loss, time) {
+            let text = format!("{lost} states lost before this one");
+            self.add(time, MomentKind::Loss, text);
+        }
+        if self.mode != Some(state.robot_mode) {
+            let text = match self.mode {
+                Some(mode) => format!("mode {mode} -> {}", state.robot_mode),
+                None => format!("mode {}", state.robot_mode),
+            };
+            self.mode = Some(state.robot_mode);
+            self.add(time, MomentKind::Mode, text);
+        }
+        self.flags(state);
+        if self.reflex_reason != state.reflex_reason {
+            self.reflex_reason = state.reflex_reason;
+            if !state.reflex_reason.is_empty() {
+                let text = format!("the robot ends the motion: {}", state.reflex_reason);
+                self.add(time, MomentKind::Error, text);
+            }
+        }
+        if self.errors != state.errors {
+            self.errors = state.errors;
+            let text = if state.errors.is_empty() {
+                "no error any more".to_owned()
+            } else {
+                format!("errors {}", state.errors)
+            };
+            self.add(time, MomentKind::Error, text);
+        }
+        if let Some(record) = record {
+            self.driver(record);
+        }
+    }
+
+    fn flags(&mut self, state: &RobotState) {
+        let time = state.message_id;
+        let flags = |joints: &[f64; 7], axes: &[f64; 6]| -> [bool; AXES] {
+            std::array::from_fn(|i| if i < 7 { joints[i] } else { axes[i - 7] } != 0.0)
+        };
+        let load = |i: usize| match i {
+            0..7 => state.tau_ext_hat_filtered[i],
+            _ => state.K_F_ext_hat_K[i - 7],
+        };
+        let contacts = flags(&state.joint_contact, &state.cartesian_contact);
+        let collisions = flags(&state.joint_collision, &state.cartesian_collision);
+        for (i, (name, unit)) in NAMES.into_iter().enumerate() {
+            if contacts[i] && appears(&mut self.contacts[i], time) {
+                let text = format!("contact of {name}, {:.1} {unit}", load(i));
+                self.add(time, MomentKind::Contact, text);
+            }
+            if collisions[i] && appears(&mut self.collisions[i], time) {
+                let text = format!("collision of {name}, {:.1} {unit}", load(i));
+                self.add(time, MomentKind::Collision, text);
+            }
+        }
+    }
+
+    fn driver(&mut self, record: &Record) {
+        let time = record.time;
+        if self.goal != record.goal {
+            self.goal = record.goal;
+            if record.goal != 0 && !self.has_goals {
+                self.add(
+                    time,
+                    MomentKind::Goal,
+                    format!("goal {} begins", record.goal),
+                );
+            }
+        }
+        for (i, guard) in Guard::ALL.into_iter().enumerate() {
+            if record.bindings.contains(guard) && appears(&mut self.guards[i], time) {
+                self.add(time, MomentKind::Guard, format!("{guard:?} binds"));
+            }
+        }
+    }
+
+    pub(super) fn event(&mut self, event: &Event) {
+        let kind = match &event.kind {
+            EventKind::Goal(_) | EventKind::Outcome(_) => MomentKind::Goal,
+            EventKind::LinkLost { .. } | EventKind::LinkRestored { .. } => MomentKind::Loss,
+            // Seen in the cycles, or told apart.
+            EventKind::Mode { .. } | EventKind::Errors { .. } | EventKind::Diagnosis(_) => return,
+            _ => MomentKind::Note,
+        };
+        if kind == MomentKind::Goal && !self.has_goals {
+            self.has_goals = true;
+            self.moments
+                .retain(|moment| moment.kind != MomentKind::Goal);
+        }
+        self.add(event.robot_time, kind, event.kind.to_string());
+    }
+
+    pub(super) fn add(&mut self, time: u64, kind: MomentKind, text: String) {
+        // Events come after the cycles: room is made for them at the expense of the oldest.
+        if self.moments.len() >= 2 * MOMENTS_MAX {
+            self.left_out += 1;
+            self.moments.remove(0);
+        }
+        self.moments.push(Moment { time, kind, text });
+    }
+
+    /// The newest moments, oldest first, and how many there were besides.
+    pub(super) fn finish(mut self) -> (Vec<Moment>, u64) {
+        self.moments.sort_by_key(|moment| moment.time);
+        let surplus = self.moments.len().saturating_sub(MOMENTS_MAX);
+        self.moments.drain(..surplus);
+        (self.moments, self.left_out + surplus as u64)
+    }
+}
+
+/// Whether something that is there now had been gone for a while, or never been there.
+fn appears(last: &mut Option<u64>, now: u64) -> bool {
+    let before = last.replace(now);
+    before.is_none_or(|before| now > before + PAUSE)
+}
+
+/// `[ms]`
+const PAUSE: u64 = 200;
+
+/// Joints, and axes of the stiffness frame.
+const AXES: usize = 13;
+
+const NAMES: [(&str, &str); AXES] = [
+    ("joint 1", "N·m"),
+    ("joint 2", "N·m"),
+    ("joint 3", "N·m"),
+    ("joint 4", "N·m"),
+    ("joint 5", "N·m"),
+    ("joint 6", "N·m"),
+    ("joint 7", "N·m"),
+    ("the end effector along x", "N"),
+    ("the end effector along y", "N"),
+    ("the end effector along z", "N"),
+    ("the end effector about x", "N·m"),
+    ("the end effector about y", "N·m"),
+    ("the end effector about z", "N·m"),
+];
