@@ -21,6 +21,7 @@ use crate::{Cycle, Event, EventKind, GripperState, HostTime};
 #[derive(Debug)]
 pub(super) enum Order {
     Attach(Box<(Robot, CycleReader)>),
+    Resume(usize, Box<CycleReader>),
     Event(usize, Box<Event>),
     Gripper(usize, HostTime, GripperState),
     Finish,
@@ -55,6 +56,10 @@ pub(super) struct Drain {
 struct Source {
     label: String,
     cycles: CycleReader,
+    /// Those that come after them, from another control thread.
+    next: Option<CycleReader>,
+    /// Cycles that `cycles` has lost, as far as that was told.
+    lost: u64,
     encoder: Encoder,
     /// What is not a cycle, oldest first, until the cycles before it were taken.
     waiting: Vec<Waiting>,
@@ -122,6 +127,11 @@ impl Drain {
         while let Some(order) = next {
             match order {
                 Order::Attach(attached) => self.attach(*attached),
+                Order::Resume(robot, cycles) => {
+                    if let Some(source) = self.sources.get_mut(robot) {
+                        source.next = Some(*cycles);
+                    }
+                }
                 Order::Event(robot, event) => self.wait(robot, Waiting::Event(*event)),
                 Order::Gripper(robot, time, state) => {
                     self.wait(robot, Waiting::Gripper(time, state));
@@ -141,6 +151,8 @@ impl Drain {
         self.sources.push(Source {
             label: robot.label().to_owned(),
             cycles,
+            next: None,
+            lost: 0,
             encoder: Encoder::new(self.sources.len(), &robot),
             waiting: Vec::new(),
             messages: Vec::new(),
@@ -171,6 +183,7 @@ impl Drain {
                 };
                 source.pass(cycle.time, &mut self.files);
                 taken += 1;
+                source.lost += captured.lost;
                 let missing = self.files.take_missing(index);
                 dropped += missing + captured.lost;
                 if missing + captured.lost > 0 {
@@ -183,6 +196,10 @@ impl Drain {
                 }
                 source.encoder.cycle(cycle, &mut source.messages);
                 self.files.pass(&mut source.messages);
+            }
+            if let Some(next) = source.next.take_if(|_| source.cycles.waiting() == 0) {
+                dropped += source.note_end(self.clock.now(), &mut self.files);
+                (source.cycles, source.lost) = (next, 0);
             }
             // What is newer than a cycle that is still on its way is close to it.
             source.pass(self.clock.now(), &mut self.files);
@@ -213,7 +230,8 @@ impl Drain {
         for (index, source) in self.sources.iter_mut().enumerate() {
             source.pass(HostTime::from_nanos(u64::MAX), &mut self.files);
             let missing = self.files.take_missing(index);
-            lock(&self.status).dropped += missing;
+            let lost = source.note_end(self.clock.now(), &mut self.files);
+            lock(&self.status).dropped += missing + lost;
         }
         self.files.finish();
         lock(&self.status).ended = true;
@@ -243,6 +261,15 @@ impl Source {
             }
             files.pass(&mut self.messages);
         }
+    }
+
+    /// Tells of the cycles that were lost after the last one that came, and returns how many.
+    fn note_end(&mut self, time: HostTime, files: &mut Files) -> u64 {
+        let cycles = self.cycles.lost() - self.lost;
+        if cycles > 0 {
+            self.event(time, EventKind::Dropped { cycles }, files);
+        }
+        cycles
     }
 
     fn event(&mut self, time: HostTime, kind: EventKind, files: &mut Files) {

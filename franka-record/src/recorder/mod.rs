@@ -235,8 +235,8 @@ pub struct RecordStatus {
     pub black_box_error: Option<RecordError>,
 }
 
-/// Takes what is not a cycle of one robot. A cheap handle; none of its methods waits: what there is
-/// no room for is dropped and counted.
+/// Takes what is not a cycle of one robot. A cheap handle; none of its methods waits, but for
+/// [`Self::resume`]: what there is no room for is dropped and counted.
 #[derive(Clone, Debug)]
 pub struct RecordHandle {
     orders: SyncSender<Order>,
@@ -249,6 +249,15 @@ impl RecordHandle {
     /// The clock of recorded time.
     pub fn clock(&self) -> RecordClock {
         self.clock
+    }
+
+    /// Goes on with the cycles of another control thread of the same robot, when all of the one
+    /// before were taken: after a reconnect. Waits while there is no room for an order.
+    pub fn resume(&self, cycles: CycleReader) {
+        // Fails when the recording has ended.
+        let _ = self
+            .orders
+            .send(Order::Resume(self.robot, Box::new(cycles)));
     }
 
     /// Records that something happens now.
