@@ -26,6 +26,8 @@ use tokio_util::sync::CancellationToken;
 use crate::close::Closing;
 use crate::codec::{self, Frame, MessageCodec};
 use crate::error::CommandError;
+#[cfg(feature = "record")]
+use crate::journal::{Journal, What};
 use crate::newest_state::Newest;
 
 /// Requests that may wait for the task. A caller beyond that waits for room.
@@ -42,6 +44,8 @@ pub(crate) struct Channel {
     /// Unbounded, and yet bounded: two requests per motion, and motions follow one another.
     motions: mpsc::UnboundedSender<QueuedRequest>,
     closing: Closing,
+    #[cfg(feature = "record")]
+    journal: Journal,
 }
 
 /// The task itself, owned by the bridge.
@@ -135,8 +139,17 @@ impl Channel {
             calls,
             motions,
             closing,
+            #[cfg(feature = "record")]
+            journal: Journal::default(),
         };
         (channel, Connection { task, close }, inbox)
+    }
+
+    /// Has it write requests and their answers there.
+    #[cfg(feature = "record")]
+    pub(crate) fn with_journal(mut self, journal: Journal) -> Self {
+        self.journal = journal;
+        self
     }
 
     /// Sends a request and waits for its answer.
@@ -148,6 +161,17 @@ impl Channel {
         request: Request,
         deadline: Duration,
     ) -> Result<Response, CommandError> {
+        let answered = self.ask(request, deadline).await;
+        #[cfg(feature = "record")]
+        self.journal.write(|| {
+            let error = answered.as_ref().err().map(ToString::to_string);
+            let request = Box::new(request);
+            Some(What::Answered { request, error })
+        });
+        answered
+    }
+
+    async fn ask(&self, request: Request, deadline: Duration) -> Result<Response, CommandError> {
         let (answer, answered) = oneshot::channel();
         let call = QueuedRequest {
             request,

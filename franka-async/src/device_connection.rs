@@ -26,6 +26,8 @@ use crate::dial::{TCP_TIMEOUT, dial, resolve};
 use crate::endpoint::Endpoint;
 use crate::error::{ActionError, ConnectError};
 use crate::handshake::shake_hands;
+#[cfg(feature = "record")]
+use crate::journal::{ActionEnd, Journal, What};
 use crate::states::States;
 
 /// States read ahead of an answer, at most.
@@ -46,6 +48,14 @@ pub(crate) trait Device: for<'a> Protocol<Reply<'a> = Reply> + Default {
 
     /// The device's clock, `[ms]`.
     fn clock(state: &Self::State) -> u32;
+
+    /// What a journal has of an action that has ended.
+    #[cfg(feature = "record")]
+    fn ended(request: Self::Request, ended: ActionEnd) -> What;
+
+    /// What a journal has of a state.
+    #[cfg(feature = "record")]
+    fn seen(state: Self::State) -> What;
 }
 
 impl Device for gripper::Version {
@@ -61,6 +71,16 @@ impl Device for gripper::Version {
     fn clock(state: &gripper::State) -> u32 {
         state.message_id
     }
+
+    #[cfg(feature = "record")]
+    fn ended(request: gripper::Request, ended: ActionEnd) -> What {
+        What::Hand { request, ended }
+    }
+
+    #[cfg(feature = "record")]
+    fn seen(state: gripper::State) -> What {
+        What::HandState(state)
+    }
 }
 
 impl Device for vacuum::Version {
@@ -75,6 +95,16 @@ impl Device for vacuum::Version {
 
     fn clock(state: &vacuum::State) -> u32 {
         state.message_id
+    }
+
+    #[cfg(feature = "record")]
+    fn ended(request: vacuum::Request, ended: ActionEnd) -> What {
+        What::Vacuum { request, ended }
+    }
+
+    #[cfg(feature = "record")]
+    fn seen(state: vacuum::State) -> What {
+        What::VacuumState(state)
     }
 }
 
@@ -96,6 +126,8 @@ pub(crate) struct DeviceConnection<D: Device> {
     calls: mpsc::UnboundedSender<QueuedAction<D>>,
     states: watch::Receiver<D::State>,
     closing: Closing,
+    #[cfg(feature = "record")]
+    journal: Journal,
 }
 
 impl<D: Device> Clone for DeviceConnection<D> {
@@ -105,6 +137,8 @@ impl<D: Device> Clone for DeviceConnection<D> {
             calls: self.calls.clone(),
             states: self.states.clone(),
             closing: self.closing.clone(),
+            #[cfg(feature = "record")]
+            journal: self.journal.clone(),
         }
     }
 }
@@ -140,6 +174,8 @@ where
             .await
             .unwrap_or(Err(ConnectError::NoState))?;
 
+        #[cfg(feature = "record")]
+        let journal = Journal::default();
         let (states, published) = watch::channel(first);
         let (calls, queue) = mpsc::unbounded_channel();
         let closing = Closing::default();
@@ -151,6 +187,8 @@ where
             states,
             running: None,
             waiting: HashMap::new(),
+            #[cfg(feature = "record")]
+            journal: journal.clone(),
         };
         tokio::spawn(task.run(queue, closing.clone()));
         Ok(Self {
@@ -158,6 +196,8 @@ where
             calls,
             states: published,
             closing,
+            #[cfg(feature = "record")]
+            journal,
         })
     }
 
@@ -173,11 +213,29 @@ where
         States::new(self.states.clone(), self.closing.clone())
     }
 
+    /// Where it writes the actions that have ended.
+    #[cfg(feature = "record")]
+    pub(crate) fn journal(&self) -> &Journal {
+        &self.journal
+    }
+
     /// Sends a request and waits for the end of its action.
     ///
     /// # Cancel safety
     /// The action is stopped, unless a newer one has taken its place.
     pub(crate) async fn act(&self, request: D::Request) -> ActionResult<D> {
+        #[cfg(feature = "record")]
+        let asked = request.clone();
+        let ended = self.ask(request).await;
+        #[cfg(feature = "record")]
+        self.journal.write(|| {
+            let ended = ended.as_ref().map(|done| *done);
+            Some(D::ended(asked, ended.map_err(ToString::to_string)))
+        });
+        ended
+    }
+
+    async fn ask(&self, request: D::Request) -> ActionResult<D> {
         let (answer, answered) = oneshot::channel();
         if self.calls.send(QueuedAction { request, answer }).is_err() {
             return Err(self.closed());
@@ -217,6 +275,8 @@ struct DeviceTask<D: Device> {
     running: Option<(CommandId, ActionReply<D>)>,
     /// Stops, and actions in whose place others came.
     waiting: HashMap<CommandId, ActionReply<D>>,
+    #[cfg(feature = "record")]
+    journal: Journal,
 }
 
 impl<D: Device> DeviceTask<D> {
@@ -318,6 +378,8 @@ impl<D: Device> DeviceTask<D> {
                 let newest = D::clock(&self.states.borrow());
                 if D::clock(&state).wrapping_sub(newest) <= u32::MAX / 2 {
                     self.states.send_replace(state);
+                    #[cfg(feature = "record")]
+                    self.journal.write(|| Some(D::seen(state)));
                 }
             }
             Err(error) => tracing::debug!(%error, "an invalid state datagram"),

@@ -5,6 +5,8 @@ use std::net::SocketAddr;
 use crate::device_connection::DeviceConnection;
 use crate::endpoint::Endpoint;
 use crate::error::{ConnectError, GripperError};
+#[cfg(feature = "record")]
+use crate::journal::Journal;
 use crate::states::States;
 use franka_proto::gripper::{Grasp, Move, Request, State, Version};
 
@@ -43,6 +45,11 @@ impl Gripper {
     /// Where the Hand is.
     pub fn address(&self) -> SocketAddr {
         self.connection.address()
+    }
+
+    #[cfg(feature = "record")]
+    pub(crate) fn journal(&self) -> &Journal {
+        self.connection.journal()
     }
 
     /// The newest state.

@@ -103,6 +103,12 @@ impl Waiting {
         self.lock().replace(Box::new(motion)).is_none()
     }
 
+    /// What `look` returns of the motion that waits, if one does.
+    #[cfg(feature = "record")]
+    pub(crate) fn peek<T>(&self, look: impl FnOnce(&Beginning) -> T) -> Option<T> {
+        self.lock().as_deref().map(look)
+    }
+
     pub(crate) fn take(&self) -> Option<Beginning> {
         self.lock().take().map(|motion| *motion)
     }

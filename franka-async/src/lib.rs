@@ -337,6 +337,7 @@
 //! | [`model`] | kinematics, dynamics, limits, inverse kinematics |
 //! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control is |
 //! | [`record`] | what every cycle saw and did |
+//! | `recording` | all of that, and what was asked of the robot, in files (feature `record`) |
 //! | `metrics` | statistics as OpenMetrics text (feature `metrics`) |
 //! | `blocking` | programs without async (feature `blocking`) |
 //!
@@ -390,6 +391,8 @@ pub mod gripper;
 mod handshake;
 pub mod identify;
 mod input;
+#[cfg(feature = "record")]
+mod journal;
 mod link;
 #[cfg(feature = "metrics")]
 pub mod metrics;
@@ -408,6 +411,8 @@ mod publish;
 pub mod realtime;
 mod reconnect;
 pub mod record;
+#[cfg(feature = "record")]
+pub mod recording;
 mod robot;
 mod session;
 pub mod settings;

@@ -67,6 +67,8 @@ pub(crate) async fn open(
     );
     let (channel, connection, reports) =
         Channel::start(session.stream, session.session, newest.clone());
+    #[cfg(feature = "record")]
+    let channel = channel.with_journal(supervisor.journal());
     let course = Course::new(session.references);
     let thresholds = Thresholds::default();
     let stats = session.handle.stats.clone();

@@ -125,7 +125,11 @@ impl Robot {
     /// # Errors
     /// [`AttachError`]: a capacity out of range, as many readers as there can be, no connection.
     pub fn cycles(&self, capacity: usize) -> Result<CycleReader, AttachError> {
-        self.link().cycles.attach(capacity)
+        let link = self.link();
+        if link.has_ended() {
+            return Err(AttachError::Ended);
+        }
+        link.cycles.attach(capacity)
     }
 
     /// The measured pose of the end effector, `O_T_EE` of the newest state.

@@ -6,6 +6,8 @@ use std::time::Duration;
 use crate::device_connection::DeviceConnection;
 use crate::endpoint::Endpoint;
 use crate::error::{ConnectError, VacuumGripperError};
+#[cfg(feature = "record")]
+use crate::journal::Journal;
 use crate::states::States;
 use franka_proto::vacuum::{Request, State, Vacuum, Version};
 
@@ -33,6 +35,11 @@ impl VacuumGripper {
     /// Where the gripper is.
     pub fn address(&self) -> SocketAddr {
         self.connection.address()
+    }
+
+    #[cfg(feature = "record")]
+    pub(crate) fn journal(&self) -> &Journal {
+        self.connection.journal()
     }
 
     /// The newest state.

@@ -29,6 +29,7 @@ mod peer;
 mod raising;
 mod reacting;
 mod reading;
+mod recording;
 mod scripts;
 mod stalls;
 mod starving;

@@ -23,6 +23,8 @@ use tokio::time::Instant;
 
 use crate::close::Closing;
 use crate::input::{Beginning, Input, Replies};
+#[cfg(feature = "record")]
+use crate::journal::{Journal, What};
 use crate::link::Link;
 #[cfg(feature = "metrics")]
 use crate::tally::Tally;
@@ -62,6 +64,8 @@ struct Inner {
     health: Option<watch::Sender<Health>>,
     #[cfg(feature = "metrics")]
     tally: Tally,
+    #[cfg(feature = "record")]
+    journal: Journal,
 }
 
 /// A motion that waits until the robot is ready.
@@ -98,6 +102,8 @@ impl Supervisor {
                 health: Some(health),
                 #[cfg(feature = "metrics")]
                 tally: Tally::default(),
+                #[cfg(feature = "record")]
+                journal: Journal::default(),
             }),
             health: shown,
             closing: Closing::default(),
@@ -137,6 +143,12 @@ impl Supervisor {
         self.health.clone()
     }
 
+    /// Where it writes what is asked of the robot and what happens to it.
+    #[cfg(feature = "record")]
+    pub(crate) fn journal(&self) -> Journal {
+        self.lock().journal.clone()
+    }
+
     /// What happened so far, counted.
     #[cfg(feature = "metrics")]
     pub(crate) fn tally(&self) -> Tally {
@@ -152,6 +164,10 @@ impl Supervisor {
     ) -> bool {
         self.with(|inner, now| {
             inner.link = Arc::downgrade(link);
+            #[cfg(feature = "record")]
+            inner
+                .journal
+                .write(|| Some(What::Connected(link.cycles.clone())));
             inner.core.on_connected(state, refusals, now)
         })
     }
@@ -182,7 +198,11 @@ impl Supervisor {
     }
 
     pub(crate) fn on_ended(&self, goal: GoalId, outcome: &Outcome) {
-        self.with(|inner, now| inner.core.on_ended(goal, outcome, now));
+        self.with(|inner, now| {
+            #[cfg(feature = "record")]
+            inner.journal.ended(goal, outcome);
+            inner.core.on_ended(goal, outcome, now);
+        });
     }
 
     pub(crate) fn on_time(&self) {
@@ -258,6 +278,8 @@ impl Inner {
     }
 
     fn pass(&mut self, input: Input, link: &Link, now: Duration) {
+        #[cfg(feature = "record")]
+        self.journal.asked(&input);
         let input = match input {
             Input::Begin { motion, replies } => {
                 match self.core.submit(&motion.motion, now) {
@@ -358,6 +380,8 @@ impl Inner {
     }
 
     fn refuse(&mut self, motion: Beginning, replies: Replies, error: MotionError) {
+        #[cfg(feature = "record")]
+        self.journal.ended(motion.motion.id(), &Err(error.clone()));
         self.refused.push(Refused {
             motion,
             replies,
@@ -416,6 +440,8 @@ impl Inner {
     fn tell(&mut self, event: Event, closing: &Closing) {
         #[cfg(feature = "metrics")]
         self.tally.note(&event.kind);
+        #[cfg(feature = "record")]
+        self.journal.write(|| Some(What::Event(event.clone())));
         let reason = match &event.kind {
             EventKind::Closed { reason } => Some(reason.clone()),
             _ => None,

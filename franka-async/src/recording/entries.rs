@@ -1,0 +1,185 @@
+//! The thread that makes words of what journals say.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{self, Receiver, SyncSender};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+
+use franka_record::event::Level;
+use franka_record::recorder::{RecordError, RecordHandle};
+use franka_record::{EventKind, GripperState};
+
+use super::{Track, words};
+use crate::journal::{Entry, Journal, Reader, What};
+
+/// Entries that may wait for the thread.
+const ENTRIES: usize = 4096;
+
+/// The robots of a recording, by what names their journals.
+type Tracks = BTreeMap<usize, Recorded>;
+
+/// A robot of a recording.
+#[derive(Debug)]
+pub(super) struct Recorded {
+    pub(super) handle: RecordHandle,
+    pub(super) track: Track,
+}
+
+/// The way to the thread. Dropping it ends the thread, which is not waited for.
+#[derive(Debug)]
+pub(super) struct EntryQueue {
+    entries: SyncSender<(usize, Entry)>,
+    shared: Arc<Shared>,
+    /// Counts the entries for which there was no room.
+    lost: Arc<AtomicU64>,
+    thread: Option<JoinHandle<()>>,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    tracks: Mutex<Tracks>,
+    /// Whether the thread is to end when it has nothing to do.
+    ending: AtomicBool,
+}
+
+impl EntryQueue {
+    pub(super) fn start() -> Result<Self, RecordError> {
+        let (entries, queue) = mpsc::sync_channel(ENTRIES);
+        let shared = Arc::<Shared>::default();
+        let of_thread = shared.clone();
+        let thread = thread::Builder::new()
+            .name("franka-entries".into())
+            .spawn(move || of_thread.write(&queue))
+            .map_err(|source| RecordError::Thread {
+                source: Arc::new(source),
+            })?;
+        Ok(Self {
+            entries,
+            shared,
+            lost: Arc::default(),
+            thread: Some(thread),
+        })
+    }
+
+    /// Has everything that is written to `journal` from now on go to the track `id`.
+    pub(super) fn read(&self, journal: &Journal, id: usize) {
+        journal.read(Reader {
+            track: id,
+            entries: self.entries.clone(),
+            lost: self.lost.clone(),
+        });
+    }
+
+    /// Looks at the tracks or changes them. The thread waits meanwhile.
+    pub(super) fn with<T>(&self, act: impl FnOnce(&mut Tracks) -> T) -> T {
+        self.shared.with(act)
+    }
+
+    /// Records `event`, after what journals have said before the call: of the robot of this name,
+    /// or of all.
+    pub(super) fn tell(&self, name: Option<&str>, event: &EventKind) {
+        let wanted = |(id, recorded): (&usize, &Recorded)| {
+            let is_wanted = name.is_none_or(|name| name == recorded.track.name);
+            is_wanted.then_some(*id)
+        };
+        let ids: Vec<_> = self.with(|tracks| tracks.iter().filter_map(wanted).collect());
+        for id in ids {
+            let entry = Entry::now(What::Told(Box::new(event.clone())));
+            if self.entries.try_send((id, entry)).is_err() {
+                self.lost.fetch_add(1, Ordering::Relaxed);
+            }
+        }
+    }
+
+    /// Entries for which there was no room.
+    pub(super) fn lost(&self) -> u64 {
+        self.lost.load(Ordering::Relaxed)
+    }
+
+    /// Waits until everything that was written before the call is passed on, and ends the thread.
+    /// Returns how many entries were lost.
+    pub(super) fn finish(mut self) -> u64 {
+        let end = (usize::MAX, Entry::now(What::End));
+        let sent = self.entries.send(end);
+        if let Some(thread) = self.thread.take()
+            && (sent.is_err() || thread.join().is_err())
+        {
+            tracing::error!("the thread that records events has panicked");
+        }
+        self.lost()
+    }
+}
+
+impl Drop for EntryQueue {
+    fn drop(&mut self) {
+        // Relaxed: the entry below, or those that fill the queue, wake the thread, which looks
+        // again after each.
+        self.shared.ending.store(true, Ordering::Relaxed);
+        let _ = self.entries.try_send((usize::MAX, Entry::now(What::End)));
+    }
+}
+
+impl Shared {
+    fn with<T>(&self, act: impl FnOnce(&mut Tracks) -> T) -> T {
+        // A panic in there leaves a track more or less.
+        act(&mut self.tracks.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Passes entries on until the end of them.
+    fn write(&self, queue: &Receiver<(usize, Entry)>) {
+        while let Ok((id, entry)) = queue.recv() {
+            if matches!(entry.what, What::End) {
+                break;
+            }
+            self.with(|tracks| {
+                if let Some(recorded) = tracks.get(&id) {
+                    recorded.write(entry);
+                }
+            });
+            if self.ending.load(Ordering::Relaxed) {
+                break;
+            }
+        }
+    }
+}
+
+impl Recorded {
+    fn write(&self, Entry { at, what }: Entry) {
+        let time = self.handle.clock().at(at);
+        let event = match what {
+            What::Goal(given) => words::goal(&given),
+            What::Ended { goal, outcome } => {
+                self.handle.event_at(time, words::outcome(goal, &outcome));
+                match words::diagnosis(goal, &outcome) {
+                    Some(diagnosis) => diagnosis,
+                    None => return,
+                }
+            }
+            What::Event(event) => match words::happening(&event) {
+                Some(event) => event,
+                None => return,
+            },
+            What::Connected(feed) => match feed.attach(self.track.capacity) {
+                Ok(cycles) => return self.handle.resume(cycles),
+                Err(error) => {
+                    let text = format!("cycles of the new connection are not recorded: {error}");
+                    words::note(Level::Error, "recorder", text)
+                }
+            },
+            What::Answered { request, error } => words::request(&request, error),
+            What::Hand { request, ended } => words::hand(&request, ended),
+            What::Vacuum { request, ended } => words::vacuum(&request, ended),
+            What::HandState(state) => {
+                return self.handle.gripper_at(time, GripperState::Hand(state));
+            }
+            What::VacuumState(state) => {
+                return self.handle.gripper_at(time, GripperState::Vacuum(state));
+            }
+            What::Remark(text) => words::note(Level::Info, "program", text),
+            What::Told(event) => *event,
+            What::End => return,
+        };
+        self.handle.event_at(time, event);
+    }
+}

@@ -1,0 +1,289 @@
+//! Recordings of robots: every cycle, what was asked of them and what came of it, in files that
+//! viewers open.
+//!
+//! ```text
+//! control thread --ring--------------+
+//! goals, outcomes, events, requests -+--> Recorder (ordinary threads) --> MCAP file, black box
+//! gripper: actions, states ----------+
+//! ```
+//!
+//! ```no_run
+//! use franka_async::recording::{RecordOptions, Recorder, Track};
+//! # use franka_async::Robot;
+//!
+//! # async fn run(robot: Robot) -> Result<(), Box<dyn std::error::Error>> {
+//! let recorder = Recorder::to_file("run.mcap", RecordOptions::default())?;
+//! recorder.attach(&robot, Track::default()).await?;
+//! robot.move_joints([0.0, -0.8, 0.0, -2.4, 0.0, 1.6, 0.8]).await?;
+//! let status = recorder.finish()?;
+//! println!("{} cycles, {} dropped", status.cycles, status.dropped);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! No task of a runtime is on the way of a cycle into the file, and nothing that the recorder does
+//! can delay one. What there is no room for is dropped, counted, and the count written down.
+
+mod entries;
+mod words;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use franka_model::RobotKind;
+use franka_record::event::{EventKind, Level};
+use franka_record::recorder;
+use franka_rt::thread::{AttachError, CycleFeed};
+
+pub use franka_record::recorder::{
+    Attachment, BlackBox, RecordError, RecordOptions, RecordStatus, Rotation,
+};
+
+use crate::gripper::Gripper;
+use crate::journal::Journal;
+use crate::robot::Robot;
+use crate::team::Team;
+use crate::vacuum::VacuumGripper;
+use entries::{EntryQueue, Recorded};
+
+/// Records robots to files, or the last seconds before an incident, or both.
+///
+/// It records the robots that are [attached](Self::attach), until it is finished or dropped or they
+/// are gone; a supervised robot also after it was reconnected to. Dropping it ends the recording in
+/// the background, perhaps without the newest events; a motion under way goes on.
+#[derive(Debug)]
+pub struct Recorder {
+    entries: EntryQueue,
+    inner: recorder::Recorder,
+    next: AtomicUsize,
+}
+
+/// How a robot is recorded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Track {
+    /// Its name in the recording: letters, digits, `-` and `_`; empty by default, which does for
+    /// the only robot of a recording.
+    pub name: String,
+    /// Whether the metadata has the robot's network address; off by default, as recordings are
+    /// passed on.
+    pub with_address: bool,
+    /// Cycles that may wait for the recorder: 4 s of them by default.
+    pub capacity: usize,
+}
+
+impl Default for Track {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            with_address: false,
+            capacity: CycleFeed::<()>::DEFAULT_CAPACITY,
+        }
+    }
+}
+
+impl Track {
+    /// The default, called `name`.
+    pub fn named(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..Self::default()
+        }
+    }
+}
+
+/// Caller or host: a robot or an end effector is not recorded.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TrackError {
+    /// The control thread gives no cycles.
+    #[error(transparent)]
+    Cycles(#[from] AttachError),
+    /// The recorder does not take it.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// An end effector is to be recorded with a robot that is not.
+    #[error("no robot called {name:?} is attached to the recorder")]
+    Unknown {
+        /// The name that was given.
+        name: String,
+    },
+}
+
+impl Recorder {
+    /// Begins a recording in a new file at `path`.
+    ///
+    /// # Errors
+    /// [`RecordError`]: there is such a file, its folder is missing or read-only, an option is out
+    /// of range, no thread can be started.
+    pub fn to_file(path: impl AsRef<Path>, options: RecordOptions) -> Result<Self, RecordError> {
+        Self::around(recorder::Recorder::to_file(path, options)?)
+    }
+
+    /// Keeps the last seconds in memory only, and writes them to a file when a motion ends by a
+    /// reflex, by a lost link or by a guard.
+    ///
+    /// # Errors
+    /// As [`Self::to_file`].
+    pub fn black_box(black_box: BlackBox) -> Result<Self, RecordError> {
+        Self::around(recorder::Recorder::black_box(black_box)?)
+    }
+
+    fn around(inner: recorder::Recorder) -> Result<Self, RecordError> {
+        Ok(Self {
+            entries: EntryQueue::start()?,
+            inner,
+            next: AtomicUsize::new(0),
+        })
+    }
+
+    /// Records this robot from now on: every cycle, goals and how they end, with the diagnosis of a
+    /// reflex, events of its supervision, and requests, whichever handle they come from. The
+    /// description of a Franka Research 3 is asked for and attached to the file.
+    ///
+    /// # Errors
+    /// [`TrackError`]: there is a robot of that name, the recording has ended, the robot has as
+    /// many readers as it can have or no connection.
+    ///
+    /// # Cancel safety
+    /// Nothing is recorded if the future is dropped.
+    pub async fn attach(&self, robot: &Robot, track: Track) -> Result<(), TrackError> {
+        // Without a description the recording is as good, but for viewers of the arm.
+        let urdf = match robot.model().kind() {
+            RobotKind::Fer => Ok(String::new()),
+            _ => robot.urdf().await,
+        };
+        let refused = urdf.as_ref().err().map(ToString::to_string);
+        let described = recorder::Robot {
+            name: track.name.clone(),
+            kind: robot.model().kind(),
+            urdf: urdf.ok().filter(|text| !text.is_empty()),
+            metadata: metadata(robot, &track),
+        };
+        let id = self.next.fetch_add(1, Ordering::Relaxed);
+        self.entries.with(|tracks| {
+            // Entries of this id wait until the lock is free. A connection that is made after this
+            // line is told by one.
+            self.entries.read(&robot.supervisor().journal(), id);
+            let cycles = robot.cycles(track.capacity)?;
+            let handle = self.inner.attach(described, cycles)?;
+            if let Some(refused) = refused {
+                let text = format!("without a description of the robot: {refused}");
+                handle.event(words::note(Level::Warning, "recorder", text));
+            }
+            tracks.insert(id, Recorded { handle, track });
+            Ok(())
+        })
+    }
+
+    /// Records the arms of a team, each as [`Self::attach`] does, and which member each is.
+    ///
+    /// # Errors
+    /// As [`Self::attach`]. Members before the one that it is about are attached.
+    ///
+    /// # Cancel safety
+    /// Dropping the future leaves members attached.
+    pub async fn attach_team<const N: usize>(
+        &self,
+        team: &Team<N>,
+        tracks: [Track; N],
+    ) -> Result<(), TrackError> {
+        let names = tracks.each_ref().map(|track| track.name.clone());
+        for (member, (arm, track)) in team.arms().iter().zip(tracks).enumerate() {
+            let name = track.name.clone();
+            self.attach(arm.robot(), track).await?;
+            let text = format!("member {member} of the team of {}", names.join(", "));
+            let note = words::note(Level::Info, "team", text);
+            self.entries.tell(Some(&name), &note);
+        }
+        Ok(())
+    }
+
+    /// Records a Franka Hand with the robot of this name: its states, and actions when they have
+    /// ended.
+    ///
+    /// # Errors
+    /// [`TrackError::Unknown`].
+    pub fn attach_gripper(&self, gripper: &Gripper, robot: &str) -> Result<(), TrackError> {
+        self.attach_device(gripper.journal(), robot)
+    }
+
+    /// Records a vacuum gripper with the robot of this name, as [`Self::attach_gripper`] does.
+    ///
+    /// # Errors
+    /// [`TrackError::Unknown`].
+    pub fn attach_vacuum_gripper(
+        &self,
+        gripper: &VacuumGripper,
+        robot: &str,
+    ) -> Result<(), TrackError> {
+        self.attach_device(gripper.journal(), robot)
+    }
+
+    fn attach_device(&self, journal: &Journal, robot: &str) -> Result<(), TrackError> {
+        let id = self.entries.with(|tracks| {
+            let mut tracks = tracks.iter();
+            let found = tracks.find(|(_, recorded)| recorded.track.name == robot);
+            found.map(|(id, _)| *id)
+        });
+        let id = id.ok_or_else(|| TrackError::Unknown { name: robot.into() })?;
+        self.entries.read(journal, id);
+        Ok(())
+    }
+
+    /// Records a remark, for all robots.
+    pub fn note(&self, text: impl Into<String>) {
+        let note = words::note(Level::Info, "program", text.into());
+        self.entries.tell(None, &note);
+    }
+
+    /// Records that an episode begins: its name, and what is to be done.
+    pub fn begin_episode(&self, name: impl Into<String>, task: impl Into<String>) {
+        let (name, task) = (name.into(), task.into());
+        let begin = EventKind::EpisodeStart { name, task };
+        self.entries.tell(None, &begin);
+    }
+
+    /// Records that the episode ends, and whether the task was done, if somebody judged that.
+    pub fn end_episode(&self, success: Option<bool>) {
+        self.entries.tell(None, &EventKind::EpisodeEnd { success });
+    }
+
+    /// What was recorded so far, and what has failed.
+    pub fn status(&self) -> RecordStatus {
+        let mut status = self.inner.status();
+        status.events_dropped += self.entries.lost();
+        status
+    }
+
+    /// Ends the recording and waits, 10 s at most, until all of it is on the disk: what has
+    /// happened before the call is in it. Blocks: from async code, call it by
+    /// [`tokio::task::spawn_blocking`] where other tasks must not wait.
+    ///
+    /// # Errors
+    /// [`RecordError`] if the files could not be written to their end. What was written is
+    /// readable.
+    pub fn finish(self) -> Result<RecordStatus, RecordError> {
+        let Self { entries, inner, .. } = self;
+        let lost = entries.finish();
+        let mut status = inner.finish()?;
+        status.events_dropped += lost;
+        Ok(status)
+    }
+}
+
+fn metadata(robot: &Robot, track: &Track) -> BTreeMap<String, String> {
+    let granted = robot.granted();
+    let refusals: Vec<_> = granted.refusals.iter().map(ToString::to_string).collect();
+    let priority = granted.priority.map(|priority| priority.to_string());
+    let mut metadata = BTreeMap::from([
+        ("driver".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
+        ("protocol".to_owned(), robot.version().number().to_string()),
+        ("priority".to_owned(), priority.unwrap_or("none".to_owned())),
+        ("realtime_refused".to_owned(), refusals.join("; ")),
+    ]);
+    if track.with_address {
+        metadata.insert("address".to_owned(), robot.address().to_string());
+    }
+    metadata
+}
