@@ -103,9 +103,11 @@ fn date(days: u64) -> (u64, u64, u64) {
 /// One cycle: a state of the robot, and what the driver made of it.
 ///
 /// Read back from a file, numbers have the precision of an `f32`, but for times and measured joint
-/// positions; the accelerometers, `O_ddP_O` and the commanded quantities of Cartesian motions
-/// (`O_T_EE_c`, `elbow_c` and so on) are not recorded and have their defaults. A pose that is not a
-/// rigid transformation reads as the identity.
+/// positions. `K_F_ext_hat_K` and `elbow` are computed from the rest. Not recorded, so that they
+/// have their defaults, are the derivatives of the torques (`dtau_J`), the motors (`theta`,
+/// `dtheta`), the accelerometers, `O_ddP_O` and the commanded quantities of Cartesian motions
+/// (`O_T_EE_c`, `elbow_c` and so on). A pose that is not a rigid transformation reads as the
+/// identity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cycle {
     /// When this host received the state.

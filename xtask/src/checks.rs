@@ -8,7 +8,7 @@ use clap::ValueEnum;
 
 use crate::step::{Outcome, Steps};
 use crate::workspace::Workspace;
-use crate::{circles, mujoco, names, package, peers, realtime, tidy};
+use crate::{circles, mujoco, names, package, peers, realtime, recordings, tidy};
 
 /// A step that can be chosen with `--only`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -35,6 +35,8 @@ pub(crate) enum Check {
     Peers,
     /// The Python package: its tests and types.
     Python,
+    /// Recordings, read by the standard reader in Python.
+    Recordings,
 }
 
 /// Runs the chosen steps, or all if none is chosen, up to the first failure.
@@ -64,6 +66,7 @@ impl Check {
             Self::Bare => ("bare", "without features, and without the standard library"),
             Self::Peers => ("peers", "other clients against the simulator"),
             Self::Python => ("python", "the Python package: its tests and types"),
+            Self::Recordings => ("recordings", "recordings read by the standard reader"),
         }
     }
 
@@ -107,6 +110,7 @@ impl Check {
             }
             Self::Peers => return peers::run(workspace),
             Self::Python => return package::run(workspace),
+            Self::Recordings => return recordings::run(workspace),
         }
         Ok(Outcome::Passed)
     }

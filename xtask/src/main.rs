@@ -28,6 +28,7 @@ mod package;
 mod peers;
 mod python;
 mod realtime;
+mod recordings;
 mod step;
 mod tidy;
 mod workspace;

@@ -2,6 +2,7 @@
 
 use core::time::Duration;
 
+use franka_model::transform;
 use franka_proto::{ControllerMode, Errors, MotionGeneratorMode, RobotMode, RobotState};
 use franka_rt::driver::Activity;
 use franka_rt::session::{Bindings, Guard};
@@ -34,14 +35,9 @@ impl franka::Cycle {
         self.q.extend(record.q);
         put(&mut self.dq, &record.dq);
         put(&mut self.tau_j, &state.tau_J);
-        put(&mut self.dtau_j, &state.dtau_J);
         put(&mut self.tau_ext, &state.tau_ext_hat_filtered);
         put(&mut self.o_f_ext, &state.O_F_ext_hat_K);
-        put(&mut self.k_f_ext, &state.K_F_ext_hat_K);
         self.o_t_ee = pose_of(&state.O_T_EE);
-        put(&mut self.theta, &state.theta);
-        put(&mut self.dtheta, &state.dtheta);
-        put(&mut self.elbow, &state.elbow);
 
         put_levels(&mut self.joint_contact, &state.joint_contact);
         put_levels(&mut self.joint_collision, &state.joint_collision);
@@ -91,6 +87,7 @@ impl franka::Cycle {
         if let Some(tool) = tool {
             tool.apply(&mut cycle.state);
         }
+        derive(&mut cycle.state);
         cycle
     }
 
@@ -143,14 +140,9 @@ impl franka::Cycle {
         state.q = get_exact(&self.q);
         state.dq = get(&self.dq);
         state.tau_J = get(&self.tau_j);
-        state.dtau_J = get(&self.dtau_j);
         state.tau_ext_hat_filtered = get(&self.tau_ext);
         state.O_F_ext_hat_K = get(&self.o_f_ext);
-        state.K_F_ext_hat_K = get(&self.k_f_ext);
         state.O_T_EE = matrix_of(self.o_t_ee.as_ref());
-        state.theta = get(&self.theta);
-        state.dtheta = get(&self.dtheta);
-        state.elbow = get(&self.elbow);
         state.joint_contact = get_levels(&self.joint_contact);
         state.joint_collision = get_levels(&self.joint_collision);
         state.cartesian_contact = get_levels(&self.cartesian_contact);
@@ -209,6 +201,18 @@ impl franka::Tool {
         state.I_load = get_exact(&self.i_load);
         state.F_x_Cload = get_exact(&self.f_x_cload);
     }
+}
+
+/// Fills in what follows from the rest.
+fn derive(state: &mut RobotState) {
+    let pose = |matrix| transform::isometry_from_array(matrix).unwrap_or_default();
+    let stiffness = pose(&state.O_T_EE).rotation * pose(&state.EE_T_K).rotation;
+    let [x, y, z, a, b, c] = state.O_F_ext_hat_K;
+    let force: [f64; 3] = stiffness.inverse_transform_vector(&[x, y, z].into()).into();
+    let torque: [f64; 3] = stiffness.inverse_transform_vector(&[a, b, c].into()).into();
+    state.K_F_ext_hat_K[..3].copy_from_slice(&force);
+    state.K_F_ext_hat_K[3..].copy_from_slice(&torque);
+    state.elbow = [state.q[2], if state.q[3] < 0.0 { -1.0 } else { 1.0 }];
 }
 
 fn activity(activity: Activity) -> franka::Activity {
@@ -355,10 +359,7 @@ mod tests {
             &mut record.tau_c,
             &mut record.compensation,
             &mut state.tau_J,
-            &mut state.dtau_J,
             &mut state.tau_ext_hat_filtered,
-            &mut state.theta,
-            &mut state.dtheta,
             &mut state.q_d,
             &mut state.dq_d,
             &mut state.ddq_d,
@@ -366,16 +367,13 @@ mod tests {
         ] {
             *field = seven();
         }
-        for field in [
-            &mut state.O_F_ext_hat_K,
-            &mut state.K_F_ext_hat_K,
-            &mut state.O_dP_EE_d,
-        ] {
+        for field in [&mut state.O_F_ext_hat_K, &mut state.O_dP_EE_d] {
             *field = core::array::from_fn(|_| number());
         }
         state.O_T_EE[12..15].copy_from_slice(&[0.5, -0.25, 0.75]);
         state.O_T_EE_d[12..15].copy_from_slice(&[1.5, -1.25, 1.75]);
-        state.elbow = [0.5, -1.0];
+        state.K_F_ext_hat_K = state.O_F_ext_hat_K;
+        state.elbow = [state.q[2], -1.0];
         state.joint_contact[2] = 1.0;
         state.joint_collision[3] = 1.0;
         state.cartesian_contact[4] = 1.0;
@@ -410,7 +408,8 @@ mod tests {
 
     #[test]
     fn a_cycle_without_numbers_survives() {
-        let cycle = Cycle::default();
+        let mut cycle = Cycle::default();
+        cycle.state.elbow = [0.0, 1.0];
         let mut message = franka::Cycle::default();
         message.set(&cycle);
         assert_eq!(message.to_cycle(None), cycle);

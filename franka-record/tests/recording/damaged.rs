@@ -12,6 +12,7 @@ use franka_record::recording::ReadError;
 use rand::rngs::SmallRng;
 use rand::{Rng as _, SeedableRng as _};
 
+use crate::any_bytes;
 use crate::feed::{Arm, Scratch, quick};
 
 /// A short recording, and where its chunks end.
@@ -209,3 +210,34 @@ const CYCLES: usize = 500;
 
 /// Names the file to the process that is to be killed.
 const CHILD: &str = "FRANKA_RECORD_CHILD";
+
+#[test]
+fn any_bytes_are_read_without_a_panic() {
+    let mut random = SmallRng::seed_from_u64(21);
+    for (name, seed) in any_bytes::seeds() {
+        let recording = Recording::from_bytes(seed.clone()).unwrap();
+        assert_eq!(recording.damage(), None, "{name}");
+        let robot = recording.robot("").unwrap();
+        assert_eq!((robot.cycles().count(), robot.events().count()), (1, 1));
+        for _ in 0..5000 {
+            let mut bytes = seed.clone();
+            // The index at the end is checked by a sum: without it, the chunks are gone through.
+            if random.random_bool(0.5) {
+                bytes.truncate(random.random_range(8..bytes.len()));
+            }
+            for _ in 0..random.random_range(1..6) {
+                let at = random.random_range(8..bytes.len().max(9));
+                let Some(byte) = bytes.get_mut(at) else {
+                    continue;
+                };
+                *byte = match random.random_range(0..4) {
+                    0 => 0,
+                    1 => 0xff,
+                    2 => random.random(),
+                    _ => *byte ^ (1 << random.random_range(0..8)),
+                };
+            }
+            any_bytes::read(&bytes);
+        }
+    }
+}

@@ -9,6 +9,7 @@ use franka_proto::{RobotMode, RobotState, Version};
 use franka_record::recorder::{RecordHandle, RecordOptions, Recorder, Robot};
 use franka_rt::driver::{Activity, Record};
 use franka_rt::thread::{CycleFeed, CyclePublisher, cycle_feed};
+use nalgebra::Isometry3;
 
 /// A robot that moves in a circle and feeds a recorder.
 pub(crate) struct Arm {
@@ -99,6 +100,7 @@ impl Arm {
         record.errors = state.errors;
         record.reflex_reason = state.reflex_reason;
         record.goal = 1;
+        record.pose_target = Some(Isometry3::translation(0.5, 0.1, 0.4));
         record.q = state.q;
         record.dq = state.dq;
         record.q_ref = state.q;

@@ -20,6 +20,7 @@
 //! | [`inverse`] | all postures of a pose, joint velocities in a box |
 //! | [`model`] | the five quantities of a law, one by one and in one pass |
 //! | [`otg`] | a new target for axes in motion |
+//! | [`record`] | bytes and processor time of a recording, in virtual time |
 //! | [`shape`] | filter, limiter and check of torques and of a pose |
 //! | [`sim`] | the simulator under target control, in virtual time |
 //! | [`supervisor`] | how soon a supervised robot takes motions again, over sockets |
@@ -35,6 +36,7 @@ pub mod guarded;
 pub mod inverse;
 pub mod model;
 pub mod otg;
+pub mod record;
 pub mod shape;
 pub mod sim;
 mod subject;

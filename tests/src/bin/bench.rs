@@ -28,6 +28,18 @@ fn main() -> ExitCode {
         println!("{FOLLOW} {lag:.2}");
         json[FOLLOW] = lag.into();
     }
+    if RECORD.starts_with(&prefix) || prefix.starts_with(RECORD) {
+        let cost = bench::record::record(1.0, false, &env::temp_dir());
+        let mut put = |name: &str, value: f64| {
+            println!("{RECORD}{name:<21} {value:>9.2}");
+            json[format!("{RECORD}{name}")] = value.into();
+        };
+        put("bytes_per_cycle", cost.bytes_per_cycle);
+        put("dropped", cost.dropped as f64);
+        if let Some(percent) = cost.cpu_percent {
+            put("cpu_percent", percent);
+        }
+    }
     if let Err(error) = fs::write(&output, format!("{json:#}\n")) {
         eprintln!("cannot write {output}: {error}");
         return ExitCode::FAILURE;
@@ -38,6 +50,9 @@ fn main() -> ExitCode {
 
 /// Key of the lag behind a target that moves, `[ms]`: the same in every round.
 const FOLLOW: &str = "follow.lag_ms_constant_velocity";
+
+/// First part of the keys of a recording of one minute: bytes, and percent of one core at 1 kHz.
+const RECORD: &str = "record.";
 
 /// Enough for a median that two disturbed rounds do not change.
 const ROUNDS: usize = 15;

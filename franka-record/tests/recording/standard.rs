@@ -1,0 +1,54 @@
+//! Recordings read by the standard reader in Python.
+
+use std::path::Path;
+use std::process::Command;
+
+use franka_model::RobotKind;
+use franka_proto::gripper;
+use franka_record::recorder::{Recorder, Robot};
+use franka_record::{GripperState, Recording};
+
+use crate::feed::{Arm, Scratch, quick};
+
+#[test]
+#[ignore = "needs Python with mcap: `cargo xtask test --only recordings` has it"]
+fn python_decodes_every_message_of_both_robots() {
+    let interpreter = std::env::var_os(PYTHON).expect("the interpreter is named");
+    let scratch = Scratch::new();
+    let mut paths = Vec::new();
+    for kind in RobotKind::ALL {
+        let path = scratch.path(&format!("{kind:?}.mcap"));
+        let recorder = Recorder::to_file(&path, quick()).unwrap();
+        let mut robot = Robot::new(kind);
+        robot.urdf = Some("<robot name=\"made up\"/>".to_owned());
+        let (mut arm, handle) = Arm::attach(&recorder, robot);
+        handle.note("begun");
+        handle.gripper(GripperState::Hand(gripper::State::default()));
+        arm.run(&recorder, CYCLES);
+        recorder.finish().unwrap();
+        paths.push(path);
+    }
+    // One that was cut and recovered is like any other.
+    let bytes = std::fs::read(&paths[0]).unwrap();
+    let cut = scratch.path("cut.mcap");
+    std::fs::write(&cut, &bytes[..bytes.len() - 40]).unwrap();
+    let recovered = scratch.path("recovered.mcap");
+    let recovery = Recording::recover(&cut, &recovered).unwrap();
+    assert!(recovery.damage.is_some());
+    paths.push(recovered);
+
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/decode.py");
+    let mut decode = Command::new(interpreter);
+    decode.arg(script).arg(CYCLES.to_string()).args(&paths);
+    let output = decode.output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}{errors}");
+    assert_eq!(said.matches("ok ").count(), paths.len(), "{said}");
+    print!("{said}");
+}
+
+const CYCLES: u64 = 5000;
+
+/// Names the interpreter that has the packages.
+const PYTHON: &str = "FRANKA_RECORD_PYTHON";

@@ -1,0 +1,57 @@
+//! The layout for Foxglove names what a recording has.
+
+use franka_record::schema::{Message as _, franka};
+use prost_types::FileDescriptorSet;
+use serde_json::Value;
+
+const LAYOUT: &str = include_str!("../../viewers/foxglove.json");
+
+/// Every text in a JSON value.
+fn texts(value: &Value, found: &mut Vec<String>) {
+    match value {
+        Value::String(text) => found.push(text.clone()),
+        Value::Array(values) => values.iter().for_each(|value| texts(value, found)),
+        Value::Object(fields) => {
+            found.extend(fields.keys().cloned());
+            fields.values().for_each(|value| texts(value, found));
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn the_layout_names_only_channels_and_fields_that_exist() {
+    let layout: Value = serde_json::from_str(LAYOUT).unwrap();
+    let mut all = Vec::new();
+    texts(&layout, &mut all);
+    let descriptors = FileDescriptorSet::decode(franka_record::schema::DESCRIPTORS).unwrap();
+    let messages = descriptors.file.iter().flat_map(|file| &file.message_type);
+    let cycle = messages
+        .clone()
+        .find(|message| message.name() == "Cycle")
+        .unwrap();
+    assert!(franka::Cycle::default().q.is_empty());
+    let (mut paths, mut topics) = (0, 0);
+    for text in all.iter().filter(|text| text.starts_with('/')) {
+        let (topic, path) = text.split_once('.').unwrap_or((text, ""));
+        let known = ["/cycle", "/target", "/scene", "/log"];
+        assert!(known.contains(&topic), "{text}");
+        topics += 1;
+        if !path.is_empty() {
+            let field = path.split('[').next().unwrap();
+            assert!(
+                cycle.field.iter().any(|known| known.name() == field),
+                "{text}"
+            );
+            paths += 1;
+        }
+    }
+    assert!(topics >= 10 && paths >= 9, "{topics}, {paths}");
+    // Each panel of the layout is described, and each description is shown.
+    let panels = layout["configById"].as_object().unwrap();
+    let mut shown = Vec::new();
+    texts(&layout["layout"], &mut shown);
+    for panel in panels.keys() {
+        assert!(shown.contains(panel), "{panel}");
+    }
+}
