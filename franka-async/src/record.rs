@@ -3,6 +3,8 @@
 //! log that an error carries.
 
 pub use franka_proto::RobotCommand;
-pub use franka_rt::driver::{Activity, ControlLog, LogEntry, Record};
+pub use franka_rt::driver::{
+    Activity, Column, ColumnKind, ColumnSource, ControlLog, LogEntry, Record,
+};
 pub use franka_rt::session::{Bindings, Guard};
 pub use franka_rt::thread::{AttachError, CapturedCycle, CycleFeed, CycleReader};

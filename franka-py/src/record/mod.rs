@@ -6,7 +6,6 @@
 //!  Robot::records ------task--> Table of cycles ---+
 //! ```
 
-mod columns;
 mod rows;
 mod table;
 
@@ -14,7 +13,7 @@ use std::pin::pin;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use franka_async::record::Record;
+use franka_async::record::{Column, Record};
 use futures::{Stream, StreamExt};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -26,9 +25,8 @@ use crate::device::at_least_zero;
 use crate::operation::Operation;
 use crate::robot::Robot;
 use crate::runtime;
-use columns::{COLUMNS, Column, Seen, Source, find};
 use rows::{Cut, Tables};
-use table::Table;
+use table::{Seen, Source, Table};
 
 #[pymethods]
 impl Robot {
@@ -40,8 +38,8 @@ impl Robot {
         let mut chosen = Vec::with_capacity(columns.len());
         // The time of each row is there in any case.
         for name in columns.iter().filter(|name| *name != "time") {
-            let column = find(name).ok_or_else(|| {
-                let known: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
+            let column = Column::find(name).ok_or_else(|| {
+                let known: Vec<&str> = Column::all().iter().map(|column| column.name).collect();
                 let known = known.join(", ");
                 let expected = format!("expected some of time, {known}");
                 PyValueError::new_err(format!("got the column {name:?}, {expected}"))
@@ -65,7 +63,7 @@ impl Robot {
 pub(crate) fn record_columns(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let all = PyDict::new(py);
     all.set_item("time", ("s", PyTuple::empty(py)))?;
-    for column in &COLUMNS {
+    for column in Column::all() {
         let shape = PyTuple::new(py, column.shape)?;
         all.set_item(column.name, (column.unit, shape))?;
     }
@@ -193,7 +191,7 @@ impl Recording {
         let of = |source: Source| {
             let columns = self.columns.iter().copied();
             columns
-                .filter(|column| column.source() == source)
+                .filter(|column| Source::of(column) == source)
                 .collect::<Vec<_>>()
         };
         let (of_state, of_cycle) = (of(Source::State), of(Source::Cycle));

@@ -3,12 +3,12 @@
 use std::cmp::Ordering;
 use std::sync::MutexGuard;
 
+use franka_async::record::{Column, ColumnKind};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyAny, PyDict};
 
-use super::columns::{Column, Kind, Source};
-use super::table::Table;
+use super::table::{Source, Table};
 use crate::arrays::array;
 
 /// That of the states, and that of the control thread's cycles.
@@ -90,18 +90,18 @@ impl Cut<'_> {
             let names = names.join(", ");
             PyKeyError::new_err(format!("{name:?} is not recorded, but time, {names}"))
         })?;
-        let source = column.source() as usize;
+        let source = Source::of(column) as usize;
         let values = self.tables.0[source].values(column, &self.rows[source]);
         let mut shape = vec![self.len()];
         shape.extend(column.shape);
         let shaped = |array: Bound<'py, PyAny>| array.call_method1("reshape", (shape,));
         match column.kind {
-            Kind::Float => shaped(array(py, &values).into_any()),
-            Kind::Count => shaped(array(py, &values).call_method1("astype", ("int64",))?),
-            Kind::Flag => shaped(array(py, &values).call_method1("astype", ("bool",))?),
-            Kind::Name(named) => {
-                let names = values.iter().map(|value| named(*value as usize));
-                let names: Vec<String> = names.collect();
+            ColumnKind::Float => shaped(array(py, &values).into_any()),
+            ColumnKind::Count => shaped(array(py, &values).call_method1("astype", ("int64",))?),
+            ColumnKind::Flag => shaped(array(py, &values).call_method1("astype", ("bool",))?),
+            ColumnKind::Name(list) => {
+                let named = |value: &f64| list.get(*value as usize).copied().unwrap_or_default();
+                let names: Vec<&str> = values.iter().map(named).collect();
                 let options = PyDict::new(py);
                 options.set_item("dtype", "U")?;
                 py.import("numpy")?

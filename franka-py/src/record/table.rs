@@ -1,6 +1,48 @@
 //! Rows of numbers by the robot's time, as they come.
 
-use super::columns::{Column, Seen};
+use franka_async::record::{Column, ColumnSource, Record};
+use franka_async::state::RobotState;
+
+/// Which table a column is in.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Source {
+    State,
+    Cycle,
+}
+
+impl Source {
+    pub(super) fn of(column: &Column) -> Self {
+        match column.source {
+            ColumnSource::State(_) => Self::State,
+            ColumnSource::Record(_) => Self::Cycle,
+        }
+    }
+}
+
+/// One cycle, as the robot or as the control thread has it.
+pub(super) enum Seen {
+    State(Box<RobotState>),
+    Cycle(Box<Record>),
+}
+
+impl Seen {
+    /// `message_id` of the state.
+    fn time(&self) -> u64 {
+        match self {
+            Self::State(state) => state.message_id,
+            Self::Cycle(record) => record.time,
+        }
+    }
+
+    /// Appends what a column is in this cycle.
+    fn append(&self, column: &Column, row: &mut Vec<f64>) {
+        match (column.source, self) {
+            (ColumnSource::State(read), Self::State(state)) => read(state, row),
+            (ColumnSource::Record(read), Self::Cycle(record)) => read(record, row),
+            _ => unreachable!("tables have columns of one source"),
+        }
+    }
+}
 
 /// Rows of some columns, each with the `message_id` of its state; in the order of time.
 pub(super) struct Table {
@@ -47,7 +89,7 @@ impl Table {
         self.times.push(time);
         let block = self.blocks.last_mut().expect("just made");
         for column in &self.columns {
-            column.append(seen, block);
+            seen.append(column, block);
         }
     }
 

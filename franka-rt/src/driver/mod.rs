@@ -31,6 +31,7 @@
 //! elsewhere.
 
 mod aftermath;
+mod columns;
 mod commander;
 mod event;
 mod link_timeout;
@@ -54,6 +55,7 @@ use crate::stats::MotionStatistics;
 use crate::team::MemberFault;
 use crate::together::Gate;
 
+pub use columns::{Column, ColumnKind, ColumnSource};
 pub use commander::Commander;
 pub use event::{Ended, Ending, Event};
 pub use link_timeout::{LINK_TIMEOUT, LinkTimeout, LinkTimeoutError};

@@ -1,0 +1,390 @@
+//! The table of what can be told of a cycle by name: names, units and shapes, for every recording.
+
+use franka_proto::{RobotError, RobotMode, RobotState};
+
+use super::record::Record;
+use crate::session::Guard;
+
+/// One quantity of every cycle, of the state or of the control thread's record.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct Column {
+    /// Its name: that of the field of the state or record, in most cases.
+    pub name: &'static str,
+    /// Its unit; what its numbers are where it has none.
+    pub unit: &'static str,
+    /// The shape of it in one cycle: empty for one number, `[4, 4]` for a pose, row-major.
+    pub shape: &'static [usize],
+    /// What its numbers mean.
+    pub kind: ColumnKind,
+    /// Where it comes from.
+    pub source: ColumnSource,
+}
+
+/// What the numbers of a column mean.
+#[derive(Clone, Copy, Debug)]
+pub enum ColumnKind {
+    /// A measure.
+    Float,
+    /// A whole number.
+    Count,
+    /// 0 or 1.
+    Flag,
+    /// The place of a name in this list; none if it is beyond its end.
+    Name(&'static [&'static str]),
+}
+
+/// Where a column comes from: appends its numbers in a cycle to a row.
+#[derive(Clone, Copy, Debug)]
+pub enum ColumnSource {
+    /// The robot's state.
+    State(fn(&RobotState, &mut Vec<f64>)),
+    /// The control thread's record.
+    Record(fn(&Record, &mut Vec<f64>)),
+}
+
+impl Column {
+    /// All columns. The time of a cycle, the `message_id` of its state, is not among them: every
+    /// recording has it.
+    pub fn all() -> &'static [Self] {
+        &COLUMNS
+    }
+
+    /// The column of this name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        COLUMNS.iter().find(|column| column.name == name)
+    }
+
+    /// How many numbers it has in one cycle.
+    pub fn width(&self) -> usize {
+        self.shape.iter().product()
+    }
+
+    /// Appends its numbers in this cycle to `row`.
+    pub fn append(&self, state: &RobotState, record: &Record, row: &mut Vec<f64>) {
+        match self.source {
+            ColumnSource::State(read) => read(state, row),
+            ColumnSource::Record(read) => read(record, row),
+        }
+    }
+}
+
+const fn column(
+    name: &'static str,
+    shape: &'static [usize],
+    unit: &'static str,
+    kind: ColumnKind,
+    source: ColumnSource,
+) -> Column {
+    Column {
+        name,
+        unit,
+        shape,
+        kind,
+        source,
+    }
+}
+
+/// A field of the state that is a vector.
+macro_rules! vector {
+    ($name:ident, $size:literal, $unit:literal) => {
+        column(
+            stringify!($name),
+            &[$size],
+            $unit,
+            ColumnKind::Float,
+            ColumnSource::State(|state, row| row.extend_from_slice(&state.$name)),
+        )
+    };
+}
+
+/// A field of the state that is a matrix, column-major there and row-major here.
+macro_rules! matrix {
+    ($name:ident, $size:literal, $unit:literal) => {
+        column(
+            stringify!($name),
+            &[$size, $size],
+            $unit,
+            ColumnKind::Float,
+            ColumnSource::State(|state, row| {
+                let entry = |i: usize| state.$name[i % $size * $size + i / $size];
+                row.extend((0..$size * $size).map(entry));
+            }),
+        )
+    };
+}
+
+/// A number of the state.
+macro_rules! number {
+    ($name:ident, $unit:literal) => {
+        column(
+            stringify!($name),
+            &[],
+            $unit,
+            ColumnKind::Float,
+            ColumnSource::State(|state, row| row.push(state.$name)),
+        )
+    };
+}
+
+/// The accelerometers of a side.
+macro_rules! accelerometers {
+    ($name:ident) => {
+        column(
+            stringify!($name),
+            &[6, 3],
+            "m/s^2",
+            ColumnKind::Float,
+            ColumnSource::State(|state, row| {
+                row.extend(state.$name.as_flattened().iter().copied().map(f64::from));
+            }),
+        )
+    };
+}
+
+/// A column of the control thread's record.
+macro_rules! cycle {
+    ($name:literal, $shape:expr, $unit:literal, $kind:expr, $read:expr) => {
+        column($name, $shape, $unit, $kind, ColumnSource::Record($read))
+    };
+}
+
+static COLUMNS: [Column; 65] = [
+    vector!(q, 7, "rad"),
+    vector!(q_d, 7, "rad"),
+    vector!(dq, 7, "rad/s"),
+    vector!(dq_d, 7, "rad/s"),
+    vector!(ddq_d, 7, "rad/s^2"),
+    vector!(theta, 7, "rad"),
+    vector!(dtheta, 7, "rad/s"),
+    vector!(tau_J, 7, "N m"),
+    vector!(tau_J_d, 7, "N m"),
+    vector!(dtau_J, 7, "N m/s"),
+    vector!(tau_ext_hat_filtered, 7, "N m"),
+    vector!(joint_contact, 7, "0 or 1"),
+    vector!(joint_collision, 7, "0 or 1"),
+    vector!(cartesian_contact, 6, "0 or 1"),
+    vector!(cartesian_collision, 6, "0 or 1"),
+    vector!(O_F_ext_hat_K, 6, "N, N m"),
+    vector!(K_F_ext_hat_K, 6, "N, N m"),
+    vector!(O_dP_EE_d, 6, "m/s, rad/s"),
+    vector!(O_dP_EE_c, 6, "m/s, rad/s"),
+    vector!(O_ddP_EE_c, 6, "m/s^2, rad/s^2"),
+    vector!(O_ddP_O, 3, "m/s^2"),
+    vector!(F_x_Cee, 3, "m"),
+    vector!(F_x_Cload, 3, "m"),
+    vector!(elbow, 2, "rad, sign"),
+    vector!(elbow_d, 2, "rad, sign"),
+    vector!(elbow_c, 2, "rad, sign"),
+    vector!(delbow_c, 2, "rad/s, 0"),
+    vector!(ddelbow_c, 2, "rad/s^2, 0"),
+    matrix!(O_T_EE, 4, "m"),
+    matrix!(O_T_EE_d, 4, "m"),
+    matrix!(O_T_EE_c, 4, "m"),
+    matrix!(F_T_EE, 4, "m"),
+    matrix!(F_T_NE, 4, "m"),
+    matrix!(NE_T_EE, 4, "m"),
+    matrix!(EE_T_K, 4, "m"),
+    matrix!(I_ee, 3, "kg m^2"),
+    matrix!(I_load, 3, "kg m^2"),
+    number!(m_ee, "kg"),
+    number!(m_load, "kg"),
+    number!(control_command_success_rate, "0 to 1"),
+    accelerometers!(accelerometer_top),
+    accelerometers!(accelerometer_bottom),
+    column(
+        "robot_mode",
+        &[],
+        "",
+        ColumnKind::Name(&MODES),
+        ColumnSource::State(|state, row| row.push(f64::from(state.robot_mode.byte()))),
+    ),
+    column(
+        "current_errors",
+        &[RobotError::ALL.len()],
+        "errors by index",
+        ColumnKind::Flag,
+        ColumnSource::State(|state, row| {
+            row.extend(RobotError::ALL.map(|error| f64::from(state.errors.contains(error))));
+        }),
+    ),
+    column(
+        "last_motion_errors",
+        &[RobotError::ALL.len()],
+        "errors by index",
+        ColumnKind::Flag,
+        ColumnSource::State(|state, row| {
+            row.extend(RobotError::ALL.map(|error| f64::from(state.reflex_reason.contains(error))));
+        }),
+    ),
+    cycle!("q_ref", &[7], "rad", ColumnKind::Float, |cycle, row| row
+        .extend_from_slice(&cycle.q_ref)),
+    cycle!(
+        "q_target",
+        &[7],
+        "rad, not a number where it heads for a pose or nowhere",
+        ColumnKind::Float,
+        |cycle, row| row.extend(cycle.q_target.unwrap_or([f64::NAN; 7]))
+    ),
+    cycle!("dq_ref", &[7], "rad/s", ColumnKind::Float, |cycle, row| row
+        .extend_from_slice(&cycle.dq_ref)),
+    cycle!(
+        "ddq_ref",
+        &[7],
+        "rad/s^2",
+        ColumnKind::Float,
+        |cycle, row| row.extend_from_slice(&cycle.ddq_ref)
+    ),
+    cycle!("tau_c", &[7], "N m", ColumnKind::Float, |cycle, row| row
+        .extend_from_slice(&cycle.tau_c)),
+    cycle!(
+        "compensation",
+        &[7],
+        "N m",
+        ColumnKind::Float,
+        |cycle, row| row.extend_from_slice(&cycle.compensation)
+    ),
+    cycle!("elapsed", &[], "s", ColumnKind::Float, |cycle, row| row
+        .push(cycle.elapsed.as_secs_f64())),
+    cycle!("remaining", &[], "s", ColumnKind::Float, |cycle, row| row
+        .push(cycle.remaining.as_secs_f64())),
+    cycle!("late", &[], "s", ColumnKind::Float, |cycle, row| row
+        .push(cycle.late.as_secs_f64())),
+    cycle!("turnaround", &[], "s", ColumnKind::Float, |cycle, row| row
+        .push(cycle.turnaround.as_secs_f64())),
+    cycle!(
+        "slack",
+        &[],
+        "s, not a number where no command left",
+        ColumnKind::Float,
+        |cycle, row| row.push(
+            cycle
+                .slack
+                .map_or(f64::NAN, |slack| slack.as_nanos() as f64 * 1e-9)
+        )
+    ),
+    cycle!(
+        "goal",
+        &[],
+        "number of the goal, 0 without one",
+        ColumnKind::Count,
+        |cycle, row| row.push(cycle.goal as f64)
+    ),
+    cycle!("skipped", &[], "states", ColumnKind::Count, |cycle, row| {
+        row.push(cycle.skipped as f64)
+    }),
+    cycle!(
+        "activity",
+        &[],
+        "",
+        ColumnKind::Name(&ACTIVITIES),
+        |cycle, row| row.push(cycle.activity as u8 as f64)
+    ),
+    cycle!(
+        "leash_binds",
+        &[],
+        "",
+        ColumnKind::Flag,
+        |cycle, row| binds(cycle, row, Guard::Leash)
+    ),
+    cycle!(
+        "force_cap_binds",
+        &[],
+        "",
+        ColumnKind::Flag,
+        |cycle, row| binds(cycle, row, Guard::ForceCap)
+    ),
+    cycle!(
+        "torque_clamp_binds",
+        &[],
+        "",
+        ColumnKind::Flag,
+        |cycle, row| { binds(cycle, row, Guard::TorqueClamp) }
+    ),
+    cycle!("velocity_binds", &[], "", ColumnKind::Flag, |cycle, row| {
+        binds(cycle, row, Guard::JointVelocity)
+    }),
+    cycle!(
+        "position_envelope_binds",
+        &[],
+        "",
+        ColumnKind::Flag,
+        |cycle, row| binds(cycle, row, Guard::PositionEnvelope)
+    ),
+    cycle!(
+        "clearance_binds",
+        &[],
+        "",
+        ColumnKind::Flag,
+        |cycle, row| binds(cycle, row, Guard::Clearance)
+    ),
+];
+
+fn binds(cycle: &Record, row: &mut Vec<f64>, guard: Guard) {
+    row.push(f64::from(cycle.bindings.contains(guard)));
+}
+
+/// Names of [`RobotMode`], by their bytes.
+const MODES: [&str; RobotMode::ALL.len()] = [
+    "other",
+    "idle",
+    "move",
+    "guiding",
+    "reflex",
+    "user_stopped",
+    "automatic_error_recovery",
+];
+
+/// Names of [`Activity`](super::Activity), in the order of their declaration.
+const ACTIVITIES: [&str; 6] = [
+    "watching",
+    "armed",
+    "waiting",
+    "running",
+    "finishing",
+    "silent",
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::driver::Activity;
+
+    /// A name without the underscores, in one case.
+    fn plain(name: &str) -> String {
+        name.replace('_', "").to_lowercase()
+    }
+
+    #[test]
+    fn names_are_those_of_the_values() {
+        for mode in RobotMode::ALL {
+            let name = MODES[usize::from(mode.byte())];
+            assert_eq!(plain(name), plain(&format!("{mode:?}")));
+        }
+        for activity in [
+            Activity::Watching,
+            Activity::Armed,
+            Activity::Waiting,
+            Activity::Running,
+            Activity::Finishing,
+            Activity::Silent,
+        ] {
+            let name = ACTIVITIES[activity as usize];
+            assert_eq!(plain(name), plain(&format!("{activity:?}")));
+        }
+    }
+
+    #[test]
+    fn every_column_has_a_name_of_its_own_and_as_many_numbers_as_its_shape() {
+        let (state, record) = (RobotState::default(), Record::default());
+        for column in Column::all() {
+            let mut row = Vec::new();
+            column.append(&state, &record, &mut row);
+            assert_eq!(row.len(), column.width(), "{}", column.name);
+            let same = Column::all().iter().filter(|it| it.name == column.name);
+            assert_eq!(same.count(), 1, "{}", column.name);
+        }
+        assert!(Column::find("q").is_some_and(|q| q.shape == [7] && q.unit == "rad"));
+        assert!(Column::find("time").is_none());
+    }
+}
