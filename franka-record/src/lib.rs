@@ -3,9 +3,9 @@
 
 pub mod cassette;
 mod cycle;
+mod episodes;
 pub mod event;
 pub mod explain;
-#[cfg(feature = "export")]
 pub mod export;
 pub mod recorder;
 pub mod recording;
@@ -13,6 +13,7 @@ mod sample;
 pub mod schema;
 
 pub use cycle::{Cycle, HostTime};
+pub use episodes::{Episode, EpisodeError, Samples};
 pub use event::{Event, EventKind, GripperState};
 pub use recorder::Recorder;
 pub use recording::Recording;

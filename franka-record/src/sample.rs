@@ -1,6 +1,10 @@
 //! What exports and replays read of one cycle.
 
+use franka_model::transform::isometry_from_array;
+use franka_proto::MotionGeneratorMode;
 use nalgebra::Isometry3;
+
+use crate::cycle::Cycle;
 
 /// Arm and gripper in one cycle of a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +27,41 @@ pub struct Sample {
 }
 
 impl Sample {
+    /// What a cycle says of the arm; the gripper is for the caller to add. A pose that is not a
+    /// rigid transformation counts as the identity.
+    pub fn of(cycle: &Cycle) -> Self {
+        let Cycle {
+            record,
+            state,
+            reference,
+            ..
+        } = cycle;
+        let pose = |array| isometry_from_array(array).unwrap_or_default();
+        // No robot can have all joints at zero.
+        let has_targets = record.q_ref != [0.0; 7];
+        let is_commanded = matches!(
+            state.motion_generator_mode,
+            MotionGeneratorMode::JointPosition
+                | MotionGeneratorMode::JointVelocity
+                | MotionGeneratorMode::CartesianPosition
+                | MotionGeneratorMode::CartesianVelocity
+        );
+        let (q_ref, pose_ref) = match (has_targets, is_commanded) {
+            (true, _) => (Some(record.q_ref), *reference),
+            (false, true) => (Some(state.q_d), Some(pose(&state.O_T_EE_d))),
+            (false, false) => (None, None),
+        };
+        Self {
+            time: state.message_id,
+            q: state.q,
+            q_ref,
+            pose: pose(&state.O_T_EE),
+            pose_ref,
+            width: None,
+            width_ref: None,
+        }
+    }
+
     /// The sample between this one and a `later` one, a `share` from 0 to 1 of the way: positions
     /// on the line, rotations on the shorter arc. The finger width is this one's: grippers report
     /// it rarely.

@@ -1,7 +1,10 @@
 //! Why an export fails.
 
+use std::error::Error;
 use std::io;
-use std::path::{Path, PathBuf};
+#[cfg(feature = "export")]
+use std::path::Path;
+use std::path::PathBuf;
 
 /// Why nothing, or not everything, was exported.
 #[derive(Debug, thiserror::Error)]
@@ -15,7 +18,14 @@ pub enum ExportError {
         /// What the system said.
         source: io::Error,
     },
+    /// A stream cannot be written to.
+    #[error(transparent)]
+    Write(#[from] io::Error),
+    /// The recording cannot be read.
+    #[error(transparent)]
+    Cycles(Box<dyn Error + Send + Sync>),
     /// The rows cannot be written or read as a table.
+    #[cfg(feature = "export")]
     #[error("{}: {source}", path.display())]
     Table {
         /// The file.
@@ -53,6 +63,7 @@ pub enum ExportError {
 
 impl ExportError {
     /// Makes a system's error one about `path`.
+    #[cfg(feature = "export")]
     pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::Io { path, source }

@@ -1,10 +1,22 @@
-//! Recordings as tables and datasets of other programs (feature `export`).
+//! Recordings as tables and datasets of other programs.
 //!
-//! * `parquet`: tables as Parquet files.
-//! * [`lerobot`]: episodes for training.
+//! * `cells`: which columns a table gets. Their names, units and shapes are those of
+//!   [`franka_rt::driver::Column`].
+//! * `csv`: text. `table`, `parquet`: Parquet files (feature `export`).
+//! * [`lerobot`]: episodes for training (feature `export`).
 
+mod cells;
+mod csv;
 mod error;
+#[cfg(feature = "export")]
 pub mod lerobot;
+#[cfg(feature = "export")]
 mod parquet;
+#[cfg(feature = "export")]
+mod table;
 
+pub use cells::{Columns, UnknownColumn};
+pub use csv::write_csv;
 pub use error::ExportError;
+#[cfg(feature = "export")]
+pub use table::write_parquet;

@@ -1,3 +1,4 @@
 //! Exports of made-up motions, read back with a reader of the format.
 
 mod lerobot;
+mod tables;

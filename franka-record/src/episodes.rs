@@ -1,0 +1,248 @@
+//! Episodes of a recording, and what exports and replays read of their cycles.
+
+use core::fmt;
+
+use franka_proto::gripper;
+
+use crate::cycle::{Cycle, HostTime};
+use crate::event::{Event, EventKind, GripperState};
+use crate::sample::Sample;
+
+/// An attempt at a task, between two marks in a recording.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Episode {
+    /// Its name.
+    pub name: String,
+    /// What was to be done, in words.
+    pub task: String,
+    /// Whether it was done; `None` if nobody judged it.
+    pub success: Option<bool>,
+    /// When it began.
+    pub begin: HostTime,
+    /// When it ended.
+    pub end: HostTime,
+}
+
+/// Why an episode cannot have this name or task.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EpisodeError {
+    /// The name is not one.
+    #[error(
+        "got the episode name {got:?}, expected 1 to {} letters, digits, '-' and '_'",
+        Episode::NAME_MAX
+    )]
+    Name {
+        /// The name given.
+        got: String,
+    },
+    /// There are no words.
+    #[error("episode {name:?} has an empty task, expected what is to be done, in words")]
+    Task {
+        /// Its name.
+        name: String,
+    },
+}
+
+impl Episode {
+    /// The most letters of a name.
+    pub const NAME_MAX: usize = 128;
+
+    /// Checks the name and the task of an episode that is to begin: a name fits into the name of a
+    /// file, and a task has words.
+    ///
+    /// # Errors
+    /// [`EpisodeError`] says what was expected.
+    pub fn check(name: &str, task: &str) -> Result<(), EpisodeError> {
+        let fits = |letter: char| letter.is_ascii_alphanumeric() || "-_".contains(letter);
+        if !(1..=Self::NAME_MAX).contains(&name.len()) || !name.chars().all(fits) {
+            let got = name.to_owned();
+            return Err(EpisodeError::Name { got });
+        }
+        if task.trim().is_empty() {
+            let name = name.to_owned();
+            return Err(EpisodeError::Task { name });
+        }
+        Ok(())
+    }
+
+    /// The episodes that these events mark, in their order. One without an end, at the end of a
+    /// recording or before the next one begins, is left out.
+    ///
+    /// # Errors
+    /// That of the first event that cannot be read.
+    pub fn of<E>(events: impl IntoIterator<Item = Result<Event, E>>) -> Result<Vec<Self>, E> {
+        let mut episodes = Vec::new();
+        let mut begun = None;
+        for event in events {
+            let Event { time, kind, .. } = event?;
+            match kind {
+                EventKind::EpisodeStart { name, task } => begun = Some((time, name, task)),
+                EventKind::EpisodeEnd { success } => {
+                    episodes.extend(begun.take().map(|(begin, name, task)| Self {
+                        name,
+                        task,
+                        success,
+                        begin,
+                        end: time,
+                    }));
+                }
+                _ => {}
+            }
+        }
+        Ok(episodes)
+    }
+}
+
+/// The samples of some cycles, with the width that the gripper had last.
+///
+/// Both have to be in the order of their times. The widths of a vacuum gripper are none.
+pub struct Samples<C, G: Iterator> {
+    cycles: C,
+    gripper: core::iter::Peekable<G>,
+    width: Option<f64>,
+}
+
+impl<C, G, E> Samples<C, G>
+where
+    C: Iterator<Item = Result<Cycle, E>>,
+    G: Iterator<Item = Result<(HostTime, GripperState), E>>,
+{
+    /// The samples of these cycles and states of the gripper.
+    pub fn new(
+        cycles: impl IntoIterator<IntoIter = C>,
+        gripper: impl IntoIterator<IntoIter = G>,
+    ) -> Self {
+        Self {
+            cycles: cycles.into_iter(),
+            gripper: gripper.into_iter().peekable(),
+            width: None,
+        }
+    }
+}
+
+impl<C, G: Iterator> fmt::Debug for Samples<C, G> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Samples")
+            .field("width", &self.width)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<C, G, E> Iterator for Samples<C, G>
+where
+    C: Iterator<Item = Result<Cycle, E>>,
+    G: Iterator<Item = Result<(HostTime, GripperState), E>>,
+{
+    type Item = Result<Sample, E>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let cycle = match self.cycles.next()? {
+            Ok(cycle) => cycle,
+            Err(error) => return Some(Err(error)),
+        };
+        let is_due = |state: &G::Item| match state {
+            Ok((time, _)) => *time <= cycle.time,
+            Err(_) => true,
+        };
+        while let Some(state) = self.gripper.next_if(is_due) {
+            match state {
+                Ok((_, GripperState::Hand(gripper::State { width, .. }))) => {
+                    self.width = Some(width);
+                }
+                Ok((_, GripperState::Vacuum(_))) => {}
+                Err(error) => return Some(Err(error)),
+            }
+        }
+        Some(Ok(Sample {
+            width: self.width,
+            ..Sample::of(&cycle)
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use core::convert::Infallible;
+
+    use super::*;
+
+    const fn at(second: u64) -> HostTime {
+        HostTime::from_nanos(second * 1_000_000_000)
+    }
+
+    fn mark(second: u64, kind: EventKind) -> Result<Event, Infallible> {
+        Ok(Event {
+            time: at(second),
+            robot_time: 0,
+            kind,
+        })
+    }
+
+    fn start(second: u64, name: &str) -> Result<Event, Infallible> {
+        let (name, task) = (name.to_owned(), format!("do {name}"));
+        mark(second, EventKind::EpisodeStart { name, task })
+    }
+
+    #[test]
+    fn episodes_lie_between_marks_and_have_an_end() {
+        let end = |second, success| mark(second, EventKind::EpisodeEnd { success });
+        let events = [
+            end(1, Some(true)),
+            start(2, "one"),
+            mark(3, EventKind::Dropped { cycles: 1 }),
+            end(4, Some(true)),
+            start(5, "given-up"),
+            start(6, "two"),
+            end(7, None),
+            start(8, "open"),
+        ];
+        let Ok(episodes) = Episode::of(events);
+        let told: Vec<_> = episodes
+            .iter()
+            .map(|it| (&*it.name, &*it.task, it.success, it.begin, it.end))
+            .collect();
+        assert_eq!(
+            told,
+            [
+                ("one", "do one", Some(true), at(2), at(4)),
+                ("two", "do two", None, at(6), at(7)),
+            ]
+        );
+    }
+
+    #[test]
+    fn a_name_is_one_of_a_file_and_a_task_has_words() {
+        assert_eq!(Episode::check("pick_07-b", "pick the cube"), Ok(()));
+        for name in ["", "a/b", "..", "a b", "ü", &"x".repeat(129)] {
+            let error = Episode::check(name, "pick").unwrap_err();
+            assert_eq!(error, EpisodeError::Name { got: name.into() });
+        }
+        let error = Episode::check("pick", " \n").unwrap_err();
+        assert!(error.to_string().contains("empty task"), "{error}");
+    }
+
+    #[test]
+    fn a_sample_has_the_width_that_came_last_before_it() {
+        let cycles = (0..6).map(|second| {
+            Ok::<_, Infallible>(Cycle {
+                time: at(second),
+                ..Cycle::default()
+            })
+        });
+        let widths = [(2, 0.03), (2, 0.02), (4, 0.01)].map(|(second, width)| {
+            let state = gripper::State {
+                width,
+                ..gripper::State::default()
+            };
+            Ok((at(second), GripperState::Hand(state)))
+        });
+        let widths: Vec<_> = Samples::new(cycles, widths)
+            .map(|sample| sample.map(|it| it.width))
+            .collect::<Result<_, _>>()
+            .unwrap_or_default();
+        let expected = [None, None, Some(0.02), Some(0.02), Some(0.01), Some(0.01)];
+        assert_eq!(widths, expected);
+    }
+}

@@ -1,0 +1,74 @@
+//! Cycles as comma-separated text.
+
+use std::error::Error;
+use std::io::{self, Write};
+
+use franka_rt::driver::ColumnKind;
+
+use super::cells::{Columns, name_of};
+use super::error::ExportError;
+use crate::cycle::Cycle;
+
+/// Writes a line with the names of the columns, and one for each cycle; returns how many. First
+/// come `time`, the robot's clock in milliseconds, and `host_time`, nanoseconds since 1970. A
+/// vector has a column for each number, `q[0]` to `q[6]`; a matrix is row-major. A number that
+/// there is none of is left empty.
+///
+/// With `units` a line before the names begins with `#` and has the unit of each column.
+///
+/// # Errors
+/// [`ExportError::Write`], or [`ExportError::Cycles`] with what `cycles` fails with.
+pub fn write_csv<E: Error + Send + Sync + 'static>(
+    cycles: impl IntoIterator<Item = Result<Cycle, E>>,
+    columns: &Columns,
+    units: bool,
+    to: impl Write,
+) -> Result<u64, ExportError> {
+    let mut to = io::BufWriter::new(to);
+    if units {
+        let units = columns
+            .0
+            .iter()
+            .map(|it| format!(",{}", quoted(it.unit)).repeat(it.width()));
+        writeln!(to, "# ms,ns{}", units.collect::<String>())?;
+    }
+    write!(to, "time,host_time")?;
+    for column in &columns.0 {
+        for place in 0..column.width() {
+            match column.shape {
+                [] => write!(to, ",{}", column.name)?,
+                _ => write!(to, ",{}[{place}]", column.name)?,
+            }
+        }
+    }
+    writeln!(to)?;
+    let (mut row, mut count) = (Vec::new(), 0);
+    for cycle in cycles {
+        let cycle = cycle.map_err(|error| ExportError::Cycles(error.into()))?;
+        columns.read(&cycle, &mut row);
+        write!(to, "{},{}", cycle.state.message_id, cycle.time.as_nanos())?;
+        let mut numbers = row.iter();
+        for column in &columns.0 {
+            for number in numbers.by_ref().take(column.width()) {
+                match column.kind {
+                    ColumnKind::Name(list) => write!(to, ",{}", name_of(list, *number))?,
+                    _ if number.is_finite() => write!(to, ",{number}")?,
+                    _ => write!(to, ",")?,
+                }
+            }
+        }
+        writeln!(to)?;
+        count += 1;
+    }
+    to.flush()?;
+    Ok(count)
+}
+
+/// A text as one field.
+fn quoted(text: &str) -> String {
+    if text.contains(',') {
+        format!("\"{text}\"")
+    } else {
+        text.to_owned()
+    }
+}

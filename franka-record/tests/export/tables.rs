@@ -1,0 +1,96 @@
+//! Tables of made-up cycles: text and Parquet.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::Path;
+
+use franka_record::export::{Columns, UnknownColumn, write_csv, write_parquet};
+use franka_record::{Cycle, HostTime};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
+use serde_json::{Value, json};
+
+fn cycle(millisecond: u64) -> Cycle {
+    let mut cycle = Cycle {
+        time: HostTime::from_nanos(1_000_000 * millisecond),
+        ..Cycle::default()
+    };
+    cycle.state.message_id = 70 + millisecond;
+    cycle.state.q = [0.25 * millisecond as f64; 7];
+    cycle.state.O_T_EE[12] = 0.5;
+    cycle.record.goal = millisecond;
+    cycle
+}
+
+fn columns() -> Columns {
+    Columns::named(["q", "goal", "activity", "slack", "O_T_EE", "q"]).unwrap()
+}
+
+#[test]
+fn text_has_names_units_and_a_line_for_each_cycle() {
+    let mut text = Vec::new();
+    let cycles = (0..3).map(|k| Ok::<_, io::Error>(cycle(k)));
+    assert_eq!(write_csv(cycles, &columns(), true, &mut text).unwrap(), 3);
+    let text = String::from_utf8(text).unwrap();
+    let lines: Vec<_> = text.lines().collect();
+    assert_eq!(lines.len(), 5);
+    assert!(lines[0].starts_with("# ms,ns,rad,rad,"), "{}", lines[0]);
+    assert!(lines[0].contains("\"number of the goal, 0 without one\""));
+    assert!(lines[1].starts_with("time,host_time,q[0],q[1],"));
+    assert!(lines[1].contains(",q[6],goal,activity,slack,O_T_EE[0],"));
+    // A matrix by its rows: x of the position is the fourth number. There is no slack.
+    let q = ",0.5".repeat(7);
+    let begin = format!("72,2000000{q},2,watching,,1,0,0,0.5,0,1,0,");
+    assert!(lines[4].starts_with(&begin), "{}", lines[4]);
+    let fields = |line: &str| line.split(',').count();
+    assert_eq!(fields(lines[1]), 2 + 7 + 3 + 16);
+    assert_eq!(fields(lines[4]), fields(lines[1]));
+}
+
+#[test]
+fn a_table_has_lists_texts_and_units() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    fs::create_dir_all(folder).unwrap();
+    let path = folder.join("cycles.parquet");
+    let cycles = || (0..1000).map(|k| Ok::<_, io::Error>(cycle(k)));
+    assert_eq!(write_parquet(cycles(), &columns(), &path).unwrap(), 1000);
+    let reader = SerializedFileReader::new(File::open(&path).unwrap()).unwrap();
+    let notes = reader.metadata().file_metadata().key_value_metadata();
+    let units = notes.unwrap().iter().find(|it| it.key == "units").unwrap();
+    let units: Value = serde_json::from_str(units.value.as_ref().unwrap()).unwrap();
+    assert_eq!((&units["q"], &units["time"]), (&json!("rad"), &json!("ms")));
+    let rows: Vec<_> = reader
+        .get_row_iter(None)
+        .unwrap()
+        .collect::<Result<_, _>>()
+        .unwrap();
+    assert_eq!(rows.len(), 1000);
+    let row: Vec<_> = rows[4].get_column_iter().collect();
+    assert_eq!(row[0], (&"time".to_owned(), &Field::Long(74)));
+    assert_eq!(*row[1].1, Field::Long(4_000_000));
+    assert_eq!(row[2].1.to_string(), "[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]");
+    assert_eq!(*row[3].1, Field::Long(4));
+    assert_eq!(*row[4].1, Field::Str("watching".into()));
+    // What a recording fails with ends the export, and leaves the file as it was.
+    let broken = cycles().chain([Err(io::ErrorKind::UnexpectedEof.into())]);
+    assert!(write_parquet(broken, &Columns::all(), &path).is_err());
+    let size = fs::metadata(&path).unwrap().len();
+    let mut left = fs::read_dir(folder)
+        .unwrap()
+        .map(|it| it.unwrap().file_name());
+    assert!(!left.any(|name| name.to_string_lossy().ends_with(".partial")));
+    assert_eq!(write_parquet(cycles(), &columns(), &path).unwrap(), 1000);
+    assert_eq!(fs::metadata(&path).unwrap().len(), size);
+}
+
+#[test]
+fn a_name_that_no_column_has_is_refused_with_those_that_there_are() {
+    let error = Columns::named(["q", "tau_j"]).unwrap_err();
+    assert_eq!(
+        error,
+        UnknownColumn {
+            got: "tau_j".into()
+        }
+    );
+    assert!(error.to_string().contains("tau_J, "), "{error}");
+}
