@@ -9,6 +9,7 @@ pub mod explain;
 pub mod export;
 pub mod recorder;
 pub mod recording;
+pub mod replay;
 mod sample;
 pub mod schema;
 

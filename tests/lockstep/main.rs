@@ -23,6 +23,7 @@ mod paths;
 mod random_targets;
 mod reactions;
 mod reflex_log;
+mod replaying;
 mod schedules;
 mod silence;
 mod stalls;

@@ -1,0 +1,22 @@
+//! Replay of a recorded motion as targets of an arm.
+//!
+//! ```text
+//! samples --ReplayPlan::new--> targets 10 ms apart, checked --ReplayCourse--> chunks, one ahead of the arm
+//!                                   '-- where the arm was --ReplayDeviation--> how far off it is now
+//! ```
+//!
+//! * `plan`: the targets, and the limits that they need. `error`: what is refused.
+//! * `course`: which chunk is due at which time of the robot.
+//! * `deviation`: the distance between the motion and the recorded one.
+//!
+//! Nothing here moves an arm: `franka-async` does, in a session with all its guards.
+
+mod course;
+mod deviation;
+mod error;
+mod plan;
+
+pub use course::ReplayCourse;
+pub use deviation::{Distance, ReplayDeviation, Spread};
+pub use error::ReplayError;
+pub use plan::{ReplayOptions, ReplayPlan, ReplaySource, ReplayTargets};
