@@ -279,9 +279,13 @@ impl Arm {
     /// # Cancel safety
     /// As [`Self::set`].
     pub async fn chunk(&self, chunk: Chunk) -> Result<(), MotionError> {
+        self.send_chunk(self.goal(chunk.target()), chunk).await
+    }
+
+    /// Sends a chunk with this goal; otherwise as [`Self::chunk`].
+    pub(crate) async fn send_chunk(&self, goal: Goal, chunk: Chunk) -> Result<(), MotionError> {
         let id = self.session.id();
-        let goal = Box::new(self.goal(chunk.target()));
-        let chunk = Box::new(chunk);
+        let (goal, chunk) = (Box::new(goal), Box::new(chunk));
         self.session
             .ask(|taken| Input::Chunk {
                 id,
@@ -398,8 +402,21 @@ impl Arm {
         Ok(reference.pose)
     }
 
+    /// The name of the goal that it heads for; `None` once the session has ended.
+    #[cfg(feature = "record")]
+    pub(crate) fn heading(&self) -> Option<franka_rt::session::GoalId> {
+        let ended = self.session.has_ended();
+        self.session.link().course.goal().filter(|_| !ended)
+    }
+
+    /// Why the session takes no goals; `None` while it does.
+    #[cfg(feature = "record")]
+    pub(crate) fn session_error(&self) -> Option<MotionError> {
+        self.session.check().err()
+    }
+
     /// A goal that is set and then held.
-    fn goal(&self, target: Target) -> Goal {
+    pub(crate) fn goal(&self, target: Target) -> Goal {
         let robot = self.robot();
         let limits = robot.model().joint_limits();
         let goal = Goal::new(robot.next_goal(), target, OnArrival::Hold, limits);

@@ -338,6 +338,7 @@
 //! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control is |
 //! | [`record`] | what every cycle saw and did |
 //! | `recording` | all of that, and what was asked of the robot, in files (feature `record`) |
+//! | `replay`, `export` | recorded motions again, and as tables and datasets (features `record`, `export`) |
 //! | `metrics` | statistics as OpenMetrics text (feature `metrics`) |
 //! | `blocking` | programs without async (feature `blocking`) |
 //!
@@ -384,6 +385,8 @@ pub mod diagnosis;
 mod dial;
 mod endpoint;
 pub mod error;
+#[cfg(feature = "record")]
+pub use franka_record::export;
 mod follow;
 mod franka_hand;
 pub mod goal;
@@ -413,6 +416,8 @@ mod reconnect;
 pub mod record;
 #[cfg(feature = "record")]
 pub mod recording;
+#[cfg(feature = "record")]
+pub mod replay;
 mod robot;
 mod session;
 pub mod settings;

@@ -74,6 +74,13 @@ impl Course {
         noted.map(|(_, target)| target)
     }
 
+    /// The name of what target control heads for; `None` if it moves nothing.
+    #[cfg(feature = "record")]
+    pub(crate) fn goal(&self) -> Option<GoalId> {
+        let noted = self.heading.lock().unwrap_or_else(PoisonError::into_inner);
+        noted.map(|(goal, _)| goal)
+    }
+
     /// The newest reference; `None` if target control has not answered the newest state.
     pub(crate) fn reference(&self) -> Option<ReferenceState> {
         self.references.newest()

@@ -30,6 +30,7 @@ mod raising;
 mod reacting;
 mod reading;
 mod recording;
+mod replaying;
 mod scripts;
 mod stalls;
 mod starving;

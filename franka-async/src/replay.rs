@@ -1,0 +1,216 @@
+//! Recorded motions as targets of an arm: [`Arm::replay`], [`Robot::replay`].
+//!
+//! ```text
+//! Recording::open --cycles--> Samples --ReplayPlan::new--> plan --Arm::replay--> ReplayReport
+//! ```
+//!
+//! What is followed, and what is refused, is decided in [`ReplayPlan`], before anything moves.
+
+use std::time::Duration;
+
+use franka_rt::lifecycle::{MotionError, Outcome};
+use franka_rt::session::{Budget, Goal, GoalId, Target};
+
+use franka_record::replay::{ReplayCourse, ReplayDeviation};
+pub use franka_record::replay::{
+    ReplayError, ReplayOptions, ReplayPlan, ReplaySource, ReplayTargets, Spread,
+};
+pub use franka_record::{Cycle, Episode, EpisodeError, Recording, Sample, Samples};
+
+use crate::arm::{Arm, Engage};
+use crate::robot::Robot;
+
+/// How a replay went.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ReplayReport {
+    /// From the first target to the last.
+    pub duration: Duration,
+    /// Between the joints and where they were in the recording, the joint that was furthest off in
+    /// each state, `[rad]`.
+    pub joints: Spread,
+    /// Between the end effector and where it was in the recording, `[m]`.
+    pub position: Spread,
+    /// States that were compared.
+    pub states: usize,
+}
+
+/// Why a replay has no report. The arm is braked and then held, unless the session has ended.
+#[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReplayFailure {
+    /// The recorded motion is not one for this arm. Nothing has moved.
+    #[error(transparent)]
+    Refused(#[from] ReplayError),
+    /// The motion to the first target, or the session, ended otherwise.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
+    /// The arm did not move as it did in the recording: something holds it, or a guard has braked.
+    #[error("{after:.3?} after the begin {distance}, expected {most} at most")]
+    Off {
+        /// The time in the replay.
+        after: Duration,
+        /// What was measured.
+        distance: String,
+        /// The most that is accepted.
+        most: String,
+    },
+}
+
+impl Robot {
+    /// Moves to the first target of a recorded motion, replays it, and lets the arm go: a session
+    /// with the defaults, and [`Arm::replay`] in it.
+    ///
+    /// ```no_run
+    /// # async fn run(
+    /// #     robot: franka_async::Robot,
+    /// #     plan: franka_async::replay::ReplayPlan,
+    /// # ) -> Result<(), franka_async::replay::ReplayFailure> {
+    /// let report = robot.replay(&plan).await?;
+    /// println!("{:.1} mm off at most", report.position.max * 1e3);
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Arm::replay`], and [`ReplayFailure::Motion`] if the session does not begin, or does not
+    /// end well.
+    ///
+    /// # Cancel safety
+    /// Dropping the future brakes the arm and ends the session, in the background.
+    pub async fn replay(&self, plan: &ReplayPlan) -> Result<ReplayReport, ReplayFailure> {
+        plan.check(self.model(), &self.state())?;
+        let arm = self.engage(Engage::default()).await?;
+        let report = arm.replay(plan).await?;
+        arm.disengage().await?;
+        Ok(report)
+    }
+}
+
+impl Arm {
+    /// Moves to the first target of a recorded motion as [`Arm::move_joints`] does, and then
+    /// follows the targets at their times, with all guards of the session and the limits of the
+    /// [plan](ReplayPlan::budget). Resolves when the arm rests at the last one, with how far it was
+    /// from where the recorded arm was.
+    ///
+    /// It ends as [`ReplayFailure::Off`] once a joint is further than
+    /// [`ReplayPlan::JOINTS_OFF_MAX`] from there, or, of a replay by poses, the end effector than
+    /// [`ReplayPlan::POSITION_OFF_MAX`]. Any other goal of the session ends it as
+    /// [`MotionError::Superseded`], and [`Robot::stop`] as that or as [`MotionError::Stopped`].
+    ///
+    /// # Errors
+    /// [`ReplayFailure::Refused`] before anything moves; otherwise as above, or what ended the
+    /// motion to the first target or the session.
+    ///
+    /// # Cancel safety
+    /// Dropping the future brakes the arm, and the session holds it.
+    pub async fn replay(&self, plan: &ReplayPlan) -> Result<ReplayReport, ReplayFailure> {
+        let robot = self.robot();
+        let model = robot.model();
+        plan.check(model, &robot.state())?;
+        self.move_joints(plan.start()).await?;
+        let mut states = robot.state_stream();
+        let mut course = ReplayCourse::new(robot.state().message_id);
+        let mut braking = BrakeOnDrop::new(self);
+        let mut deviation = ReplayDeviation::default();
+        let mut newest = robot.state().message_id;
+        while newest < course.end(plan) {
+            if let Some(chunk) = course.due(plan, model, newest)? {
+                let goal = self.goal_within(chunk.target(), plan.budget());
+                // Before it is sent: dropped on the way, it would be followed to its end.
+                braking.goal.get_or_insert(goal.id);
+                if let Err(error) = self.send_chunk(goal, chunk).await {
+                    return Err(self.over(error).into());
+                }
+                braking.is_taken = true;
+            }
+            let reading = tokio::select! {
+                biased;
+                ended = self.ended() => return Err(over(ended).into()),
+                reading = states.next() => match reading {
+                    Some(reading) => reading,
+                    // The connection has ended, and with it the session.
+                    None => return Err(over(self.ended().await).into()),
+                },
+            };
+            if self.heading() != braking.goal {
+                return Err(self.over(MotionError::Superseded).into());
+            }
+            newest = reading.state.message_id;
+            if let Some(since) = newest.checked_sub(course.begin()) {
+                let distance = deviation.note(plan, model, since, &reading.state);
+                if let Some((distance, most)) = plan.too_far(distance) {
+                    let after = Duration::from_millis(since);
+                    return Err(ReplayFailure::Off {
+                        after,
+                        distance,
+                        most,
+                    });
+                }
+            }
+        }
+        self.at_rest().await?;
+        braking.goal = None;
+        Ok(ReplayReport {
+            duration: plan.duration(),
+            joints: deviation.joints(),
+            position: deviation.position(),
+            states: deviation.len(),
+        })
+    }
+
+    /// Why a replay is over: what ended the session if it has ended, or else `error`. A session
+    /// that is about to end takes no goals, and has no other reason for that.
+    fn over(&self, error: MotionError) -> MotionError {
+        match (self.session_error(), error) {
+            (Some(ended), _) => ended,
+            (None, MotionError::Disengaged) => MotionError::Stopped,
+            (None, error) => error,
+        }
+    }
+
+    /// A goal with other limits than those of the session.
+    fn goal_within(&self, target: Target, budget: Budget) -> Goal {
+        Goal {
+            budget,
+            ..self.goal(target)
+        }
+    }
+}
+
+/// Why a session ended.
+fn over(outcome: Outcome) -> MotionError {
+    outcome.err().unwrap_or(MotionError::Disengaged)
+}
+
+/// Brakes a replay that does not come to its end, and has the session hold the arm.
+struct BrakeOnDrop<'a> {
+    arm: &'a Arm,
+    /// The goal of its chunks; `None` before the first one, and once there is nothing to brake.
+    goal: Option<GoalId>,
+    /// Whether the first chunk is known to have been taken.
+    is_taken: bool,
+}
+
+impl<'a> BrakeOnDrop<'a> {
+    fn new(arm: &'a Arm) -> Self {
+        Self {
+            arm,
+            goal: None,
+            is_taken: false,
+        }
+    }
+}
+
+impl Drop for BrakeOnDrop<'_> {
+    fn drop(&mut self) {
+        // Another goal has taken over once its name is there.
+        let goes_on = !self.is_taken || self.goal == self.arm.heading();
+        if self.goal.is_some()
+            && goes_on
+            && let Err(error) = self.arm.try_set(Target::Rest)
+        {
+            tracing::debug!(%error, "the session of a replay has ended");
+        }
+    }
+}
