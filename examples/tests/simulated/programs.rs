@@ -136,6 +136,16 @@ fn commander_follows_its_input_and_raw_commands_end_in_a_reflex() {
 }
 
 #[test]
+fn cassette_plays_a_motion_to_the_program_that_made_it() {
+    let said = run("cassette", &["demo"], "");
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert!(
+        said.stdout.contains("arrived at the same place"),
+        "{said:?}"
+    );
+}
+
+#[test]
 fn link_test_shows_two_robots_side_by_side() {
     let arms = Arm::in_step([Scene::default(), Scene::default()]);
     let [one, other] = arms.each_ref().map(|arm| arm.address.as_str());
