@@ -17,10 +17,10 @@ use std::time::Duration;
 
 use anyhow::ensure;
 use clap::{Parser, Subcommand};
-use franka_async::{Realtime, Robot};
-use franka_record::cassette::{
+use franka_async::cassette::{
     Cassette, CassetteServer, Device, Matching, PlayOptions, Route, Tap, pcap,
 };
+use franka_async::{Realtime, Robot};
 use franka_sim::Sim;
 
 #[derive(Parser)]

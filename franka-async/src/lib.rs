@@ -338,7 +338,9 @@
 //! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control is |
 //! | [`record`] | what every cycle saw and did |
 //! | `recording` | all of that, and what was asked of the robot, in files (feature `record`) |
+//! | `explain` | why a motion ended, and where the arm was touched (feature `record`) |
 //! | `replay`, `export` | recorded motions again, and as tables and datasets (features `record`, `export`) |
+//! | `cassette` | sessions byte for byte, played back as the robot (features `record`, `pcap`) |
 //! | `metrics` | statistics as OpenMetrics text (feature `metrics`) |
 //! | `blocking` | programs without async (feature `blocking`) |
 //!
@@ -386,7 +388,7 @@ mod dial;
 mod endpoint;
 pub mod error;
 #[cfg(feature = "record")]
-pub use franka_record::export;
+pub use franka_record::{cassette, explain, export};
 mod follow;
 mod franka_hand;
 pub mod goal;

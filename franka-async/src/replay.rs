@@ -15,7 +15,6 @@ use franka_record::replay::{ReplayCourse, ReplayDeviation};
 pub use franka_record::replay::{
     ReplayError, ReplayOptions, ReplayPlan, ReplaySource, ReplayTargets, Spread,
 };
-pub use franka_record::{Cycle, Episode, EpisodeError, Recording, Sample, Samples};
 
 use crate::arm::{Arm, Engage};
 use crate::robot::Robot;

@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use franka_async::record::CycleReader;
-use franka_async::replay::{Cycle, ReplayFailure, ReplayOptions, ReplayPlan, Sample};
+use franka_async::recording::{Cycle, Sample};
+use franka_async::replay::{ReplayFailure, ReplayOptions, ReplayPlan};
 use franka_async::{Engage, MotionError, Robot};
 
 use crate::{alone, robot_time, simulated, under_way};

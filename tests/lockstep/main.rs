@@ -9,6 +9,7 @@ mod contact;
 mod diagnosis;
 mod endings;
 mod engaged;
+mod explaining;
 mod faults;
 mod force;
 mod goal_options;

@@ -136,6 +136,80 @@ fn commander_follows_its_input_and_raw_commands_end_in_a_reflex() {
 }
 
 #[test]
+fn record_keeps_both_motions_in_a_file_that_is_read_back() {
+    for robot in ROBOTS {
+        let folder = Folder::new(&format!("record-{robot}"));
+        let file = folder.file("run.mcap");
+        let said = run("record", &["--sim", robot, "--to", &file], "");
+        assert_eq!(said.code, Some(0), "{said:?}");
+        assert!(
+            said.stdout.contains(" 0 dropped, 0 black boxes"),
+            "{said:?}"
+        );
+        assert_eq!(said.stdout.matches("arrived").count(), 2, "{said:?}");
+        // A name that is taken is not overwritten.
+        let said = run("record", &["--sim", robot, "--to", &file], "");
+        assert_eq!(said.code, Some(1), "{said:?}");
+        assert!(said.stderr.contains("exists"), "{said:?}");
+    }
+}
+
+#[test]
+fn explain_names_the_cause_and_the_place_and_draws_the_last_second() {
+    let folder = Folder::new("explain");
+    let figure = folder.file("blow.svg");
+    let said = run("explain", &["--figure", &figure], "");
+    assert_eq!(said.code, Some(0), "{said:?}");
+    assert!(said.stdout.contains("link 5"), "{said:?}");
+    let figure = std::fs::read_to_string(figure).expect("it was drawn");
+    assert!(figure.starts_with("<svg"), "{figure:.100}");
+}
+
+#[test]
+fn replay_exports_the_motion_and_goes_it_again() {
+    let folder = Folder::new("replay");
+    let to = folder.file("run");
+    let said = run("replay", &["--to", &to], "");
+    assert_eq!(said.code, Some(0), "{said:?}");
+    for expected in [" 0 dropped", "episode square-1: ", "replayed in "] {
+        assert!(said.stdout.contains(expected), "no {expected:?}: {said:?}");
+    }
+    for file in [
+        "run.mcap",
+        "run.csv",
+        "run.parquet",
+        "dataset/meta/info.json",
+    ] {
+        let file = std::path::Path::new(&to).join(file);
+        let length = std::fs::metadata(&file).expect("it was written").len();
+        assert!(length > 100, "{}: {length} bytes", file.display());
+    }
+}
+
+/// A new folder that is deleted at the end.
+struct Folder(std::path::PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let name = format!("franka-{name}-{}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        std::fs::create_dir(&folder).expect("there is none");
+        Self(folder)
+    }
+
+    fn file(&self, name: &str) -> String {
+        self.0.join(name).display().to_string()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // Left behind if a file in it is still open, which is no fault of the program's.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[test]
 fn cassette_plays_a_motion_to_the_program_that_made_it() {
     let said = run("cassette", &["demo"], "");
     assert_eq!(said.code, Some(0), "{said:?}");

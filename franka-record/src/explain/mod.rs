@@ -54,7 +54,7 @@ use franka_proto::{Errors, RobotState};
 use franka_rt::driver::Record;
 use franka_rt::lifecycle::ControlError;
 
-use crate::recording::{ReadError, RobotRecording};
+use crate::recording::{RecordingError, RobotRecording};
 use crate::{Cycle, Event, EventKind};
 
 pub use margins::{Approach, Margins, Peak, Peaks};
@@ -227,7 +227,7 @@ impl<'a> Explainer<'a> {
         self.timeline.event(event);
     }
 
-    fn note_unread(&mut self, error: &ReadError) {
+    fn note_unread(&mut self, error: &RecordingError) {
         let text = format!("part of the recording cannot be read: {error}");
         self.timeline.add(self.last, MomentKind::Note, text);
     }

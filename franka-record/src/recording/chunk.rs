@@ -3,7 +3,7 @@
 use std::io::Read as _;
 
 use super::bytes::Bytes;
-use super::error::ReadError;
+use super::error::RecordingError;
 use super::index::ChunkEntry;
 use super::wire::{self, ChunkHeader, Fields, HEADER, op};
 
@@ -17,10 +17,10 @@ pub(super) struct Chunk {
 
 impl Chunk {
     /// Reads a chunk and checks it.
-    pub(super) fn read(bytes: &Bytes, entry: &ChunkEntry) -> Result<Self, ReadError> {
+    pub(super) fn read(bytes: &Bytes, entry: &ChunkEntry) -> Result<Self, RecordingError> {
         let offset = entry.offset;
         let damaged = |reason: &str| {
-            Err(ReadError::Chunk {
+            Err(RecordingError::Chunk {
                 offset,
                 reason: reason.to_owned(),
             })

@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// Why a recording, or a part of it, cannot be read.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
-pub enum ReadError {
+pub enum RecordingError {
     /// The file cannot be opened, or written in a recovery.
     #[error("{}: {source}", path.display())]
     File {
@@ -56,7 +56,7 @@ pub enum ReadError {
     },
 }
 
-impl From<io::Error> for ReadError {
+impl From<io::Error> for RecordingError {
     fn from(source: io::Error) -> Self {
         Self::Read {
             source: source.into(),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::bytes::Bytes;
-use super::error::ReadError;
+use super::error::RecordingError;
 use super::wire::{self, ChunkHeader, Fields, HEADER, MAGIC, op};
 
 /// Where everything is.
@@ -37,11 +37,11 @@ pub(super) struct Entry {
 
 impl Index {
     /// The index of a file.
-    pub(super) fn of(bytes: &Bytes) -> Result<Self, ReadError> {
+    pub(super) fn of(bytes: &Bytes) -> Result<Self, RecordingError> {
         let first = bytes.read(0, bytes.length().min(MAGIC.len() as u64))?;
         let first = first.unwrap_or_default();
         if first != MAGIC {
-            return Err(ReadError::NotMcap { got: first });
+            return Err(RecordingError::NotMcap { got: first });
         }
         match Self::of_summary(bytes)? {
             Ok(index) => Ok(index),
@@ -54,7 +54,7 @@ impl Index {
     }
 
     /// The index that the file ends with, or why it has none that can be relied on.
-    fn of_summary(bytes: &Bytes) -> Result<Result<Self, String>, ReadError> {
+    fn of_summary(bytes: &Bytes) -> Result<Result<Self, String>, RecordingError> {
         let missing = |what: &str| Ok(Err(format!("its end is missing: {what}")));
         let Some(start) = bytes.length().checked_sub(FOOTER_LENGTH) else {
             return missing("it is too short");
@@ -128,7 +128,7 @@ impl Index {
     }
 
     /// The index found by going from record to record, up to where that ends.
-    fn of_records(bytes: &Bytes) -> Result<Self, ReadError> {
+    fn of_records(bytes: &Bytes) -> Result<Self, RecordingError> {
         let mut index = Self::default();
         let mut offset = MAGIC.len() as u64;
         loop {

@@ -5,7 +5,7 @@ use prost::Message as _;
 use super::RobotRecording;
 use super::bytes::Bytes;
 use super::chunk::Chunk;
-use super::error::ReadError;
+use super::error::RecordingError;
 use super::index::ChunkEntry;
 use super::wire::{self, op};
 use crate::schema::{Topic, franka};
@@ -45,7 +45,7 @@ impl Walk {
     fn next<T>(
         &mut self,
         mut take: impl FnMut(wire::Message<'_>) -> Option<Result<T, (&'static str, String)>>,
-    ) -> Option<Result<T, ReadError>> {
+    ) -> Option<Result<T, RecordingError>> {
         loop {
             let chunk = match &mut self.open {
                 Some(chunk) => chunk,
@@ -69,7 +69,7 @@ impl Walk {
                     None => {}
                     Some(Ok(taken)) => return Some(Ok(taken)),
                     Some(Err((topic, reason))) => {
-                        return Some(Err(ReadError::Message {
+                        return Some(Err(RecordingError::Message {
                             topic: topic.to_owned(),
                             offset,
                             reason,
@@ -80,7 +80,7 @@ impl Walk {
             let cut = chunk.is_cut();
             self.open = None;
             if cut {
-                return Some(Err(ReadError::Chunk {
+                return Some(Err(RecordingError::Chunk {
                     offset,
                     reason: "its last record is cut".to_owned(),
                 }));
@@ -116,7 +116,7 @@ impl Cycles {
 }
 
 impl Iterator for Cycles {
-    type Item = Result<Cycle, ReadError>;
+    type Item = Result<Cycle, RecordingError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let Self {
@@ -163,7 +163,7 @@ impl Events {
 }
 
 impl Iterator for Events {
-    type Item = Result<Event, ReadError>;
+    type Item = Result<Event, RecordingError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let (from, to, channel) = (self.walk.from, self.walk.to, self.channel);
@@ -199,7 +199,7 @@ impl GripperStates {
 }
 
 impl Iterator for GripperStates {
-    type Item = Result<(HostTime, GripperState), ReadError>;
+    type Item = Result<(HostTime, GripperState), RecordingError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let (from, to, channel) = (self.walk.from, self.walk.to, self.channel);

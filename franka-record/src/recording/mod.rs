@@ -17,7 +17,7 @@
 //!     let event = event?;
 //!     println!("{} {}", event.time, event.kind);
 //! }
-//! # Ok::<(), franka_record::recording::ReadError>(())
+//! # Ok::<(), franka_record::recording::RecordingError>(())
 //! ```
 //!
 //! A part of a recording is found by the index at the end of the file, and no more than that part
@@ -40,7 +40,7 @@ use franka_model::RobotKind;
 
 use self::bytes::Bytes;
 use self::chunk::Chunk;
-pub use self::error::ReadError;
+pub use self::error::RecordingError;
 use self::index::{Channels, Index};
 pub use self::messages::{Cycles, Events, GripperStates};
 pub use self::recover::Recovery;
@@ -77,11 +77,11 @@ impl Recording {
     /// [`Recording::damage`].
     ///
     /// # Errors
-    /// [`ReadError::File`], [`ReadError::NotMcap`], [`ReadError::Read`].
-    pub fn open(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+    /// [`RecordingError::File`], [`RecordingError::NotMcap`], [`RecordingError::Read`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordingError> {
         let path = path.as_ref();
         let bytes = File::open(path).and_then(Bytes::of_file);
-        Self::read(bytes.map_err(|source| ReadError::File {
+        Self::read(bytes.map_err(|source| RecordingError::File {
             path: path.to_owned(),
             source: source.into(),
         })?)
@@ -90,12 +90,12 @@ impl Recording {
     /// As [`Recording::open`], for the bytes of a file in memory.
     ///
     /// # Errors
-    /// [`ReadError::NotMcap`].
-    pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, ReadError> {
+    /// [`RecordingError::NotMcap`].
+    pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordingError> {
         Self::read(Bytes::of_memory(bytes))
     }
 
-    fn read(bytes: Bytes) -> Result<Self, ReadError> {
+    fn read(bytes: Bytes) -> Result<Self, RecordingError> {
         let index = Index::of(&bytes)?;
         let mut recording = Self {
             bytes,
@@ -110,7 +110,7 @@ impl Recording {
         Ok(recording)
     }
 
-    fn read_metadata(&mut self) -> Result<(), ReadError> {
+    fn read_metadata(&mut self) -> Result<(), RecordingError> {
         for entry in &self.index.metadata {
             let record = self.bytes.read(entry.offset, entry.length)?;
             let Some((op::METADATA, body, _)) = record.as_deref().and_then(wire::split) else {
@@ -138,7 +138,7 @@ impl Recording {
     }
 
     /// Finds the channels: in the summary, or else in the chunks, the first of which describe them.
-    fn read_channels(&mut self) -> Result<(), ReadError> {
+    fn read_channels(&mut self) -> Result<(), RecordingError> {
         for (kind, body) in &self.index.described {
             self.channels.take(*kind, body);
         }
@@ -154,7 +154,7 @@ impl Recording {
                     }
                 }
                 // It is told again where it is read.
-                Err(ReadError::Chunk { .. }) => {}
+                Err(RecordingError::Chunk { .. }) => {}
                 Err(error) => return Err(error),
             }
         }
@@ -198,8 +198,8 @@ impl Recording {
     /// Returns what was recorded of one robot. An only robot has no name unless it was given one.
     ///
     /// # Errors
-    /// [`ReadError::NoRobot`].
-    pub fn robot(&self, name: &str) -> Result<RobotRecording<'_>, ReadError> {
+    /// [`RecordingError::NoRobot`].
+    pub fn robot(&self, name: &str) -> Result<RobotRecording<'_>, RecordingError> {
         if self.robots.iter().any(|robot| robot.name == name) {
             Ok(RobotRecording {
                 recording: self,
@@ -208,7 +208,7 @@ impl Recording {
                 to: HostTime::from_nanos(u64::MAX),
             })
         } else {
-            Err(ReadError::NoRobot {
+            Err(RecordingError::NoRobot {
                 name: name.to_owned(),
                 robots: self.robots.iter().map(|robot| robot.name.clone()).collect(),
             })
@@ -218,8 +218,8 @@ impl Recording {
     /// The names of the files inside.
     ///
     /// # Errors
-    /// [`ReadError::Read`].
-    pub fn attachments(&self) -> Result<Vec<String>, ReadError> {
+    /// [`RecordingError::Read`].
+    pub fn attachments(&self) -> Result<Vec<String>, RecordingError> {
         let mut names = Vec::new();
         for entry in &self.index.attachments {
             if let Some(record) = self.bytes.read(entry.offset, entry.length)?
@@ -234,8 +234,8 @@ impl Recording {
     /// The bytes of a file inside; `None` if there is none of that name, or it is damaged.
     ///
     /// # Errors
-    /// [`ReadError::Read`].
-    pub fn attachment(&self, name: &str) -> Result<Option<Vec<u8>>, ReadError> {
+    /// [`RecordingError::Read`].
+    pub fn attachment(&self, name: &str) -> Result<Option<Vec<u8>>, RecordingError> {
         for entry in &self.index.attachments {
             if let Some(record) = self.bytes.read(entry.offset, entry.length)?
                 && let Some((found, data)) = attachment(&record)

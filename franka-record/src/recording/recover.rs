@@ -10,7 +10,7 @@ use mcap::{Attachment, Compression, McapError, WriteOptions};
 use super::Recording;
 use super::bytes::Bytes;
 use super::chunk::Chunk;
-use super::error::ReadError;
+use super::error::RecordingError;
 use super::index::Index;
 use super::wire::{self, AttachmentHeader, Fields, op};
 
@@ -35,14 +35,14 @@ impl Recording {
     /// at all.
     ///
     /// # Errors
-    /// [`ReadError::NotMcap`], [`ReadError::Read`], and [`ReadError::File`] if there is a file at
+    /// [`RecordingError::NotMcap`], [`RecordingError::Read`], and [`RecordingError::File`] if there is a file at
     /// `whole` already or it cannot be written; it is then removed again.
     pub fn recover(
         damaged: impl AsRef<Path>,
         whole: impl AsRef<Path>,
-    ) -> Result<Recovery, ReadError> {
+    ) -> Result<Recovery, RecordingError> {
         let (damaged, whole) = (damaged.as_ref(), whole.as_ref());
-        let of_file = |path: &Path, source: std::io::Error| ReadError::File {
+        let of_file = |path: &Path, source: std::io::Error| RecordingError::File {
             path: path.to_owned(),
             source: source.into(),
         };
@@ -68,12 +68,12 @@ impl Recording {
 }
 
 enum Failure {
-    Read(ReadError),
+    Read(RecordingError),
     Write(McapError),
 }
 
-impl From<ReadError> for Failure {
-    fn from(error: ReadError) -> Self {
+impl From<RecordingError> for Failure {
+    fn from(error: RecordingError) -> Self {
         Self::Read(error)
     }
 }
@@ -100,7 +100,7 @@ fn write(bytes: &Bytes, index: &Index, file: File) -> Result<Recovery, Failure> 
     for entry in index.metadata.iter().chain(&index.attachments) {
         if let Some(record) = bytes
             .read(entry.offset, entry.length)
-            .map_err(ReadError::from)?
+            .map_err(RecordingError::from)?
         {
             copy_outside(&mut writer, &record)?;
         }
@@ -111,7 +111,7 @@ fn write(bytes: &Bytes, index: &Index, file: File) -> Result<Recovery, Failure> 
     for entry in &index.chunks {
         let mut chunk = match Chunk::read(bytes, entry) {
             Ok(chunk) => chunk,
-            Err(ReadError::Chunk { .. }) => {
+            Err(RecordingError::Chunk { .. }) => {
                 recovery.lost += 1;
                 continue;
             }

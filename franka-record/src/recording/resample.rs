@@ -1,6 +1,6 @@
 //! Cycles at another rate.
 
-use super::{Cycles, ReadError};
+use super::{Cycles, RecordingError};
 use crate::Cycle;
 
 /// Cycles at a steady rate: [`RobotRecording::resampled`](super::RobotRecording::resampled).
@@ -44,7 +44,7 @@ impl Resampled {
 }
 
 impl Iterator for Resampled {
-    type Item = Result<Cycle, ReadError>;
+    type Item = Result<Cycle, RecordingError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {

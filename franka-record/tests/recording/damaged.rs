@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use franka_model::RobotKind;
 use franka_record::Recording;
 use franka_record::recorder::{RecordOptions, Recorder, Robot};
-use franka_record::recording::ReadError;
+use franka_record::recording::RecordingError;
 use rand::rngs::SmallRng;
 use rand::{Rng as _, SeedableRng as _};
 
@@ -76,7 +76,7 @@ fn a_file_that_is_cut_keeps_every_chunk_before_the_cut() {
         let expected = whole.map_or(0, |chunk| cycles[chunk]);
         let read = match recording.robot("") {
             Ok(robot) => robot.cycles().map(Result::unwrap).count(),
-            Err(ReadError::NoRobot { .. }) => 0,
+            Err(RecordingError::NoRobot { .. }) => 0,
             Err(error) => panic!("cut at {cut}: {error}"),
         };
         assert_eq!(read, expected, "cut at {cut}");
@@ -148,7 +148,7 @@ fn a_recovered_file_is_whole_and_has_the_same_messages() {
     };
     assert!(cycles(&before) == cycles(&after));
     let again = Recording::recover(&damaged, &whole).unwrap_err();
-    assert!(matches!(again, ReadError::File { .. }), "{again}");
+    assert!(matches!(again, RecordingError::File { .. }), "{again}");
 }
 
 #[test]
@@ -156,9 +156,9 @@ fn a_file_of_another_kind_is_refused_with_what_it_begins_with() {
     let error = Recording::from_bytes(b"PK\x03\x04 and more".to_vec()).unwrap_err();
     assert!(error.to_string().contains("50, 4b"), "{error}");
     let error = Recording::from_bytes(Vec::new()).unwrap_err();
-    assert!(matches!(error, ReadError::NotMcap { .. }), "{error}");
+    assert!(matches!(error, RecordingError::NotMcap { .. }), "{error}");
     let error = Recording::open("/nowhere/run.mcap").unwrap_err();
-    assert!(matches!(error, ReadError::File { .. }), "{error}");
+    assert!(matches!(error, RecordingError::File { .. }), "{error}");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use franka_model::RobotKind;
 use franka_proto::{Errors, RobotError, RobotMode, gripper};
 use franka_record::event::{Ending, Goal, Outcome};
 use franka_record::recorder::{Attachment, RecordOptions, Recorder, Robot};
-use franka_record::recording::ReadError;
+use franka_record::recording::RecordingError;
 use franka_record::{EventKind, GripperState, Recording};
 
 use crate::feed::{Arm, Scratch, quick};
@@ -151,7 +151,7 @@ fn events_come_back_in_order_and_changes_are_found() {
         .collect();
     assert_eq!(grippers, [hand]);
     let nobody = recording.robot("right").map(drop).unwrap_err();
-    assert!(matches!(nobody, ReadError::NoRobot { .. }), "{nobody}");
+    assert!(matches!(nobody, RecordingError::NoRobot { .. }), "{nobody}");
 }
 
 #[test]
