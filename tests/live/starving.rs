@@ -135,7 +135,7 @@ fn blocking_every_worker_loses_no_cycle_of_a_reader_on_a_thread_of_its_own() {
         let taken: Vec<_> = std::iter::from_fn(|| reader.pop()).collect();
         drop(release);
         let times = taken.iter().map(|cycle| cycle.record.time);
-        let last = times.clone().last().expect("states came");
+        let last = times.clone().next_back().expect("states came");
         assert!(
             last > begun + 1990,
             "{last}, {begun}: of the time of the block"
