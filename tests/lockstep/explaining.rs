@@ -25,7 +25,7 @@ fn a_blow_on_the_forearm_is_explained_from_the_log_of_the_error() {
         // On the forearm, against its side.
         let place = Vector3::new(0.03, 0.083, -0.118);
         let q = *lockstep.robot.q();
-        let model = lockstep.client.model();
+        let model = lockstep.client.lifecycle.model();
         let pose = model.pose(Frame::Joint5, &q, &EndEffector::default());
         let point = pose.transform_point(&Point3::from(place)).coords;
         let force = pose.fixed_view::<3, 3>(0, 0) * Vector3::new(-70.0, 0.0, 0.0);
@@ -35,7 +35,6 @@ fn a_blow_on_the_forearm_is_explained_from_the_log_of_the_error() {
         let error = lockstep.until_resolved(work, 1000).expect_err("a reflex");
         let error = error.control().expect("the robot stopped");
         let explanation = Explanation::of_error(error);
-        println!("{explanation}");
         let cause = explanation.cause.as_ref().expect("a reflex");
         assert!(cause.errors.contains(RobotError::JointReflex), "{cause:?}");
         assert_eq!(cause.diagnosis, error.diagnose());
@@ -58,9 +57,6 @@ fn a_blow_on_the_forearm_is_explained_from_the_log_of_the_error() {
         .map(first);
         assert!(contact.is_some() && contact < collision && collision < stop);
         let figure = explanation.figure();
-        if let Some(file) = std::env::var_os("FRANKA_FIGURE") {
-            std::fs::write(file, &figure).unwrap();
-        }
         assert!(figure.contains("collision") && figure.contains("link 5"));
     });
 }
