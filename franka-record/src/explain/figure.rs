@@ -183,7 +183,7 @@ fn marks(explanation: &Explanation, span: f64) -> Group {
                 .set("stroke-dasharray", "4 3")
                 .set("stroke-width", 1.2),
         );
-        let label = format!("{name} {} ms", -before(moment.time));
+        let label = format!("{name} {} ms", 0.0 - before(moment.time));
         group.append(text(at - 4.0, TOP + 14.0 + 14.0 * row, &label).set("text-anchor", "end"));
     }
     for trace in explanation.last_second.iter().filter(|t| t.lost > 0) {

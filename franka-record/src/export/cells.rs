@@ -8,7 +8,7 @@ use crate::cycle::Cycle;
 #[derive(Clone, Debug)]
 pub struct Columns(pub(super) Vec<&'static Column>);
 
-/// No column has this name.
+/// No column of a recording has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("got the column {got:?}, expected some of {}", names().join(", "))]
 pub struct UnknownColumn {
@@ -17,22 +17,23 @@ pub struct UnknownColumn {
 }
 
 impl Columns {
-    /// All that there are.
+    /// All that a recording has.
     pub fn all() -> Self {
-        Self(Column::all().iter().collect())
+        Self(recorded().collect())
     }
 
     /// Those of these names, each once, in this order.
     ///
     /// # Errors
-    /// [`UnknownColumn`] for the first name that no column has.
+    /// [`UnknownColumn`] for the first name that no column of a recording has.
     pub fn named<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Self, UnknownColumn> {
         let mut columns: Vec<&Column> = Vec::new();
         for name in names {
             let got = || UnknownColumn {
                 got: name.to_owned(),
             };
-            let column = Column::find(name).ok_or_else(got)?;
+            let column = recorded().find(|column| column.name == name);
+            let column = column.ok_or_else(got)?;
             if !columns.iter().any(|it| it.name == column.name) {
                 columns.push(column);
             }
@@ -60,5 +61,79 @@ pub(super) fn is_whole(kind: ColumnKind) -> bool {
 }
 
 fn names() -> Vec<&'static str> {
-    Column::all().iter().map(|column| column.name).collect()
+    recorded().map(|column| column.name).collect()
+}
+
+/// The columns that a recording has.
+fn recorded() -> impl Iterator<Item = &'static Column> {
+    let is_recorded = |column: &&Column| !NOT_RECORDED.contains(&column.name);
+    Column::all().iter().filter(is_recorded)
+}
+
+/// Fields of the state that recordings leave out, and which read as zero there.
+const NOT_RECORDED: [&str; 13] = [
+    "theta",
+    "dtheta",
+    "dtau_J",
+    "O_T_EE_c",
+    "O_dP_EE_c",
+    "O_ddP_EE_c",
+    "O_ddP_O",
+    "elbow_d",
+    "elbow_c",
+    "delbow_c",
+    "ddelbow_c",
+    "accelerometer_top",
+    "accelerometer_bottom",
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::franka;
+
+    #[test]
+    fn what_a_recording_leaves_out_is_no_column() {
+        let mut before = Cycle::default();
+        let state = &mut before.state;
+        for field in [&mut state.theta, &mut state.dtheta, &mut state.dtau_J] {
+            *field = [1.0; 7];
+        }
+        for field in [&mut state.O_dP_EE_c, &mut state.O_ddP_EE_c] {
+            *field = [1.0; 6];
+        }
+        state.O_T_EE_c[12] = 1.0;
+        state.O_ddP_O = [1.0; 3];
+        for field in [
+            &mut state.elbow_d,
+            &mut state.elbow_c,
+            &mut state.delbow_c,
+            &mut state.ddelbow_c,
+        ] {
+            *field = [1.0; 2];
+        }
+        state.accelerometer_top = [[1.0; 3]; 6];
+        state.accelerometer_bottom = [[1.0; 3]; 6];
+        // Derived from the other fields.
+        state.elbow = [0.0, 1.0];
+        let mut message = franka::Cycle::default();
+        message.set(&before);
+        let after = message.to_cycle(Some(&franka::Tool::of(&before.state)));
+        for column in Column::all() {
+            let [mut put, mut got] = [Vec::new(), Vec::new()];
+            column.append(&before.state, &before.record, &mut put);
+            column.append(&after.state, &after.record, &mut got);
+            let name = column.name;
+            let is_recorded = Columns::named([name]).is_ok();
+            // Not a number where there is none, in both.
+            let same = format!("{put:?}") == format!("{got:?}");
+            assert_eq!(same, is_recorded, "{name}: {put:?}, {got:?}");
+        }
+        let error = Columns::named(["q", "theta"]).unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.starts_with("got the column \"theta\", expected some of q, q_d,"),
+            "{text}"
+        );
+    }
 }
