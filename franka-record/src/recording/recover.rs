@@ -35,8 +35,8 @@ impl Recording {
     /// at all.
     ///
     /// # Errors
-    /// [`RecordingError::NotMcap`], [`RecordingError::Read`], and [`RecordingError::File`] if there is a file at
-    /// `whole` already or it cannot be written; it is then removed again.
+    /// [`RecordingError::NotMcap`], [`RecordingError::Read`], and [`RecordingError::File`] if there
+    /// is a file at `whole` already or it cannot be written; it is then removed again.
     pub fn recover(
         damaged: impl AsRef<Path>,
         whole: impl AsRef<Path>,
