@@ -44,7 +44,7 @@ pub enum Pace {
     /// As [`Self::Recorded`], and a state that followed a command is sent as soon as that command
     /// has come, not before. A client is never too late, and may be faster than it was.
     Answered,
-    /// As fast as [`Player::poll`] is called, and no states are held. For tests that count time
-    /// themselves.
+    /// As fast as [`super::Player::poll`] is called, and no states are held. For tests that count
+    /// time themselves.
     Lockstep,
 }

@@ -10,7 +10,7 @@ use super::Trace;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Place {
-    /// The cycle whose torques tell: the one with the strongest of the last [`NEAR_END`] ms.
+    /// The cycle whose torques tell: the one with the strongest of the last 100 ms.
     pub time: u64,
     /// Joint positions then, `[rad]`.
     pub q: [f64; 7],
