@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import signal
 import subprocess
 import sys
@@ -17,6 +18,9 @@ T = TypeVar("T")
 
 PATIENT: dict[str, Any] = {"realtime": "ignore", "link_timeout": 10.0}
 """Options of a robot whose simulator the machine may hold up for longer than the second after which a link counts as lost."""
+
+LOOPBACK = f"127.{1 + os.getpid() // 254 % 254}.{1 + os.getpid() % 254}"
+"""Begins the addresses on which this process starts robots with the ports of real ones, since the tests run in several processes."""
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -20,6 +20,7 @@ import numpy as np
 import programs_franka
 import programs_pylibfranka
 import pytest
+from conftest import LOOPBACK
 from franka_async import Sim
 
 RUN = Path(__file__).with_name("run_program.py")
@@ -38,7 +39,7 @@ def programs_of(module: ModuleType) -> list[str]:
 def outcome(programs: str, program: str, package: str, kind: str) -> list[tuple[str, Any]]:
     """Runs a program with a package against a robot of its own; returns what it notes."""
     start = getattr(Sim, kind)
-    with start(virtual_time=True, patience=0.25, ideal=True, hand=True, address=f"127.0.77.{next(HOSTS)}:1337") as sim:
+    with start(virtual_time=True, patience=0.25, ideal=True, hand=True, address=f"{LOOPBACK}.{next(HOSTS)}:1337") as sim:
         address = sim.address.removesuffix(":1337")
         command = [sys.executable, str(RUN), programs, program, package, str(address)]
         done = subprocess.run(command, capture_output=True, text=True, timeout=100, cwd=RUN.parent)

@@ -17,7 +17,7 @@ import franka_async.compat.franka as franka
 import franka_async.compat.pylibfranka as pylibfranka
 import numpy as np
 import pytest
-from conftest import PATIENT, program, until
+from conftest import LOOPBACK, PATIENT, program, until
 
 from franka_async import ActionError, ConnectError, Joints, Latest, MotionError, Sim, sync
 
@@ -63,7 +63,7 @@ def assert_stops(sim: Sim) -> None:
 
 @pytest.fixture
 def live_fr3() -> Iterator[Sim]:
-    with Sim.fr3(patience=5.0, hand=True, address="127.0.78.1:1337") as sim:
+    with Sim.fr3(patience=5.0, hand=True, address=f"{LOOPBACK}.1:1337") as sim:
         yield sim
 
 
@@ -71,7 +71,7 @@ def live_fr3() -> Iterator[Sim]:
 
 
 def test_a_stop_of_another_thread_ends_targets_of_franka(live_fr3: Sim) -> None:
-    robot = franka.Robot("127.0.78.1", realtime="ignore")
+    robot = franka.Robot(f"{LOOPBACK}.1", realtime="ignore")
     for begin, stop in ((robot.cartesian_targets, "robot"), (robot.joint_targets, "robot"), (robot.joint_targets, "session")):
         targets = begin()
         goal = targets.target()
@@ -92,7 +92,7 @@ def test_a_stop_of_another_thread_ends_targets_of_franka(live_fr3: Sim) -> None:
 
 
 def test_a_stop_of_another_thread_ends_a_chunk_of_franka(live_fr3: Sim) -> None:
-    robot = franka.Robot("127.0.78.1", realtime="ignore")
+    robot = franka.Robot(f"{LOOPBACK}.1", realtime="ignore")
     targets = robot.joint_targets()
     rows = targets.target() + np.outer(np.linspace(0.0, 0.5, 5000), np.eye(7)[6])
     targets.follow(rows, dt=0.005)
@@ -104,7 +104,7 @@ def test_a_stop_of_another_thread_ends_a_chunk_of_franka(live_fr3: Sim) -> None:
 
 
 def test_a_stop_of_another_thread_ends_active_control_of_pylibfranka(live_fr3: Sim) -> None:
-    robot = pylibfranka.Robot("127.0.78.1", IGNORE)
+    robot = pylibfranka.Robot(f"{LOOPBACK}.1", IGNORE)
     control = robot.start_joint_velocity_control(pylibfranka.ControllerMode.JointImpedance)
     speed = 0.0
     with once(moves(live_fr3), robot.stop):
@@ -148,7 +148,7 @@ def test_ctrl_c_ends_what_waits_for_a_robot(live_fr3: Sim) -> None:
 
 
 def test_ctrl_c_ends_targets_of_franka(live_fr3: Sim) -> None:
-    robot = franka.Robot("127.0.78.1", realtime="ignore")
+    robot = franka.Robot(f"{LOOPBACK}.1", realtime="ignore")
     with pytest.raises(KeyboardInterrupt):
         with robot.cartesian_targets(max_velocity=0.05) as targets:
             target = targets.target()
@@ -162,7 +162,7 @@ def test_ctrl_c_ends_targets_of_franka(live_fr3: Sim) -> None:
 
 
 def test_ctrl_c_ends_active_control_of_pylibfranka(live_fr3: Sim) -> None:
-    robot = pylibfranka.Robot("127.0.78.1", IGNORE)
+    robot = pylibfranka.Robot(f"{LOOPBACK}.1", IGNORE)
     control = robot.start_joint_velocity_control(pylibfranka.ControllerMode.JointImpedance)
     speed = 0.0
     with pytest.raises(KeyboardInterrupt), once(moves(live_fr3), interrupt):
@@ -210,8 +210,8 @@ def connected(connect: Callable[[], T]) -> T:
 
 def test_ctrl_c_ends_connecting() -> None:
     """To a robot that accepts the connection and says nothing."""
-    with socket.create_server(("127.0.78.2", 1337)) as silent:
-        address = f"127.0.78.2:{silent.getsockname()[1]}"
+    with socket.create_server((f"{LOOPBACK}.2", 1337)) as silent:
+        address = f"{LOOPBACK}.2:{silent.getsockname()[1]}"
         connecting: list[Callable[[], Any]] = [
             lambda: sync.Robot(address, connect_timeout=100.0, **PATIENT).connect(),
             lambda: franka.Robot(address, realtime="ignore"),
@@ -232,7 +232,7 @@ def test_ctrl_c_ends_connecting() -> None:
 
 # Threads, processes.
 
-THREADS = """
+THREADS = f'HOST = "{LOOPBACK}.3"' + """
 import asyncio, os, sys, threading, time
 import franka_async, franka_async.compat.franka as franka, franka_async.compat.pylibfranka as pylibfranka
 from franka_async import Policy, Robot, Sim, sync
@@ -244,7 +244,7 @@ def how(where):
 
 before = how(set())
 assert len(before) == 1 and next(iter(before))[:2] == (os.SCHED_OTHER, 0), before
-with Sim.fr3(virtual_time=True, hand=True, address="127.0.78.3:1337") as sim:
+with Sim.fr3(virtual_time=True, hand=True, address=HOST + ":1337") as sim:
     seen = []
     def asked(reflex):
         seen.append(how(set()))
@@ -272,7 +272,7 @@ with Sim.fr3(virtual_time=True, hand=True, address="127.0.78.3:1337") as sim:
             yield robot.pose()
     robot.follow(targets()).wait()
     robot.shutdown().wait()
-    robot = franka.Robot("127.0.78.3", realtime="ignore")
+    robot = franka.Robot(HOST, realtime="ignore")
     with robot.cartesian_targets(realtime_priority=60) as session:
         session.follow([session.target()] * 3, dt=0.001)
         seen.append(how(set()))
@@ -281,7 +281,7 @@ with Sim.fr3(virtual_time=True, hand=True, address="127.0.78.3:1337") as sim:
     del robot, session
     for attempt in range(1000):
         try:
-            robot = pylibfranka.Robot("127.0.78.3", pylibfranka.RealtimeConfig.kIgnore)
+            robot = pylibfranka.Robot(HOST, pylibfranka.RealtimeConfig.kIgnore)
             break
         except pylibfranka.NetworkException:
             time.sleep(0.01)  # The client before is leaving.
@@ -302,11 +302,11 @@ def test_no_thread_of_the_program_is_raised_or_pinned() -> None:
     assert "unchanged" in program(THREADS)
 
 
-EXITING = """
+EXITING = f'HOST = "{LOOPBACK}.4"' + """
 import threading, time
 import franka_async, franka_async.compat.franka as franka, franka_async.compat.pylibfranka as pylibfranka
 from franka_async import MotionError, Sim, sync
-sim = Sim.fr3(patience=5.0, hand=True, address="127.0.78.4:1337")
+sim = Sim.fr3(patience=5.0, hand=True, address=HOST + ":1337")
 def moving():
     end = time.monotonic() + 30
     while abs(sim.state().dq).max() < 0.02:
@@ -329,13 +329,13 @@ beside(lambda: arm.move_by([0.0, 0.0, 0.2], speed=0.1))
 moving()
 """,
     "franka": """
-robot = franka.Robot("127.0.78.4", realtime="ignore")
+robot = franka.Robot(HOST, realtime="ignore")
 targets = robot.cartesian_targets(max_velocity=0.05)
 targets.follow([targets.target()[:3] + [0.0, 0.0, 0.0001 * i] for i in range(2000)], dt=0.01)
 moving()
 """,
     "pylibfranka": """
-robot = pylibfranka.Robot("127.0.78.4", pylibfranka.RealtimeConfig.kIgnore)
+robot = pylibfranka.Robot(HOST, pylibfranka.RealtimeConfig.kIgnore)
 control = robot.start_joint_velocity_control(pylibfranka.ControllerMode.JointImpedance)
 def cycle():
     speed = 0.0
@@ -347,7 +347,7 @@ beside(cycle)
 moving()
 """,
     "a hand": """
-hand = pylibfranka.Gripper("127.0.78.4")
+hand = pylibfranka.Gripper(HOST)
 hand.homing()
 beside(lambda: hand.move(0.0, 8e-4))
 while hand.read_once().width > 0.079:
@@ -364,10 +364,10 @@ def test_the_interpreter_exits_with_a_motion_under_way(face: str) -> None:
 
 FORKING = """
 import os, sys
-robot = franka.Robot("127.0.78.4", realtime="ignore")
+robot = franka.Robot(HOST, realtime="ignore")
 inner = sync.Robot(sim.address, realtime="ignore")
 targets = robot.joint_targets()
-hand = pylibfranka.Gripper("127.0.78.4")
+hand = pylibfranka.Gripper(HOST)
 reading = threading.Event()
 def read():
     while not reading.is_set():

@@ -1,5 +1,6 @@
 //! Recordings, read by the standard reader in Python.
 
+use crate::mujoco;
 use crate::python::{NEWEST, Python, Version};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
@@ -15,7 +16,9 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let requirements = requirements.join("requirements.txt");
     let interpreter = python.environment(workspace, "python-recordings", &requirements)?;
     let mut test = workspace.cargo();
-    test.args(["test", "--package=franka-record", "--test=recording", "--"]);
+    // With the features of the step that runs all tests: what it has built is used again.
+    test.args(["test", "--workspace", "--test=recording", "--features"]);
+    test.arg(mujoco::features(workspace)?).arg("--");
     test.args(["--ignored", "--nocapture", "python_decodes"]);
     workspace.run(test.env("FRANKA_RECORD_PYTHON", interpreter))?;
     Ok(Outcome::Passed)

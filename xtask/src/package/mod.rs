@@ -79,7 +79,9 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
             wheels::check(workspace, &wheel)
         });
         let mut tests = module(workspace, &interpreter, "pytest");
-        tests.args(["--quiet", "franka-py/tests"]);
+        // Most of them mostly wait. Who is done with his share takes over from others.
+        tests.args(["--quiet", "-n", "4", "--dist", "worksteal"]);
+        tests.arg("franka-py/tests");
         workspace.run(&mut tests)?;
         beside.join().expect("no panic")
     })

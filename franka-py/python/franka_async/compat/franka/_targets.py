@@ -51,8 +51,14 @@ class _Targets:
     def _set(self, target: Array) -> None:
         if not self.running:
             raise FrankaError(_STOPPED)
-        with translated():
-            self._arm.try_set(self._goal(target))
+        try:
+            with translated():
+                self._arm.try_set(self._goal(target))
+        except FrankaError as error:
+            if error.kind == "invalid_argument":
+                raise
+            # The session ended since it was seen running.
+            raise FrankaError(_STOPPED) from error
         self._target = target
 
     def move_to(self, target: npt.ArrayLike) -> None:
