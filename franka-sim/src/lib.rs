@@ -17,7 +17,7 @@
 //! | [`network`] | what is between a robot and its client, as a value: loss, delay, stalls |
 //! | [`config`] | what a robot is like: arm, pose, tool, load, strictness |
 //!
-//! The binary `franka-sim` is [`serve`] with a command line, for clients in any language.
+//! The binary `franka-sim` is `command_line`, for clients in any language.
 //!
 //! # Example
 //!
@@ -40,6 +40,7 @@
 //!
 //! # Features
 //!
+//! - `command-line`, on by default: the binary `franka-sim`, and its options for other programs.
 //! - `mujoco`: the plant in MuJoCo, `plant::MujocoArm`. Needs Rust 1.95, and MuJoCo's library: in
 //!   this workspace `cargo xtask mujoco` fetches it.
 //!
@@ -67,6 +68,8 @@
 
 pub mod arm;
 mod brake;
+#[cfg(feature = "command-line")]
+pub mod command_line;
 pub mod config;
 mod connection;
 pub mod end_effector;

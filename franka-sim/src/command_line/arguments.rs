@@ -1,4 +1,4 @@
-//! The command line.
+//! The options.
 
 use std::net::IpAddr;
 use std::path::PathBuf;
@@ -7,7 +7,7 @@ use std::time::Duration;
 use clap::{ArgAction, Parser, ValueEnum};
 use franka_model::RobotKind;
 
-use crate::values::{factor, mass, numbers, object_width, patience};
+use super::values::{factor, mass, numbers, object_width, patience};
 
 /// Simulates a Franka Research 3 (protocol 10) or a Franka Emika Robot (protocol 5) until it is
 /// interrupted.
@@ -23,126 +23,126 @@ use crate::values::{factor, mass, numbers, object_width, patience};
 /// be brought to run before it is made safe.
 #[derive(Debug, Parser)]
 #[command(version, after_help = EXAMPLES)]
-pub(crate) struct Arguments {
+pub struct Arguments {
     /// Which robot, and with it which protocol version.
     #[arg(long, value_enum, default_value_t = Kind::Fr3)]
-    pub(crate) robot: Kind,
+    pub robot: Kind,
 
     /// Address to listen on, IPv4 or IPv6; 0.0.0.0 for all interfaces, :: for both families on all
     /// of them.
     #[arg(long, default_value = "127.0.0.1")]
-    pub(crate) bind: IpAddr,
+    pub bind: IpAddr,
 
     /// TCP port to listen on; 0 takes a free one. Other clients than ours only know 1337.
     #[arg(long, default_value_t = 1337)]
-    pub(crate) port: u16,
+    pub port: u16,
 
     /// Joint positions at the start, in radians, separated by commas; the ready pose if absent.
     #[arg(long, value_name = "Q1,...,Q7", value_parser = numbers::<7>, allow_hyphen_values = true)]
-    pub(crate) q: Option<[f64; 7]>,
+    pub q: Option<[f64; 7]>,
 
     /// Serves neither a Franka Hand nor a vacuum gripper. Without this, they listen on the two
     /// ports that follow the robot's, as on a robot: 1338 and 1339. On port 0 all three are free
     /// ones.
     #[arg(long)]
-    pub(crate) no_gripper: bool,
+    pub no_gripper: bool,
 
     /// Puts an object of this width between the Hand's fingers and in front of the vacuum gripper,
     /// in metres.
     #[arg(long, value_name = "M", value_parser = object_width, conflicts_with = "no_gripper")]
-    pub(crate) gripper_object_width: Option<f64>,
+    pub gripper_object_width: Option<f64>,
 
     /// Mounts the Franka Hand's mass and frame on the flange.
     #[arg(long)]
-    pub(crate) hand: bool,
+    pub hand: bool,
 
     /// A load on the flange that the robot does not know of until a client declares it, in
     /// kilograms.
     #[arg(long, value_name = "KG", value_parser = mass, default_value = "0", allow_hyphen_values = true)]
-    pub(crate) payload: f64,
+    pub payload: f64,
 
     /// Centre of mass of the load in the flange frame, in metres.
     #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, default_value = "0,0,0.05", allow_hyphen_values = true)]
-    pub(crate) payload_com: [f64; 3],
+    pub payload_com: [f64; 3],
 
     /// Which arm: the middle of one of the families `nominal`, `realistic` and `bad`, or of the
     /// family in a JSON file; or `ideal`, without stiction, delay and noise, as no real arm is. The
     /// book (docs/src/real-arm.md) has the parameters.
     #[arg(long, value_name = "ARM|FILE.json", default_value = "realistic")]
-    pub(crate) arm: String,
+    pub arm: String,
 
     /// Draws an arm from the family by this seed, instead of its middle.
     #[arg(long, value_name = "N")]
-    pub(crate) arm_seed: Option<u64>,
+    pub arm_seed: Option<u64>,
 
     /// Adds noise to the sensors, in place of the arm's own.
     #[arg(long)]
-    pub(crate) noise: bool,
+    pub noise: bool,
 
     /// What moves: the arm alone, or the arm in MuJoCo, on a table or among what --scene names,
     /// and fingers that grasp if there is a --hand.
     #[arg(long, value_enum, default_value_t = PlantKind::Rigid)]
-    pub(crate) plant: PlantKind,
+    pub plant: PlantKind,
 
     /// An MJCF file with what is around the robot, in its base frame, instead of the table. Bodies
     /// with a free joint are objects to push and to grasp.
     #[arg(long, value_name = "FILE.xml")]
-    pub(crate) scene: Option<PathBuf>,
+    pub scene: Option<PathBuf>,
 
     /// A file with the model library that the robot serves (FER only): the vendor's, which is not
     /// ours to give, for clients that insist on one. Without, they are told that there is none.
     #[arg(long, value_name = "FILE")]
-    pub(crate) model_library: Option<PathBuf>,
+    pub model_library: Option<PathBuf>,
 
     /// What happens to states and commands on their way, besides what the network between the hosts
     /// does.
     #[arg(long, value_enum, default_value_t = NetworkKind::Perfect)]
-    pub(crate) network: NetworkKind,
+    pub network: NetworkKind,
 
     /// Seed of all randomness.
     #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
+    pub seed: u64,
 
     /// Whether commands and motions beyond the limits end in a reflex, as on a robot. With `false`
     /// the arm does what it physically can.
     #[arg(long, value_name = "BOOL", default_value_t = true, default_missing_value = "true",
           num_args = 0..=1, action = ArgAction::Set)]
-    pub(crate) enforce_motion_limits: bool,
+    pub enforce_motion_limits: bool,
 
     /// Factor on the bounds of acceleration and jerk that commands have to keep in the joints.
     /// Above 1 for clients that are rougher than a robot allows: it would stop with a discontinuity
     /// error.
     #[arg(long, value_name = "FACTOR", value_parser = factor, default_value = "1")]
-    pub(crate) joint_discontinuity_scale: f64,
+    pub joint_discontinuity_scale: f64,
 
     /// Whether 20 commands missing in a row end in a reflex, as on a robot. With `false` the robot
     /// waits for them: for slow or debugged clients.
     #[arg(long, value_name = "BOOL", default_value_t = true, default_missing_value = "true",
           num_args = 0..=1, action = ArgAction::Set)]
-    pub(crate) enforce_comm_constraints: bool,
+    pub enforce_comm_constraints: bool,
 
     /// Lets pass what a robot stops for: neither limits nor missing commands are enforced.
     #[arg(long)]
-    pub(crate) permissive: bool,
+    pub permissive: bool,
 
     /// Asks for a real-time priority (SCHED_FIFO) of the thread that keeps the millisecond, which
     /// takes the right to one. Without the right, the simulator says so and goes on without.
     #[arg(long)]
-    pub(crate) realtime: bool,
+    pub realtime: bool,
 
     /// Keeps to the clock on the wall even where the host holds the simulator up: the states that
     /// are due then come in a burst, and answers that they leave no time for count as lost.
     /// Without, the robot's clock slips by what the host is late. How often that was is logged at
     /// the end.
     #[arg(long)]
-    pub(crate) strict_clock: bool,
+    pub strict_clock: bool,
 
     /// Waits for commands that come late, each for so many seconds at most, while the robot's clock
     /// stands still: for clients on a busy machine.
     #[arg(long, value_name = "SECONDS", value_parser = patience, num_args = 0..=1,
           require_equals = true, default_missing_value = "0.5",
           conflicts_with_all = ["strict_clock", "virtual_time"])]
-    pub(crate) wait_for_commands: Option<Duration>,
+    pub wait_for_commands: Option<Duration>,
 
     /// Lets the robot's time pass as fast as the client answers, not by the clock on the wall: in a
     /// motion the next millisecond begins when the answer to the last state is there, or counts as
@@ -150,12 +150,12 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "SECONDS", value_parser = patience, num_args = 0..=1,
           require_equals = true, default_missing_value = "0.5",
           conflicts_with_all = ["realtime", "strict_clock"])]
-    pub(crate) virtual_time: Option<Duration>,
+    pub virtual_time: Option<Duration>,
 }
 
 /// The kinds of robot by their short names.
 #[derive(Debug, Clone, Copy, ValueEnum)]
-pub(crate) enum Kind {
+pub enum Kind {
     /// Franka Research 3
     Fr3,
     /// Franka Emika Robot, known as Panda
@@ -164,7 +164,7 @@ pub(crate) enum Kind {
 
 /// The plants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PlantKind {
+pub enum PlantKind {
     /// Rigid links that nothing is around
     Rigid,
     /// MuJoCo: contact, objects, fingers
@@ -173,7 +173,7 @@ pub(crate) enum PlantKind {
 
 /// Networks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum NetworkKind {
+pub enum NetworkKind {
     /// Nothing
     Perfect,
     /// The robot's network interface stalls for 2 to 7 ms seven times a second, as an FER's does

@@ -1,4 +1,4 @@
-//! Arguments to a robot, a plant, grippers and a network.
+//! Options to a robot, a plant, grippers and a network.
 
 use std::fmt::Display;
 use std::fs;
@@ -6,14 +6,14 @@ use std::net::SocketAddr;
 
 use bytes::Bytes;
 use franka_model::{JointVector, Load, RobotKind};
-use franka_sim::arm::{Arm, Family, Sensors};
-use franka_sim::network::{BurstLoss, Conditions, Loss};
-#[cfg(feature = "mujoco")]
-use franka_sim::plant::{MujocoArm, Scene};
-use franka_sim::{Config, Fingers, Network, Sim, Suction, Tool};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::arguments::{Arguments, Kind, NetworkKind, PlantKind};
+use super::arguments::{Arguments, Kind, NetworkKind, PlantKind};
+use crate::arm::{Arm, Family, Sensors};
+use crate::network::{BurstLoss, Conditions, Loss};
+#[cfg(feature = "mujoco")]
+use crate::plant::{MujocoArm, Scene};
+use crate::{Config, Fingers, Network, Sim, Suction, Tool};
 
 impl Arguments {
     fn config(&self) -> Result<Config, String> {
@@ -77,8 +77,11 @@ impl Arguments {
         })
     }
 
-    /// The robot, or why there is none.
-    pub(crate) fn sim(&self) -> Result<Sim, String> {
+    /// Returns the robot that the options describe, not started yet.
+    ///
+    /// # Errors
+    /// A text that says which option makes no robot, and why.
+    pub fn sim(&self) -> Result<Sim, String> {
         let mut config = self.config()?;
         config.model_library = self.library()?;
         let sim = Sim::new(config)

@@ -1,11 +1,14 @@
-//! Checked values of arguments.
+//! Checked values of options.
 
 use std::time::Duration;
 
-use franka_sim::Fingers;
+use crate::Fingers;
 
-/// `N` finite numbers, separated by commas.
-pub(crate) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+/// Returns `N` finite numbers from text that has commas between them.
+///
+/// # Errors
+/// A text that says what is wrong with it.
+pub fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let values = text
         .split(',')
         .map(|number| number.trim().parse::<f64>().map_err(|e| e.to_string()))

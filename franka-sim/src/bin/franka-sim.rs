@@ -1,0 +1,25 @@
+//! A simulated Franka robot for any client that speaks its protocol: `franka_sim::command_line` as
+//! a program.
+
+use std::io::{IsTerminal, Write};
+use std::process::ExitCode;
+
+use clap::Parser;
+use franka_sim::command_line::Arguments;
+
+#[tokio::main(flavor = "current_thread")]
+async fn main() -> ExitCode {
+    tracing_subscriber::fmt()
+        .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal())
+        .with_target(false)
+        .init();
+    let ready = |lines: &str| writeln!(std::io::stdout(), "{lines}");
+    match Arguments::parse().run(ready).await {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("franka-sim: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}

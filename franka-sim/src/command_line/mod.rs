@@ -1,0 +1,51 @@
+//! The command line of the simulator, for programs that start one: the binary `franka-sim`, and
+//! the subcommand of another (feature `command-line`).
+//!
+//! | module | content |
+//! |---|---|
+//! | `arguments` | the options |
+//! | `values` | checked values of options |
+//! | `setup` | options to a robot, a plant, grippers and a network |
+
+mod arguments;
+mod setup;
+mod values;
+
+use std::io;
+
+use tokio::signal::unix::{SignalKind, signal};
+
+pub use arguments::{Arguments, Kind, NetworkKind, PlantKind};
+pub use values::numbers;
+
+impl Arguments {
+    /// Simulates until SIGINT or SIGTERM comes. Once the robot is ready, `ready` is called with a
+    /// line for each address that it listens on.
+    ///
+    /// # Errors
+    /// Options that make no robot, an address that is taken, or a simulation that has ended.
+    pub async fn run(&self, ready: impl FnOnce(&str) -> io::Result<()>) -> io::Result<()> {
+        let mut interrupt = signal(SignalKind::interrupt())?;
+        let mut terminate = signal(SignalKind::terminate())?;
+        let sim = self.sim().map_err(io::Error::other)?;
+        let sim = sim.start().await.map_err(|error| {
+            let kind = error.kind();
+            io::Error::new(kind, format!("cannot listen on {error}"))
+        })?;
+        let mut lines = format!("listening on {}", sim.addr());
+        if let Some(hand) = sim.hand() {
+            lines += &format!("\nFranka Hand on {}", hand.addr());
+        }
+        if let Some(gripper) = sim.vacuum_gripper() {
+            lines += &format!("\nvacuum gripper on {}", gripper.addr());
+        }
+        ready(&lines)?;
+        tokio::select! {
+            _ = interrupt.recv() => {}
+            _ = terminate.recv() => {}
+            () = sim.ended() => return Err(io::Error::other("the simulation has ended")),
+        }
+        sim.stop().await;
+        Ok(())
+    }
+}
