@@ -1,0 +1,141 @@
+//! `franka bench`: this computer, without a robot.
+
+use std::time::{Duration, Instant};
+
+use clap::{Args, Subcommand};
+use franka_async::control::{Finish, Torques};
+use franka_async::realtime::Scheduling;
+use franka_async::{Realtime, Robot};
+use franka_sim::Sim;
+use indicatif::ProgressBar;
+use serde_json::json;
+
+use super::test::{quantiles, table};
+use crate::ending::{Ending, Failure};
+use crate::output::Output;
+use crate::values::seconds;
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Bench {
+    /// How late a thread wakes up that sleeps until each millisecond
+    Wake(Wake),
+    /// How long the control loop takes, against a simulated robot in this process
+    Loop(Loop),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Wake {
+    /// How long
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "10")]
+    seconds: Duration,
+    #[command(flatten)]
+    output: Output,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Loop {
+    /// How long
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "10")]
+    seconds: Duration,
+    #[command(flatten)]
+    output: Output,
+}
+
+impl Wake {
+    pub(super) fn run(self) -> anyhow::Result<Ending> {
+        let count = self.seconds.as_millis() as usize;
+        let bar = ProgressBar::new(count as u64);
+        let moved = bar.clone();
+        let measured = std::thread::spawn(move || measure(count, &moved)).join();
+        bar.finish_and_clear();
+        let (priority, mut late) = measured
+            .map_err(|_| Failure::new(Ending::Failed, "the measuring thread has panicked"))?
+            .map_err(|error| Failure::new(Ending::Host, error))?;
+        late.sort_unstable();
+        let at = |quantile: f64| {
+            late[((late.len() - 1) as f64 * quantile).round() as usize].as_micros() as u64
+        };
+        let [p50, p99, p999, max] = [0.5, 0.99, 0.999, 1.0].map(at);
+        let value = json!({
+            "wakes": late.len(),
+            "priority": priority,
+            "late_us": { "p50": p50, "p99": p99, "p999": p999, "max": max },
+        });
+        self.output.print(&value, || {
+            let scheduling = match priority {
+                Some(priority) => format!("SCHED_FIFO {priority}"),
+                None => "without real-time scheduling".to_owned(),
+            };
+            format!(
+                "{} wake-ups {scheduling}\nlate by        {p50:>6}  99 % {p99:>6}  99.9 % {p999:>6}  max {max:>6}  us",
+                late.len()
+            )
+        })
+    }
+}
+
+/// Sleeps until each of `count` milliseconds; returns the priority of the thread, and how late it
+/// woke.
+fn measure(count: usize, bar: &ProgressBar) -> Result<(Option<i32>, Vec<Duration>), String> {
+    let scheduling = Scheduling {
+        realtime: Realtime::Ignore,
+        ..Scheduling::default()
+    };
+    let granted = scheduling.enter().map_err(|error| error.to_string())?;
+    let mut late = Vec::with_capacity(count);
+    let mut due = Instant::now();
+    for i in 0..count {
+        due += PERIOD;
+        std::thread::sleep(due.saturating_duration_since(Instant::now()));
+        let now = Instant::now();
+        late.push(now.saturating_duration_since(due));
+        // What was missed meanwhile is not made up for.
+        due = due.max(now - PERIOD);
+        if i % 100 == 0 {
+            bar.set_position(i as u64);
+        }
+    }
+    Ok((granted.priority, late))
+}
+
+impl Loop {
+    pub(super) async fn run(self) -> anyhow::Result<Ending> {
+        let failed = |error: std::io::Error| Failure::new(Ending::Host, error.to_string());
+        // It waits for commands that a busy computer sends late, rather than stop itself.
+        let sim = Sim::fr3().wait_for_commands(PATIENCE).start();
+        let sim = sim.await.map_err(failed)?;
+        let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+        let robot = builder.connect().await?;
+        let (mut time, seconds) = (Duration::ZERO, self.seconds);
+        let control = robot.control_torques(move |_, step| {
+            time += step;
+            Torques([0.0; 7]).finish_if(time >= seconds)
+        });
+        let report = control.await?;
+        let (stats, granted) = (robot.stats(), robot.granted());
+        robot.shutdown().await;
+        sim.stop().await;
+        let value = json!({
+            "robot": "simulated FR3 in this process",
+            "priority": granted.priority,
+            "success_rate": { "min": report.success_rate_min, "avg": report.success_rate_avg },
+            "lost": report.lost_states,
+            "skipped": report.skipped_states,
+            "interval_us": quantiles(&stats.interval),
+            "turnaround_us": quantiles(&stats.turnaround),
+        });
+        self.output.print(&value, || {
+            let scheduling = match granted.priority {
+                Some(priority) => format!("SCHED_FIFO {priority}"),
+                None => "without real-time scheduling".to_owned(),
+            };
+            format!("{}scheduling     {scheduling}", table(&value))
+        })
+    }
+}
+
+/// For a command of a computer that is busy with something else.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Of a robot.
+const PERIOD: Duration = Duration::from_millis(1);

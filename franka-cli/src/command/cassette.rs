@@ -1,0 +1,159 @@
+//! `franka cassette`: what a tap has recorded.
+
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::Context as _;
+use clap::Subcommand;
+use franka_async::cassette::{
+    Cassette as Tape, CassetteServer, Device, Matching, Payload, PlayOptions, pcap,
+};
+use serde_json::json;
+
+use crate::ending::{Ending, Failure};
+use crate::output::{Output, say};
+use crate::values::seconds;
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Cassette {
+    /// Say what is in a cassette
+    Info {
+        /// The cassette
+        file: PathBuf,
+        #[command(flatten)]
+        output: Output,
+    },
+    /// Be the recorded robot, until the session has been played
+    Play {
+        /// The cassette
+        file: PathBuf,
+        /// Where clients connect to
+        #[arg(long, value_name = "IP", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
+        listen: IpAddr,
+        /// Port for clients of the robot; those of the Hand and the vacuum gripper follow. 0 takes
+        /// free ones
+        #[arg(long, default_value_t = 1337)]
+        port: u16,
+        /// Accept nothing but the recorded bytes
+        #[arg(long)]
+        strict: bool,
+        /// How long clients may take altogether
+        #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "600")]
+        patience: Duration,
+        #[command(flatten)]
+        output: Output,
+    },
+    /// Convert a cassette to a capture for Wireshark, or a capture (pcap, pcapng) to a cassette
+    Convert {
+        /// The file; a cassette ends in .mcap
+        from: PathBuf,
+        /// The new file
+        to: PathBuf,
+    },
+}
+
+impl Cassette {
+    pub(super) fn run(self) -> anyhow::Result<Ending> {
+        match self {
+            Self::Info { file, output } => info(&open(&file)?, output),
+            Self::Play {
+                file,
+                listen,
+                port,
+                strict,
+                patience,
+                output,
+            } => {
+                let mut options = PlayOptions::default();
+                if !strict {
+                    options.matching = Matching::Lenient;
+                }
+                let at = |device: Device| {
+                    let port = match port {
+                        0 => 0,
+                        port => port + (device.port() - Device::Robot.port()),
+                    };
+                    SocketAddr::from((listen, port))
+                };
+                let server = CassetteServer::start_at(open(&file)?, at, options);
+                let server =
+                    server.map_err(|error| Failure::new(Ending::Host, error.to_string()))?;
+                for device in Device::ALL {
+                    if let Some(address) = server.address(device) {
+                        say(&format!("{device} at {address}"));
+                    }
+                }
+                let report = server.finish(patience);
+                let report =
+                    report.map_err(|error| Failure::new(Ending::Failed, error.to_string()))?;
+                let lines = report
+                    .played
+                    .iter()
+                    .map(|(device, tally)| format!("{device}: {tally}"));
+                let lines: Vec<String> = lines.collect();
+                output.print(&json!({ "played": lines }), || lines.join("\n"))
+            }
+            Self::Convert { from, to } => {
+                let bytes = if from
+                    .extension()
+                    .is_some_and(|extension| extension == "mcap")
+                {
+                    pcap::to_capture(&open(&from)?)
+                } else {
+                    let capture = std::fs::read(&from);
+                    let capture = capture.with_context(|| format!("reading {}", from.display()))?;
+                    pcap::from_capture(&capture)?.to_bytes()?
+                };
+                std::fs::write(&to, bytes).with_context(|| format!("writing {}", to.display()))?;
+                Ok(Ending::Done)
+            }
+        }
+    }
+}
+
+fn open(file: &Path) -> anyhow::Result<Tape> {
+    let tape = Tape::open(file);
+    let tape = tape.map_err(|error| {
+        let message = format!("{}: {error}", file.display());
+        Failure::new(Ending::Host, message)
+    })?;
+    if let Some(damage) = &tape.damage {
+        say(&format!("{} ends early: {damage}", file.display()));
+    }
+    Ok(tape)
+}
+
+fn info(tape: &Tape, output: Output) -> anyhow::Result<Ending> {
+    let mut connections = Vec::new();
+    let mut lines = Vec::new();
+    for connection in &tape.connections {
+        let is_datagram = |what: &Payload| matches!(what, Payload::Datagram(_));
+        let datagrams = connection
+            .events
+            .iter()
+            .filter(|event| is_datagram(&event.what));
+        let datagrams = datagrams.count();
+        let last = connection.events.last().map(|event| event.at);
+        let seconds = last.unwrap_or_default().as_secs_f64();
+        lines.push(format!(
+            "{}: {} events, {datagrams} of them datagrams, until {seconds:.3} s",
+            connection.device,
+            connection.events.len()
+        ));
+        connections.push(json!({
+            "device": connection.device.to_string(),
+            "events": connection.events.len(),
+            "datagrams": datagrams,
+            "until": seconds,
+        }));
+    }
+    let value = json!({
+        "connections": connections,
+        "dropped": tape.dropped,
+        "damage": tape.damage,
+    });
+    output.print(&value, || {
+        format!("{}\n{} dropped", lines.join("\n"), tape.dropped)
+    })
+}

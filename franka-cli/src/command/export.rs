@@ -1,0 +1,109 @@
+//! `franka export`: recordings as tables, and as datasets for training.
+
+use std::fs::File;
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use clap::Args;
+use franka_async::export::lerobot::{Action, Dataset, DatasetOptions};
+use franka_async::export::{Columns, write_csv, write_parquet};
+use franka_async::model::RobotKind;
+use franka_async::recording::{Episode, Sample, Samples};
+use serde_json::json;
+
+use super::explain::Recorded;
+use crate::ending::{Ending, Failure};
+use crate::output::Output;
+
+/// Export a recording: a row per cycle, or a dataset in the layout of LeRobot of its episodes.
+#[derive(Debug, Args)]
+#[group(id = "to", required = true, multiple = true, args = ["csv", "parquet", "lerobot"])]
+pub(crate) struct Export {
+    #[command(flatten)]
+    recorded: Recorded,
+    /// Write a table as comma-separated text, with a line of units
+    #[arg(long, value_name = "FILE.csv")]
+    csv: Option<PathBuf>,
+    /// Write a table as Parquet
+    #[arg(long, value_name = "FILE.parquet")]
+    parquet: Option<PathBuf>,
+    /// Columns of the tables; all by default
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    columns: Vec<String>,
+    /// Add the episodes to a dataset, a new one if there is none
+    #[arg(long, value_name = "FOLDER")]
+    lerobot: Option<PathBuf>,
+    /// Frames per second of the dataset
+    #[arg(long, value_name = "HZ", default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    fps: u16,
+    /// Leave the gripper out of the dataset
+    #[arg(long)]
+    no_gripper: bool,
+    /// Take where the arm was for its actions: for demonstrations by hand
+    #[arg(long)]
+    measured: bool,
+    #[command(flatten)]
+    output: Output,
+}
+
+impl Export {
+    pub(super) fn run(self) -> anyhow::Result<Ending> {
+        let (recording, name, model) = self.recorded.open()?;
+        let robot = recording.robot(&name)?;
+        let columns = match self.columns.is_empty() {
+            true => Columns::all(),
+            false => Columns::named(self.columns.iter().map(String::as_str))
+                .map_err(|error| Failure::usage(error.to_string()))?,
+        };
+        let (mut rows, mut episodes, mut frames) = (None, None, None);
+        if let Some(path) = &self.csv {
+            let file = File::create_new(path);
+            let file = file.with_context(|| format!("writing {}", path.display()))?;
+            rows = Some(write_csv(robot.cycles(), &columns, true, file)?);
+        }
+        if let Some(path) = &self.parquet {
+            rows = Some(write_parquet(robot.cycles(), &columns, path)?);
+        }
+        if let Some(folder) = &self.lerobot {
+            let kind = match model.kind() {
+                RobotKind::Fer => "franka_fer",
+                _ => "franka_fr3",
+            };
+            let mut options = DatasetOptions::new(kind).fps(self.fps);
+            options = options.gripper(!self.no_gripper);
+            if self.measured {
+                options = options.action(Action::Measured);
+            }
+            let found = Episode::of(robot.events())?;
+            if found.is_empty() {
+                let message = format!("{} has no episodes", self.recorded.file.display());
+                let failure = Failure::new(Ending::Failed, message);
+                return Err(failure
+                    .advice("A program marks them while it records: Recorder::begin_episode.")
+                    .into());
+            }
+            let mut dataset = match folder.exists() {
+                true => Dataset::open(folder, options)?,
+                false => Dataset::create(folder, options)?,
+            };
+            let mut count = 0;
+            for episode in &found {
+                let part = robot.from(episode.begin).to(episode.end);
+                let samples = Samples::new(part.cycles(), robot.to(episode.end).gripper_states());
+                let samples: Vec<Sample> = samples.collect::<Result<_, _>>()?;
+                count += dataset.add_episode(&episode.task, episode.success, samples)?;
+            }
+            dataset.finish()?;
+            episodes = Some(found.len());
+            frames = Some(count);
+        }
+        let value = json!({ "rows": rows, "episodes": episodes, "frames": frames });
+        self.output.print(&value, || {
+            let tables = rows.map(|rows| format!("{rows} rows\n"));
+            let dataset = episodes.zip(frames);
+            let dataset =
+                dataset.map(|(episodes, frames)| format!("{episodes} episodes, {frames} frames\n"));
+            tables.into_iter().chain(dataset).collect()
+        })
+    }
+}

@@ -1,0 +1,121 @@
+//! `franka guide`: the arm yields to a hand.
+
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+use franka_async::goal::Free;
+use franka_async::{Engage, MotionError};
+use serde_json::json;
+
+use crate::ending::Ending;
+use crate::motion::{Mover, Moving, interrupted};
+use crate::output::say;
+use crate::values::seconds;
+
+/// Let a hand guide the arm, until Ctrl-C. A load at the flange has to be declared before, or it
+/// pulls the arm down.
+#[derive(Debug, Args)]
+pub(crate) struct Guide {
+    #[command(flatten)]
+    mover: Mover,
+    /// What the hand may move
+    #[arg(long, value_enum, default_value_t = What::All)]
+    free: What,
+    /// End after so many seconds
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    seconds: Option<Duration>,
+}
+
+/// What is free.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum What {
+    /// Everything
+    All,
+    /// The position of the hand
+    Position,
+    /// The orientation of the hand
+    Orientation,
+    /// The elbow, while the hand stays
+    Elbow,
+}
+
+impl What {
+    fn free(self) -> Free {
+        let axes = |position: bool, orientation: bool| {
+            let [p, o] = [position, orientation];
+            [p, p, p, o, o, o]
+        };
+        match self {
+            Self::All => Free::ALL,
+            Self::Position => Free {
+                axes: axes(true, false),
+                elbow: true,
+            },
+            Self::Orientation => Free {
+                axes: axes(false, true),
+                elbow: true,
+            },
+            Self::Elbow => Free {
+                axes: axes(false, false),
+                elbow: true,
+            },
+        }
+    }
+
+    fn text(self) -> &'static str {
+        match self {
+            Self::All => "wherever",
+            Self::Position => "anywhere with the same orientation,",
+            Self::Orientation => "to any orientation at the same place",
+            Self::Elbow => "by its elbow, while the hand stays, wherever",
+        }
+    }
+}
+
+impl Guide {
+    pub(super) async fn run(self) -> anyhow::Result<Ending> {
+        let moving = self.mover.begin().await?;
+        let outcome = self.guide(&moving).await;
+        let q = moving.end(outcome).await?;
+        self.mover.how.output.print(&json!({ "q": q }), || {
+            let degrees = crate::output::numbers(&q.map(f64::to_degrees), 2);
+            format!("the arm rests at {degrees}  deg")
+        })
+    }
+
+    async fn guide(&self, moving: &Moving) -> anyhow::Result<[f64; 7]> {
+        let robot = &moving.robot;
+        let load = robot.state().m_load;
+        let what = format!(
+            "The arm goes {} a hand pushes it; the declared load is {load:.2} kg.\n\
+             speed as it is pushed, up to the limits of the joints",
+            self.free.text()
+        );
+        moving.ask("guide", &what).await?;
+        // From before the session begins, so that Ctrl-C always ends it.
+        let interrupt = interrupted()?;
+        let guided = async {
+            let arm = robot.engage(Engage::default()).await?;
+            arm.guide(self.free.free()).await?;
+            say("The arm can be guided. Ctrl-C ends.");
+            let end = async {
+                match self.seconds {
+                    Some(seconds) => tokio::time::sleep(seconds).await,
+                    None => std::future::pending().await,
+                }
+            };
+            tokio::select! {
+                () = end => {}
+                () = interrupt => {}
+                ended = arm.ended() => return ended.map(drop),
+            }
+            arm.hold().await?;
+            arm.at_rest().await?;
+            arm.disengage().await?;
+            Ok(())
+        };
+        let guided: Result<(), MotionError> = guided.await;
+        guided.map_err(|error| moving.explain(error))?;
+        Ok(robot.state().q)
+    }
+}

@@ -1,0 +1,29 @@
+//! `franka man`: man pages, one for each command.
+
+use std::fs;
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use clap::{Args, CommandFactory};
+
+use crate::Program;
+use crate::ending::Ending;
+use crate::output::line;
+
+#[derive(Debug, Args)]
+pub(crate) struct Man {
+    /// The folder for them
+    folder: PathBuf,
+}
+
+impl Man {
+    pub(super) fn run(self) -> anyhow::Result<Ending> {
+        let write = || {
+            fs::create_dir_all(&self.folder)?;
+            clap_mangen::generate_to(Program::command(), &self.folder)
+        };
+        write().with_context(|| format!("writing to {}", self.folder.display()))?;
+        line(&format!("man pages in {}", self.folder.display()))?;
+        Ok(Ending::Done)
+    }
+}

@@ -1,0 +1,207 @@
+//! `franka model`: kinematics and dynamics of the arm.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, Subcommand};
+use franka_async::model::{
+    EndEffector, Frame, JointVector, Load, Model as ArmModel, inverse_kinematics,
+};
+use franka_async::nalgebra::{Matrix3, Vector3};
+use franka_async::{Pose, READY, pose};
+use franka_sim::command_line::numbers;
+use serde_json::json;
+
+use super::limits::Kind;
+use crate::connection::Which;
+use crate::ending::{Ending, Failure};
+use crate::output::{Output, numbers as columns};
+use crate::question::end_effector;
+use crate::values::{PartialPose, partial_pose};
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Model {
+    /// Where a frame of the arm is, in the base frame
+    Pose {
+        #[command(flatten)]
+        arm: Arm,
+        /// Which frame
+        #[arg(long, value_parser = frame(), default_value = "end-effector")]
+        frame: Frame,
+    },
+    /// Joint positions that bring the end effector to a pose
+    Ik {
+        #[command(flatten)]
+        arm: Arm,
+        /// x,y,z (m, same orientation), x,y,z,roll,pitch,yaw (degrees), or x,y,z,qx,qy,qz,qw
+        #[arg(long, value_parser = partial_pose, allow_hyphen_values = true)]
+        pose: PartialPose,
+    },
+    /// The Jacobian of a frame in the base frame: m/rad, then rad/rad
+    Jacobian {
+        #[command(flatten)]
+        arm: Arm,
+        /// Which frame
+        #[arg(long, value_parser = frame(), default_value = "end-effector")]
+        frame: Frame,
+    },
+    /// The mass matrix, kg m2, with end effector and load
+    Mass {
+        #[command(flatten)]
+        arm: Arm,
+    },
+}
+
+/// Which arm, and where it is.
+#[derive(Debug, Args)]
+pub(crate) struct Arm {
+    #[command(flatten)]
+    which: Which,
+    /// The arm of this kind with nothing on its flange, without a connection
+    #[arg(long, value_enum, conflicts_with = "robot")]
+    kind: Option<Kind>,
+    /// Joint positions, radians; by default those of the robot, or of the ready pose
+    #[arg(long, value_name = "Q1,...,Q7", value_parser = numbers::<7>, allow_hyphen_values = true)]
+    q: Option<[f64; 7]>,
+    #[command(flatten)]
+    output: Output,
+}
+
+/// The frames of an arm by their names, as [`Frame::ALL`] has them.
+const FRAMES: [&str; 10] = [
+    "joint1",
+    "joint2",
+    "joint3",
+    "joint4",
+    "joint5",
+    "joint6",
+    "joint7",
+    "flange",
+    "end-effector",
+    "stiffness",
+];
+
+fn frame() -> impl TypedValueParser<Value = Frame> {
+    PossibleValuesParser::new(FRAMES).map(|name| {
+        let found = FRAMES
+            .iter()
+            .zip(Frame::ALL)
+            .find(|(known, _)| **known == name);
+        found.expect("a possible value").1
+    })
+}
+
+/// What is computed with.
+struct Known {
+    model: ArmModel,
+    q: JointVector,
+    ee: EndEffector,
+    load: Load,
+}
+
+impl Arm {
+    async fn known(&self) -> anyhow::Result<Known> {
+        if let Some(kind) = self.kind {
+            return Ok(Known {
+                model: kind.model().clone(),
+                q: self.q.map_or(READY, JointVector::from),
+                ee: EndEffector::default(),
+                load: Load::NONE,
+            });
+        }
+        let (robot, _) = self.which.connect().await?;
+        let state = robot.state();
+        let total = state.total_load(robot.version());
+        robot.shutdown().await;
+        Ok(Known {
+            model: robot.model().clone(),
+            q: self.q.unwrap_or(state.q).into(),
+            ee: end_effector(&state),
+            load: Load {
+                mass: total.m_total,
+                com: Vector3::from(total.F_x_Ctotal),
+                inertia: Matrix3::from_column_slice(&total.I_total),
+            },
+        })
+    }
+}
+
+impl Model {
+    pub(super) async fn run(self) -> anyhow::Result<Ending> {
+        match self {
+            Self::Pose { arm, frame } => {
+                let Known { model, q, ee, .. } = arm.known().await?;
+                let matrix = model.pose(frame, &q, &ee);
+                let pose = pose::from_matrix(&matrix).ok_or_else(|| {
+                    Failure::new(
+                        Ending::Failed,
+                        "the robot's end effector is no rigid transformation",
+                    )
+                })?;
+                print_pose(&pose, arm.output)
+            }
+            Self::Ik { arm, pose } => {
+                let Known { model, q, ee, .. } = arm.known().await?;
+                let now = pose::from_matrix(&model.pose(Frame::EndEffector, &q, &ee));
+                let target = pose.complete(&now.unwrap_or_default());
+                let q = inverse_kinematics::solve(&model, &target, &ee, &q)
+                    .map_err(|error| Failure::new(Ending::Failed, error.to_string()))?;
+                let q = <[f64; 7]>::from(q);
+                arm.output.print(&json!({ "q": q }), || {
+                    let degrees = columns(&q.map(f64::to_degrees), 2);
+                    format!("rad {}\ndeg {degrees}", columns(&q, 4))
+                })
+            }
+            Self::Jacobian { arm, frame } => {
+                let Known { model, q, ee, .. } = arm.known().await?;
+                let jacobian = model.zero_jacobian(frame, &q, &ee);
+                let rows = jacobian.row_iter();
+                print_rows(
+                    "jacobian",
+                    rows.map(|row| row.iter().copied().collect()),
+                    arm.output,
+                )
+            }
+            Self::Mass { arm } => {
+                let Known { model, q, load, .. } = arm.known().await?;
+                let mass = model.mass(&q, &load);
+                let rows = mass.row_iter();
+                print_rows(
+                    "mass",
+                    rows.map(|row| row.iter().copied().collect()),
+                    arm.output,
+                )
+            }
+        }
+    }
+}
+
+fn print_pose(pose: &Pose, output: Output) -> anyhow::Result<Ending> {
+    let (position, quaternion) = pose::to_xyzw(pose);
+    let (roll, pitch, yaw) = pose.rotation.euler_angles();
+    let angles = [roll, pitch, yaw];
+    let value = json!({
+        "position": position,
+        "quaternion": quaternion,
+        "roll_pitch_yaw": angles,
+        "matrix": pose.to_homogeneous().as_slice(),
+    });
+    output.print(&value, || {
+        format!(
+            "position    {}  m\nangles      {}  deg (roll, pitch, yaw)\nquaternion  {}  (x, y, z, w)",
+            columns(&position, 4),
+            columns(&angles.map(f64::to_degrees), 2),
+            columns(&quaternion, 5),
+        )
+    })
+}
+
+fn print_rows(
+    name: &str,
+    rows: impl Iterator<Item = Vec<f64>>,
+    output: Output,
+) -> anyhow::Result<Ending> {
+    let rows: Vec<Vec<f64>> = rows.collect();
+    output.print(&json!({ name: &rows }), || {
+        let lines = rows.iter().map(|row| columns(row, 4) + "\n");
+        lines.collect()
+    })
+}

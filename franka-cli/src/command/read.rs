@@ -1,0 +1,63 @@
+//! `franka read`: fields of the state by their names.
+
+use clap::Args;
+use serde_json::{Map, Value};
+
+use crate::connection::Which;
+use crate::ending::{Ending, Failure};
+use crate::fields::{fields, values};
+use crate::output::{Output, line};
+
+/// Print fields of the robot's state, by the vendor's names: `franka read q O_T_EE`. A first
+/// argument that is no field is the robot.
+#[derive(Debug, Args)]
+pub(crate) struct Read {
+    /// Name or address of the robot, then fields
+    #[arg(value_name = "[ROBOT] FIELD", required_unless_present = "list")]
+    words: Vec<String>,
+    /// List the fields instead
+    #[arg(long, exclusive = true)]
+    list: bool,
+    #[command(flatten)]
+    output: Output,
+}
+
+impl Read {
+    pub(super) async fn run(self) -> anyhow::Result<Ending> {
+        if self.list {
+            let names: Vec<String> = fields().keys().cloned().collect();
+            line(&names.join("\n"))?;
+            return Ok(Ending::Done);
+        }
+        let known = fields();
+        let (robot, names) = match self.words.split_first() {
+            Some((first, rest)) if !known.contains_key(first) => (Some(first.clone()), rest),
+            _ => (None, &self.words[..]),
+        };
+        if let Some(unknown) = names.iter().find(|name| !known.contains_key(*name)) {
+            return Err(unknown_field(unknown).into());
+        }
+        if names.is_empty() {
+            let first = robot.unwrap_or_default();
+            return Err(unknown_field(&first).into());
+        }
+        let (robot, _) = Which::of(robot).connect().await?;
+        let mut state = values(&robot.state());
+        robot.shutdown().await;
+        let chosen: Map<String, Value> = names
+            .iter()
+            .filter_map(|name| Some((name.clone(), state.remove(name)?)))
+            .collect();
+        self.output.print(&chosen, || {
+            let lines = names
+                .iter()
+                .map(|name| format!("{name} = {}\n", chosen[name]));
+            lines.collect()
+        })
+    }
+}
+
+fn unknown_field(name: &str) -> Failure {
+    Failure::usage(format!("the state has no field `{name}`"))
+        .advice("franka read --list has them. A robot goes before the fields.")
+}

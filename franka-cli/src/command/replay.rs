@@ -1,0 +1,119 @@
+//! `franka replay`: a recorded motion again.
+
+use clap::{Args, ValueEnum};
+use franka_async::recording::{Sample, Samples};
+use franka_async::replay::{
+    ReplayError, ReplayOptions, ReplayPlan, ReplayReport, ReplaySource, ReplayTargets,
+};
+use serde_json::json;
+
+use super::explain::Recorded;
+use crate::connection::Which;
+use crate::ending::{Ending, Failure};
+use crate::motion::{MoverOptions, Moving};
+use crate::question::Target;
+use crate::values::positive;
+
+/// Move to where a recorded motion began, then as recorded. Ctrl-C brakes.
+#[derive(Debug, Args)]
+pub(crate) struct Replay {
+    #[command(flatten)]
+    recorded: Recorded,
+    #[command(flatten)]
+    which: Which,
+    #[command(flatten)]
+    how: MoverOptions,
+    /// As a share of the recorded speed, 0.01 to 1
+    #[arg(long, value_name = "SHARE", value_parser = positive, default_value = "1")]
+    speed: f64,
+    /// What the arm follows
+    #[arg(long, value_enum, default_value_t = Source::Reference)]
+    source: Source,
+    /// Let the hand move as recorded, and the elbow as it can
+    #[arg(long)]
+    poses: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Source {
+    /// Where the recorded arm was to be
+    Reference,
+    /// Where it was: for arms that were moved by hand
+    Measured,
+}
+
+/// The samples from the first to the last in which the arm was told where to be.
+fn controlled(samples: &[Sample]) -> &[Sample] {
+    let is_controlled = |sample: &Sample| sample.q_ref.is_some();
+    let first = samples.iter().position(is_controlled);
+    let last = samples.iter().rposition(is_controlled);
+    first
+        .zip(last)
+        .map_or(samples, |(first, last)| &samples[first..=last])
+}
+
+impl Replay {
+    pub(super) async fn run(self) -> anyhow::Result<Ending> {
+        let (recording, name, model) = self.recorded.open()?;
+        let robot = recording.robot(&name)?;
+        let samples = Samples::new(robot.cycles(), robot.gripper_states());
+        let samples: Vec<Sample> = samples.collect::<Result<_, _>>()?;
+        let samples = match self.source {
+            Source::Reference => controlled(&samples),
+            Source::Measured => &samples[..],
+        };
+        let mut options = ReplayOptions::default().speed(self.speed);
+        if let Source::Measured = self.source {
+            options = options.source(ReplaySource::Measured);
+        }
+        if self.poses {
+            options = options.targets(ReplayTargets::Poses);
+        }
+        let moving = self.how.begin(&self.which).await?;
+        let plan = ReplayPlan::new(model.kind(), samples, options, moving.robot.model());
+        let outcome = match plan {
+            Ok(plan) => self.replay(&moving, &plan).await,
+            Err(error) => {
+                let failure = Failure::new(Ending::Failed, error.to_string());
+                let advice = match error {
+                    ReplayError::Uncontrolled { .. } => {
+                        "--source measured follows where the arm was."
+                    }
+                    _ => "Nothing has moved.",
+                };
+                Err(failure.advice(advice).into())
+            }
+        };
+        let report = moving.end(outcome).await?;
+        let seconds = report.duration.as_secs_f64();
+        let value = json!({
+            "duration": seconds,
+            "states": report.states,
+            "joints": { "median": report.joints.median, "max": report.joints.max },
+            "position": { "median": report.position.median, "max": report.position.max },
+        });
+        self.how.output.print(&value, || {
+            format!(
+                "replayed in {seconds:.1} s: the hand {:.1} mm off at most, {:.1} mm in the median",
+                report.position.max * 1e3,
+                report.position.median * 1e3
+            )
+        })
+    }
+
+    async fn replay(&self, moving: &Moving, plan: &ReplayPlan) -> anyhow::Result<ReplayReport> {
+        let robot = &moving.robot;
+        let checked = plan.check(robot.model(), &robot.state());
+        checked.map_err(|error| Failure::new(Ending::Failed, error.to_string()))?;
+        let budget = plan.budget();
+        let fastest = budget.joints.map(|axis| axis.velocity.to_degrees());
+        let fastest = fastest.into_iter().fold(0.0, f64::max);
+        let what = format!(
+            "First to where the recording begins:\n{}\nThen as recorded, for {:.1} s: joints at {fastest:.0} deg/s at most.",
+            Target::Joints(plan.start()).describe(robot, 1.0)?,
+            plan.duration().as_secs_f64(),
+        );
+        moving.ask("replay", &what).await?;
+        moving.drive(robot.replay(plan), None).await
+    }
+}

@@ -1,0 +1,84 @@
+//! `franka robots`: the file with the robots that have names.
+
+use anyhow::Context as _;
+use clap::Subcommand;
+use franka_async::connection::Endpoint;
+
+use crate::ending::{Ending, Failure};
+use crate::output::{Output, line};
+use crate::robots_file::{Entry, Realtime, RobotsFile, check_name};
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Robots {
+    /// List the robots that have names
+    List(Output),
+    /// Give a robot a name, or change what is known of one
+    Add {
+        /// Letters, digits, `-` and `_`
+        name: String,
+        /// Where the robot is
+        address: Endpoint,
+        /// Whether moving it takes real-time scheduling; enforced unless given
+        #[arg(long, value_enum)]
+        realtime: Option<Realtime>,
+        /// Where its Hand is, if not beside the robot
+        #[arg(long, value_name = "ADDRESS")]
+        hand: Option<Endpoint>,
+    },
+    /// Forget a robot
+    Remove {
+        /// Its name
+        name: String,
+    },
+}
+
+impl Robots {
+    pub(super) fn run(self) -> anyhow::Result<Ending> {
+        let mut file = RobotsFile::read()?;
+        match self {
+            Self::List(output) => output.print(&file.robots, || {
+                if file.robots.is_empty() {
+                    let path = file.path.display();
+                    return format!("{path} has no robots yet: franka robots add NAME ADDRESS");
+                }
+                let width = file.robots.keys().map(String::len).max().unwrap_or(0);
+                let robots = file.robots.iter().map(|(name, entry)| {
+                    let realtime = match entry.realtime {
+                        Some(Realtime::Ignore) => "  without real-time scheduling",
+                        _ => "",
+                    };
+                    let hand = entry.hand.as_ref().map(|hand| format!("  Hand at {hand}"));
+                    let hand = hand.unwrap_or_default();
+                    format!("{name:width$}  {}{hand}{realtime}\n", entry.address)
+                });
+                robots.collect()
+            }),
+            Self::Add {
+                name,
+                address,
+                realtime,
+                hand,
+            } => {
+                check_name(&name).map_err(Failure::usage)?;
+                let entry = Entry {
+                    address: address.to_string(),
+                    realtime,
+                    hand: hand.map(|hand| hand.to_string()),
+                };
+                file.robots.insert(name.clone(), entry);
+                file.write()?;
+                line(&format!("{name} is in {}", file.path.display()))?;
+                Ok(Ending::Done)
+            }
+            Self::Remove { name } => {
+                let removed = file.robots.remove(&name);
+                removed
+                    .with_context(|| format!("{} has no robot `{name}`", file.path.display()))
+                    .map_err(|error| Failure::usage(error.to_string()))?;
+                file.write()?;
+                line(&format!("{name} is removed from {}", file.path.display()))?;
+                Ok(Ending::Done)
+            }
+        }
+    }
+}

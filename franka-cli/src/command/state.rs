@@ -1,0 +1,133 @@
+//! `franka state`: the newest state, once or again and again.
+
+use std::io::{self, IsTerminal, Write};
+use std::pin::pin;
+use std::time::Duration;
+
+use anstream::ColorChoice;
+use anstream::adapter::strip_str;
+use clap::Args;
+use franka_async::Robot;
+
+use super::view;
+use crate::connection::{Place, Which};
+use crate::ending::{Ending, Failure};
+use crate::motion::interrupted;
+use crate::output::{Output, line};
+use crate::values::rate;
+
+/// Show the newest state. --watch shows it again and again, until Ctrl-C.
+#[derive(Debug, Args)]
+pub(crate) struct State {
+    #[command(flatten)]
+    which: Which,
+    /// Go on showing the newest state; with --json a line for each
+    #[arg(short, long)]
+    watch: bool,
+    /// How often a second
+    #[arg(long, value_name = "HZ", value_parser = rate, default_value = "10", requires = "watch")]
+    rate: f64,
+    #[command(flatten)]
+    output: Output,
+}
+
+impl State {
+    pub(super) async fn run(self) -> anyhow::Result<Ending> {
+        let draws = self.watch && !self.output.json;
+        if draws && !io::stdout().is_terminal() {
+            let failure = Failure::usage("--watch draws on a terminal, and there is none");
+            return Err(failure
+                .advice("With --json it prints a line for each state.")
+                .into());
+        }
+        let (robot, place) = self.which.connect().await?;
+        let outcome = if self.watch {
+            self.watch(&robot, &place).await
+        } else {
+            // Long enough for a picture of the link.
+            tokio::time::sleep(LOOK).await;
+            let value = view::value(&robot, &place);
+            self.output.print(&value, || view::text(&robot, &place))
+        };
+        robot.shutdown().await;
+        outcome
+    }
+
+    async fn watch(&self, robot: &Robot, place: &Place) -> anyhow::Result<Ending> {
+        let mut interrupt = pin!(interrupted()?);
+        let mut states = robot.states();
+        let mut clock = tokio::time::interval(Duration::from_secs_f64(1.0 / self.rate));
+        let screen = match self.output.json {
+            true => None,
+            false => Some(Screen::open()?),
+        };
+        loop {
+            tokio::select! {
+                () = &mut interrupt => return Ok(Ending::Done),
+                _ = clock.tick() => {}
+            }
+            // A state that came after the last look: a link that has died is noticed.
+            let newest = tokio::time::timeout(SILENCE, states.changed()).await;
+            let lost = match newest {
+                Ok(Ok(_)) => None,
+                Ok(Err(error)) => Some(error.to_string()),
+                Err(_) => Some(format!("no state for {} s", SILENCE.as_secs())),
+            };
+            if let Some(why) = lost {
+                let message = format!("the link to the robot at {place} is lost: {why}");
+                return Err(Failure::new(Ending::NoRobot, message).into());
+            }
+            match &screen {
+                Some(screen) => screen.draw(&view::text(robot, place))?,
+                None => line(&serde_json::to_string(&view::value(robot, place))?)?,
+            }
+        }
+    }
+}
+
+/// The terminal's other screen, until it is dropped.
+struct Screen {
+    is_coloured: bool,
+}
+
+impl Screen {
+    fn open() -> io::Result<Self> {
+        let choice = anstream::AutoStream::choice(&io::stdout());
+        // Other screen, no cursor.
+        let mut out = io::stdout().lock();
+        out.write_all(b"\x1b[?1049h\x1b[?25l")?;
+        out.flush()?;
+        Ok(Self {
+            is_coloured: choice != ColorChoice::Never,
+        })
+    }
+
+    /// Replaces what is shown, without a blank screen in between.
+    fn draw(&self, page: &str) -> io::Result<()> {
+        let page = format!("{page}\nCtrl-C ends.");
+        let page = match self.is_coloured {
+            true => page,
+            false => strip_str(&page).to_string(),
+        };
+        // Each line is cleared behind its text, and the rest of the screen below.
+        let lines = page.replace('\n', "\x1b[K\r\n");
+        let mut out = io::stdout().lock();
+        write!(out, "\x1b[H{lines}\x1b[K\x1b[J")?;
+        out.flush()
+    }
+}
+
+impl Drop for Screen {
+    fn drop(&mut self) {
+        // A terminal that is gone needs no restoring.
+        let mut out = io::stdout().lock();
+        let _ = out.write_all(b"\x1b[?25h\x1b[?1049l");
+        let _ = out.flush();
+    }
+}
+
+/// How long states are counted before they are shown once.
+const LOOK: Duration = Duration::from_millis(200);
+
+/// After which silence the link counts as lost.
+const SILENCE: Duration = Duration::from_secs(1);

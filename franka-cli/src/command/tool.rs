@@ -1,0 +1,154 @@
+//! `franka tool`: what is at the flange.
+
+use std::fs;
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use clap::{Args, Subcommand};
+use franka_async::identify::Identified;
+use franka_async::settings::Load;
+use franka_sim::command_line::numbers;
+use serde_json::json;
+
+use crate::connection::{Which, check_ready};
+use crate::ending::{Ending, Failure};
+use crate::motion::{Mover, Moving};
+use crate::output::{Output, say};
+use crate::values::{PartialPose, partial_pose};
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Tool {
+    /// Declare the load, or where the end effector is
+    Set(Set),
+    /// Measure load, friction and bias by a minute of small motions
+    Identify(Identify),
+}
+
+/// Declares them until they are declared again, or the robot is restarted.
+#[derive(Debug, Args)]
+#[group(id = "what", required = true, multiple = true, args = ["mass", "frame"])]
+pub(crate) struct Set {
+    #[command(flatten)]
+    which: Which,
+    /// Mass of the load beyond the end effector, kg; 0 for none
+    #[arg(long, value_name = "KG", value_parser = not_negative, allow_hyphen_values = true)]
+    mass: Option<f64>,
+    /// Its centre of mass in the flange frame, metres
+    #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, requires = "mass", allow_hyphen_values = true)]
+    com: Option<[f64; 3]>,
+    /// Its inertia about the centre of mass, kg m2: xx,yy,zz,xy,xz,yz
+    #[arg(long, value_name = "I1,...,I6", value_parser = numbers::<6>, requires = "mass", allow_hyphen_values = true)]
+    inertia: Option<[f64; 6]>,
+    /// The end effector in the frame of the nominal one: x,y,z, x,y,z,roll,pitch,yaw (degrees), or
+    /// x,y,z,qx,qy,qz,qw
+    #[arg(long, value_name = "POSE", value_parser = partial_pose, allow_hyphen_values = true)]
+    frame: Option<PartialPose>,
+    #[command(flatten)]
+    output: Output,
+}
+
+/// Measures what the arm takes beside its model: the arm makes small motions around where it is.
+#[derive(Debug, Args)]
+pub(crate) struct Identify {
+    #[command(flatten)]
+    mover: Mover,
+    /// Write what was found to a file, as JSON
+    #[arg(long, value_name = "FILE.json")]
+    save: Option<PathBuf>,
+}
+
+fn not_negative(text: &str) -> Result<f64, String> {
+    let [value] = numbers::<1>(text)?;
+    match value >= 0.0 {
+        true => Ok(value),
+        false => Err(format!("{value} given, expected 0 or more")),
+    }
+}
+
+impl Tool {
+    pub(super) async fn run(self) -> anyhow::Result<Ending> {
+        match self {
+            Self::Set(set) => set.run().await,
+            Self::Identify(identify) => identify.run().await,
+        }
+    }
+}
+
+impl Set {
+    async fn run(self) -> anyhow::Result<Ending> {
+        let (robot, place) = self.which.connect().await?;
+        let outcome = async {
+            check_ready(&robot.state(), &place)?;
+            if let Some(m_load) = self.mass {
+                let [xx, yy, zz, xy, xz, yz] = self.inertia.unwrap_or_default();
+                let load = Load {
+                    m_load,
+                    F_x_Cload: self.com.unwrap_or_default(),
+                    I_load: [xx, xy, xz, xy, yy, yz, xz, yz, zz],
+                };
+                robot.set_load(load).await?;
+            }
+            if let Some(frame) = self.frame {
+                robot.set_ee(frame.complete(&Default::default())).await?;
+            }
+            anyhow::Ok(())
+        };
+        let outcome = outcome.await;
+        // The states tell of it some cycles later.
+        tokio::time::sleep(std::time::Duration::from_millis(50)).await;
+        let state = robot.state();
+        robot.shutdown().await;
+        outcome?;
+        let value = json!({
+            "m_load": state.m_load,
+            "F_x_Cload": state.F_x_Cload,
+            "I_load": state.I_load,
+            "F_T_EE": state.F_T_EE,
+        });
+        self.output.print(&value, || {
+            let [x, y, z] = state.F_x_Cload.map(|metres| metres * 1e3);
+            let [ex, ey, ez] = [12, 13, 14].map(|index| state.F_T_EE[index] * 1e3);
+            format!(
+                "declared load {:.3} kg at {x:.1}, {y:.1}, {z:.1} mm; end effector at {ex:.1}, {ey:.1}, {ez:.1} mm from the flange",
+                state.m_load
+            )
+        })
+    }
+}
+
+impl Identify {
+    async fn run(self) -> anyhow::Result<Ending> {
+        let moving = self.mover.begin().await?;
+        let outcome = self.identify(&moving).await;
+        let found = moving.end(outcome).await?;
+        if let Some(path) = &self.save {
+            let text = serde_json::to_string_pretty(&found)?;
+            let written = fs::write(path, text);
+            written.with_context(|| format!("writing {}", path.display()))?;
+            say(&format!("in {}", path.display()));
+        }
+        self.mover.how.output.print(&found, || found.to_string())
+    }
+
+    async fn identify(&self, moving: &Moving) -> anyhow::Result<Identified> {
+        if let Some(path) = &self.save
+            && path.exists()
+        {
+            let message = format!("{} exists already", path.display());
+            return Err(Failure::new(Ending::Host, message).into());
+        }
+        let identify = moving.robot.identify();
+        let reach = identify.reach();
+        let what = format!(
+            "{} motions of {:.0?} in all around where the arm is.\n\
+             hand  up to {:.0} mm away, {:.0} mm of it down\n\
+             speed joints at 12 deg/s at most",
+            identify.motions().len(),
+            identify.duration(),
+            reach.end_effector * 1e3,
+            reach.down * 1e3
+        );
+        moving.ask("identify", &what).await?;
+        moving.drive(identify.run(), None).await
+    }
+}

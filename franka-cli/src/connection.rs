@@ -1,0 +1,275 @@
+//! Which robot, connecting to it, and whether it may be moved.
+
+use std::fmt;
+
+use clap::Args;
+use franka_async::connection::{Builder, Endpoint};
+use franka_async::error::{CloseReason, ConnectError};
+use franka_async::gripper::Gripper;
+use franka_async::model::RobotKind;
+use franka_async::state::{RobotMode, RobotState};
+use franka_async::{Error, Robot};
+
+use crate::ending::{Ending, Failure};
+use crate::robots_file::{Realtime, RobotsFile};
+
+/// What a [`ConnectError`] of any device shows.
+macro_rules! seen {
+    ($error:expr) => {
+        match &$error {
+            ConnectError::Refused => Seen::Refused,
+            ConnectError::Timeout | ConnectError::HandshakeTimeout => Seen::Silent,
+            ConnectError::ConnectionClosed {
+                reason: CloseReason::ClosedByPeer | CloseReason::Io { .. },
+            } => Seen::Closed,
+            ConnectError::NoState => Seen::NoState,
+            ConnectError::Realtime(_) => Seen::Realtime,
+            ConnectError::Endpoint(_) => Seen::Caller,
+            ConnectError::NoAddress { attempts }
+                if attempts
+                    .iter()
+                    .all(|attempt| matches!(attempt.error, ConnectError::Refused)) =>
+            {
+                Seen::Refused
+            }
+            _ => Seen::Other,
+        }
+    };
+}
+
+/// The robot of a command.
+#[derive(Clone, Debug, Default, Args)]
+pub(crate) struct Which {
+    /// Name of a robot, or its address [default: FRANKA_ROBOT, or the only robot in the file]
+    #[arg(value_name = "ROBOT")]
+    pub(crate) robot: Option<String>,
+}
+
+/// Where a robot is.
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    /// As the user has it.
+    name: String,
+    /// The address of a robot that has a name.
+    listed: Option<String>,
+    pub(crate) address: Endpoint,
+    pub(crate) hand: Endpoint,
+    realtime: Option<Realtime>,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.listed {
+            Some(address) => write!(f, "{} ({address})", self.name),
+            None => f.write_str(&self.name),
+        }
+    }
+}
+
+impl Which {
+    /// The robot called `robot`, or the one that counts without a name.
+    pub(crate) fn of(robot: Option<String>) -> Self {
+        Self { robot }
+    }
+
+    /// Where the robot is.
+    pub(crate) fn place(&self) -> anyhow::Result<Place> {
+        let file = RobotsFile::read()?;
+        let variable = || {
+            std::env::var("FRANKA_ROBOT")
+                .ok()
+                .filter(|name| !name.is_empty())
+        };
+        let only = || match file.robots.len() {
+            1 => file.robots.keys().next().cloned(),
+            _ => None,
+        };
+        let name = self.robot.clone().or_else(variable).or_else(only);
+        let name = name.ok_or_else(|| {
+            let known = match file.robots.len() {
+                0 => format!("{} has none", file.path.display()),
+                count => format!("{} has {count}", file.path.display()),
+            };
+            Failure::usage(format!("no robot was named, and {known}"))
+                .advice("Name one or give an address, or: franka robots add NAME ADDRESS")
+        })?;
+        let endpoint = |text: &str| {
+            let parsed = text.parse::<Endpoint>();
+            parsed.map_err(|error| Failure::usage(error.to_string()))
+        };
+        let Some(entry) = file.robots.get(&name) else {
+            // An address; a port in it is that of the device that is asked for.
+            let address = endpoint(&name)?;
+            return Ok(Place {
+                listed: None,
+                hand: address.clone(),
+                address,
+                name,
+                realtime: None,
+            });
+        };
+        let address = endpoint(&entry.address)?;
+        let hand = match &entry.hand {
+            Some(hand) => endpoint(hand)?,
+            None => address.clone().at_port(HAND),
+        };
+        Ok(Place {
+            listed: Some(entry.address.clone()),
+            address,
+            hand,
+            realtime: entry.realtime,
+            name,
+        })
+    }
+
+    /// Connects for commands that move nothing, which need no real-time scheduling.
+    pub(crate) async fn connect(&self) -> anyhow::Result<(Robot, Place)> {
+        let place = self.place()?;
+        let robot = place
+            .connect(Some(Realtime::Ignore), |builder| builder)
+            .await?;
+        Ok((robot, place))
+    }
+}
+
+impl Place {
+    /// Whether the robot has a name.
+    pub(crate) fn is_listed(&self) -> bool {
+        self.listed.is_some()
+    }
+
+    /// Connects to the robot. `realtime` is what was asked for; otherwise the file counts.
+    pub(crate) async fn connect(
+        &self,
+        realtime: Option<Realtime>,
+        options: impl FnOnce(Builder) -> Builder,
+    ) -> anyhow::Result<Robot> {
+        let realtime = match realtime.or(self.realtime).unwrap_or(Realtime::Enforce) {
+            Realtime::Enforce => franka_async::Realtime::Enforce,
+            Realtime::Ignore => franka_async::Realtime::Ignore,
+        };
+        let builder = Robot::builder(self.address.clone()).realtime(realtime);
+        let robot = options(builder).connect().await;
+        robot.map_err(|error| {
+            let seen = seen!(error);
+            self.no_connection("robot", seen, error.into()).into()
+        })
+    }
+
+    /// Connects to the Hand.
+    pub(crate) async fn connect_hand(&self) -> anyhow::Result<Gripper> {
+        let gripper = Gripper::connect(self.hand.clone()).await;
+        gripper.map_err(|error| {
+            let seen = seen!(error);
+            self.no_connection("Hand", seen, error.into()).into()
+        })
+    }
+
+    fn no_connection(&self, device: &str, seen: Seen, error: Error) -> Failure {
+        let host = self.name.as_str();
+        match seen {
+            Seen::Refused => Failure::new(
+                Ending::NoRobot,
+                format!("no {device} at {self}: the connection was refused"),
+            )
+            .advice(
+                "Is it the right address, and is FCI activated in Desk? For a simulator: does `franka sim` run?",
+            ),
+            Seen::Silent => Failure::new(
+                Ending::NoRobot,
+                format!("no {device} answers at {self}"),
+            )
+            .advice("Look at the cable, at the address, and at the network settings of this computer."),
+            Seen::Closed => Failure::new(
+                Ending::Taken,
+                format!(
+                    "the {device} at {self} closed the connection at once: most likely somebody else is connected"
+                ),
+            )
+            .advice("A robot takes one client at a time. End the other program, then try again."),
+            Seen::NoState => Failure::new(
+                Ending::NoRobot,
+                format!("the {device} at {self} answers, but no state of it arrives"),
+            )
+            .advice("A firewall that stops UDP is the usual cause."),
+            Seen::Realtime => Failure::new(Ending::Host, error.to_string()).advice(
+                "For a simulator, --realtime ignore does. For a robot, see the chapter on the real-time set-up.",
+            ),
+            Seen::Caller => Failure::usage(error.to_string()),
+            Seen::Other if self.listed.is_none() && !host.contains(['.', ':']) => Failure::new(
+                Ending::NoRobot,
+                format!("no {device} at `{host}`: {error}"),
+            )
+            .advice(format!("No robot is called `{host}` either: see franka robots.")),
+            Seen::Other => {
+                let message = format!("no connection to the {device} at {self}: {error}");
+                Failure::new(Ending::NoRobot, message)
+            }
+        }
+    }
+}
+
+/// What kept a connection from being made, whatever the device.
+#[derive(Clone, Copy, Debug)]
+enum Seen {
+    Refused,
+    Silent,
+    Closed,
+    NoState,
+    Realtime,
+    Caller,
+    Other,
+}
+
+/// Checks that the robot would take a motion: that it rests, ready, and nobody else moves it.
+pub(crate) fn check_ready(state: &RobotState, place: &Place) -> Result<(), Failure> {
+    let refused =
+        |ending, message: String, advice: &str| Err(Failure::new(ending, message).advice(advice));
+    match state.robot_mode {
+        RobotMode::Idle => Ok(()),
+        RobotMode::Move => refused(
+            Ending::Taken,
+            format!("the robot at {place} is in motion already"),
+            "Something else moves it: wait until it is done.",
+        ),
+        RobotMode::Guiding => refused(
+            Ending::Taken,
+            format!("the robot at {place} is guided by hand"),
+            "Let go of the guiding button, then try again.",
+        ),
+        RobotMode::AutomaticErrorRecovery => refused(
+            Ending::Taken,
+            format!("the robot at {place} is being recovered"),
+            "Wait until it is done.",
+        ),
+        RobotMode::Reflex => refused(
+            Ending::Failed,
+            format!("the robot at {place} has stopped itself: {}", state.errors),
+            "See to the cause, then: franka recover",
+        ),
+        RobotMode::UserStopped => refused(
+            Ending::Person,
+            format!(
+                "the user stop of the robot at {place} is pressed, or a safety function holds it"
+            ),
+            "Release the user stop. A safety function is acknowledged in Desk.",
+        ),
+        RobotMode::Other => refused(
+            Ending::Person,
+            format!("the robot at {place} is not ready: its brakes are closed, or it is starting"),
+            "Open the brakes in Desk.",
+        ),
+    }
+}
+
+/// What people call a kind of robot.
+pub(crate) fn kind_name(kind: RobotKind) -> &'static str {
+    match kind {
+        RobotKind::Fr3 => "FR3",
+        RobotKind::Fer => "FER (Panda)",
+        _ => "robot",
+    }
+}
+
+/// Where a Hand is beside its robot.
+const HAND: u16 = 1338;

@@ -1,0 +1,173 @@
+//! How the program ends: exit codes, and errors that say what to do next.
+
+use std::fmt;
+use std::io;
+use std::process::ExitCode;
+
+use anstyle::{AnsiColor, Style};
+use franka_async::error::{CommandError, ConnectError, Party};
+use franka_async::{Error, MotionError};
+
+/// How a command ended. The numbers are the exit codes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum Ending {
+    /// It did what was asked.
+    Done = 0,
+    /// The robot refused it, or a motion ended short of its goal.
+    Failed = 1,
+    /// The arguments make no sense. The same code as that of the parser of arguments.
+    Usage = 2,
+    /// There is no connection to the robot, or it was lost.
+    NoRobot = 3,
+    /// Somebody else has the robot.
+    Taken = 4,
+    /// Nobody agreed to the motion.
+    NotConfirmed = 5,
+    /// This computer does not give what it takes: rights, files, ports.
+    Host = 6,
+    /// The robot needs a person: at the user stop, or in Desk.
+    Person = 7,
+    /// Ctrl-C, as shells have it.
+    Interrupted = 130,
+}
+
+/// The exit codes, for the help and the book.
+pub(crate) const TABLE: &str = "\
+Exit codes:
+    0  done
+    1  the robot refused, or the motion ended short of its goal (a reflex, an obstacle)
+    2  wrong arguments
+    3  no connection to the robot, or it was lost
+    4  somebody else has the robot
+    5  not confirmed: declined, or no terminal to ask on and no --yes
+    6  this computer does not give what it takes: real-time rights, a file, a port
+    7  the robot needs a person: user stop, brakes, Desk
+  130  interrupted by Ctrl-C; an arm that moved was braked";
+
+impl Ending {
+    pub(crate) fn code(self) -> ExitCode {
+        ExitCode::from(self as u8)
+    }
+
+    /// Prints why a command failed, and returns how that ends the program.
+    pub(crate) fn report(error: &anyhow::Error) -> Self {
+        let ending = Self::of(error);
+        // Whoever read the output has closed it: nobody is left to tell.
+        if is_broken_pipe(error) {
+            return Self::Done;
+        }
+        let style = Style::new().fg_color(Some(AnsiColor::Red.into())).bold();
+        anstream::eprintln!("{style}error:{style:#} {error:#}");
+        if let Some(advice) = error
+            .downcast_ref::<Failure>()
+            .and_then(|it| it.advice.as_ref())
+        {
+            anstream::eprintln!("{advice}");
+        }
+        ending
+    }
+
+    /// How an error ends the program.
+    fn of(error: &anyhow::Error) -> Self {
+        if let Some(failure) = error.downcast_ref::<Failure>() {
+            return failure.ending;
+        }
+        let party = |party| match party {
+            Party::Link => Self::NoRobot,
+            Party::Host => Self::Host,
+            _ => Self::Failed,
+        };
+        if let Some(error) = error.downcast_ref::<Error>() {
+            party(error.party())
+        } else if let Some(error) = error.downcast_ref::<MotionError>() {
+            party(error.party())
+        } else if let Some(error) = error.downcast_ref::<CommandError>() {
+            party(error.party())
+        } else if let Some(error) = error.downcast_ref::<ConnectError>() {
+            party(error.party())
+        } else if error.is::<io::Error>() {
+            Self::Host
+        } else {
+            Self::Failed
+        }
+    }
+}
+
+fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    let io = error.downcast_ref::<io::Error>();
+    io.is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
+}
+
+/// What went wrong, how that ends the program, and what to do next.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    ending: Ending,
+    message: String,
+    advice: Option<String>,
+}
+
+impl Failure {
+    pub(crate) fn new(ending: Ending, message: impl Into<String>) -> Self {
+        Self {
+            ending,
+            message: message.into(),
+            advice: None,
+        }
+    }
+
+    pub(crate) fn usage(message: impl Into<String>) -> Self {
+        Self::new(Ending::Usage, message)
+    }
+
+    pub(crate) fn advice(mut self, advice: impl Into<String>) -> Self {
+        self.advice = Some(advice.into());
+        self
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Failure {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_help_has_every_exit_code() {
+        use Ending::*;
+        let endings = [
+            Done,
+            Failed,
+            Usage,
+            NoRobot,
+            Taken,
+            NotConfirmed,
+            Host,
+            Person,
+            Interrupted,
+        ];
+        for ending in endings {
+            let number = ending as u8;
+            let line = format!("\n{number:>5}  ");
+            assert!(TABLE.contains(&line), "{number}");
+        }
+        assert_eq!(TABLE.lines().count(), 1 + endings.len());
+    }
+
+    #[test]
+    fn whoever_can_act_on_an_error_decides_how_it_ends() {
+        let of = |error: anyhow::Error| Ending::of(&error);
+        assert_eq!(of(<ConnectError>::Timeout.into()), Ending::NoRobot);
+        assert_eq!(of(MotionError::Superseded.into()), Ending::Failed);
+        assert_eq!(of(Failure::usage("no").into()), Ending::Usage);
+        assert_eq!(of(io::Error::other("full").into()), Ending::Host);
+        let within = anyhow::Error::from(io::Error::other("full")).context("writing it");
+        assert_eq!(of(within), Ending::Host);
+    }
+}

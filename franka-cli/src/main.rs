@@ -1,0 +1,77 @@
+//! `franka`: one command line for the robot, the simulator and what they record.
+//!
+//! ```text
+//! arguments --> command --> [robot: robots file, connection] --> [question] --> facts or a motion --> exit code
+//! ```
+//!
+//! | module | content |
+//! |---|---|
+//! | [`ending`] | exit codes, and errors that say what to do next |
+//! | [`robots_file`] | robots by name |
+//! | [`connection`] | which robot, connecting to it, whether it may be moved |
+//! | [`question`] | what will move, how far and how fast; asked before it does |
+//! | [`motion`] | a motion under way: progress, recording, Ctrl-C |
+//! | [`fields`] | a state by the names of its fields |
+//! | [`output`] | text and JSON |
+//! | [`values`] | checked values of arguments |
+//! | [`command`] | a file per command |
+
+mod command;
+mod connection;
+mod ending;
+mod fields;
+mod motion;
+mod output;
+mod question;
+mod robots_file;
+mod values;
+
+use std::io::IsTerminal;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use command::Command;
+use ending::Ending;
+
+/// Franka robots from the command line: state, motions, simulator, recordings.
+///
+/// ROBOT is the name of a robot in the file of `franka robots`, or an address: a host name or an
+/// IP address, with a port if it is not the usual one. Without it, FRANKA_ROBOT counts, and then
+/// the only robot in the file. Whatever moves says so first and asks. Lengths are in metres, angles
+/// in radians unless said otherwise.
+#[derive(Debug, Parser)]
+#[command(name = "franka", version, after_help = ending::TABLE)]
+struct Program {
+    /// Log what the driver does, on standard error
+    #[arg(short, long, global = true)]
+    verbose: bool,
+    #[command(subcommand)]
+    command: Command,
+}
+
+fn main() -> ExitCode {
+    let program = Program::parse();
+    if program.verbose || program.command.logs() {
+        tracing_subscriber::fmt()
+            .with_writer(std::io::stderr)
+            .with_ansi(std::io::stderr().is_terminal())
+            .with_target(false)
+            .init();
+    }
+    match program.command.run() {
+        Ok(ending) => ending.code(),
+        Err(error) => Ending::report(&error).code(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        use clap::CommandFactory;
+        Program::command().debug_assert();
+    }
+}

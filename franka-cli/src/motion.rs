@@ -1,0 +1,264 @@
+//! A motion under way: connecting for it, recording it, its progress, Ctrl-C.
+
+use std::future::Future;
+use std::path::PathBuf;
+use std::pin::pin;
+use std::time::Duration;
+
+use clap::Args;
+use franka_async::diagnosis::Diagnose;
+use franka_async::error::IdentifyError;
+use franka_async::motion::MotionHandle;
+use franka_async::recording::{RecordOptions, RecordStatus, Recorder, Track};
+use franka_async::replay::ReplayFailure;
+use franka_async::{MotionError, Robot};
+use indicatif::{ProgressBar, ProgressStyle};
+use tokio::signal::unix::{SignalKind, signal};
+
+use crate::connection::{Place, Which, check_ready};
+use crate::ending::{Ending, Failure};
+use crate::output::{Output, say};
+use crate::question;
+use crate::robots_file::Realtime;
+
+/// Options of whatever moves the arm.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Mover {
+    #[command(flatten)]
+    pub(crate) which: Which,
+    #[command(flatten)]
+    pub(crate) how: MoverOptions,
+}
+
+/// [`Mover`] without the robot.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct MoverOptions {
+    /// Whether the control thread has to have real-time scheduling [default: that of the robot in
+    /// the file, or enforce]
+    #[arg(long, value_enum)]
+    realtime: Option<Realtime>,
+    /// Move without asking, for scripts
+    #[arg(short, long)]
+    pub(crate) yes: bool,
+    /// Record everything to a new file meanwhile
+    #[arg(long, value_name = "FILE.mcap")]
+    record: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) output: Output,
+}
+
+/// A robot that may be moved.
+pub(crate) struct Moving {
+    pub(crate) robot: Robot,
+    pub(crate) place: Place,
+    yes: bool,
+    recorder: Option<Recorder>,
+}
+
+impl Mover {
+    /// Connects to the robot, and checks that it takes a motion.
+    pub(crate) async fn begin(&self) -> anyhow::Result<Moving> {
+        self.how.begin(&self.which).await
+    }
+}
+
+impl MoverOptions {
+    /// Connects to this robot, and checks that it takes a motion.
+    pub(crate) async fn begin(&self, which: &Which) -> anyhow::Result<Moving> {
+        let place = which.place()?;
+        // An error then carries the last second.
+        let robot = place.connect(self.realtime, |builder| builder.log_size(1000));
+        let robot = robot.await?;
+        check_ready(&robot.state(), &place)?;
+        let recorder = match &self.record {
+            Some(file) => {
+                let recorder = Recorder::to_file(file, RecordOptions::default());
+                let recorder =
+                    recorder.map_err(|error| Failure::new(Ending::Host, error.to_string()))?;
+                recorder.attach(&robot, Track::default()).await?;
+                Some(recorder)
+            }
+            None => None,
+        };
+        Ok(Moving {
+            robot,
+            place,
+            yes: self.yes,
+            recorder,
+        })
+    }
+}
+
+impl Moving {
+    /// Asks whether the arm may do this, and checks that it is where it was when that was said.
+    pub(crate) async fn ask(&self, title: &str, what: &str) -> anyhow::Result<()> {
+        let before = self.robot.state();
+        let title = question::title(title, self.robot.model().kind(), &self.place);
+        question::ask(&format!("{title}\n{what}"), self.yes).await?;
+        let now = self.robot.state();
+        check_ready(&now, &self.place)?;
+        for (i, (from, to)) in before.q.iter().zip(now.q).enumerate() {
+            // A position that is not finite counts as moved.
+            let stayed = (to - from).abs() < MOVED;
+            if !stayed {
+                let message = format!(
+                    "joint {} has moved meanwhile, from {from:.3} to {to:.3} rad. Nothing was sent.",
+                    i + 1
+                );
+                return Err(Failure::new(Ending::Taken, message).into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Awaits a motion of the robot, with its progress on the terminal. Ctrl-C brakes.
+    pub(crate) async fn drive<T, E: Into<Cause>>(
+        &self,
+        motion: impl Future<Output = Result<T, E>>,
+        handle: Option<MotionHandle>,
+    ) -> anyhow::Result<T> {
+        let bar = handle.map(|handle| (progress_bar(), handle));
+        let mut motion = pin!(motion);
+        let mut interrupt = pin!(interrupted()?);
+        let mut clock = tokio::time::interval(Duration::from_millis(50));
+        let outcome = loop {
+            tokio::select! {
+                biased;
+                outcome = &mut motion => break outcome.map_err(|error| self.explain(error)),
+                () = &mut interrupt => break Err(self.brake().await),
+                _ = clock.tick() => {
+                    if let Some((bar, handle)) = &bar && let Some(progress) = handle.progress() {
+                        bar.set_position((progress.fraction() * 1000.0) as u64);
+                        bar.set_message(format!("{:.1} s left", progress.remaining.as_secs_f64()));
+                    }
+                }
+            }
+        };
+        if let Some((bar, _)) = &bar {
+            bar.finish_and_clear();
+        }
+        outcome
+    }
+
+    /// Brakes, and says what came of it.
+    pub(crate) async fn brake(&self) -> anyhow::Error {
+        say("Ctrl-C: braking");
+        match tokio::time::timeout(PATIENCE, self.robot.stop()).await {
+            Ok(Ok(())) => {
+                let message = "interrupted: the arm was braked, and rests";
+                Failure::new(Ending::Interrupted, message).into()
+            }
+            Ok(Err(error)) => self.explain(error).context("braking"),
+            Err(_) => {
+                let seconds = PATIENCE.as_secs();
+                let message = format!("the arm has not come to rest in {seconds} s after Ctrl-C");
+                let failure = Failure::new(Ending::Failed, message);
+                failure.advice("Press the user stop.").into()
+            }
+        }
+    }
+
+    /// Why a motion failed, with what to do next.
+    pub(crate) fn explain(&self, error: impl Into<Cause>) -> anyhow::Error {
+        let error = match error.into() {
+            Cause::Motion(error) => error,
+            Cause::Other(text) => return Failure::new(Ending::Failed, text).into(),
+        };
+        let ending = match &error {
+            MotionError::LinkLost { .. } | MotionError::ConnectionClosed { .. } => Ending::NoRobot,
+            _ => Ending::Failed,
+        };
+        let failure = Failure::new(ending, error.to_string());
+        if !error.control().is_some_and(|error| error.is_reflex()) {
+            return failure.into();
+        }
+        let diagnosis = error.diagnose().map(|diagnosis| diagnosis.to_string());
+        let diagnosis = diagnosis.unwrap_or_default();
+        failure
+            .advice(format!(
+                "{}\nWhen the cause is gone: franka recover",
+                diagnosis.trim_end()
+            ))
+            .into()
+    }
+
+    /// Closes the connection and ends the recording, however the command went.
+    pub(crate) async fn end<T>(self, outcome: anyhow::Result<T>) -> anyhow::Result<T> {
+        self.robot.shutdown().await;
+        let Some(recorder) = self.recorder else {
+            return outcome;
+        };
+        let finished = tokio::task::spawn_blocking(|| recorder.finish()).await?;
+        if let Ok(status) = &finished {
+            say(&recorded(status));
+        }
+        let value = outcome?;
+        finished?;
+        Ok(value)
+    }
+}
+
+/// What was recorded, in a line.
+pub(crate) fn recorded(status: &RecordStatus) -> String {
+    let file = status.files.first().map(|file| file.display().to_string());
+    format!(
+        "recorded {} cycles in {}, {} dropped",
+        status.cycles,
+        file.unwrap_or_default(),
+        status.dropped
+    )
+}
+
+/// Why a motion, or a series of them, did not come to its end.
+pub(crate) enum Cause {
+    Motion(MotionError),
+    Other(String),
+}
+
+impl From<MotionError> for Cause {
+    fn from(error: MotionError) -> Self {
+        Self::Motion(error)
+    }
+}
+
+impl From<IdentifyError> for Cause {
+    fn from(error: IdentifyError) -> Self {
+        match error {
+            IdentifyError::Motion(error) => Self::Motion(error),
+            other => Self::Other(other.to_string()),
+        }
+    }
+}
+
+impl From<ReplayFailure> for Cause {
+    fn from(error: ReplayFailure) -> Self {
+        match error {
+            ReplayFailure::Motion(error) => Self::Motion(error),
+            other => Self::Other(other.to_string()),
+        }
+    }
+}
+
+/// Returns what resolves when the program is told to end from now on: Ctrl-C, or SIGTERM.
+pub(crate) fn interrupted() -> std::io::Result<impl Future<Output = ()>> {
+    let mut interrupt = signal(SignalKind::interrupt())?;
+    let mut terminate = signal(SignalKind::terminate())?;
+    Ok(async move {
+        tokio::select! {
+            _ = interrupt.recv() => {}
+            _ = terminate.recv() => {}
+        }
+    })
+}
+
+/// A bar of a thousand, hidden where standard error is no terminal.
+pub(crate) fn progress_bar() -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}");
+    ProgressBar::new(1000).with_style(style.expect("a template"))
+}
+
+/// How far a joint may be from where a question was asked, `[rad]`.
+const MOVED: f64 = 0.01;
+
+/// How long braking may take: a quarter of a second as a rule.
+const PATIENCE: Duration = Duration::from_secs(5);

@@ -1,0 +1,78 @@
+//! Facts on standard output: text for people, JSON for programs.
+
+use std::io::Write;
+
+use anstyle::{AnsiColor, Style};
+use serde::Serialize;
+
+use crate::ending::Ending;
+
+/// How facts are printed.
+#[derive(Clone, Copy, Debug, Default, clap::Args)]
+pub(crate) struct Output {
+    /// Print JSON
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+impl Output {
+    /// Prints a value: as JSON, or as the text that `text` makes.
+    pub(crate) fn print(
+        self,
+        value: &impl Serialize,
+        text: impl FnOnce() -> String,
+    ) -> anyhow::Result<Ending> {
+        if self.json {
+            line(&serde_json::to_string_pretty(value)?)?;
+        } else {
+            line(text().trim_end_matches('\n'))?;
+        }
+        Ok(Ending::Done)
+    }
+}
+
+/// Prints a line on standard output, without its colours where they are not wanted.
+pub(crate) fn line(text: &str) -> anyhow::Result<()> {
+    let mut out = anstream::stdout().lock();
+    writeln!(out, "{text}")?;
+    out.flush()?;
+    Ok(())
+}
+
+/// Tells a person what happens, on standard error.
+pub(crate) fn say(text: &str) {
+    anstream::eprintln!("{text}");
+}
+
+/// Titles.
+pub(crate) const BOLD: Style = Style::new().bold();
+/// What is as it should be.
+pub(crate) const GOOD: Style = AnsiColor::Green.on_default();
+/// What is near a limit.
+pub(crate) const WARN: Style = AnsiColor::Yellow.on_default();
+/// What is wrong.
+pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
+/// What matters less.
+pub(crate) const DIM: Style = Style::new().dimmed();
+
+/// Numbers in columns that line up, whatever their signs.
+pub(crate) fn numbers(values: &[f64], decimals: usize) -> String {
+    let width = decimals + 6;
+    let cells = values.iter().map(|value| {
+        // No minus before what is shown as zero.
+        let is_zero = value.abs() < 0.5 * 0.1_f64.powi(decimals as i32);
+        let value = if is_zero { 0.0 } else { *value };
+        format!("{value:>width$.decimals$}")
+    });
+    cells.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_line_up() {
+        assert_eq!(numbers(&[-0.01, -135.0, 5.25], 1), "    0.0 -135.0    5.2");
+    }
+}

@@ -1,0 +1,145 @@
+//! What will move, how far and how fast: said before anything does, and asked.
+
+use std::io::{self, BufRead, IsTerminal, Write};
+
+use franka_async::goal::Budget;
+use franka_async::model::{EndEffector, RobotKind, inverse_kinematics};
+use franka_async::nalgebra::{Matrix4, Vector3};
+use franka_async::state::RobotState;
+use franka_async::{Pose, Robot};
+use tokio::sync::oneshot;
+
+use crate::ending::{Ending, Failure};
+use crate::output::{BOLD, numbers, say};
+
+/// Says what will happen, and asks whether it may. `yes` agrees beforehand.
+pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
+    say(what);
+    if yes {
+        return Ok(());
+    }
+    if !(io::stdin().is_terminal() && io::stderr().is_terminal()) {
+        let failure = Failure::new(
+            Ending::NotConfirmed,
+            "nobody can be asked: the program has no terminal. Nothing has moved.",
+        );
+        return Err(failure
+            .advice("--yes agrees beforehand, for scripts.")
+            .into());
+    }
+    let mut terminal = anstream::stderr();
+    write!(
+        terminal,
+        "Clear its way, and keep the user stop at hand. {BOLD}Go ahead? [y/N]{BOLD:#} "
+    )?;
+    terminal.flush()?;
+    // On a thread of its own, which is left behind by Ctrl-C.
+    let (answer, answered) = oneshot::channel();
+    std::thread::spawn(move || {
+        let mut line = String::new();
+        let read = io::stdin().lock().read_line(&mut line);
+        // Nobody waits any more after Ctrl-C.
+        let _ = answer.send(read.map(|_| line));
+    });
+    tokio::select! {
+        line = answered => match line??.trim() {
+            "y" | "Y" | "yes" => Ok(()),
+            _ => Err(Failure::new(Ending::NotConfirmed, "not confirmed. Nothing has moved.").into()),
+        },
+        signal = tokio::signal::ctrl_c() => {
+            signal?;
+            say("");
+            Err(Failure::new(Ending::Interrupted, "interrupted. Nothing has moved.").into())
+        }
+    }
+}
+
+/// Where a motion leads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Target {
+    Joints([f64; 7]),
+    Pose(Pose),
+}
+
+impl Target {
+    /// What the motion of an arm to this target is: how far each joint and the hand go, and how
+    /// fast at most.
+    pub(crate) fn describe(&self, robot: &Robot, speed: f64) -> anyhow::Result<String> {
+        let (state, start) = (robot.state(), robot.pose());
+        let model = robot.model();
+        let budget = Budget::of(model.joint_limits()).at_speed(speed, model);
+        let budget = budget.map_err(|error| Failure::usage(error.to_string()))?;
+        let limits = model.joint_limits();
+        let (way, q, end, pace) = match self {
+            Self::Joints(q) => {
+                for (i, &to) in q.iter().enumerate() {
+                    let (lower, upper) = (limits.lower[i], limits.upper[i]);
+                    if !(lower..=upper).contains(&to) {
+                        let message = format!(
+                            "joint {} cannot go to {to:.4} rad: expected {lower:.4} to {upper:.4}",
+                            i + 1
+                        );
+                        return Err(Failure::new(Ending::Failed, message).into());
+                    }
+                }
+                let fastest = budget.joints.map(|axis| axis.velocity.to_degrees());
+                let fastest = fastest.into_iter().fold(0.0, f64::max);
+                let pace = format!("joints at {fastest:.0} deg/s at most");
+                (
+                    "its joints, all at the same time",
+                    *q,
+                    robot.pose_at(*q),
+                    pace,
+                )
+            }
+            Self::Pose(pose) => {
+                let seed = state.q.into();
+                let q = inverse_kinematics::solve(model, pose, &end_effector(&state), &seed);
+                let q = q.map_err(|error| {
+                    let message = format!("the arm cannot go there: {error}");
+                    Failure::new(Ending::Failed, message)
+                })?;
+                let pace = format!(
+                    "the hand at {:.0} mm/s and {:.0} deg/s at most",
+                    budget.translation.velocity * 1e3,
+                    budget.rotation.velocity.to_degrees()
+                );
+                ("its hand, on a straight line", q.into(), *pose, pace)
+            }
+        };
+        let degrees = |q: [f64; 7]| numbers(&q.map(f64::to_degrees), 1);
+        let by = std::array::from_fn(|i| q[i] - state.q[i]);
+        let shift: Vector3<f64> = end.translation.vector - start.translation.vector;
+        let turn = start.rotation.angle_to(&end.rotation).to_degrees();
+        let about = match self {
+            Self::Joints(_) => "deg",
+            Self::Pose(_) => "deg, about",
+        };
+        let joints: String = (1..=7).map(|joint| format!("{joint:>7}")).collect();
+        let [x, y, z] = [shift.x, shift.y, shift.z].map(|metres| (metres * 1e3).round() + 0.0);
+        Ok(format!(
+            "The arm moves {way}.\n\
+             joint {joints}\nfrom  {}  deg\nto    {}  {about}\nby    {}  {about}\n\
+             hand  {:.0} mm away (x {x:+}, y {y:+}, z {z:+}), turned by {turn:.0} deg\n\
+             speed {pace}",
+            degrees(state.q),
+            degrees(q),
+            degrees(by),
+            shift.norm() * 1e3,
+        ))
+    }
+}
+
+/// The robot's end effector, as far as it is a rigid transformation.
+pub(crate) fn end_effector(state: &RobotState) -> EndEffector {
+    EndEffector {
+        f_t_ee: Matrix4::from_column_slice(&state.F_T_EE),
+        ee_t_k: Matrix4::from_column_slice(&state.EE_T_K),
+    }
+}
+
+/// What a robot is called in a question.
+pub(crate) fn title(what: &str, kind: RobotKind, place: &impl std::fmt::Display) -> String {
+    let kind = crate::connection::kind_name(kind);
+    format!("{BOLD}{what}: {kind}, {place}{BOLD:#}")
+}

@@ -1,0 +1,151 @@
+//! Robots by name: a TOML file in the user's configuration directory.
+//!
+//! ```toml
+//! [left]
+//! address = "172.16.0.2"
+//! realtime = "ignore" # for a simulator
+//! hand = "127.0.0.1:40123" # if it is not beside the robot
+//! ```
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::{env, fs, io};
+
+use anyhow::Context;
+use clap::ValueEnum;
+use franka_async::connection::Endpoint;
+use serde::{Deserialize, Serialize};
+
+use crate::ending::{Ending, Failure};
+use crate::fields::fields;
+
+/// Whether the control thread has to have real-time scheduling.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Realtime {
+    /// Do not connect without
+    Enforce,
+    /// Connect all the same: enough for a simulator
+    Ignore,
+}
+
+/// A robot of the file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Entry {
+    pub(crate) address: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) realtime: Option<Realtime>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) hand: Option<String>,
+}
+
+/// The file.
+#[derive(Debug)]
+pub(crate) struct RobotsFile {
+    pub(crate) path: PathBuf,
+    pub(crate) robots: BTreeMap<String, Entry>,
+}
+
+impl RobotsFile {
+    /// Reads the file; one that is not there has no robots.
+    pub(crate) fn read() -> anyhow::Result<Self> {
+        let path = path()?;
+        let robots = match fs::read_to_string(&path) {
+            Ok(text) => parse(&text).map_err(|error| {
+                let message = format!("{}: {error}", path.display());
+                Failure::usage(message.trim_end()).advice("Mend the file, or delete it.")
+            })?,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => BTreeMap::new(),
+            Err(error) => return Err(error).with_context(|| path.display().to_string()),
+        };
+        Ok(Self { path, robots })
+    }
+
+    /// Writes the file: a new one takes the place of the old one.
+    pub(crate) fn write(&self) -> anyhow::Result<()> {
+        let write = || {
+            if let Some(directory) = self.path.parent() {
+                fs::create_dir_all(directory)?;
+            }
+            let new = self.path.with_extension("toml.new");
+            fs::write(
+                &new,
+                toml::to_string(&self.robots).map_err(io::Error::other)?,
+            )?;
+            fs::rename(&new, &self.path)
+        };
+        write().with_context(|| format!("writing {}", self.path.display()))
+    }
+}
+
+fn parse(text: &str) -> Result<BTreeMap<String, Entry>, String> {
+    let robots: BTreeMap<String, Entry> =
+        toml::from_str(text).map_err(|error| error.to_string())?;
+    for (name, entry) in &robots {
+        check_name(name)?;
+        for address in [Some(&entry.address), entry.hand.as_ref()]
+            .into_iter()
+            .flatten()
+        {
+            let parsed = address.parse::<Endpoint>();
+            parsed.map_err(|error| format!("robot `{name}`: {error}"))?;
+        }
+    }
+    Ok(robots)
+}
+
+/// Checks that a robot can be called so: names are no addresses and no fields of a state.
+pub(crate) fn check_name(name: &str) -> Result<(), String> {
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if name.is_empty() || !name.chars().all(is_word) {
+        return Err(format!(
+            "`{name}` is no name for a robot: expected letters, digits, `-` and `_`"
+        ));
+    }
+    if fields().contains_key(name) {
+        return Err(format!(
+            "`{name}` is a field of the state, so no name for a robot"
+        ));
+    }
+    Ok(())
+}
+
+/// `robots.toml` in `franka` of the XDG configuration directory.
+fn path() -> anyhow::Result<PathBuf> {
+    let absolute = |variable: &str| {
+        let path = env::var_os(variable).map(PathBuf::from);
+        path.filter(|path| path.is_absolute())
+    };
+    let home = || Some(absolute("HOME")?.join(".config"));
+    let directory = absolute("XDG_CONFIG_HOME").or_else(home).ok_or_else(|| {
+        Failure::new(
+            Ending::Host,
+            "neither XDG_CONFIG_HOME nor HOME is set to a directory",
+        )
+    })?;
+    Ok(directory.join("franka").join("robots.toml"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_says_what_is_wrong_with_it() {
+        let robots = parse("[left]\naddress = '172.16.0.2'\nrealtime = 'ignore'\n").unwrap();
+        assert_eq!(robots["left"].realtime, Some(Realtime::Ignore));
+        for (text, expected) in [
+            ("[left]\n", "address"),
+            ("[left]\naddress = 'a b'\n", "robot `left`"),
+            ("['a.b']\naddress = 'x'\n", "no name for a robot"),
+            ("[q]\naddress = 'x'\n", "a field of the state"),
+            ("[left]\naddress = 'x'\nrealtime = 'maybe'\n", "maybe"),
+            ("[left]\naddress = 'x'\nport = 1\n", "port"),
+            ("left", "expected"),
+        ] {
+            let error = parse(text).expect_err(text);
+            assert!(error.contains(expected), "{text}: {error}");
+        }
+    }
+}

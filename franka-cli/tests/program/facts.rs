@@ -1,0 +1,165 @@
+//! Commands that print facts.
+
+use crate::program::Home;
+use crate::simulated::Simulated;
+
+#[test]
+fn the_state_is_printed_as_text_and_as_json() {
+    Simulated::each(|sim| {
+        let (home, robot) = (Home::new(), sim.address());
+        let text = home.run(&["state", &robot]).done();
+        assert!(text.contains("idle") && text.contains("link"), "{text}");
+        assert_eq!(text.matches('●').count(), 7, "{text}");
+        assert!(!text.contains('\x1b'), "no colours in a pipe: {text:?}");
+        let json = home.run(&["state", &robot, "--json"]).json();
+        assert_eq!(json["state"]["robot_mode"], "Idle");
+        let q = json["state"]["q"].as_array().expect("positions");
+        for (printed, q) in q.iter().zip(sim.state().q) {
+            assert!((printed.as_f64().expect("a number") - q).abs() < 1e-2);
+        }
+    });
+}
+
+#[test]
+fn colours_follow_the_rules_of_no_color() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let state = |variable: &str| {
+        let mut command = home.command(&["state", &sim.address()]);
+        let output = command.env(variable, "1").output().expect("it runs");
+        String::from_utf8(output.stdout).expect("text")
+    };
+    assert!(state("CLICOLOR_FORCE").contains('\x1b'));
+    assert!(!state("NO_COLOR").contains('\x1b'));
+}
+
+#[test]
+fn fields_are_read_by_name() {
+    Simulated::each(|sim| {
+        let (home, robot) = (Home::new(), sim.address());
+        let text = home.run(&["read", &robot, "robot_mode", "m_ee"]).done();
+        assert_eq!(text.lines().next(), Some("robot_mode = \"Idle\""), "{text}");
+        let json = home.run(&["read", &robot, "q", "--json"]).json();
+        assert_eq!(json["q"].as_array().map(Vec::len), Some(7));
+        let unknown = home.run(&["read", &robot, "qq"]);
+        unknown.failed(2, &["no field `qq`", "--list"]);
+    });
+    let list = Home::new().run(&["read", "--list"]).done();
+    assert!(list.lines().any(|line| line == "O_T_EE"), "{list}");
+}
+
+#[test]
+fn the_model_computes_with_the_robot_and_without() {
+    let home = Home::new();
+    let json = home.run(&[
+        "model", "pose", "--kind", "fr3", "--frame", "flange", "--json",
+    ]);
+    let height = json.json()["position"][2].as_f64().expect("metres");
+    assert!((height - 0.590_282).abs() < 1e-6, "{height}");
+    let mass = home
+        .run(&["model", "mass", "--kind", "fer", "--json"])
+        .json();
+    assert!(mass["mass"][0][0].as_f64().expect("kg m2") > 0.0);
+    let jacobian = home.run(&["model", "jacobian", "--kind", "fr3"]).done();
+    assert_eq!(jacobian.lines().count(), 6);
+    let far = home.run(&["model", "ik", "--kind", "fr3", "--pose", "2,0,0"]);
+    far.failed(1, &["out of reach"]);
+    Simulated::each(|sim| {
+        let robot = sim.address();
+        let arguments = ["model", "ik", &robot, "--pose", "0.4,0.1,0.4", "--json"];
+        let q = home.run(&arguments).json()["q"].to_string();
+        let q = q.trim_matches(['[', ']']);
+        let arguments = ["model", "pose", &robot, "--q", q, "--json"];
+        let pose = home.run(&arguments).json();
+        for (got, wanted) in [(0, 0.4), (1, 0.1), (2, 0.4)] {
+            let got = pose["position"][got].as_f64().expect("metres");
+            assert!((got - wanted).abs() < 1e-6, "{pose}");
+        }
+    });
+}
+
+#[test]
+fn limits_are_those_of_the_robot_or_of_its_kind() {
+    let home = Home::new();
+    let [fr3, fer] =
+        ["fr3", "fer"].map(|kind| home.run(&["limits", "--kind", kind, "--json"]).json());
+    assert_ne!(fr3["joints"]["upper"], fer["joints"]["upper"]);
+    let sim = Simulated::fr3();
+    let told = home.run(&["limits", &sim.address(), "--json"]).json();
+    assert_eq!(told["kind"], "FR3");
+    assert_eq!(told["joints"]["velocity"], fr3["joints"]["velocity"]);
+    let text = home.run(&["limits", "--kind", "fer"]).done();
+    assert!(text.contains("FER (Panda)"), "{text}");
+}
+
+#[test]
+fn wrong_arguments_are_told_with_code_2() {
+    let home = Home::new();
+    for (arguments, text) in [
+        (&["dance"][..], "dance"),
+        (&["state"], "no robot was named"),
+        (&["state", "a b"], "not a host name"),
+        (&["state", "x", "--rate", "5"], "--watch"),
+        (&["state", "x", "--watch", "--rate", "1000"], "0.1 to 100"),
+        (&["state", "x", "--watch"], "--json"),
+        (
+            &["model", "pose", "--kind", "fr3", "--q", "1,2"],
+            "7 numbers expected",
+        ),
+        (
+            &["model", "ik", "--kind", "fr3", "--pose", "1"],
+            "expected x,y,z",
+        ),
+        (&["move", "x"], "--ready"),
+        (&["move", "x", "--ready", "--by", "0,0,1"], "cannot be used"),
+        (&["move", "x", "--ready", "--speed", "0"], "more than 0"),
+        (&["tool", "set", "x"], "--mass"),
+        (&["robots", "add", "q", "x"], "a field of the state"),
+        (&["robots", "remove", "nobody"], "no robot `nobody`"),
+        (&["sim", "--port", "99999"], "99999"),
+    ] {
+        home.run(arguments).failed(2, &[text]);
+    }
+}
+
+#[test]
+fn robots_have_names() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let (robot, hand) = (sim.address(), sim.hand());
+    home.run(&["state"]).failed(2, &["robots add"]);
+    let add = [
+        "robots",
+        "add",
+        "left",
+        &robot,
+        "--realtime",
+        "ignore",
+        "--hand",
+        &hand,
+    ];
+    home.run(&add).done();
+    let list = home.run(&["robots", "list"]).done();
+    assert!(
+        list.contains("left") && list.contains(&robot) && list.contains(&hand),
+        "{list}"
+    );
+    assert_eq!(
+        home.run(&["robots", "list", "--json"]).json()["left"]["realtime"],
+        "ignore"
+    );
+    // The only one counts without its name, which is given with the address elsewhere.
+    let text = home.run(&["state"]).done();
+    assert!(text.contains(&format!("left ({robot})")), "{text}");
+    home.run(&["robots", "add", "right", "127.0.0.1:1"]).done();
+    home.run(&["state"]).failed(2, &["has 2"]);
+    let mut command = home.command(&["read", "robot_mode"]);
+    let output = command
+        .env("FRANKA_ROBOT", "left")
+        .output()
+        .expect("it runs");
+    assert!(output.status.success(), "{output:?}");
+    home.run(&["robots", "remove", "right"]).done();
+    home.run(&["gripper", "state", "left"]).done();
+    std::fs::write(home.path("franka/robots.toml"), "[left]\nport = 1").expect("written");
+    home.run(&["state", "left"])
+        .failed(2, &["robots.toml", "port"]);
+}

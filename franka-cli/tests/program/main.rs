@@ -1,0 +1,30 @@
+//! The program `franka` against simulated robots in the process of the tests: in pipes, and in
+//! pseudo-terminals where it asks or draws. Simulators wait for commands that a busy computer sends
+//! late; no verdict depends on how punctual it is.
+//!
+//! | module | what |
+//! |---|---|
+//! | `facts` | commands that print facts, wrong arguments, names of robots |
+//! | `links` | no robot, one that is taken, one that goes away |
+//! | `watching` | `--watch` |
+//! | `asking` | questions before motions |
+//! | `moving` | motions, and what ends them early |
+//! | `fingers` | the Hand |
+//! | `settings` | tool, collision, recovery, stop |
+//! | `recording` | recordings and cassettes |
+//! | `measuring` | tests of connections, benchmarks |
+//! | `papers` | help, completions, man pages, the book |
+
+mod asking;
+mod facts;
+mod fingers;
+mod links;
+mod measuring;
+mod moving;
+mod papers;
+mod program;
+mod recording;
+mod settings;
+mod simulated;
+mod terminal;
+mod watching;

@@ -1,0 +1,95 @@
+//! Tests of connections, benchmarks, and the simulator as a command. No figure is judged.
+
+use franka_sim::Sim;
+use nix::sys::signal::Signal;
+
+use crate::program::Home;
+use crate::simulated::Simulated;
+
+#[test]
+fn a_connection_is_tested_or_two() {
+    let (home, one) = (Home::new(), Simulated::fast(Sim::fr3()));
+    let other = Simulated::fast(Sim::fer());
+    let (robot, two) = (one.address(), other.address());
+    let test = [
+        "test",
+        "communication",
+        &robot,
+        "--realtime",
+        "ignore",
+        "--seconds",
+        "0.5",
+    ];
+    home.run(&test).failed(5, &["stays where it is"]);
+    let text = home.run(&[&test[..], &["--yes"]].concat()).done();
+    assert!(
+        text.contains("good") && text.contains("turnaround"),
+        "{text}"
+    );
+    let both = [&test[..], &["--yes", "--json", "--two", &two]].concat();
+    let json = home.run(&both).json();
+    assert_eq!(json["verdict"], "good", "{json}");
+    assert_eq!(json["robots"].as_array().map(Vec::len), Some(2), "{json}");
+}
+
+#[test]
+fn ctrl_c_ends_the_test_of_two_arms() {
+    let home = Home::new();
+    let (one, other) = (Simulated::fr3(), Simulated::fr3());
+    let (robot, two) = (one.address(), other.address());
+    let test = [
+        "test",
+        "communication",
+        &robot,
+        "--realtime",
+        "ignore",
+        "--yes",
+        "--two",
+        &two,
+    ];
+    let mut program = home.start(&test);
+    let is_moving = |sim: &Simulated| sim.state().motion_running();
+    crate::program::until("both", || is_moving(&one) && is_moving(&other));
+    program.signal(Signal::SIGINT);
+    program.ended().failed(130, &["braked"]);
+    for sim in [one, other] {
+        sim.rests(franka_async::state::RobotMode::Idle);
+    }
+}
+
+#[test]
+fn this_computer_is_measured() {
+    let home = Home::new();
+    let wake = home
+        .run(&["bench", "wake", "--seconds", "0.1", "--json"])
+        .json();
+    assert_eq!(wake["wakes"], 100, "{wake}");
+    let text = home.run(&["bench", "loop", "--seconds", "0.2"]).done();
+    assert!(text.contains("turnaround"), "{text}");
+}
+
+#[test]
+fn the_simulator_is_a_robot_until_ctrl_c() {
+    let home = Home::new();
+    for robot in ["fr3", "fer"] {
+        let mut sim = home.start(&["sim", "--robot", robot, "--port", "0"]);
+        let address = {
+            use std::io::{BufRead, BufReader};
+            let out = sim.child().stdout.as_mut().expect("piped");
+            let mut line = String::new();
+            BufReader::new(out).read_line(&mut line).expect("a line");
+            line.trim()
+                .rsplit(' ')
+                .next()
+                .expect("an address")
+                .to_owned()
+        };
+        let state = home.run(&["state", &address, "--json"]).json();
+        let kind = state["kind"].as_str().expect("a kind").to_lowercase();
+        assert!(kind.starts_with(robot), "{kind}");
+        sim.signal(Signal::SIGINT);
+        sim.ended().done();
+    }
+    home.run(&["sim", "--scene", "x.xml", "--port", "0"])
+        .failed(6, &["--plant mujoco"]);
+}

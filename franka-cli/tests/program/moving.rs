@@ -1,0 +1,140 @@
+//! Motions, and what ends them early.
+
+use franka_async::model::Wrench;
+use franka_async::state::RobotMode;
+use franka_sim::Sim;
+use nix::sys::signal::Signal;
+
+use crate::program::Home;
+use crate::simulated::Simulated;
+
+/// Arguments of a motion that nobody is asked about.
+fn moving<'a>(robot: &'a str, rest: &[&'a str]) -> Vec<&'a str> {
+    let all = ["move", robot, "--realtime", "ignore", "--yes"];
+    all.iter().chain(rest).copied().collect()
+}
+
+/// One that takes some seconds.
+const SLOW: [&str; 4] = ["--by", "0,0.2,0", "--speed", "0.3"];
+
+#[test]
+fn every_kind_of_target_is_reached() {
+    for sim in [Sim::fr3(), Sim::fer()] {
+        let (home, sim) = (Home::new(), Simulated::fast(sim));
+        let robot = sim.address();
+        let run = |rest: &[&str]| home.run(&moving(&robot, rest)).done();
+        let place = || sim.with(|robot| robot.true_pose().translation.vector);
+        let near = |got: f64, wanted: f64| assert!((got - wanted).abs() < 0.01, "{got}, {wanted}");
+        let text = run(&["--joints", "0,-45,0,-135,0,90,60", "--degrees"]);
+        assert!(text.contains("arrived after"), "{text}");
+        near(sim.state().q[6], 60_f64.to_radians());
+        run(&["--ready"]);
+        near(sim.state().q[6], 45_f64.to_radians());
+        let start = place();
+        run(&["--by", "0,0,-0.05,0,0,10"]);
+        near(place().z, start.z - 0.05);
+        // The hand points down.
+        run(&["--by", "0,0,0.05", "--tool"]);
+        near(place().z, start.z - 0.1);
+        let to = format!("{},{},{}", start.x, start.y, start.z);
+        let json = home.run(&moving(&robot, &["--pose", &to, "--json"])).json();
+        near(place().z, start.z);
+        assert!(json["duration"].is_object(), "{json}");
+    }
+}
+
+#[test]
+fn what_cannot_be_reached_is_refused_before_anything_moves() {
+    Simulated::each(|sim| {
+        let (home, robot) = (Home::new(), sim.address());
+        for (rest, text) in [
+            (["--pose", "2,0,0"], "out of reach"),
+            (
+                ["--joints", "9,0,0,-2,0,2,0"],
+                "joint 1 cannot go to 9.0000 rad: expected",
+            ),
+        ] {
+            home.run(&moving(&robot, &rest)).failed(1, &[text]);
+        }
+        let fast = home.run(&moving(&robot, &["--ready", "--speed", "100"]));
+        fast.failed(2, &["100"]);
+        sim.rests(RobotMode::Idle);
+    });
+}
+
+#[test]
+fn without_real_time_rights_nothing_moves() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let ran = home.run(&["move", &sim.address(), "--ready", "--yes"]);
+    // A host that grants them moves the arm.
+    if ran.code != Some(0) {
+        ran.failed(6, &["--realtime ignore"]);
+    }
+}
+
+#[test]
+fn ctrl_c_brakes_and_says_so() {
+    Simulated::each(|sim| {
+        for signal in [Signal::SIGINT, Signal::SIGTERM] {
+            let (home, robot) = (Home::new(), sim.address());
+            let mut program = home.start(&moving(&robot, &SLOW));
+            sim.moves();
+            program.signal(signal);
+            program
+                .ended()
+                .failed(130, &["braking", "braked, and rests"]);
+            sim.rests(RobotMode::Idle);
+        }
+    });
+}
+
+#[test]
+fn a_reflex_is_explained() {
+    Simulated::each(|sim| {
+        let (home, robot) = (Home::new(), sim.address());
+        let mut arguments = moving(&robot, &SLOW);
+        arguments.extend(["--record", "reflex.mcap"]);
+        let program = home.start(&arguments);
+        sim.moves();
+        sim.with(|robot| {
+            robot.push_end_effector(Wrench::new(0.0, -150.0, 0.0, 0.0, 0.0, 0.0), 500)
+        });
+        let texts = ["reflex", "recorded", "franka recover"];
+        program.ended().failed(1, &texts);
+        sim.rests(RobotMode::Reflex);
+        let file = home.path("reflex.mcap");
+        let file = file.to_str().expect("text");
+        let text = home.run(&["explain", file, "--figure", "x.svg"]).done();
+        assert!(text.contains("reflex"), "{text}");
+        let figure = std::fs::read_to_string(home.path("x.svg")).expect("a figure");
+        assert!(figure.contains("<svg"), "{figure}");
+        let ready = moving(&robot, &["--ready"]);
+        home.run(&ready)
+            .failed(1, &["has stopped itself", "franka recover"]);
+        home.run(&["recover", &robot]).failed(5, &["frees itself"]);
+        sim.rests(RobotMode::Reflex);
+        let json = home.run(&["recover", &robot, "--yes", "--json"]).json();
+        assert_eq!(json["recovered"], true);
+        sim.rests(RobotMode::Idle);
+        let text = home.run(&["recover", &robot]).done();
+        assert!(text.contains("nothing to recover"), "{text}");
+    });
+}
+
+#[test]
+fn a_guided_arm_is_held_again_at_the_end() {
+    Simulated::each(|sim| {
+        let (home, robot) = (Home::new(), sim.address());
+        let guide = ["guide", &robot, "--realtime", "ignore", "--yes"];
+        let mut program = home.start(&guide);
+        crate::program::until("a session", || sim.state().robot_mode == RobotMode::Move);
+        sim.with(|robot| robot.push_end_effector(Wrench::new(0.0, 20.0, 0.0, 0.0, 0.0, 0.0), 200));
+        sim.moves();
+        program.signal(Signal::SIGINT);
+        let text = program.ended().done();
+        assert!(text.contains("the arm rests at"), "{text}");
+        sim.rests(RobotMode::Idle);
+        let timed = [&guide[..], &["--seconds", "0.1", "--free", "elbow"]].concat();
+        home.run(&timed).done();
+    });
+}

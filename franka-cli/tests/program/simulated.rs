@@ -1,0 +1,104 @@
+//! Robots in this process.
+
+use std::time::Duration;
+
+use franka_async::state::{RobotMode, RobotState};
+use franka_sim::{Fingers, Robot, Running, Sim, Tool};
+use tokio::runtime::Runtime;
+
+use crate::program::until;
+
+/// A simulated robot with a Hand, and the runtime that it runs on.
+pub(crate) struct Simulated {
+    runtime: Runtime,
+    sim: Running,
+}
+
+impl Simulated {
+    pub(crate) fn fr3() -> Self {
+        Self::of(Sim::fr3())
+    }
+
+    /// Both robots, one after the other.
+    pub(crate) fn each(test: impl Fn(&Self)) {
+        test(&Self::fr3());
+        test(&Self::of(Sim::fer()));
+    }
+
+    /// Its clock goes as fast as the program answers: for motions that nothing interrupts.
+    pub(crate) fn fast(sim: Sim) -> Self {
+        Self::start(sim.virtual_time(PATIENCE))
+    }
+
+    fn of(sim: Sim) -> Self {
+        Self::start(sim.wait_for_commands(PATIENCE))
+    }
+
+    fn start(sim: Sim) -> Self {
+        let runtime = Runtime::new().expect("a runtime");
+        let object = Fingers::new().with_object(0.03);
+        let sim = sim.tool(Tool::hand()).hand(object, 0);
+        let sim = runtime.block_on(sim.start()).expect("a simulator");
+        Self { runtime, sim }
+    }
+
+    /// Where the robot is.
+    pub(crate) fn address(&self) -> String {
+        self.sim.addr().to_string()
+    }
+
+    /// Where its Hand is.
+    pub(crate) fn hand(&self) -> String {
+        self.sim.hand().expect("a Hand").addr().to_string()
+    }
+
+    /// How far the fingers are apart, `[m]`.
+    pub(crate) fn fingers_width(&self) -> f64 {
+        let hand = self.sim.hand().expect("a Hand");
+        let width = hand.with(|hand| hand.state().width);
+        self.runtime.block_on(width).expect("it runs")
+    }
+
+    pub(crate) fn with<R: Send + 'static>(
+        &self,
+        function: impl FnOnce(&mut Robot) -> R + Send + 'static,
+    ) -> R {
+        self.runtime
+            .block_on(self.sim.with(function))
+            .expect("it runs")
+    }
+
+    pub(crate) fn state(&self) -> RobotState {
+        self.with(|robot| *robot.state())
+    }
+
+    /// Waits until the arm moves.
+    pub(crate) fn moves(&self) {
+        until("a motion", || {
+            let state = self.state();
+            state.robot_mode == RobotMode::Move && speed(&state) > 0.01
+        });
+    }
+
+    /// The arm rests, and the robot is in this mode.
+    #[track_caller]
+    pub(crate) fn rests(&self, mode: RobotMode) {
+        until("rest", || {
+            let state = self.state();
+            state.robot_mode == mode && speed(&state) < 0.01
+        });
+    }
+
+    /// Ends the simulation.
+    pub(crate) fn end(self) {
+        self.runtime.block_on(self.sim.stop());
+    }
+}
+
+/// The fastest joint, `[rad/s]`.
+fn speed(state: &RobotState) -> f64 {
+    state.dq.iter().fold(0.0, |most, dq| dq.abs().max(most))
+}
+
+/// For commands of a busy computer.
+const PATIENCE: Duration = Duration::from_secs(2);

@@ -1,0 +1,95 @@
+//! The program in a pseudo-terminal.
+
+use std::fs::File;
+use std::io::{Read, Write};
+use std::process::Child;
+use std::sync::{Arc, Mutex};
+use std::{mem, thread};
+
+use nix::pty::{Winsize, openpty};
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+
+use crate::program::{Home, until};
+
+/// A program, and the terminal that it runs in. Killed when dropped.
+pub(crate) struct Terminal {
+    child: Child,
+    input: File,
+    /// What it has shown so far.
+    shown: Arc<Mutex<String>>,
+}
+
+impl Terminal {
+    pub(crate) fn run(home: &Home, arguments: &[&str]) -> Self {
+        let size = Winsize {
+            ws_row: 30,
+            ws_col: 100,
+            ws_xpixel: 0,
+            ws_ypixel: 0,
+        };
+        let terminal = openpty(&size, None).expect("a pseudo-terminal");
+        let slave = File::from(terminal.slave);
+        let mut command = home.command(arguments);
+        command
+            .env("TERM", "xterm-256color")
+            .stdin(slave.try_clone().expect("a descriptor"))
+            .stdout(slave.try_clone().expect("a descriptor"))
+            .stderr(slave);
+        let child = command.spawn().expect("the program starts");
+        // It holds our copies of the terminal's end.
+        drop(command);
+        let input = File::from(terminal.master);
+        let mut output = input.try_clone().expect("a descriptor");
+        let shown = Arc::new(Mutex::new(String::new()));
+        let noted = shown.clone();
+        thread::spawn(move || {
+            let mut buffer = [0; 4096];
+            // Reading fails when the program has closed the terminal.
+            while let Ok(count @ 1..) = output.read(&mut buffer) {
+                let text = String::from_utf8_lossy(&buffer[..count]);
+                noted.lock().expect("no panic").push_str(&text);
+            }
+        });
+        Self {
+            child,
+            input,
+            shown,
+        }
+    }
+
+    pub(crate) fn shown(&self) -> String {
+        self.shown.lock().expect("no panic").clone()
+    }
+
+    /// Waits until it has shown this text.
+    #[track_caller]
+    pub(crate) fn shows(&self, text: &str) {
+        until(&format!("{text:?}"), || self.shown().contains(text));
+    }
+
+    pub(crate) fn types(&mut self, text: &str) {
+        self.input.write_all(text.as_bytes()).expect("it listens");
+    }
+
+    pub(crate) fn signal(&self, signal: Signal) {
+        kill(Pid::from_raw(self.child.id() as i32), signal).expect("it runs");
+    }
+
+    /// Waits for its end; returns the exit code, and what it has shown.
+    pub(crate) fn ended(mut self) -> (Option<i32>, String) {
+        let code = self.child.wait().expect("it ends").code();
+        // What it wrote last is on its way.
+        thread::sleep(std::time::Duration::from_millis(20));
+        let shown = mem::take(&mut *self.shown.lock().expect("no panic"));
+        (code, shown)
+    }
+}
+
+impl Drop for Terminal {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
