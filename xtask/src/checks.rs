@@ -1,5 +1,6 @@
 //! The steps of `cargo xtask test`, in the order in which they are likely to fail.
 
+use std::ffi::OsStr;
 use std::fs;
 use std::process::{Command, Stdio};
 use std::thread;
@@ -163,16 +164,18 @@ fn builds(workspace: &Workspace) -> anyhow::Result<()> {
 }
 
 /// Lints, warnings denied.
-fn clippy(workspace: &Workspace, arguments: &[&str]) -> anyhow::Result<()> {
+fn clippy(workspace: &Workspace, arguments: &[impl AsRef<OsStr>]) -> anyhow::Result<()> {
     let mut command = workspace.cargo();
     command.arg("clippy").args(arguments);
     workspace.run(command.args(["--", "-Dwarnings"]))
 }
 
-/// Lints driver and simulator without features.
+/// Lints driver, simulator and recorder without features.
 fn without_features(workspace: &Workspace) -> anyhow::Result<()> {
-    let (driver, simulator) = ("--package=franka-async", "--package=franka-sim");
-    clippy(workspace, &[driver, simulator, "--no-default-features"])
+    let packages = ["franka-async", "franka-sim", "franka-record"];
+    let mut arguments = packages.map(|name| format!("--package={name}")).to_vec();
+    arguments.push("--no-default-features".to_owned());
+    clippy(workspace, &arguments)
 }
 
 /// Checks protocol, model and generator for this machine, where the standard library exists and

@@ -38,6 +38,15 @@ pub(crate) fn run_simulator(workspace: &Workspace, seconds: u32) -> anyhow::Resu
     workspace.run(&mut measure)
 }
 
+/// Measures what a recorder costs the control thread, for `seconds` with one and as long without.
+pub(crate) fn run_recorder(workspace: &Workspace, seconds: u32) -> anyhow::Result<()> {
+    build(workspace, &[])?;
+    let target = workspace.target();
+    let mut measure = workspace.program(target.join("release").join("live"));
+    measure.arg("recorder").arg(target);
+    workspace.run(measure.args(["--seconds", &seconds.to_string()]))
+}
+
 /// Measures the package for Python beside others and writes `target/bench_python.json`.
 pub(crate) fn run_python(workspace: &Workspace) -> anyhow::Result<()> {
     let mut build = workspace.cargo();

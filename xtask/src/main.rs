@@ -95,7 +95,11 @@ enum Task {
         /// meanwhile.
         #[arg(long, conflicts_with_all = ["sockets", "instructions", "starvation"])]
         python: bool,
-        /// How long to measure each case of --live and --sim.
+        /// Measure what a recorder costs the control thread, in turns with and without one: nothing
+        /// else should run meanwhile.
+        #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
+        recorder: bool,
+        /// How long to measure each case of --live, --sim and --recorder.
         #[arg(long, default_value_t = 30, requires = "sockets")]
         seconds: u32,
     },
@@ -153,6 +157,11 @@ fn run(task: Task) -> anyhow::Result<()> {
         Task::Bench {
             sim: true, seconds, ..
         } => live::run_simulator(&workspace, seconds),
+        Task::Bench {
+            recorder: true,
+            seconds,
+            ..
+        } => live::run_recorder(&workspace, seconds),
         Task::Bench { python: true, .. } => live::run_python(&workspace),
         Task::Bench {
             starvation: true, ..

@@ -1,6 +1,6 @@
 //! Chosen columns of cycles, for tables of any format.
 
-use franka_rt::driver::{Column, ColumnKind};
+use franka_rt::driver::Column;
 
 use crate::cycle::Cycle;
 
@@ -53,11 +53,6 @@ impl Columns {
 /// The name that a number stands for; none if it stands for none.
 pub(super) fn name_of(list: &'static [&'static str], number: f64) -> &'static str {
     list.get(number as usize).copied().unwrap_or_default()
-}
-
-/// What the numbers of a column are to be counted as.
-pub(super) fn is_whole(kind: ColumnKind) -> bool {
-    matches!(kind, ColumnKind::Count | ColumnKind::Flag)
 }
 
 fn names() -> Vec<&'static str> {

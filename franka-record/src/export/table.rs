@@ -6,7 +6,7 @@ use std::path::Path;
 use franka_rt::driver::ColumnKind;
 use serde_json::{Map, Value};
 
-use super::cells::{Columns, is_whole, name_of};
+use super::cells::{Columns, name_of};
 use super::error::ExportError;
 use super::parquet::{Field, Kind, TableWriter, Values};
 use crate::cycle::Cycle;
@@ -35,7 +35,7 @@ pub fn write_parquet<E: Error + Send + Sync + 'static>(
     let chosen = columns.0.iter().map(|column| {
         let kind = match column.kind {
             ColumnKind::Name(_) => Kind::Text,
-            kind if is_whole(kind) => Kind::Int,
+            ColumnKind::Count | ColumnKind::Flag => Kind::Int,
             _ => Kind::Double,
         };
         match column.shape {
@@ -74,7 +74,7 @@ fn next_rows<E: Error + Send + Sync + 'static>(
         .iter()
         .map(|column| match column.kind {
             ColumnKind::Name(_) => Values::Text(Vec::new()),
-            kind if is_whole(kind) => Values::Int(Vec::new()),
+            ColumnKind::Count | ColumnKind::Flag => Values::Int(Vec::new()),
             _ => Values::Double(Vec::new()),
         })
         .collect();

@@ -106,8 +106,8 @@ fn push(publisher: &mut CyclePublisher, seen: &[(Record, RobotState)], ms: u64, 
     publisher.push(record, &bytes[..length], began + Duration::from_millis(ms));
 }
 
-/// The processor time of the recorder's threads so far.
-fn processor_time() -> Option<Duration> {
+/// The processor time of the recorder's threads so far; `None` where the system does not tell it.
+pub fn processor_time() -> Option<Duration> {
     let mut total = Duration::ZERO;
     for task in fs::read_dir("/proc/self/task").ok()? {
         let path = task.ok()?.path();

@@ -20,6 +20,8 @@
 //!
 //! `live starvation [--seconds N]`: see [`starvation`].
 //!
+//! `live recorder DIRECTORY [--seconds N]`: see [`recorder`].
+//!
 //! | module | what it is |
 //! |---|---|
 //! | [`relay`] | between client and robot, records what passes and when |
@@ -32,6 +34,7 @@
 //! | [`report`] | the tables, and the JSON |
 //! | [`package_case`] | the measurement of one package for Python |
 //! | [`package_report`] | the table of these |
+//! | [`recorder`] | what a recorder costs the control thread |
 //! | [`starvation`] | what blocked runtime workers cost |
 
 mod case;
@@ -39,6 +42,7 @@ mod listener;
 mod package_case;
 mod package_report;
 mod process;
+mod recorder;
 mod relay;
 mod report;
 mod simulator_case;
@@ -104,6 +108,14 @@ enum What {
         #[arg(long, default_value_t = 10, value_parser = value_parser!(u32).range(1..))]
         seconds: u32,
     },
+    /// What a recorder costs the control thread, in turns with and without one.
+    Recorder {
+        /// Where to write the recordings.
+        directory: PathBuf,
+        /// How long to measure with a recorder, and as long without.
+        #[arg(long, default_value_t = 60, value_parser = value_parser!(u32).range(1..))]
+        seconds: u32,
+    },
 }
 
 #[derive(Debug, Args)]
@@ -165,6 +177,9 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
         What::Starvation { seconds } => {
             starvation::print(seconds);
             Ok(())
+        }
+        What::Recorder { directory, seconds } => {
+            recorder::print(&programs.join("franka-sim"), &directory, seconds)
         }
     }
 }
