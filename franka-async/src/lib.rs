@@ -462,6 +462,8 @@ const _: () = {
     shared::<Motion>();
     shared::<Arm>();
     shared::<team::Stopper>();
+    #[cfg(feature = "record")]
+    spawned::<std::sync::Arc<recording::Recorder>>();
     spawned::<team::Team<2>>();
     spawned::<team::TeamMotion<2>>();
     spawned::<motion::Follow>();

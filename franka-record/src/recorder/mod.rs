@@ -61,8 +61,8 @@ pub struct Recorder {
     clock: RecordClock,
     disk: Arc<Mutex<DiskStatus>>,
     drained: Arc<Mutex<DrainStatus>>,
-    /// Ends when the last byte is written.
-    done: Receiver<()>,
+    /// Ends when the last byte is written. Locked by the one who finishes.
+    done: Mutex<Receiver<()>>,
     /// The robots so far, by index.
     robots: Mutex<Vec<String>>,
 }
@@ -121,7 +121,7 @@ impl Recorder {
             clock,
             disk: disk_status,
             drained,
-            done,
+            done: Mutex::new(done),
             robots: Mutex::default(),
         })
     }
@@ -190,7 +190,7 @@ impl Recorder {
         lock(&self.drained).finish = true;
         // Wakes the thread; if the queue is full it is awake.
         let _ = self.orders.try_send(Order::Finish);
-        match self.done.recv_timeout(limit) {
+        match lock(&self.done).recv_timeout(limit) {
             Ok(()) | Err(RecvTimeoutError::Disconnected) => {}
             Err(RecvTimeoutError::Timeout) => return Err(RecordError::Unfinished { limit }),
         }
