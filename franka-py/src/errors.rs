@@ -56,11 +56,16 @@ impl Raise for Error {
 /// A `FrankaError` of this `kind` by the program itself, which this package raises before the
 /// driver is asked.
 pub(crate) fn misuse(py: Python<'_>, kind: &str, message: &str) -> PyErr {
+    made(py, "FrankaError", kind, "caller", message)
+}
+
+/// An exception of the class of `errors.py` that is called `class`, for `party` to act on.
+pub(crate) fn made(py: Python<'_>, class: &str, kind: &str, party: &str, message: &str) -> PyErr {
     let made = || {
-        let class = py.import("franka_async.errors")?.getattr("FrankaError")?;
+        let class = py.import("franka_async.errors")?.getattr(class)?;
         let exception = class.call1((message,))?;
         exception.setattr("kind", kind)?;
-        exception.setattr("party", "caller")?;
+        exception.setattr("party", party)?;
         Ok(PyErr::from_value(exception))
     };
     made().unwrap_or_else(|broken| broken)

@@ -21,7 +21,7 @@ use crate::stream::stream;
 /// and so does a timeout around it. An action has no deadline of its own: a move that an obstacle
 /// blocks takes minutes. None holds the interpreter while it is awaited or waited for.
 #[pyclass(frozen, module = "franka_async")]
-pub(crate) struct Gripper(Device<gripper::Gripper>);
+pub(crate) struct Gripper(pub(crate) Device<gripper::Gripper>);
 
 impl Gripper {
     pub(crate) fn new(endpoint: impl Into<Endpoint>) -> Self {

@@ -39,6 +39,7 @@ mod options;
 mod otg;
 mod pose;
 mod record;
+mod recorder;
 mod robot;
 mod runtime;
 mod settings;
@@ -107,6 +108,8 @@ mod _native {
     use crate::pose::{from_xyzw, rotated, to_xyzw};
     #[pymodule_export]
     use crate::record::{Recording, record_columns};
+    #[pymodule_export]
+    use crate::recorder::{EpisodeUnderWay, Recorder};
     #[pymodule_export]
     use crate::robot::Robot;
     #[pymodule_export]

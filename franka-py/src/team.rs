@@ -24,7 +24,7 @@ use crate::robot::Robot;
 use crate::runtime::Threaded;
 
 /// A team of any size.
-enum Members {
+pub(crate) enum Members {
     Two(Joint<2>),
     Three(Joint<3>),
     Four(Joint<4>),
@@ -53,7 +53,7 @@ type Outcomes = Pin<Box<dyn Future<Output = Vec<Outcome>> + Send>>;
 /// team and its arms goes, all brake and their sessions end.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Team {
-    members: Threaded<Arc<Members>>,
+    pub(crate) members: Threaded<Arc<Members>>,
     arms: Vec<Py<Arm>>,
 }
 
@@ -218,7 +218,7 @@ impl Team {
 }
 
 impl Team {
-    fn check_count(&self, name: &str, got: usize) -> PyResult<()> {
+    pub(crate) fn check_count(&self, name: &str, got: usize) -> PyResult<()> {
         let expected = self.arms.len();
         if got == expected {
             return Ok(());

@@ -16,7 +16,7 @@ use crate::stream::stream;
 /// connecting, of actions and of their ends holds for it as well; cancelling an action stops the
 /// pump.
 #[pyclass(frozen, module = "franka_async")]
-pub(crate) struct VacuumGripper(Device<vacuum::VacuumGripper>);
+pub(crate) struct VacuumGripper(pub(crate) Device<vacuum::VacuumGripper>);
 
 impl VacuumGripper {
     pub(crate) fn new(endpoint: impl Into<Endpoint>) -> Self {

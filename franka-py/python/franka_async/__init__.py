@@ -1,6 +1,6 @@
 """Driver for Franka robots: motions are awaitables, states are numpy arrays, control stays on a real-time thread."""
 
-from . import condition, laws, otg, pose, tools
+from . import condition, laws, otg, pose, recording, tools
 from ._native import (
     COLLISION_THRESHOLDS,
     FLAT_LAYOUT,
@@ -27,6 +27,7 @@ from ._native import (
     MotionHandle,
     MotionLimits,
     Operation,
+    Recorder,
     Recording,
     Robot,
     RobotState,
@@ -52,6 +53,7 @@ from .errors import (
     IdentifyError,
     MotionError,
     ReadError,
+    RecordError,
     TeamError,
 )
 from .goal import (
@@ -147,6 +149,8 @@ __all__ = [
     "Reacted",
     "ReadError",
     "Reading",
+    "RecordError",
+    "Recorder",
     "Recording",
     "Reference",
     "Reflex",
@@ -172,6 +176,7 @@ __all__ = [
     "otg",
     "pose",
     "record_columns",
+    "recording",
     "start_tickets",
     "tools",
 ]

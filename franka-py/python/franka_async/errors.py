@@ -22,6 +22,7 @@ __all__ = [
     "IdentifyError",
     "MotionError",
     "ReadError",
+    "RecordError",
     "TeamError",
 ]
 
@@ -50,6 +51,10 @@ class ReadError(FrankaError):
 
 class ActionError(FrankaError):
     """An end effector did not do it."""
+
+
+class RecordError(FrankaError):
+    """A recording is not written, or not to its end. Motions go on."""
 
 
 class IdentifyError(FrankaError):

@@ -1,4 +1,4 @@
-"""Keyword arguments of motions, sessions and simulated robots."""
+"""Keyword arguments of motions, sessions, recordings and simulated robots."""
 
 from __future__ import annotations
 
@@ -10,9 +10,19 @@ if TYPE_CHECKING:
 
     from ._native import Condition, Deadman, Reaction, StartTicket
     from .goal import Backend, Box, Budget, Deviation, Gains, Lead, Leash, Plane, Settling, Tolerance
+    from .recording import BlackBox
     from .simulation import Network
 
-__all__ = ["EngageOptions", "FollowOptions", "GoalOptions", "MotionOptions", "SessionOptions", "SimOptions", "TuneOptions"]
+__all__ = [
+    "EngageOptions",
+    "FollowOptions",
+    "GoalOptions",
+    "MotionOptions",
+    "RecordOptions",
+    "SessionOptions",
+    "SimOptions",
+    "TuneOptions",
+]
 
 
 class TuneOptions(TypedDict, total=False):
@@ -88,6 +98,19 @@ class EngageOptions(SessionOptions, total=False):
 
     backend: Backend | None
     """What turns setpoints into torques."""
+
+
+class RecordOptions(TypedDict, total=False):
+    """Options of a recording: see ``Recorder.to_file``."""
+
+    thinned: bool
+    flush: float
+    sync: bool
+    rotate_bytes: int | None
+    rotate_time: float | None
+    metadata: dict[str, str] | None
+    attachments: dict[str, bytes] | None
+    black_box: BlackBox | None
 
 
 class SimOptions(TypedDict, total=False):

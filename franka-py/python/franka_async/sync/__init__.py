@@ -27,6 +27,7 @@ __all__ = [
     "AsynchronousControl",
     "Gripper",
     "IdentificationPlan",
+    "Recorder",
     "Robot",
     "Team",
     "TeamGrasp",
@@ -50,6 +51,11 @@ class _Waiting:
         return str(self._awaiting)
 
 
+def _awaiting(argument: Any) -> Any:
+    """What a method takes there for what it takes here."""
+    return getattr(argument, "_awaiting", argument)
+
+
 def _result(result: Any) -> Any:
     """What a method returns here for what it returns there."""
     if isinstance(result, _native.Operation):
@@ -69,7 +75,7 @@ def _class(of: type) -> Any:
     def method(name: str, there: Any) -> Any:
         @functools.wraps(there)
         def call(self: Any, *arguments: Any, **keywords: Any) -> Any:
-            result = _result(getattr(self._awaiting, name)(*arguments, **keywords))
+            result = _result(getattr(self._awaiting, name)(*map(_awaiting, arguments), **keywords))
             return self if result.__class__ is self.__class__ and result._awaiting is self._awaiting else result
 
         return call
@@ -77,7 +83,7 @@ def _class(of: type) -> Any:
     def function(there: Any) -> Any:
         @functools.wraps(there)
         def call(*arguments: Any, **keywords: Any) -> Any:
-            return _result(there(*(getattr(argument, "_awaiting", argument) for argument in arguments), **keywords))
+            return _result(there(*map(_awaiting, arguments), **keywords))
 
         return staticmethod(call)
 
@@ -107,6 +113,7 @@ Arm = _class(_native.Arm)
 AsynchronousControl = _class(_native.AsynchronousControl)
 Gripper = _class(_native.Gripper)
 IdentificationPlan = _class(_native.IdentificationPlan)
+Recorder = _class(_native.Recorder)
 Robot = _class(_native.Robot)
 Team = _class(_native.Team)
 TeamGrasp = _class(_native.TeamGrasp)

@@ -1,21 +1,23 @@
 """Made by ``tests/sync_stub.py`` from the stub of the native module."""
 
 from collections.abc import AsyncIterable, Callable, Iterable, Sequence
+from os import PathLike
 from typing import Any, Literal, TypeAlias, final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Unpack
 from ..goal import Budget, Chunk, Controller, Destination, Gains, Joints, Margin, Target, Waypoint
 from ..motion import MotionReport, Reference
-from ..options import EngageOptions, FollowOptions, GoalOptions, MotionOptions, SessionOptions, TuneOptions
+from ..options import EngageOptions, FollowOptions, GoalOptions, MotionOptions, RecordOptions, SessionOptions, TuneOptions
+from ..recording import RecordStatus
 from ..settings import VirtualWall
 from ..streams import Reading, Stream
 from ..supervision import CloseReason, Event, Health, Policy, Reflex
-from .._native import ActiveControl, Follow, GripperState, Identified, Latest, Model, Motion, Recording, RobotState, VacuumGripperState
+from .._native import ActiveControl, EpisodeUnderWay, Follow, GripperState, Identified, Latest, Model, Motion, Recording, RobotState, VacuumGripperState
 from .. import _native
 from . import tools as tools
 
-__all__ = ['Arm', 'AsynchronousControl', 'Gripper', 'IdentificationPlan', 'Robot', 'Team', 'TeamGrasp', 'VacuumGripper', 'tools']
+__all__ = ['Arm', 'AsynchronousControl', 'Gripper', 'IdentificationPlan', 'Recorder', 'Robot', 'Team', 'TeamGrasp', 'VacuumGripper', 'tools']
 
 _Array: TypeAlias = NDArray[np.float64]
 
@@ -171,6 +173,45 @@ class IdentificationPlan:
         ...
 
     def run(self) -> Identified:
+        ...
+
+@final
+class Recorder:
+    """A recording of robots in a file: ``async with Recorder.to_file(path) as recorder:``."""
+
+    @staticmethod
+    def to_file(path: str | PathLike[str], **options: Unpack[RecordOptions]) -> Recorder:
+        ...
+
+    @staticmethod
+    def black_box(directory: str | PathLike[str], *, before: float=30.0, after: float=1.0, keep: int=20) -> Recorder:
+        ...
+
+    def attach(self, robot: Robot, name: str='', *, with_address: bool=False, capacity: int | None=None) -> None:
+        ...
+
+    def attach_team(self, team: Team, names: Sequence[str], *, with_address: bool=False, capacity: int | None=None) -> None:
+        ...
+
+    def attach_gripper(self, gripper: Gripper | VacuumGripper, robot: str='') -> None:
+        ...
+
+    def note(self, text: str) -> None:
+        ...
+
+    def episode(self, name: str, *, task: str) -> EpisodeUnderWay:
+        ...
+
+    def status(self) -> RecordStatus:
+        ...
+
+    def finish(self) -> RecordStatus:
+        ...
+
+    def __enter__(self) -> Recorder:
+        ...
+
+    def __exit__(self, kind: object=None, *_rest: object) -> None:
         ...
 
 @final
