@@ -1,0 +1,322 @@
+//! Who may move the arm, and until when: a state machine without clock and sockets.
+//!
+//! ```text
+//!             take                begin                 hold 1, 2, 3 .. in time
+//!  free ───────────────> leased ──────────> holding ─────────────────────────┐
+//!    ^  release, silence,   ^                │    ^──────────────────────────┘
+//!    └─ socket closed       └── end, gap, silence, stop, arrival, socket closed
+//! ```
+//!
+//! Requests and the time go in ([`Authority::handle`], [`Authority::tick`]); effects and refusals
+//! come out. Time is any monotonic count; one that goes back counts as standing still. A hold that
+//! has ended stays ended: only another `Begin` moves the arm.
+
+mod refusal;
+#[cfg(test)]
+mod tests;
+
+use core::time::Duration;
+
+pub(crate) use refusal::Refusal;
+
+use crate::disturbance::Disturbance;
+use crate::message::{Motion, Request, Status};
+
+/// Numbers a viewer.
+pub(crate) type ViewerId = u64;
+
+/// What viewers may ask of this server.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Permissions {
+    /// Motions, and recoveries.
+    pub(crate) motion: bool,
+    /// Disturbances of a simulated robot.
+    pub(crate) disturbances: bool,
+}
+
+/// What the server has to do.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Effect {
+    /// Begin the motion of this hold.
+    Begin {
+        hold: u64,
+        motion: Motion,
+        speed: f64,
+    },
+    /// Feed the deadman of the hold.
+    KeepAlive,
+    /// Brake whatever moves, ours or not.
+    Stop,
+    Recover,
+    Disturb(Disturbance),
+}
+
+/// Why a hold ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum Lost {
+    #[error("let go")]
+    LetGo,
+    #[error("no hold message for 150 ms")]
+    Silent,
+    #[error("a hold message was missing, late or twice there: expected {expected}, got {got}")]
+    Sequence { expected: u32, got: u32 },
+    #[error("the connection of the commander has closed")]
+    Disconnected,
+    #[error("the commander has given the lease back")]
+    Released,
+    #[error("another motion was asked for in the middle of a hold")]
+    Replaced,
+    #[error("stopped by a viewer")]
+    Stopped,
+}
+
+/// What comes of a request.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Step {
+    /// The hold has ended: brake, before anything else.
+    pub(crate) ended: Option<Lost>,
+    pub(crate) effect: Option<Effect>,
+    pub(crate) refusal: Option<Refusal>,
+}
+
+/// See the [module](self).
+#[derive(Debug)]
+pub(crate) struct Authority {
+    permissions: Permissions,
+    now: Duration,
+    lease: Option<Lease>,
+    holds: u64,
+}
+
+#[derive(Debug)]
+struct Lease {
+    viewer: ViewerId,
+    name: String,
+    heard: Duration,
+    hold: Option<Hold>,
+}
+
+#[derive(Debug)]
+struct Hold {
+    number: u64,
+    seq: u32,
+    heard: Duration,
+}
+
+impl Authority {
+    pub(crate) fn new(permissions: Permissions) -> Self {
+        Self {
+            permissions,
+            now: Duration::ZERO,
+            lease: None,
+            holds: 0,
+        }
+    }
+
+    pub(crate) fn status(&self) -> Status {
+        let lease = self.lease.as_ref();
+        Status {
+            commander: lease.map(|lease| lease.viewer),
+            name: lease.map(|lease| lease.name.clone()),
+            holding: lease.is_some_and(|lease| lease.hold.is_some()),
+        }
+    }
+
+    /// Takes a request of a viewer. `round_trip` is the newest one that was measured with it,
+    /// `None` if none is fresh.
+    pub(crate) fn handle(
+        &mut self,
+        now: Duration,
+        viewer: ViewerId,
+        round_trip: Option<Duration>,
+        request: Request,
+    ) -> Step {
+        // A request cannot revive what its own lateness has ended.
+        let silent = self.tick(now);
+        if let Some(lease) = self.lease.as_mut().filter(|lease| lease.viewer == viewer) {
+            lease.heard = self.now;
+        }
+        let step = match request {
+            Request::Stop {} => {
+                let hold = self.lease.as_mut().and_then(|lease| lease.hold.take());
+                Ok(Step {
+                    ended: hold.map(|_| Lost::Stopped),
+                    ..effect(Effect::Stop)
+                })
+            }
+            Request::Seen { .. } => Ok(Step::default()),
+            Request::Take { name } => self.take(viewer, name),
+            request => self.commanded(viewer, round_trip, request),
+        };
+        let step = step.unwrap_or_else(|refusal| Step {
+            refusal: Some(refusal),
+            ..Step::default()
+        });
+        Step {
+            ended: silent.or(step.ended),
+            ..step
+        }
+    }
+
+    /// Ends what has been silent for too long. To be called every few milliseconds.
+    pub(crate) fn tick(&mut self, now: Duration) -> Option<Lost> {
+        self.now = self.now.max(now);
+        let lease = self.lease.as_mut()?;
+        let silent = |hold: &mut Hold| self.now - hold.heard > DEADMAN;
+        if lease.hold.take_if(silent).is_some() {
+            return Some(Lost::Silent);
+        }
+        if self.now - lease.heard > LEASE {
+            self.lease = None;
+        }
+        None
+    }
+
+    /// A viewer has gone.
+    pub(crate) fn gone(&mut self, viewer: ViewerId) -> Option<Lost> {
+        let lease = self.lease.take_if(|lease| lease.viewer == viewer)?;
+        lease.hold.map(|_| Lost::Disconnected)
+    }
+
+    /// The motion of a hold has ended by itself.
+    pub(crate) fn ended(&mut self, number: u64) {
+        if let Some(lease) = &mut self.lease {
+            lease.hold.take_if(|hold| hold.number == number);
+        }
+    }
+
+    fn take(&mut self, viewer: ViewerId, name: String) -> Result<Step, Refusal> {
+        match &self.lease {
+            _ if !self.permissions.motion && !self.permissions.disturbances => {
+                return Err(Refusal::ViewOnly);
+            }
+            Some(lease) if lease.viewer != viewer => {
+                return Err(Refusal::Taken(lease.name.clone()));
+            }
+            _ if name.trim().is_empty() || name.chars().count() > NAME_MAX => {
+                return Err(Refusal::Name);
+            }
+            Some(_) => {}
+            None => {
+                self.lease = Some(Lease {
+                    viewer,
+                    name,
+                    heard: self.now,
+                    hold: None,
+                });
+            }
+        }
+        Ok(Step::default())
+    }
+
+    /// What only the commander may ask for.
+    fn commanded(
+        &mut self,
+        viewer: ViewerId,
+        round_trip: Option<Duration>,
+        request: Request,
+    ) -> Result<Step, Refusal> {
+        let Permissions {
+            motion: motions,
+            disturbances,
+        } = self.permissions;
+        let lease = self.lease.as_mut().filter(|lease| lease.viewer == viewer);
+        let lease = lease.ok_or(Refusal::NoLease)?;
+        Ok(match request {
+            Request::Release {} => {
+                let hold = lease.hold.take();
+                self.lease = None;
+                ended(hold, Lost::Released)
+            }
+            Request::Begin { motion, speed } => {
+                if let hold @ Some(_) = lease.hold.take() {
+                    return Ok(Step {
+                        refusal: Some(Refusal::Holding),
+                        ..ended(hold, Lost::Replaced)
+                    });
+                }
+                if !motions {
+                    return Err(Refusal::ViewOnly);
+                }
+                motion.check().map_err(Refusal::Motion)?;
+                if !(SPEED_MIN..=SPEED_MAX).contains(&speed) {
+                    return Err(Refusal::Speed(speed));
+                }
+                match round_trip {
+                    None => return Err(Refusal::Unmeasured),
+                    Some(got) if got > ROUND_TRIP_MAX => return Err(Refusal::Latency(got)),
+                    Some(_) => {}
+                }
+                self.holds += 1;
+                lease.hold = Some(Hold {
+                    number: self.holds,
+                    seq: 0,
+                    heard: self.now,
+                });
+                effect(Effect::Begin {
+                    hold: self.holds,
+                    motion,
+                    speed,
+                })
+            }
+            Request::Hold { seq } => {
+                let hold = lease.hold.as_mut().ok_or(Refusal::NoHold)?;
+                let expected = hold.seq.saturating_add(1);
+                if seq != expected {
+                    let lost = Lost::Sequence { expected, got: seq };
+                    return Ok(ended(lease.hold.take(), lost));
+                }
+                hold.seq = seq;
+                hold.heard = self.now;
+                effect(Effect::KeepAlive)
+            }
+            // Without effect if it has ended by itself in the meantime.
+            Request::End {} => ended(lease.hold.take(), Lost::LetGo),
+            Request::Recover {} if motions => effect(Effect::Recover),
+            Request::Recover {} => return Err(Refusal::ViewOnly),
+            Request::Disturb { disturbance } if disturbances => {
+                disturbance.check().map_err(Refusal::Disturbance)?;
+                effect(Effect::Disturb(disturbance))
+            }
+            Request::Disturb { .. } => return Err(Refusal::NoSimulator),
+            Request::Alive {} | Request::Seen { .. } | Request::Take { .. } | Request::Stop {} => {
+                Step::default()
+            }
+        })
+    }
+}
+
+fn effect(effect: Effect) -> Step {
+    Step {
+        effect: Some(effect),
+        ..Step::default()
+    }
+}
+
+/// The end of a hold, if there was one.
+fn ended(hold: Option<Hold>, lost: Lost) -> Step {
+    Step {
+        ended: hold.map(|_| lost),
+        ..Step::default()
+    }
+}
+
+/// Silence after which a hold ends. The page sends every 50 ms, so that two messages may be late.
+pub(crate) const DEADMAN: Duration = Duration::from_millis(150);
+
+/// Silence after which a lease is free.
+pub(crate) const LEASE: Duration = Duration::from_secs(5);
+
+/// Greatest round trip to begin a motion with.
+pub(crate) const ROUND_TRIP_MAX: Duration = Duration::from_millis(100);
+
+/// Greatest speed of any point of the arm, `[m/s]`: the reduced speed of ISO 10218-1.
+pub(crate) const SPEED_MAX: f64 = 0.25;
+
+/// Least speed, `[m/s]`.
+pub(crate) const SPEED_MIN: f64 = 0.001;
+
+/// Characters of a name.
+pub(crate) const NAME_MAX: usize = 40;
+
+const _: () = assert!(DEADMAN.as_millis() <= 200);

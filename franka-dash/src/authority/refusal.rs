@@ -1,0 +1,34 @@
+//! Why a request has no effect.
+
+use core::time::Duration;
+
+use super::{NAME_MAX, ROUND_TRIP_MAX, SPEED_MAX, SPEED_MIN};
+
+/// Why a request has no effect. The text says what was got and what is expected.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum Refusal {
+    #[error("this server is view-only: it was started without permission to move the arm")]
+    ViewOnly,
+    #[error("{0:?} commands; take over when the lease is released or has expired")]
+    Taken(String),
+    #[error("this viewer does not command; take the lease first")]
+    NoLease,
+    #[error("a name has 1 to {NAME_MAX} characters")]
+    Name,
+    #[error("{0}")]
+    Motion(&'static str),
+    #[error("{0} m/s is no speed for a hold, which takes {SPEED_MIN} to {SPEED_MAX} m/s")]
+    Speed(f64),
+    #[error("the round trip to the page has not been measured within the last second")]
+    Unmeasured,
+    #[error("the round trip to the page takes {0:.0?}; motions need {ROUND_TRIP_MAX:?} or less")]
+    Latency(Duration),
+    #[error("a hold goes on already; it has been ended")]
+    Holding,
+    #[error("no hold goes on, or it has ended; begin one")]
+    NoHold,
+    #[error("only a simulated robot can be disturbed")]
+    NoSimulator,
+    #[error("{0}")]
+    Disturbance(&'static str),
+}

@@ -1,0 +1,121 @@
+//! What does not change while a page is open: sent once, first.
+
+use franka_async::model::collision::{Body, Shape};
+use franka_async::model::{EndEffector, Frame, JointVector, Model, RobotKind};
+use franka_async::{READY, pose};
+use serde::Serialize;
+
+use crate::authority::{Permissions, SPEED_MAX, SPEED_MIN, ViewerId};
+use crate::frame;
+use crate::source::Source;
+
+/// The robot and what this viewer may ask for.
+#[derive(Debug, Serialize)]
+#[serde(tag = "type", rename = "hello")]
+pub(crate) struct Hello {
+    frame_version: u8,
+    viewer: ViewerId,
+    robot: &'static str,
+    /// Whether it is simulated, and may be disturbed.
+    simulated: bool,
+    motion_allowed: bool,
+    speed_min: f64,
+    speed_max: f64,
+    joint_lower: [f64; 7],
+    joint_upper: [f64; 7],
+    joint_velocity: [f64; 7],
+    joint_torque: [f64; 7],
+    ready: [f64; 7],
+    capsules: Vec<Capsule>,
+}
+
+/// A guard capsule in the frame of its link: 0 is the base, 1 to 7 the links, 8 the flange, `[m]`.
+#[derive(Debug, PartialEq, Serialize)]
+struct Capsule {
+    link: usize,
+    start: [f64; 3],
+    end: [f64; 3],
+    radius: f64,
+}
+
+impl Hello {
+    pub(crate) fn new(source: &Source, permissions: Permissions, viewer: ViewerId) -> Self {
+        let model = source.model();
+        let limits = model.joint_limits();
+        let has_tool = {
+            let tool = frame::end_effector(&source.newest().state).f_t_ee;
+            tool[(2, 3)] > 0.01
+        };
+        Self {
+            frame_version: frame::VERSION,
+            viewer,
+            robot: match model.kind() {
+                RobotKind::Fer => "Franka Emika Robot",
+                _ => "Franka Research 3",
+            },
+            simulated: permissions.disturbances,
+            motion_allowed: permissions.motion,
+            speed_min: SPEED_MIN,
+            speed_max: SPEED_MAX,
+            joint_lower: limits.lower.into(),
+            joint_upper: limits.upper.into(),
+            joint_velocity: limits.velocity.into(),
+            joint_torque: limits.torque.into(),
+            ready: READY.into(),
+            capsules: capsules(model, has_tool),
+        }
+    }
+}
+
+/// The capsules that the guards keep out of obstacles, on their links.
+fn capsules(model: &Model, with_hand: bool) -> Vec<Capsule> {
+    let shape = Shape::covering(model.kind());
+    let shape = if with_hand { shape.with_hand() } else { shape };
+    let q = JointVector::zeros();
+    let on_link = |(body, capsule): (Body, franka_async::model::collision::Capsule)| {
+        let link = usize::from(body.number());
+        let frame = match link {
+            0 => Default::default(),
+            link => {
+                let tool = EndEffector::default();
+                pose::from_matrix(&model.pose(Frame::ALL[link - 1], &q, &tool)).unwrap_or_default()
+            }
+        };
+        let local = |point: franka_async::nalgebra::Vector3<f64>| -> [f64; 3] {
+            frame.inverse_transform_point(&point.into()).coords.into()
+        };
+        Capsule {
+            link,
+            start: local(capsule.start),
+            end: local(capsule.end),
+            radius: capsule.radius,
+        }
+    };
+    shape.at(&q).capsules().map(on_link).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn capsules_on_their_links_are_where_the_guards_have_them() {
+        let model = Model::fr3();
+        let on_links = capsules(model, true);
+        let placed = Shape::covering(RobotKind::Fr3).with_hand().at(&READY);
+        assert_eq!(placed.capsules().count(), on_links.len());
+        for (local, (body, wanted)) in on_links.iter().zip(placed.capsules()) {
+            assert_eq!(local.link, usize::from(body.number()));
+            assert_eq!(local.radius, wanted.radius);
+            let frame = match local.link {
+                0 => Default::default(),
+                link => {
+                    let pose = model.pose(Frame::ALL[link - 1], &READY, &EndEffector::default());
+                    pose::from_matrix(&pose).expect("a rigid transformation")
+                }
+            };
+            let end = frame.transform_point(&local.end.into()).coords;
+            assert!((end - wanted.end).norm() < 1e-9, "{body:?}");
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! The binary state frame: what the page draws, 60 times per second.
+//!
+//! Little-endian, unpadded, [`LENGTH`] bytes, version [`VERSION`]:
+//!
+//! | offset | type | content |
+//! |---|---|---|
+//! | 0 | u16 | 0x4446, "FD" |
+//! | 2 | u8 | version of this layout |
+//! | 3 | u8 | robot mode: the robot's number, 0 to 6 |
+//! | 4 | u32 | length of the frame in bytes |
+//! | 8 | u64 | time of the server, `[ms]`: to be acknowledged |
+//! | 16 | u64 | robot time (`message_id`), `[ms]` |
+//! | 24 | u32 | bit 0: a motion runs; bit 1: the reference is that of this driver; bit 2: a hold goes on |
+//! | 28 | f32 | success rate of commands, 0 to 1 |
+//! | 32 | 7 f32 | q, `[rad]` |
+//! | 60 | 7 f32 | dq, `[rad/s]` |
+//! | 88 | 7 f32 | tau_J, `[N m]` |
+//! | 116 | 7 f32 | tau_ext_hat_filtered, `[N m]` |
+//! | 144 | 6 f32 | O_F_ext_hat_K, `[N, N m]` |
+//! | 168 | 7 f32 | reference of the joints, `[rad]` |
+//! | 196 | 9 poses | joint frames 1 to 7, flange, end effector, as measured |
+//! | 448 | 9 poses | the same at the reference |
+//!
+//! A pose is 7 f32: position x y z `[m]` and quaternion x y z w, in the base frame.
+
+use franka_async::model::{EndEffector, Frame, JointVector, Model};
+use franka_async::pose;
+use franka_async::state::RobotState;
+
+use crate::source::Sample;
+
+pub(crate) const VERSION: u8 = 1;
+pub(crate) const LENGTH: usize = 700;
+const MAGIC: u16 = 0x4446;
+
+/// The frames whose poses are sent.
+const FRAMES: [Frame; 9] = [
+    Frame::Joint1,
+    Frame::Joint2,
+    Frame::Joint3,
+    Frame::Joint4,
+    Frame::Joint5,
+    Frame::Joint6,
+    Frame::Joint7,
+    Frame::Flange,
+    Frame::EndEffector,
+];
+
+/// The frame of a sample at this time of the server, `[ms]`.
+pub(crate) fn encode(sample: &Sample, model: &Model, server_ms: u64, holding: bool) -> Vec<u8> {
+    let Sample { state, reference } = sample;
+    let mut frame = Vec::with_capacity(LENGTH);
+    frame.extend(MAGIC.to_le_bytes());
+    frame.extend([VERSION, state.robot_mode.byte()]);
+    frame.extend((LENGTH as u32).to_le_bytes());
+    frame.extend(server_ms.to_le_bytes());
+    frame.extend(state.message_id.to_le_bytes());
+    let flags = u32::from(state.motion_running())
+        | u32::from(reference.is_some()) << 1
+        | u32::from(holding) << 2;
+    frame.extend(flags.to_le_bytes());
+    let wanted = reference.unwrap_or(state.q_d);
+    let mut put = |numbers: &[f64]| {
+        for number in numbers {
+            frame.extend((*number as f32).to_le_bytes());
+        }
+    };
+    put(&[state.control_command_success_rate]);
+    put(&state.q);
+    put(&state.dq);
+    put(&state.tau_J);
+    put(&state.tau_ext_hat_filtered);
+    put(&state.O_F_ext_hat_K);
+    put(&wanted);
+    for q in [state.q, wanted] {
+        for (position, quaternion) in poses(model, state, q) {
+            put(&position);
+            put(&quaternion);
+        }
+    }
+    debug_assert_eq!(frame.len(), LENGTH);
+    frame
+}
+
+/// Where the frames are at the joint positions `q`.
+fn poses(
+    model: &Model,
+    state: &RobotState,
+    q: [f64; 7],
+) -> impl Iterator<Item = ([f64; 3], [f64; 4])> {
+    let q = JointVector::from(q);
+    let tool = end_effector(state);
+    FRAMES.into_iter().map(move |frame| {
+        let placed = pose::from_matrix(&model.pose(frame, &q, &tool));
+        pose::to_xyzw(&placed.unwrap_or_default())
+    })
+}
+
+/// The end effector that a state declares; none if it is no rigid transformation.
+pub(crate) fn end_effector(state: &RobotState) -> EndEffector {
+    let on_flange = pose::from_array(&state.F_T_EE).unwrap_or_default();
+    EndEffector {
+        f_t_ee: on_flange.to_homogeneous(),
+        ..EndEffector::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use franka_async::READY;
+    use franka_async::state::RobotMode;
+
+    use super::*;
+
+    fn number(frame: &[u8], offset: usize) -> f64 {
+        let bytes = frame[offset..offset + 4].try_into().expect("four bytes");
+        f64::from(f32::from_le_bytes(bytes))
+    }
+
+    #[test]
+    fn a_frame_has_the_documented_layout() {
+        let q: [f64; 7] = READY.into();
+        let state = RobotState {
+            message_id: 7,
+            q,
+            q_d: [0.1; 7],
+            dq: [0.2; 7],
+            tau_J: [0.3; 7],
+            tau_ext_hat_filtered: [0.4; 7],
+            O_F_ext_hat_K: [0.5; 6],
+            robot_mode: RobotMode::Reflex,
+            control_command_success_rate: 0.75,
+            ..RobotState::default()
+        };
+        let reference = Some([0.6; 7]);
+        let model = Model::fr3();
+        let frame = encode(&Sample { state, reference }, model, 9, true);
+        assert_eq!(frame.len(), LENGTH);
+        assert_eq!(frame[..8], [0x46, 0x44, VERSION, 4, 0xbc, 2, 0, 0]);
+        assert_eq!((frame[8], frame[16], frame[24]), (9, 7, 6));
+        let at = |offset, wanted: f64| assert!((number(&frame, offset) - wanted).abs() < 1e-6);
+        at(28, 0.75);
+        at(32, q[0]);
+        at(56, q[6]);
+        at(60, 0.2);
+        at(88, 0.3);
+        at(116, 0.4);
+        at(144, 0.5);
+        at(168, 0.6);
+        // The flange at the ready pose; without a tool the end effector is there, too.
+        let flange = model.pose(Frame::Flange, &READY, &EndEffector::default());
+        for offset in [196 + 7 * 28, 196 + 8 * 28] {
+            at(offset, flange[(0, 3)]);
+            at(offset + 8, flange[(2, 3)]);
+        }
+        let wanted = model.pose(Frame::Flange, &[0.6; 7].into(), &EndEffector::default());
+        at(448 + 7 * 28, wanted[(0, 3)]);
+    }
+
+    #[test]
+    fn without_a_reference_that_of_the_robot_is_shown() {
+        let state = RobotState {
+            q_d: [0.1; 7],
+            ..RobotState::default()
+        };
+        let sample = Sample {
+            state,
+            reference: None,
+        };
+        let frame = encode(&sample, Model::fer(), 0, false);
+        assert_eq!(frame[24], 0);
+        assert!((number(&frame, 168) - 0.1).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,285 @@
+//! What all viewers share: the robot, who may command it, and what happened.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::time::{Duration, Instant};
+
+use franka_async::Robot;
+use tokio::sync::{Semaphore, broadcast, watch};
+use tokio::time::{MissedTickBehavior, interval};
+
+use crate::admission::Admission;
+use crate::authority::{Authority, Effect, Lost, Permissions, Refusal, Step, ViewerId};
+use crate::disturbance::Disturbance;
+use crate::hold::{self, Ended, Hold};
+use crate::message::{Level, Motion, News, Request, Status};
+use crate::news;
+use crate::source::{Simulated, Source};
+
+/// What all viewers share.
+pub(crate) struct Hub {
+    pub(crate) source: Source,
+    pub(crate) admission: Admission,
+    pub(crate) permissions: Permissions,
+    pub(crate) news: broadcast::Sender<News>,
+    pub(crate) status: watch::Sender<Status>,
+    /// One permit per viewer.
+    pub(crate) seats: Arc<Semaphore>,
+    simulated: Option<Simulated>,
+    command: Mutex<Command>,
+    stopping: AtomicBool,
+    viewers: AtomicU64,
+    start: Instant,
+}
+
+struct Command {
+    authority: Authority,
+    hold: Option<Hold>,
+}
+
+impl Hub {
+    /// Starts the tasks that end with the last handle. Needs a Tokio runtime.
+    pub(crate) fn start(
+        source: Source,
+        simulated: Option<Simulated>,
+        motion: bool,
+        admission: Admission,
+    ) -> Arc<Self> {
+        let permissions = Permissions {
+            motion: motion && source.robot().is_some(),
+            disturbances: simulated.is_some(),
+        };
+        let hub = Arc::new(Self {
+            admission,
+            permissions,
+            news: broadcast::Sender::new(NEWS),
+            status: watch::Sender::default(),
+            seats: Arc::new(Semaphore::new(VIEWERS_MAX)),
+            simulated,
+            command: Mutex::new(Command {
+                authority: Authority::new(permissions),
+                hold: None,
+            }),
+            stopping: AtomicBool::new(false),
+            viewers: AtomicU64::new(0),
+            start: Instant::now(),
+            source,
+        });
+        tokio::spawn(watch_silence(Arc::downgrade(&hub)));
+        match &hub.source {
+            Source::Robot(robot) => {
+                tokio::spawn(tell_events(robot.events(), Arc::downgrade(&hub)));
+            }
+            Source::Watched(_) => {
+                if let Some(simulated) = hub.simulated.clone() {
+                    tokio::spawn(follow_simulation(simulated, Arc::downgrade(&hub)));
+                }
+            }
+        }
+        hub
+    }
+
+    /// Time since the start of the server.
+    pub(crate) fn now(&self) -> Duration {
+        self.start.elapsed()
+    }
+
+    pub(crate) fn now_ms(&self) -> u64 {
+        u64::try_from(self.now().as_millis()).unwrap_or(u64::MAX)
+    }
+
+    /// A number that no viewer had before.
+    pub(crate) fn next_viewer(&self) -> ViewerId {
+        self.viewers.fetch_add(1, Ordering::Relaxed) + 1
+    }
+
+    pub(crate) fn tell(&self, level: Level, text: String, detail: Option<String>) {
+        let news = News {
+            server_ms: self.now_ms(),
+            level,
+            text,
+            detail,
+        };
+        // Nobody may be listening.
+        let _ = self.news.send(news);
+    }
+
+    /// Does what a viewer asks for, or returns why not.
+    pub(crate) fn handle(
+        self: &Arc<Self>,
+        viewer: ViewerId,
+        round_trip: Option<Duration>,
+        request: Request,
+    ) -> Option<Refusal> {
+        let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
+        let now = self.now();
+        let Step {
+            ended,
+            effect,
+            refusal,
+        } = command.authority.handle(now, viewer, round_trip, request);
+        self.end(&mut command, ended);
+        if let Some(effect) = effect {
+            self.perform(&mut command, effect);
+        }
+        self.publish(&command);
+        refusal
+    }
+
+    /// A viewer has gone: what it held ends.
+    pub(crate) fn gone(&self, viewer: ViewerId) {
+        let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
+        let ended = command.authority.gone(viewer);
+        self.end(&mut command, ended);
+        self.publish(&command);
+    }
+
+    fn tick(&self) {
+        let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
+        let ended = command.authority.tick(self.now());
+        self.end(&mut command, ended);
+        self.publish(&command);
+    }
+
+    /// The motion of this hold has ended by itself.
+    fn motion_ended(&self, number: u64) {
+        let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
+        let holding = command.authority.status().holding;
+        command.authority.ended(number);
+        if holding && !command.authority.status().holding {
+            command.hold = None;
+        }
+        self.publish(&command);
+    }
+
+    /// Brakes, where a hold has ended.
+    fn end(&self, command: &mut Command, ended: Option<Lost>) {
+        let Some(lost) = ended else { return };
+        command.hold = None;
+        if !matches!(lost, Lost::LetGo) {
+            self.tell(Level::Warning, format!("Hold ended: {lost}"), None);
+        }
+    }
+
+    fn publish(&self, command: &Command) {
+        let newest = command.authority.status();
+        self.status.send_if_modified(|status| {
+            let changed = *status != newest;
+            *status = newest;
+            changed
+        });
+    }
+
+    fn perform(self: &Arc<Self>, command: &mut Command, effect: Effect) {
+        match effect {
+            Effect::KeepAlive => {
+                if let Some(hold) = &command.hold {
+                    hold.keep_alive();
+                }
+            }
+            Effect::Begin {
+                hold,
+                motion,
+                speed,
+            } => command.hold = self.begin(hold, motion, speed),
+            Effect::Stop => self.stop(),
+            Effect::Recover => {
+                if let Source::Robot(robot) = &self.source {
+                    tokio::spawn(recover(robot.clone(), self.clone()));
+                }
+            }
+            Effect::Disturb(disturbance) => self.disturb(disturbance),
+        }
+    }
+
+    fn begin(self: &Arc<Self>, number: u64, motion: Motion, speed: f64) -> Option<Hold> {
+        let robot = self.source.robot()?.clone();
+        let (hold, deadman, end) = Hold::new();
+        let hub = self.clone();
+        tokio::spawn(async move {
+            let ended = hold::run(&robot, motion, speed, deadman, end).await;
+            if let Ended::Failed(text, detail) = ended {
+                hub.tell(Level::Error, text, detail);
+            }
+            hub.motion_ended(number);
+        });
+        Some(hold)
+    }
+
+    /// Brakes whatever moves. Another program's simulated robot is stopped by its user stop.
+    fn stop(self: &Arc<Self>) {
+        match &self.source {
+            Source::Watched(_) => self.disturb(Disturbance::UserStop { pressed: true }),
+            Source::Robot(robot) => {
+                if self.stopping.swap(true, Ordering::Relaxed) {
+                    return; // one is under way
+                }
+                let (robot, hub) = (robot.clone(), self.clone());
+                tokio::spawn(async move {
+                    let stopped = robot.stop().await;
+                    hub.stopping.store(false, Ordering::Relaxed);
+                    match stopped {
+                        Ok(()) => hub.tell(Level::Warning, "Stopped by a viewer".into(), None),
+                        Err(error) => hub.tell(Level::Error, format!("Stop: {error}"), None),
+                    }
+                });
+            }
+        }
+    }
+
+    fn disturb(&self, disturbance: Disturbance) {
+        if let Some(simulated) = self.simulated.clone() {
+            tokio::spawn(async move { simulated.disturb(disturbance).await });
+        }
+    }
+}
+
+async fn recover(robot: Robot, hub: Arc<Hub>) {
+    if let Err(error) = robot.recover().await {
+        hub.tell(Level::Error, format!("Recovery: {error}"), None);
+    }
+}
+
+/// Ends holds and leases that have gone silent.
+async fn watch_silence(hub: Weak<Hub>) {
+    let mut clock = interval(Duration::from_millis(10));
+    clock.set_missed_tick_behavior(MissedTickBehavior::Skip);
+    loop {
+        clock.tick().await;
+        let Some(hub) = hub.upgrade() else { return };
+        hub.tick();
+    }
+}
+
+async fn tell_events(mut events: franka_async::supervision::Events, hub: Weak<Hub>) {
+    while let Some(notification) = events.next().await {
+        let Some(hub) = hub.upgrade() else { return };
+        if let Some((level, text, detail)) = news::of_event(&notification.event.kind) {
+            hub.tell(level, text, detail);
+        }
+    }
+}
+
+/// Copies the states of a simulated robot that another program controls, and tells of changes.
+async fn follow_simulation(simulated: Simulated, hub: Weak<Hub>) {
+    let copy = |state| {
+        let Some(hub) = hub.upgrade() else {
+            return false;
+        };
+        if let Source::Watched(watched) = &hub.source {
+            let before = hub.source.newest().state;
+            if let Some((level, text, detail)) = news::of_states(&before, &state) {
+                hub.tell(level, text, detail);
+            }
+            watched.set(state);
+        }
+        true
+    };
+    simulated.copy_to(copy).await;
+}
+
+/// Events that a viewer may lag behind before it misses some.
+const NEWS: usize = 64;
+
+/// Viewers at once.
+const VIEWERS_MAX: usize = 256;

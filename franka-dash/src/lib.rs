@@ -1,0 +1,271 @@
+//! A page in the browser that shows a robot, and lets one person at a time move it.
+//!
+//! ```text
+//!  Robot or Running ──states──> hub ──newest frame, events──> viewer ──WebSocket──> page
+//!        ^                       |                               |
+//!        └── sessions, stop ─────┴──── authority <───requests────┘
+//! ```
+//!
+//! | module | content |
+//! |---|---|
+//! | `admission` | `Host`, `Origin` and token of a request |
+//! | `authority` | lease, hold and deadman: a state machine without clock and sockets |
+//! | `describe` | what a page is told first |
+//! | `disturbance` | what can be done to a simulated robot |
+//! | `frame` | the binary state frame |
+//! | `hold` | the motion of one hold |
+//! | `hub` | what all viewers share |
+//! | `message` | requests and replies, JSON |
+//! | `news` | events as lines for people |
+//! | `pace` | how fast the arm may go, so that none of its points exceeds a speed |
+//! | `source` | where states come from |
+//! | `statistics` | how punctual control is |
+//! | `viewer` | one viewer's socket |
+//!
+//! # Example
+//!
+//! ```no_run
+//! use franka_async::Robot;
+//! use franka_dash::Options;
+//!
+//! # async fn run() -> Result<(), Box<dyn std::error::Error>> {
+//! let robot = Robot::connect("172.16.0.2").await?;
+//! let options = Options::default(); // view-only, for this computer
+//! let listener = franka_dash::bind("127.0.0.1:8080".parse()?, &options).await?;
+//! let page = franka_dash::router(robot, options);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! `axum::serve(listener, page)` then serves it; any back end may nest the router instead.
+//!
+//! # Moving the arm
+//!
+//! Only a server with [`Options::allow_motion`] moves anything. One viewer has the lease; it is
+//! free again when released, when its socket closes, and after 5 s of silence. Motions go on only
+//! while a button is held: the page then sends 20 messages per second, and the arm brakes when the
+//! next one does not come within 150 ms. The control thread of the driver watches by itself, with
+//! 200 ms. Any viewer can stop the arm.
+//!
+//! The budget of a joint motion keeps every point of the arm below the speed that was asked for,
+//! 0.25 m/s at most. That of the end effector bounds the end effector; 100 times per second the
+//! server looks at the measured speeds of all joints and ends the hold above 0.25 m/s.
+//!
+//! A browser is neither an enabling device nor an emergency stop.
+//!
+//! # What it does not do
+//!
+//! TLS: put a proxy in front where the network is not trusted.
+
+mod admission;
+mod authority;
+mod describe;
+mod disturbance;
+mod frame;
+mod hold;
+mod hub;
+mod message;
+mod news;
+mod pace;
+mod source;
+mod statistics;
+mod viewer;
+
+use std::io;
+use std::net::SocketAddr;
+use std::sync::Arc;
+
+use axum::Router;
+use axum::extract::{Request, State, WebSocketUpgrade};
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::middleware::{Next, from_fn_with_state};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use franka_async::Robot;
+use franka_sim::{Running, Stopped};
+use tokio::net::TcpListener;
+
+use admission::Admission;
+use hub::Hub;
+use source::{Simulated, Source, Watched};
+
+/// Who may see and do what. The default is view-only, for this computer.
+#[derive(Clone, Default)]
+#[must_use = "options do nothing until `router` takes them"]
+pub struct Options {
+    admission: Admission,
+    motion: bool,
+    simulated: Option<Simulated>,
+}
+
+impl Options {
+    /// Lets the viewer that has the lease move the arm and recover the robot.
+    pub fn allow_motion(mut self) -> Self {
+        self.motion = true;
+        self
+    }
+
+    /// Asks every page for this token, in the fragment of its address: `http://HOST/#TOKEN`. With
+    /// it, other computers are served as well. It should be long and random, of letters, digits
+    /// and `-`, `_`, `.`, `~`.
+    pub fn token(mut self, token: impl Into<String>) -> Self {
+        self.admission.token = Some(token.into());
+        self
+    }
+
+    /// Accepts requests under this name, besides `localhost` and addresses.
+    pub fn host(mut self, name: impl Into<String>) -> Self {
+        self.admission.hosts.push(name.into());
+        self
+    }
+
+    /// Lets the viewer that has the lease disturb this simulated robot, which has to be the one
+    /// that is shown.
+    pub fn simulated(mut self, running: &Arc<Running>) -> Self {
+        self.simulated = Some(Simulated::new(running.clone()));
+        self
+    }
+}
+
+impl std::fmt::Debug for Options {
+    /// Without the token.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Options")
+            .field("motion", &self.motion)
+            .field("simulated", &self.simulated.is_some())
+            .finish_non_exhaustive()
+    }
+}
+
+/// Why a server cannot listen.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BindError {
+    /// Other computers could connect, and nothing keeps them out.
+    #[error(
+        "{address} can be reached from other computers: options need a token, or a loopback address"
+    )]
+    NoToken {
+        /// Where it was to listen.
+        address: SocketAddr,
+    },
+    /// The operating system refuses.
+    #[error("listening on {address}")]
+    Io {
+        /// Where it was to listen.
+        address: SocketAddr,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+/// Listens for viewers: on a loopback address, or with a token anywhere.
+///
+/// # Errors
+/// [`BindError`].
+///
+/// # Cancel safety
+/// Dropping the future leaves nothing behind.
+pub async fn bind(address: SocketAddr, options: &Options) -> Result<TcpListener, BindError> {
+    if !address.ip().is_loopback() && options.admission.token.is_none() {
+        return Err(BindError::NoToken { address });
+    }
+    let listener = TcpListener::bind(address).await;
+    listener.map_err(|source| BindError::Io { address, source })
+}
+
+/// The page and its socket (`/ws`) for a connected robot. Must be called within a Tokio runtime.
+/// The router keeps a handle of the robot.
+pub fn router(robot: Robot, options: Options) -> Router {
+    let Options {
+        admission,
+        motion,
+        simulated,
+    } = options;
+    serve(Hub::start(
+        Source::Robot(robot),
+        simulated,
+        motion,
+        admission,
+    ))
+}
+
+/// The page for a simulated robot that another program controls: it is shown and can be disturbed.
+/// To move it from the page, connect to it and use [`router`] with [`Options::simulated`].
+///
+/// # Errors
+/// [`Stopped`] if the simulation has ended.
+///
+/// # Cancel safety
+/// Dropping the future leaves nothing behind.
+pub async fn simulator(running: &Arc<Running>, options: Options) -> Result<Router, Stopped> {
+    let newest = |robot: &mut franka_sim::Robot| (robot.config().kind, *robot.state());
+    let (kind, state) = running.with(newest).await?;
+    let watched = Source::Watched(Box::new(Watched::new(kind, state)));
+    let simulated = Some(Simulated::new(running.clone()));
+    Ok(serve(Hub::start(
+        watched,
+        simulated,
+        false,
+        options.admission,
+    )))
+}
+
+fn serve(hub: Arc<Hub>) -> Router {
+    Router::new()
+        .route("/ws", get(connect))
+        .layer(from_fn_with_state(hub.clone(), guard))
+        .with_state(hub)
+}
+
+/// Refuses unknown hosts, and says on every response that nothing comes from elsewhere.
+async fn guard(State(hub): State<Arc<Hub>>, request: Request, next: Next) -> Response {
+    let mut response = match hub.admission.check_host(request.headers()) {
+        Ok(()) => next.run(request).await,
+        Err(refused) => refused.into_response(),
+    };
+    for (name, value) in [
+        (header::CONTENT_SECURITY_POLICY, POLICY),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::X_FRAME_OPTIONS, "DENY"),
+        (header::REFERRER_POLICY, "no-referrer"),
+    ] {
+        let headers = response.headers_mut();
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    response
+}
+
+const POLICY: &str = "default-src 'self'; frame-ancestors 'none'; base-uri 'none'";
+
+async fn connect(
+    State(hub): State<Arc<Hub>>,
+    headers: axum::http::HeaderMap,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    if let Err(refused) = hub.admission.check_socket(&headers) {
+        return refused.into_response();
+    }
+    let Ok(seat) = hub.seats.clone().try_acquire_owned() else {
+        return (StatusCode::SERVICE_UNAVAILABLE, "too many viewers").into_response();
+    };
+    upgrade
+        .protocols([PROTOCOL])
+        .max_message_size(MESSAGE_MAX)
+        .max_frame_size(MESSAGE_MAX)
+        .write_buffer_size(0)
+        .max_write_buffer_size(WRITE_MAX)
+        .on_upgrade(async move |socket| {
+            viewer::attend(hub, socket).await;
+            drop(seat);
+        })
+}
+
+/// The subprotocol of the socket.
+const PROTOCOL: &str = "franka-dash";
+
+/// Bytes of a request.
+const MESSAGE_MAX: usize = 4096;
+
+/// Bytes that wait for one viewer's socket.
+const WRITE_MAX: usize = 64 * 1024;

@@ -1,0 +1,142 @@
+//! How fast the arm may go, so that none of its points exceeds a speed.
+
+use franka_async::goal::Budget;
+use franka_async::model::{Frame, JointVector, Model};
+use franka_async::nalgebra::Vector3;
+use franka_async::state::RobotState;
+
+use crate::frame::end_effector;
+
+/// Distances that the arm can be stretched to, `[m]`: shoulder to elbow and so on, along the chain.
+mod link {
+    pub(super) const UPPER_ARM: f64 = 0.316;
+    pub(super) const ELBOW: f64 = 0.0825;
+    pub(super) const FOREARM: f64 = 0.384;
+    pub(super) const WRIST: f64 = 0.088;
+    pub(super) const FLANGE: f64 = 0.107;
+    /// Half the width of a hand, and more than the radius of any link.
+    pub(super) const BODY: f64 = 0.11;
+}
+
+/// Bound on the distance of any point of the arm from the axis of each joint, `[m]`, at any
+/// posture, with a tool that ends `tool` from the flange: the sum of what is between.
+fn reach(tool: f64) -> [f64; 7] {
+    use link::{BODY, ELBOW, FLANGE, FOREARM, UPPER_ARM, WRIST};
+    let hand = FLANGE + tool + BODY;
+    let wrist = WRIST + hand;
+    let elbow = ELBOW + FOREARM + wrist;
+    let shoulder = UPPER_ARM + ELBOW + elbow;
+    [
+        shoulder,
+        shoulder,
+        ELBOW + elbow,
+        elbow,
+        wrist,
+        wrist,
+        tool + BODY,
+    ]
+}
+
+fn tool_length(state: &RobotState) -> f64 {
+    Vector3::new(state.F_T_EE[12], state.F_T_EE[13], state.F_T_EE[14]).norm()
+}
+
+/// The budget for joints that go by `way`, `[rad]`, so that no point of the arm is faster than
+/// `speed`, `[m/s]`: each joint's share of it is as large as its share of the way.
+pub(crate) fn joints(model: &Model, state: &RobotState, way: [f64; 7], speed: f64) -> Budget {
+    let reach = reach(tool_length(state));
+    let way = way.map(|joint| joint.abs().max(SHORTEST));
+    let swept: f64 = (0..7).map(|i| way[i] * reach[i]).sum();
+    let mut budget = Budget::of(model.joint_limits());
+    for (joint, way) in budget.joints.iter_mut().zip(way) {
+        joint.velocity = joint.velocity.min(speed * way / swept);
+    }
+    budget
+}
+
+/// The budget for an end effector that goes at `speed`, `[m/s]`, or turns so that what is around it
+/// does. It bounds the end effector only; the rest of the arm is watched by [`fastest`].
+pub(crate) fn end_effector_at(model: &Model, speed: f64) -> Budget {
+    let mut budget = Budget::of(model.joint_limits());
+    budget.translation.velocity = speed;
+    budget.rotation.velocity = speed / TURNING_RADIUS;
+    budget
+}
+
+/// The speed of the fastest of the arm's joints, its flange and its end effector, `[m/s]`.
+pub(crate) fn fastest(model: &Model, state: &RobotState) -> f64 {
+    let (q, dq) = (JointVector::from(state.q), JointVector::from(state.dq));
+    let tool = end_effector(state);
+    let speed = |frame: &Frame| {
+        let twist = model.zero_jacobian(*frame, &q, &tool) * dq;
+        twist.fixed_rows::<3>(0).norm()
+    };
+    Frame::ALL[..9].iter().map(speed).fold(0.0, f64::max)
+}
+
+/// A way of a joint that counts as this long at least, `[rad]`: velocities are above zero.
+const SHORTEST: f64 = 1e-3;
+
+/// Distance from the end effector at which a turn has the speed that was asked for, `[m]`.
+pub(crate) const TURNING_RADIUS: f64 = 0.25;
+
+#[cfg(test)]
+mod tests {
+    use franka_async::READY;
+    use franka_async::model::collision::Shape;
+    use franka_async::model::{EndEffector, RobotKind};
+
+    use super::*;
+
+    /// Postures all over the ranges, by a sequence that repeats.
+    fn postures(model: &Model) -> impl Iterator<Item = JointVector> + '_ {
+        let limits = model.joint_limits();
+        (0..500u32).map(|k| {
+            JointVector::from_fn(|i, _| {
+                let share =
+                    (f64::from(k) * [0.618, 0.755, 0.57, 0.819, 0.43, 0.91, 0.33][i]).fract();
+                limits.lower[i] + share * (limits.upper[i] - limits.lower[i])
+            })
+        })
+    }
+
+    #[test]
+    fn no_point_of_the_guard_capsules_is_further_from_an_axis_than_the_reach() {
+        let model = Model::fr3();
+        let reach = reach(0.1034);
+        for q in postures(model) {
+            let placed = Shape::covering(RobotKind::Fr3).with_hand().at(&q);
+            for (joint, reach) in reach.iter().enumerate() {
+                let pose = model.pose(Frame::ALL[joint], &q, &EndEffector::default());
+                let (origin, axis) = (pose.fixed_view::<3, 1>(0, 3), pose.fixed_view::<3, 1>(0, 2));
+                for (body, capsule) in placed.capsules() {
+                    if usize::from(body.number()) <= joint {
+                        continue; // this joint does not move it
+                    }
+                    for end in [capsule.start, capsule.end] {
+                        let off = (end - origin).cross(&axis).norm();
+                        // The axis of the capsule: links are thinner than the capsules.
+                        assert!(off <= *reach, "{body:?} {joint} {off}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn joints_at_their_budgets_move_nothing_faster_than_asked() {
+        let model = Model::fr3();
+        for (k, q) in postures(model).enumerate() {
+            let way: [f64; 7] = (q - READY).into();
+            let mut state = RobotState {
+                q: q.into(),
+                ..RobotState::default()
+            };
+            let speed = 0.01 + 0.24 * (k as f64 / 500.0);
+            let budget = joints(model, &state, way, speed);
+            state.dq = core::array::from_fn(|i| budget.joints[i].velocity * way[i].signum());
+            let fastest = fastest(model, &state);
+            assert!(fastest <= speed && fastest > 0.0, "{fastest} above {speed}");
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! One viewer's socket: requests in; frames, events and statistics out.
+//!
+//! A frame is sent only when the one before has been acknowledged, and then it is the newest: what
+//! a slow viewer does not read is never made. Reading goes on while a send waits, so that a stop
+//! gets through. A viewer that does not take a message within [`SEND`], or is silent for
+//! [`SILENCE`], is disconnected.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use axum::extract::ws::{Message, Utf8Bytes, WebSocket};
+use futures::stream::{SplitSink, SplitStream};
+use futures::{SinkExt, StreamExt};
+use serde::Serialize;
+use tokio::sync::broadcast::error::RecvError;
+use tokio::sync::mpsc;
+use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
+
+use crate::authority::ViewerId;
+use crate::describe::Hello;
+use crate::frame;
+use crate::hub::Hub;
+use crate::message::{Reply, Request};
+use crate::statistics::Statistics;
+
+/// Serves a viewer until it goes, and then ends what it held.
+pub(crate) async fn attend(hub: Arc<Hub>, socket: WebSocket) {
+    let viewer = hub.next_viewer();
+    let (sink, stream) = socket.split();
+    let (replies, outbox) = mpsc::channel(REPLIES);
+    let link = Arc::new(Link::default());
+    tokio::select! {
+        () = read(&hub, viewer, stream, &link, replies) => {}
+        _ = write(&hub, viewer, sink, &link, outbox) => {}
+    }
+    hub.gone(viewer);
+}
+
+/// What is known of the way to the page and back.
+#[derive(Default)]
+struct Link {
+    /// Time of the server of the newest frame that was sent, `[ms]`.
+    sent: AtomicU64,
+    /// Whether it has been acknowledged, or none was sent.
+    in_flight: AtomicBool,
+    round_trip: Mutex<Option<(Instant, Duration)>>,
+}
+
+impl Link {
+    /// Takes an acknowledgement. One of another frame than the newest is none.
+    fn seen(&self, server_ms: u64, now_ms: u64) {
+        if server_ms != self.sent.load(Ordering::Relaxed)
+            || !self.in_flight.swap(false, Ordering::Relaxed)
+        {
+            return;
+        }
+        let took = Duration::from_millis(now_ms.saturating_sub(server_ms));
+        *self.lock() = Some((Instant::now(), took));
+    }
+
+    /// The newest round trip, if it is fresh. While a frame is in flight for longer, that counts.
+    fn round_trip(&self, now_ms: u64) -> Option<Duration> {
+        let (at, took) = (*self.lock())?;
+        let waiting = match self.in_flight.load(Ordering::Relaxed) {
+            true => now_ms.saturating_sub(self.sent.load(Ordering::Relaxed)),
+            false => 0,
+        };
+        (at.elapsed() < FRESH).then(|| took.max(Duration::from_millis(waiting)))
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, Option<(Instant, Duration)>> {
+        self.round_trip
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Takes requests until the socket ends, or replies are not read.
+async fn read(
+    hub: &Arc<Hub>,
+    viewer: ViewerId,
+    mut stream: SplitStream<WebSocket>,
+    link: &Link,
+    replies: mpsc::Sender<Reply>,
+) {
+    let mut window = (Instant::now(), 0);
+    while let Ok(Some(Ok(message))) = timeout(SILENCE, stream.next()).await {
+        window.1 += 1;
+        if window.0.elapsed() > Duration::from_secs(1) {
+            window = (Instant::now(), 0);
+        } else if window.1 > MESSAGES_PER_SECOND {
+            // What it sends meanwhile waits in its own connection.
+            sleep(Duration::from_secs(1).saturating_sub(window.0.elapsed())).await;
+        }
+        let why = match message {
+            Message::Text(text) => match serde_json::from_str(&text) {
+                Ok(Request::Seen { server_ms }) => {
+                    link.seen(server_ms, hub.now_ms());
+                    continue;
+                }
+                Ok(request) => {
+                    let round_trip = link.round_trip(hub.now_ms());
+                    let refusal = hub.handle(viewer, round_trip, request);
+                    refusal.map(|refusal| refusal.to_string())
+                }
+                Err(error) => Some(format!("not a request: {error}")),
+            },
+            Message::Binary(_) => Some("requests are text".to_owned()),
+            Message::Ping(_) | Message::Pong(_) => None,
+            Message::Close(_) => return,
+        };
+        if let Some(why) = why
+            && replies.try_send(Reply::Refused { why }).is_err()
+        {
+            return;
+        }
+    }
+}
+
+/// Sends what there is until the socket fails.
+async fn write(
+    hub: &Hub,
+    viewer: ViewerId,
+    mut sink: SplitSink<WebSocket, Message>,
+    link: &Link,
+    mut outbox: mpsc::Receiver<Reply>,
+) -> Option<()> {
+    let mut news = hub.news.subscribe();
+    let mut status = hub.status.subscribe();
+    let hello = Hello::new(&hub.source, hub.permissions, viewer);
+    send(&mut sink, text(&hello)).await?;
+    let first = status.borrow_and_update().clone();
+    send(&mut sink, text(&Reply::Status(first))).await?;
+    let mut frames = interval(FRAME);
+    let mut slow = interval(STATISTICS);
+    frames.set_missed_tick_behavior(MissedTickBehavior::Skip);
+    slow.set_missed_tick_behavior(MissedTickBehavior::Skip);
+    loop {
+        let message = tokio::select! {
+            biased;
+            reply = outbox.recv() => text(&reply?),
+            changed = status.changed() => {
+                changed.ok()?;
+                let status = status.borrow_and_update().clone();
+                text(&Reply::Status(status))
+            }
+            news = news.recv() => match news {
+                Ok(news) => text(&Reply::Event(news)),
+                Err(RecvError::Lagged(events)) => text(&Reply::Missed { events }),
+                Err(RecvError::Closed) => return None,
+            },
+            _ = slow.tick() => {
+                let round_trip = link.round_trip(hub.now_ms());
+                text(&Reply::Statistics(Statistics::of(hub.source.robot(), round_trip)))
+            }
+            _ = frames.tick() => {
+                if link.in_flight.load(Ordering::Relaxed) {
+                    continue;
+                }
+                let now = hub.now_ms();
+                let holding = status.borrow().holding;
+                let frame = frame::encode(&hub.source.newest(), hub.source.model(), now, holding);
+                link.sent.store(now, Ordering::Relaxed);
+                link.in_flight.store(true, Ordering::Relaxed);
+                Message::Binary(frame.into())
+            }
+        };
+        send(&mut sink, message).await?;
+    }
+}
+
+/// Sends a message in time; `None` if that fails.
+async fn send(sink: &mut SplitSink<WebSocket, Message>, message: Message) -> Option<()> {
+    timeout(SEND, sink.send(message)).await.ok()?.ok()
+}
+
+fn text(message: &impl Serialize) -> Message {
+    let text = serde_json::to_string(message).expect("messages are plain data");
+    Message::Text(Utf8Bytes::from(text))
+}
+
+const FRAME: Duration = Duration::from_nanos(16_666_667);
+const STATISTICS: Duration = Duration::from_millis(200);
+
+/// Time in which a viewer has to take a message.
+const SEND: Duration = Duration::from_secs(2);
+
+/// Silence of a viewer after which it counts as gone: it acknowledges frames all the time.
+const SILENCE: Duration = Duration::from_secs(10);
+
+/// Age from which on a round trip says nothing.
+const FRESH: Duration = Duration::from_secs(1);
+
+/// Replies that may wait for a viewer.
+const REPLIES: usize = 32;
+
+/// More than a page sends: 60 acknowledgements, 20 holds, 20 pushes.
+const MESSAGES_PER_SECOND: u32 = 250;
