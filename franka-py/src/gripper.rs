@@ -124,7 +124,7 @@ impl Gripper {
 /// What a Franka Hand says of itself. It does not change.
 #[pyclass(frozen, eq, module = "franka_async")]
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) struct GripperState(gripper::State);
+pub(crate) struct GripperState(pub(crate) gripper::State);
 
 #[pymethods]
 impl GripperState {

@@ -40,6 +40,7 @@ mod otg;
 mod pose;
 mod record;
 mod recorder;
+mod recording;
 mod robot;
 mod runtime;
 mod settings;
@@ -110,6 +111,8 @@ mod _native {
     use crate::record::{Recording, record_columns};
     #[pymodule_export]
     use crate::recorder::{EpisodeUnderWay, Recorder};
+    #[pymodule_export]
+    use crate::recording::{Cycles, RecordedCycle, RecordingFile, recording_columns};
     #[pymodule_export]
     use crate::robot::Robot;
     #[pymodule_export]

@@ -103,7 +103,7 @@ impl VacuumGripper {
 /// What a vacuum gripper says of itself. It does not change.
 #[pyclass(frozen, eq, hash, module = "franka_async")]
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct VacuumGripperState(vacuum::State);
+pub(crate) struct VacuumGripperState(pub(crate) vacuum::State);
 
 #[pymethods]
 impl VacuumGripperState {

@@ -39,7 +39,7 @@ use franka_rt::thread::{AttachError, CycleFeed};
 pub use franka_record::recorder::{
     Attachment, BlackBox, RecordError, RecordOptions, RecordStatus, Rotation,
 };
-pub use franka_record::recording::{RecordedRobot, RecordingError};
+pub use franka_record::recording::{RecordedRobot, RecordingError, RobotRecording};
 pub use franka_record::{
     Cycle, Episode, EpisodeError, GripperState, HostTime, Recording, Sample, Samples, event,
 };

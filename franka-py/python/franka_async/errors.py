@@ -18,11 +18,13 @@ __all__ = [
     "CommandError",
     "ConnectError",
     "ControlError",
+    "ExportError",
     "FrankaError",
     "IdentifyError",
     "MotionError",
     "ReadError",
     "RecordError",
+    "RecordingError",
     "TeamError",
 ]
 
@@ -55,6 +57,14 @@ class ActionError(FrankaError):
 
 class RecordError(FrankaError):
     """A recording is not written, or not to its end. Motions go on."""
+
+
+class RecordingError(FrankaError):
+    """A recording, or a part of it, cannot be read."""
+
+
+class ExportError(FrankaError):
+    """Nothing, or not everything, was exported."""
 
 
 class IdentifyError(FrankaError):

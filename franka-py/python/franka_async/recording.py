@@ -1,6 +1,7 @@
 """Recordings of robots in files: how they are written, and what they hold.
 
-``Recorder`` writes MCAP files, which viewers open, with every cycle, goals and how they end, events, requests and grippers. Columns
+``Recorder`` writes MCAP files, which viewers open, with every cycle, goals and how they end, events, requests and grippers, and
+``RecordingFile`` reads them. Columns
 of a motion as arrays, without a file, are what ``robot.record([...])`` is for.
 """
 
@@ -12,7 +13,7 @@ from pathlib import Path
 
 from .errors import RecordError
 
-__all__ = ["BlackBox", "RecordStatus"]
+__all__ = ["BlackBox", "Episode", "RecordStatus", "RecordedEvent", "RecordedRobot", "Recovery"]
 
 
 @dataclass(frozen=True)
@@ -62,3 +63,83 @@ class RecordStatus:
 
     black_box_error: RecordError | None
     """Why the newest black box could not be written."""
+
+
+@dataclass(frozen=True)
+class RecordedRobot:
+    """A robot of a recording."""
+
+    name: str
+    """Its name; empty for an only robot that was given none."""
+
+    kind: str | None
+    """``fr3`` or ``fer``; ``None`` if the file does not say."""
+
+    metadata: dict[str, str]
+    """What else was known of it."""
+
+
+@dataclass(frozen=True)
+class RecordedEvent:
+    """Something that happened while a robot was recorded."""
+
+    host_time: int
+    """When this computer had word of it, ns since 1970."""
+
+    time_ms: int
+    """The robot's clock of the newest cycle before it; 0 if there was none."""
+
+    kind: str
+    """What kind of thing: ``goal``, ``outcome``, ``mode``, ``errors``, ``diagnosis``, ``request``, ``note``, ``episode_start``, ..."""
+
+    level: str
+    """How much it matters: ``info``, ``warning`` or ``error``."""
+
+    source: str
+    """Who says it."""
+
+    text: str
+    """What happened, in words."""
+
+    goal: int | None
+    """The number of the goal that it is about, as in the column ``goal``."""
+
+    ending: str | None
+    """Of an ``outcome``, how the goal came to its end: ``arrived``, ``superseded``, ``stopped``, ``reflex``, ``guard``, ..."""
+
+
+@dataclass(frozen=True)
+class Episode:
+    """An attempt at a task, between two marks in a recording."""
+
+    name: str
+    """Its name."""
+
+    task: str
+    """What was to be done, in words."""
+
+    success: bool | None
+    """Whether it was done; ``None`` if nobody judged it."""
+
+    begin: int
+    """When it began, ns since 1970."""
+
+    end: int
+    """When it ended, ns since 1970: ``recording.between(episode.begin, episode.end)`` is the episode."""
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """What was recovered of a damaged file."""
+
+    messages: int
+    """Messages in the new file."""
+
+    chunks: int
+    """Chunks that were whole."""
+
+    lost: int
+    """Chunks that were not, and are left out."""
+
+    damage: str | None
+    """What was wrong with the file; ``None`` if nothing was."""

@@ -25,6 +25,7 @@ use crate::device::at_least_zero;
 use crate::operation::Operation;
 use crate::robot::Robot;
 use crate::runtime;
+pub(crate) use rows::column_array;
 use rows::{Cut, Tables};
 use table::{Seen, Source, Table};
 

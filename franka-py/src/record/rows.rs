@@ -92,21 +92,31 @@ impl Cut<'_> {
         })?;
         let source = Source::of(column) as usize;
         let values = self.tables.0[source].values(column, &self.rows[source]);
-        let mut shape = vec![self.len()];
-        shape.extend(column.shape);
-        let shaped = |array: Bound<'py, PyAny>| array.call_method1("reshape", (shape,));
-        match column.kind {
-            ColumnKind::Float => shaped(array(py, &values).into_any()),
-            ColumnKind::Count => shaped(array(py, &values).call_method1("astype", ("int64",))?),
-            ColumnKind::Flag => shaped(array(py, &values).call_method1("astype", ("bool",))?),
-            ColumnKind::Name(list) => {
-                let named = |value: &f64| list.get(*value as usize).copied().unwrap_or_default();
-                let names: Vec<&str> = values.iter().map(named).collect();
-                let options = PyDict::new(py);
-                options.set_item("dtype", "U")?;
-                py.import("numpy")?
-                    .call_method("array", (names,), Some(&options))
-            }
+        column_array(py, column, &values, self.len())
+    }
+}
+
+/// The numbers of a column in some rows as a new array, of the type that its kind wants.
+pub(crate) fn column_array<'py>(
+    py: Python<'py>,
+    column: &Column,
+    values: &[f64],
+    rows: usize,
+) -> PyResult<Bound<'py, PyAny>> {
+    let mut shape = vec![rows];
+    shape.extend(column.shape);
+    let shaped = |array: Bound<'py, PyAny>| array.call_method1("reshape", (shape,));
+    match column.kind {
+        ColumnKind::Float => shaped(array(py, values).into_any()),
+        ColumnKind::Count => shaped(array(py, values).call_method1("astype", ("int64",))?),
+        ColumnKind::Flag => shaped(array(py, values).call_method1("astype", ("bool",))?),
+        ColumnKind::Name(list) => {
+            let named = |value: &f64| list.get(*value as usize).copied().unwrap_or_default();
+            let names: Vec<&str> = values.iter().map(named).collect();
+            let options = PyDict::new(py);
+            options.set_item("dtype", "U")?;
+            py.import("numpy")?
+                .call_method("array", (names,), Some(&options))
         }
     }
 }

@@ -1,0 +1,146 @@
+//! Recordings as tables and datasets of other programs.
+
+use std::fs::File;
+use std::path::PathBuf;
+
+use franka_async::export::lerobot::{Action, Dataset, DatasetOptions};
+use franka_async::export::{Columns, ExportError, write_csv, write_parquet};
+use franka_async::recording::{Episode, Sample, Samples};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use super::RecordingFile;
+use crate::errors::{Raise, made, variant};
+
+#[pymethods]
+impl RecordingFile {
+    /// Writes a table as comma-separated text, a line for each cycle, and returns how many. First
+    /// come `time`, ms of the robot's clock, and `host_time`; then these columns of
+    /// `recording_columns()`, or all. A file that is there is replaced. With `units` the first line
+    /// has the units. Raises `ExportError`, `ValueError`.
+    #[pyo3(signature = (path, columns = None, *, units = true))]
+    fn to_csv(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        columns: Option<Vec<String>>,
+        units: bool,
+    ) -> PyResult<u64> {
+        let columns = named(columns)?;
+        let cycles = self.cycles(py)?;
+        let written = py.detach(|| {
+            let file = File::create(&path).map_err(|source| ExportError::Io { path, source })?;
+            write_csv(cycles, &columns, units, file)
+        });
+        written.map_err(|error| error.raise(py))
+    }
+
+    /// Writes a Parquet table, a row for each cycle, and returns how many; columns as of `to_csv`.
+    /// The metadata of the file has the units, as JSON by the key `units`. The file has its name
+    /// once it is complete. Raises `ExportError`, `ValueError`.
+    #[pyo3(signature = (path, columns = None))]
+    fn to_parquet(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        columns: Option<Vec<String>>,
+    ) -> PyResult<u64> {
+        let columns = named(columns)?;
+        let cycles = self.cycles(py)?;
+        let written = py.detach(|| write_parquet(cycles, &columns, path));
+        written.map_err(|error| error.raise(py))
+    }
+
+    /// Writes the episodes as a dataset in LeRobot's layout v3.0 to `folder`, which must not be
+    /// there or be empty; returns how many episodes and frames. `append` adds them to the dataset
+    /// that is there. `fps` are frames per second. `robot_type` is `franka_fr3` or `franka_fer`
+    /// unless given. `gripper`, whether its width is part of states and actions: by default, if the
+    /// recording has one of a Hand. `action` is `reference`, where the arm was to be at the next
+    /// frame, or `measured`, where it was: for demonstrations by hand. Raises `ExportError`,
+    /// `ValueError`; a dataset that is there is then as it was.
+    #[pyo3(signature = (
+        folder, *, fps = 30, robot_type = None, gripper = None, action = "reference", append = false,
+    ))]
+    #[expect(clippy::too_many_arguments, reason = "keywords")]
+    fn to_lerobot(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        fps: u16,
+        robot_type: Option<String>,
+        gripper: Option<bool>,
+        action: &str,
+        append: bool,
+    ) -> PyResult<(usize, u64)> {
+        let action = match action {
+            "reference" => Action::Reference,
+            "measured" => Action::Measured,
+            _ => {
+                let text = format!("action is {action:?}, expected 'reference' or 'measured'");
+                return Err(PyValueError::new_err(text));
+            }
+        };
+        let robot_type = robot_type.map_or_else(
+            || match self.kind() {
+                Some(kind) => Ok(format!("franka_{}", variant(&kind))),
+                None => Err(PyValueError::new_err(
+                    "the recording does not say which robot it is of: robot_type is needed",
+                )),
+            },
+            Ok,
+        )?;
+        let episodes = self.read_episodes(py)?;
+        let written = self.view(py, |view| {
+            let gripper = gripper.unwrap_or_else(|| {
+                let mut states = view.gripper_states();
+                states.any(|state| matches!(state, Ok((_, super::GripperState::Hand(_)))))
+            });
+            let options = DatasetOptions::new(robot_type)
+                .fps(fps)
+                .gripper(gripper)
+                .action(action);
+            let mut dataset = match append {
+                true => Dataset::open(folder, options)?,
+                false => Dataset::create(folder, options)?,
+            };
+            let mut frames = 0;
+            for Episode {
+                task,
+                success,
+                begin,
+                end,
+                ..
+            } in &episodes
+            {
+                // The width that the gripper had before is that of the first frames.
+                let until = view.to(*end);
+                let samples = Samples::new(until.from(*begin).cycles(), until.gripper_states());
+                let samples = samples.collect::<Result<Vec<Sample>, _>>();
+                let samples = samples.map_err(|error| ExportError::Cycles(error.into()))?;
+                frames += dataset.add_episode(task, *success, samples)?;
+            }
+            dataset.finish()?;
+            Ok((episodes.len(), frames))
+        })?;
+        written.map_err(|error: ExportError| error.raise(py))
+    }
+}
+
+fn named(columns: Option<Vec<String>>) -> PyResult<Columns> {
+    let Some(names) = columns else {
+        return Ok(Columns::all());
+    };
+    let names = names.iter().map(String::as_str);
+    Columns::named(names).map_err(|unknown| PyValueError::new_err(unknown.to_string()))
+}
+
+impl Raise for ExportError {
+    fn raise(self, py: Python<'_>) -> PyErr {
+        let party = match &self {
+            Self::Option { .. } => return PyValueError::new_err(self.to_string()),
+            Self::Episode { .. } | Self::Dataset { .. } => "caller",
+            _ => "host",
+        };
+        made(py, "ExportError", &variant(&self), party, &self.to_string())
+    }
+}
