@@ -10,8 +10,9 @@
 //! | [`robots_file`] | robots by name |
 //! | [`connection`] | which robot, connecting to it, whether it may be moved |
 //! | [`question`] | what will move, how far and how fast; asked before it does |
-//! | [`motion`] | a motion under way: progress, recording, Ctrl-C |
+//! | [`motion`] | a motion under way: progress, recording, braking |
 //! | [`fields`] | a state by the names of its fields |
+//! | [`interrupt`] | Ctrl-C |
 //! | [`output`] | text and JSON |
 //! | [`values`] | checked values of arguments |
 //! | [`command`] | a file per command |
@@ -20,6 +21,7 @@ mod command;
 mod connection;
 mod ending;
 mod fields;
+mod interrupt;
 mod motion;
 mod output;
 mod question;
@@ -41,7 +43,7 @@ use ending::Ending;
 /// the only robot in the file. Whatever moves says so first and asks. Lengths are in metres, angles
 /// in radians unless said otherwise.
 #[derive(Debug, Parser)]
-#[command(name = "franka", version, after_help = ending::TABLE)]
+#[command(name = "franka", version, after_help = ending::TABLE, subcommand_required = true, arg_required_else_help = true)]
 struct Program {
     /// Log what the driver does, on standard error
     #[arg(short, long, global = true)]

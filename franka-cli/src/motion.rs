@@ -13,10 +13,10 @@ use franka_async::recording::{RecordOptions, RecordStatus, Recorder, Track};
 use franka_async::replay::ReplayFailure;
 use franka_async::{MotionError, Robot};
 use indicatif::{ProgressBar, ProgressStyle};
-use tokio::signal::unix::{SignalKind, signal};
 
 use crate::connection::{Place, Which, check_ready};
 use crate::ending::{Ending, Failure};
+use crate::interrupt::interrupted;
 use crate::output::{Output, say};
 use crate::question;
 use crate::robots_file::Realtime;
@@ -237,18 +237,6 @@ impl From<ReplayFailure> for Cause {
             other => Self::Other(other.to_string()),
         }
     }
-}
-
-/// Returns what resolves when the program is told to end from now on: Ctrl-C, or SIGTERM.
-pub(crate) fn interrupted() -> std::io::Result<impl Future<Output = ()>> {
-    let mut interrupt = signal(SignalKind::interrupt())?;
-    let mut terminate = signal(SignalKind::terminate())?;
-    Ok(async move {
-        tokio::select! {
-            _ = interrupt.recv() => {}
-            _ = terminate.recv() => {}
-        }
-    })
 }
 
 /// A bar of a thousand, hidden where standard error is no terminal.

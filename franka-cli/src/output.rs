@@ -59,12 +59,16 @@ pub(crate) const DIM: Style = Style::new().dimmed();
 pub(crate) fn numbers(values: &[f64], decimals: usize) -> String {
     let width = decimals + 6;
     let cells = values.iter().map(|value| {
-        // No minus before what is shown as zero.
-        let is_zero = value.abs() < 0.5 * 0.1_f64.powi(decimals as i32);
-        let value = if is_zero { 0.0 } else { *value };
+        let value = unsigned_zero(*value, decimals as i32);
         format!("{value:>width$.decimals$}")
     });
     cells.collect()
+}
+
+/// The value, without a minus before what is shown as zero.
+pub(crate) fn unsigned_zero(value: f64, decimals: i32) -> f64 {
+    let is_zero = value.abs() < 0.5 * 0.1_f64.powi(decimals);
+    if is_zero { 0.0 } else { value }
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use franka_async::{Pose, Robot};
 use tokio::sync::oneshot;
 
 use crate::ending::{Ending, Failure};
+use crate::interrupt::interrupted;
 use crate::output::{BOLD, numbers, say};
 
 /// Says what will happen, and asks whether it may. `yes` agrees beforehand.
@@ -27,6 +28,7 @@ pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
             .advice("--yes agrees beforehand, for scripts.")
             .into());
     }
+    let interrupt = interrupted()?;
     let mut terminal = anstream::stderr();
     write!(
         terminal,
@@ -46,8 +48,7 @@ pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
             "y" | "Y" | "yes" => Ok(()),
             _ => Err(Failure::new(Ending::NotConfirmed, "not confirmed. Nothing has moved.").into()),
         },
-        signal = tokio::signal::ctrl_c() => {
-            signal?;
+        () = interrupt => {
             say("");
             Err(Failure::new(Ending::Interrupted, "interrupted. Nothing has moved.").into())
         }

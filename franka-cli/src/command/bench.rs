@@ -15,14 +15,14 @@ use crate::ending::{Ending, Failure};
 use crate::output::Output;
 use crate::values::seconds;
 
+/// Measure this computer
 #[derive(Debug, Subcommand)]
 pub(crate) enum Bench {
-    /// How late a thread wakes up that sleeps until each millisecond
     Wake(Wake),
-    /// How long the control loop takes, against a simulated robot in this process
     Loop(Loop),
 }
 
+/// How late a thread wakes up that sleeps until each millisecond
 #[derive(Debug, Args)]
 pub(crate) struct Wake {
     /// How long
@@ -32,6 +32,7 @@ pub(crate) struct Wake {
     output: Output,
 }
 
+/// How long the control loop takes, against a simulated robot in this process
 #[derive(Debug, Args)]
 pub(crate) struct Loop {
     /// How long

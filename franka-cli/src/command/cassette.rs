@@ -15,6 +15,7 @@ use crate::ending::{Ending, Failure};
 use crate::output::{Output, say};
 use crate::values::seconds;
 
+/// Play what a tap has recorded, or convert it
 #[derive(Debug, Subcommand)]
 pub(crate) enum Cassette {
     /// Say what is in a cassette

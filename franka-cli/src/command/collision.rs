@@ -8,8 +8,9 @@ use crate::connection::{Which, check_ready};
 use crate::ending::Ending;
 use crate::output::Output;
 
-/// Set the forces at which the robot stops itself. They hold until they are set again, or the
-/// robot is restarted.
+/// Set the forces at which the robot stops itself
+///
+/// They hold until they are set again, or the robot is restarted.
 #[derive(Debug, Args)]
 pub(crate) struct Collision {
     /// Which

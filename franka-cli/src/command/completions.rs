@@ -7,6 +7,7 @@ use crate::Program;
 use crate::ending::Ending;
 use crate::output::line;
 
+/// Print the completions for a shell
 #[derive(Debug, Args)]
 pub(crate) struct Completions {
     /// The shell

@@ -12,7 +12,7 @@ use franka_async::recording::Recording;
 use crate::ending::{Ending, Failure};
 use crate::output::{Output, say};
 
-/// Say why the last motion of a recording ended, and where the arm was touched.
+/// Say why a recorded motion ended, and where the arm was touched
 #[derive(Debug, Args)]
 pub(crate) struct Explain {
     #[command(flatten)]

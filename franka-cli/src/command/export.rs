@@ -15,7 +15,10 @@ use super::explain::Recorded;
 use crate::ending::{Ending, Failure};
 use crate::output::Output;
 
-/// Export a recording: a row per cycle, or a dataset in the layout of LeRobot of its episodes.
+/// Export a recording as tables, or as a dataset for training
+///
+/// Tables have a row per cycle; a dataset has the episodes of the recording, in the layout of
+/// LeRobot.
 #[derive(Debug, Args)]
 #[group(id = "to", required = true, multiple = true, args = ["csv", "parquet", "lerobot"])]
 pub(crate) struct Export {

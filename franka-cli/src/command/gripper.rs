@@ -10,11 +10,13 @@ use tokio::time::{Duration, timeout};
 
 use crate::connection::{Place, Which};
 use crate::ending::{Ending, Failure};
-use crate::motion::interrupted;
+use crate::interrupt::interrupted;
 use crate::output::{BOLD, Output, say};
 use crate::question;
 use crate::values::positive;
 
+/// Move the fingers of the Franka Hand
+///
 /// ROBOT is the robot whose Hand it is; a port in an address is that of the Hand.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Gripper {

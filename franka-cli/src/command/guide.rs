@@ -8,12 +8,14 @@ use franka_async::{Engage, MotionError};
 use serde_json::json;
 
 use crate::ending::Ending;
-use crate::motion::{Mover, Moving, interrupted};
+use crate::interrupt::interrupted;
+use crate::motion::{Mover, Moving};
 use crate::output::say;
 use crate::values::seconds;
 
-/// Let a hand guide the arm, until Ctrl-C. A load at the flange has to be declared before, or it
-/// pulls the arm down.
+/// Let a hand guide the arm
+///
+/// Until Ctrl-C. A load at the flange has to be declared before, or it pulls the arm down.
 #[derive(Debug, Args)]
 pub(crate) struct Guide {
     #[command(flatten)]

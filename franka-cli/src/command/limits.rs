@@ -10,8 +10,9 @@ use crate::connection::{Which, kind_name};
 use crate::ending::Ending;
 use crate::output::{BOLD, Output};
 
-/// Print the limits of the arm: those that the robot tells, or with --kind those that the vendor
-/// has published.
+/// Print the limits of the arm
+///
+/// Those that the robot tells, or with --kind those that the vendor has published.
 #[derive(Debug, Args)]
 pub(crate) struct Limits {
     #[command(flatten)]

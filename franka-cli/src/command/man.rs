@@ -10,6 +10,7 @@ use crate::Program;
 use crate::ending::Ending;
 use crate::output::line;
 
+/// Write the man pages
 #[derive(Debug, Args)]
 pub(crate) struct Man {
     /// The folder for them

@@ -31,59 +31,36 @@ use crate::ending::Ending;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Show what the robot says: mode, errors, joints, forces, link
     State(state::State),
-    /// Print fields of the robot's state
     Read(read::Read),
-    /// Compute with the model of the arm
     #[command(subcommand)]
     Model(model::Model),
-    /// Print the limits of the arm
     Limits(limits::Limits),
-    /// Move the arm
     Move(move_to::Move),
-    /// Let a hand guide the arm
     Guide(guide::Guide),
-    /// Stop what this computer has left in motion
     Stop(stop::Stop),
-    /// Lead the robot out of a reflex
     Recover(recover::Recover),
-    /// Move the fingers of the Franka Hand
     #[command(subcommand)]
     Gripper(gripper::Gripper),
-    /// Declare what is at the flange, or measure it
     #[command(subcommand)]
     Tool(tool::Tool),
-    /// Set the forces at which the robot stops itself
     Collision(collision::Collision),
-    /// Name robots
     #[command(subcommand)]
     Robots(robots::Robots),
-    /// Be a simulated robot
-    #[command(after_help = sim::EXAMPLES)]
+    #[command(about = "Be a simulated robot", after_help = sim::EXAMPLES)]
     Sim(franka_sim::command_line::Arguments),
-    /// Record what happens to a robot
     Record(record::Record),
-    /// Say why a recorded motion ended, and where the arm was touched
     Explain(explain::Explain),
-    /// Move as recorded
     Replay(replay::Replay),
-    /// Export a recording as tables, or as a dataset for training
     Export(export::Export),
-    /// Record what passes between clients and a robot, byte for byte
     Tap(tap::Tap),
-    /// Play what a tap has recorded, or convert it
     #[command(subcommand)]
     Cassette(cassette::Cassette),
-    /// Test a robot's connection
     #[command(subcommand)]
     Test(test::Test),
-    /// Measure this computer
     #[command(subcommand)]
     Bench(bench::Bench),
-    /// Print the completions for a shell
     Completions(completions::Completions),
-    /// Write the man pages
     Man(man::Man),
 }
 

@@ -17,6 +17,7 @@ use crate::output::{Output, numbers as columns};
 use crate::question::end_effector;
 use crate::values::{PartialPose, partial_pose};
 
+/// Compute with the model of the arm
 #[derive(Debug, Subcommand)]
 pub(crate) enum Model {
     /// Where a frame of the arm is, in the base frame

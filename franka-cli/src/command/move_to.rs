@@ -12,8 +12,10 @@ use crate::output::Output;
 use crate::question::Target;
 use crate::values::{PartialPose, partial_pose, positive};
 
-/// Move the arm, at a fifth of its limits: the hand at 300 mm/s at most. Says how far each joint
-/// and the hand go, and asks. Ctrl-C brakes.
+/// Move the arm
+///
+/// At a fifth of its limits, the hand at 300 mm/s at most. Says how far each joint and the hand go,
+/// and asks. Ctrl-C brakes.
 #[derive(Debug, Args)]
 pub(crate) struct Move {
     #[command(flatten)]

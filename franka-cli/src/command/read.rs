@@ -8,8 +8,10 @@ use crate::ending::{Ending, Failure};
 use crate::fields::{fields, values};
 use crate::output::{Output, line};
 
-/// Print fields of the robot's state, by the vendor's names: `franka read q O_T_EE`. A first
-/// argument that is no field is the robot.
+/// Print fields of the robot's state
+///
+/// By the vendor's names, as in `franka read q O_T_EE`. A first argument that is no field is the
+/// robot.
 #[derive(Debug, Args)]
 pub(crate) struct Read {
     /// Name or address of the robot, then fields

@@ -10,12 +10,15 @@ use serde_json::json;
 
 use crate::connection::Which;
 use crate::ending::{Ending, Failure};
-use crate::motion::{interrupted, recorded};
+use crate::interrupt::interrupted;
+use crate::motion::recorded;
 use crate::output::{Output, say};
 use crate::values::seconds;
 
-/// Record every state of a robot that this program does not move, until Ctrl-C: what is done by
-/// hand, or from Desk. Commands that move have --record.
+/// Record what happens to a robot
+///
+/// Every state of a robot that this program does not move, until Ctrl-C: what is done by hand, or
+/// from Desk. Commands that move have --record.
 #[derive(Debug, Args)]
 pub(crate) struct Record {
     /// The new file. Foxglove and Rerun open it, too

@@ -16,8 +16,10 @@ use crate::ending::{Ending, Failure};
 use crate::output::{Output, say};
 use crate::question::{self, title};
 
-/// Lead the robot out of a reflex: an automatic error recovery. Says why it stopped, and asks: what
-/// the arm presses against may give way.
+/// Lead the robot out of a reflex
+///
+/// An automatic error recovery. Says why the robot stopped, and asks: what the arm presses against
+/// may give way.
 #[derive(Debug, Args)]
 pub(crate) struct Recover {
     #[command(flatten)]

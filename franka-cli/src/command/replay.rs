@@ -14,7 +14,9 @@ use crate::motion::{MoverOptions, Moving};
 use crate::question::Target;
 use crate::values::positive;
 
-/// Move to where a recorded motion began, then as recorded. Ctrl-C brakes.
+/// Move as recorded
+///
+/// First to where the recorded motion began. Says how far that is, and asks. Ctrl-C brakes.
 #[derive(Debug, Args)]
 pub(crate) struct Replay {
     #[command(flatten)]

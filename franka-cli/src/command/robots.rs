@@ -8,6 +8,7 @@ use crate::ending::{Ending, Failure};
 use crate::output::{Output, line};
 use crate::robots_file::{Entry, Realtime, RobotsFile, check_name};
 
+/// Name robots
 #[derive(Debug, Subcommand)]
 pub(crate) enum Robots {
     /// List the robots that have names

@@ -7,16 +7,19 @@ use std::time::Duration;
 use anstream::ColorChoice;
 use anstream::adapter::strip_str;
 use clap::Args;
+use console::Term;
 use franka_async::Robot;
 
 use super::view;
 use crate::connection::{Place, Which};
 use crate::ending::{Ending, Failure};
-use crate::motion::interrupted;
+use crate::interrupt::interrupted;
 use crate::output::{Output, line};
 use crate::values::rate;
 
-/// Show the newest state. --watch shows it again and again, until Ctrl-C.
+/// Show what the robot says: mode, errors, joints, forces, link
+///
+/// --watch shows it again and again, until Ctrl-C.
 #[derive(Debug, Args)]
 pub(crate) struct State {
     #[command(flatten)]
@@ -93,9 +96,9 @@ struct Screen {
 impl Screen {
     fn open() -> io::Result<Self> {
         let choice = anstream::AutoStream::choice(&io::stdout());
-        // Other screen, no cursor.
+        // Other screen, no cursor, and lines that are too long are cut.
         let mut out = io::stdout().lock();
-        out.write_all(b"\x1b[?1049h\x1b[?25l")?;
+        out.write_all(b"\x1b[?1049h\x1b[?25l\x1b[?7l")?;
         out.flush()?;
         Ok(Self {
             is_coloured: choice != ColorChoice::Never,
@@ -104,7 +107,11 @@ impl Screen {
 
     /// Replaces what is shown, without a blank screen in between.
     fn draw(&self, page: &str) -> io::Result<()> {
-        let page = format!("{page}\nCtrl-C ends.");
+        // One line more would scroll.
+        let (rows, _) = Term::stdout().size();
+        let lines = page.lines().chain(["", "Ctrl-C ends."]);
+        let page: Vec<&str> = lines.take(usize::from(rows)).collect();
+        let page = page.join("\n");
         let page = match self.is_coloured {
             true => page,
             false => strip_str(&page).to_string(),
@@ -121,7 +128,7 @@ impl Drop for Screen {
     fn drop(&mut self) {
         // A terminal that is gone needs no restoring.
         let mut out = io::stdout().lock();
-        let _ = out.write_all(b"\x1b[?25h\x1b[?1049l");
+        let _ = out.write_all(b"\x1b[?7h\x1b[?25h\x1b[?1049l");
         let _ = out.flush();
     }
 }

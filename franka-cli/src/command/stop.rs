@@ -8,8 +8,10 @@ use crate::connection::Which;
 use crate::ending::{Ending, Failure};
 use crate::output::Output;
 
-/// Stop the robot, if this program can reach it. A robot takes one client at a time: one that
-/// another program moves is stopped by that program (Ctrl-C), or by the user stop.
+/// Stop the robot, as far as this computer can
+///
+/// A robot takes one client at a time: one that another program moves is stopped by that program
+/// (Ctrl-C), or by the user stop.
 #[derive(Debug, Args)]
 pub(crate) struct Stop {
     #[command(flatten)]

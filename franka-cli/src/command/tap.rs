@@ -11,11 +11,13 @@ use serde_json::json;
 
 use crate::connection::Which;
 use crate::ending::{Ending, Failure};
-use crate::motion::interrupted;
+use crate::interrupt::interrupted;
 use crate::output::{Output, say};
 
-/// Stand between clients and a robot and record every byte, until Ctrl-C. Clients connect to this
-/// computer instead of the robot. For looking closely: commands reach the robot a little later.
+/// Record what passes between clients and a robot, byte for byte
+///
+/// Until Ctrl-C. Clients connect to this computer instead of the robot. For looking closely:
+/// commands reach the robot a little later.
 #[derive(Debug, Args)]
 pub(crate) struct Tap {
     /// The new file

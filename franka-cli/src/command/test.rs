@@ -14,9 +14,9 @@ use crate::motion::{Mover, Moving};
 use crate::output::{BAD, BOLD, GOOD, WARN};
 use crate::values::seconds;
 
+/// Test a robot's connection
 #[derive(Debug, Subcommand)]
 pub(crate) enum Test {
-    /// Test network and computer for control at 1 kHz, of one robot or of two at the same time
     Communication(Communication),
 }
 
@@ -27,6 +27,8 @@ impl Test {
     }
 }
 
+/// Test network and computer for control at 1 kHz, of one robot or of two at the same time
+///
 /// Commands zero torques for some seconds: the arm stays where it is, since the robot compensates
 /// gravity. Exit code 0: good (0.95 of the commands arrive in time) or usable (0.9); 1: not usable.
 /// Of two robots the worse one counts.

@@ -16,15 +16,16 @@ use crate::motion::{Mover, Moving};
 use crate::output::{Output, say};
 use crate::values::{PartialPose, partial_pose};
 
+/// Declare what is at the flange, or measure it
 #[derive(Debug, Subcommand)]
 pub(crate) enum Tool {
-    /// Declare the load, or where the end effector is
     Set(Set),
-    /// Measure load, friction and bias by a minute of small motions
     Identify(Identify),
 }
 
-/// Declares them until they are declared again, or the robot is restarted.
+/// Declare the load, or where the end effector is
+///
+/// Until they are declared again, or the robot is restarted.
 #[derive(Debug, Args)]
 #[group(id = "what", required = true, multiple = true, args = ["mass", "frame"])]
 pub(crate) struct Set {
@@ -47,7 +48,9 @@ pub(crate) struct Set {
     output: Output,
 }
 
-/// Measures what the arm takes beside its model: the arm makes small motions around where it is.
+/// Measure load, friction and bias by a minute of small motions
+///
+/// Around where the arm is. Says how far they go, and asks. Ctrl-C brakes.
 #[derive(Debug, Args)]
 pub(crate) struct Identify {
     #[command(flatten)]

@@ -10,7 +10,7 @@ use franka_async::{Pose, Robot};
 use serde_json::{Value, json};
 
 use crate::connection::{Place, kind_name};
-use crate::output::{BAD, BOLD, DIM, GOOD, WARN};
+use crate::output::{BAD, BOLD, DIM, GOOD, WARN, unsigned_zero};
 
 /// The newest state with all that is known beside it, as JSON.
 pub(super) fn value(robot: &Robot, place: &Place) -> Value {
@@ -83,6 +83,7 @@ fn joints(text: &mut String, state: &RobotState, model: &Model) {
         "{BOLD}joint   from                            to      now   speed  torque external{BOLD:#}\n\
          {DIM}         deg                           deg      deg   deg/s     N m      N m{DIM:#}"
     );
+    let shown = |value| unsigned_zero(value, 2);
     for i in 0..7 {
         let (lower, upper, q) = (limits.lower[i], limits.upper[i], state.q[i]);
         let share = ((q - lower) / (upper - lower)).clamp(0.0, 1.0);
@@ -103,10 +104,10 @@ fn joints(text: &mut String, state: &RobotState, model: &Model) {
             lower.to_degrees(),
             bar(share, style),
             upper.to_degrees(),
-            q.to_degrees(),
-            state.dq[i].to_degrees(),
-            state.tau_J[i],
-            state.tau_ext_hat_filtered[i],
+            shown(q.to_degrees()),
+            shown(state.dq[i].to_degrees()),
+            shown(state.tau_J[i]),
+            shown(state.tau_ext_hat_filtered[i]),
         );
     }
 }
@@ -119,19 +120,16 @@ fn bar(share: f64, style: Style) -> String {
 }
 
 fn hand(text: &mut String, state: &RobotState, pose: &Pose) {
-    let position = pose.translation.vector * 1e3;
+    let shown = |value| unsigned_zero(value, 1);
+    let position = (pose.translation.vector * 1e3).map(shown);
     let (roll, pitch, yaw) = pose.rotation.euler_angles();
-    let [fx, fy, fz, tx, ty, tz] = state.O_F_ext_hat_K;
+    let [roll, pitch, yaw] = [roll, pitch, yaw].map(|angle| shown(angle.to_degrees()));
+    let [fx, fy, fz, tx, ty, tz] = state.O_F_ext_hat_K.map(shown);
     let _ = writeln!(
         text,
         "{BOLD}hand{BOLD:#}    x {:>8.1}  y {:>8.1}  z {:>8.1}  mm    r {:>7.1}  p {:>7.1}  y {:>7.1}  deg\n\
          {BOLD}force{BOLD:#}   x {fx:>8.1}  y {fy:>8.1}  z {fz:>8.1}  N     x {tx:>7.1}  y {ty:>7.1}  z {tz:>7.1}  N m",
-        position.x,
-        position.y,
-        position.z,
-        roll.to_degrees(),
-        pitch.to_degrees(),
-        yaw.to_degrees(),
+        position.x, position.y, position.z, roll, pitch, yaw,
     );
     let _ = writeln!(
         text,

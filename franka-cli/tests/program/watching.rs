@@ -20,6 +20,6 @@ fn watching_draws_on_the_other_screen_until_ctrl_c() {
         assert_eq!(code, Some(0), "{shown}");
         assert!(shown.starts_with("\x1b[?1049h"), "{shown:?}");
         assert!(shown.contains("\x1b[32m●"), "coloured: {shown:?}");
-        assert!(shown.ends_with("\x1b[?25h\x1b[?1049l"), "{shown:?}");
+        assert!(shown.ends_with("\x1b[?7h\x1b[?25h\x1b[?1049l"), "{shown:?}");
     });
 }
