@@ -34,7 +34,7 @@ pub(super) fn value(robot: &Robot, place: &Place) -> Value {
     })
 }
 
-/// The newest state as lines of 78 columns.
+/// The newest state as lines of 80 columns at most.
 pub(super) fn text(robot: &Robot, place: &Place) -> String {
     let state = robot.state();
     let mut text = String::new();
@@ -127,8 +127,8 @@ fn hand(text: &mut String, state: &RobotState, pose: &Pose) {
     let [fx, fy, fz, tx, ty, tz] = state.O_F_ext_hat_K.map(shown);
     let _ = writeln!(
         text,
-        "{BOLD}hand{BOLD:#}    x {:>8.1}  y {:>8.1}  z {:>8.1}  mm    r {:>7.1}  p {:>7.1}  y {:>7.1}  deg\n\
-         {BOLD}force{BOLD:#}   x {fx:>8.1}  y {fy:>8.1}  z {fz:>8.1}  N     x {tx:>7.1}  y {ty:>7.1}  z {tz:>7.1}  N m",
+        "{BOLD}hand{BOLD:#}    x {:>7.1}  y {:>7.1}  z {:>7.1}  mm   r {:>6.1}  p {:>6.1}  y {:>6.1}  deg\n\
+         {BOLD}force{BOLD:#}   x {fx:>7.1}  y {fy:>7.1}  z {fz:>7.1}  N    x {tx:>6.1}  y {ty:>6.1}  z {tz:>6.1}  N m",
         position.x, position.y, position.z, roll, pitch, yaw,
     );
     let _ = writeln!(

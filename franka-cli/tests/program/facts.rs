@@ -10,6 +10,8 @@ fn the_state_is_printed_as_text_and_as_json() {
         let text = home.run(&["state", &robot]).done();
         assert!(text.contains("idle") && text.contains("link"), "{text}");
         assert_eq!(text.matches('●').count(), 7, "{text}");
+        let width = text.lines().map(|line| line.chars().count()).max();
+        assert!(width <= Some(80), "{width:?}: {text}");
         assert!(!text.contains('\x1b'), "no colours in a pipe: {text:?}");
         let json = home.run(&["state", &robot, "--json"]).json();
         assert_eq!(json["state"]["robot_mode"], "Idle");

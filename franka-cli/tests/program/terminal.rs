@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::process::Child;
 use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
 use std::{mem, thread};
 
 use nix::pty::{Winsize, openpty};
@@ -18,6 +19,8 @@ pub(crate) struct Terminal {
     input: File,
     /// What it has shown so far.
     shown: Arc<Mutex<String>>,
+    /// Ends when the program has closed the terminal.
+    reader: Option<JoinHandle<()>>,
 }
 
 impl Terminal {
@@ -43,7 +46,7 @@ impl Terminal {
         let mut output = input.try_clone().expect("a descriptor");
         let shown = Arc::new(Mutex::new(String::new()));
         let noted = shown.clone();
-        thread::spawn(move || {
+        let reader = thread::spawn(move || {
             let mut buffer = [0; 4096];
             // Reading fails when the program has closed the terminal.
             while let Ok(count @ 1..) = output.read(&mut buffer) {
@@ -55,6 +58,7 @@ impl Terminal {
             child,
             input,
             shown,
+            reader: Some(reader),
         }
     }
 
@@ -80,7 +84,8 @@ impl Terminal {
     pub(crate) fn ended(mut self) -> (Option<i32>, String) {
         let code = self.child.wait().expect("it ends").code();
         // What it wrote last is on its way.
-        thread::sleep(std::time::Duration::from_millis(20));
+        let reader = self.reader.take().expect("not ended");
+        reader.join().expect("no panic");
         let shown = mem::take(&mut *self.shown.lock().expect("no panic"));
         (code, shown)
     }
