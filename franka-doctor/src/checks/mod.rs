@@ -1,0 +1,55 @@
+//! The checks, a table for each group. Each is a function of what was read.
+
+mod host;
+mod network;
+mod processor;
+mod scheduling;
+
+use crate::finding::{Finding, Group, Judged, Matters, Purpose, for_purpose};
+use crate::host::Unread;
+use crate::readings::Readings;
+
+/// One check.
+pub(crate) struct Check {
+    pub(crate) id: &'static str,
+    pub(crate) group: Group,
+    pub(crate) matters: Matters,
+    pub(crate) wanted: &'static str,
+    pub(crate) why: &'static str,
+    pub(crate) source: &'static str,
+    /// Whether it reads files and asks drivers only, starting no thread.
+    pub(crate) reads_only: bool,
+    pub(crate) judge: fn(&Readings<'_>) -> Result<Judged, Unread>,
+}
+
+impl Check {
+    /// What this check finds. What cannot be read is unknown.
+    pub(crate) fn run(&self, readings: &Readings<'_>, purpose: Purpose) -> Finding {
+        let judged = (self.judge)(readings)
+            .unwrap_or_else(|unread| Judged::unknown(format!("unknown: {unread}")));
+        Finding {
+            id: self.id,
+            group: self.group,
+            verdict: for_purpose(judged.verdict, self.matters, purpose),
+            read: judged.read,
+            wanted: self.wanted,
+            why: self.why,
+            source: self.source,
+            fix: judged.fix,
+        }
+    }
+}
+
+/// Every check of host and network card, in the order of reports.
+pub(crate) fn all() -> impl Iterator<Item = &'static Check> {
+    [
+        host::CHECKS,
+        scheduling::CHECKS,
+        processor::CHECKS,
+        network::CHECKS,
+    ]
+    .into_iter()
+    .flatten()
+}
+
+const VENDOR: &str = "vendor: FCI documentation, real-time kernel set-up";

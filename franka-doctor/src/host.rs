@@ -1,0 +1,206 @@
+//! What is asked of a host: files, and the few answers that are not in files.
+
+use core::fmt;
+use core::time::Duration;
+use std::fs;
+use std::io;
+use std::net::Ipv4Addr;
+use std::path::{Path, PathBuf};
+
+use franka_rt::sched::Kernel;
+
+use crate::wake_up::WakeUps;
+
+/// A host that can be asked. [`System`](crate::System) is the running one, [`Tree`] a directory.
+///
+/// No method changes anything on the host.
+pub trait Host {
+    /// The contents of a file, by its absolute path; the first MiB of it.
+    fn read(&self, path: &str) -> Result<String, Unread>;
+    /// The names in a directory, sorted.
+    fn list(&self, path: &str) -> Result<Vec<String>, Unread>;
+    /// What a symbolic link holds.
+    fn link(&self, path: &str) -> Result<String, Unread>;
+    /// What it says of its kernel.
+    fn kernel(&self) -> Kernel;
+    /// The `SCHED_FIFO` priority that a thread of this process gets if it asks for the highest one,
+    /// or why it gets none. Tried on a thread of its own.
+    fn fifo(&self) -> Result<i32, String>;
+    /// The host's own address on the way to `robot`. Nothing is sent.
+    fn own_address(&self, robot: Ipv4Addr) -> Result<Ipv4Addr, Unread>;
+    /// What the driver of `interface` answers: the bytes of a structure of `linux/ethtool.h`.
+    fn ethtool(&self, interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread>;
+    /// How late a thread under `SCHED_FIFO`, where allowed, wakes up each millisecond for that
+    /// long. `progress` is called with the part done, about ten times a second.
+    fn wake_ups(
+        &self,
+        duration: Duration,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<WakeUps, Unread>;
+}
+
+/// A question to the driver of a network card. None changes a setting, or takes privilege.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ethtool {
+    /// `ETHTOOL_GDRVINFO`: `struct ethtool_drvinfo`.
+    Driver,
+    /// `ETHTOOL_GCOALESCE`: `struct ethtool_coalesce`.
+    Coalescing,
+    /// `ETHTOOL_GFLAGS`: `struct ethtool_value`.
+    Flags,
+    /// `ETHTOOL_GEEE`: `struct ethtool_eee`.
+    Eee,
+}
+
+impl Ethtool {
+    /// The number of the command.
+    pub fn command(self) -> u32 {
+        match self {
+            Self::Driver => 0x03,
+            Self::Coalescing => 0x0e,
+            Self::Flags => 0x25,
+            Self::Eee => 0x44,
+        }
+    }
+
+    /// The size of the structure, in bytes.
+    pub fn size(self) -> usize {
+        match self {
+            Self::Driver => 196,
+            Self::Coalescing => 92,
+            Self::Flags => 8,
+            Self::Eee => 40,
+        }
+    }
+}
+
+/// Why something could not be read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Unread {
+    /// It is not there.
+    Absent(String),
+    /// It takes privilege.
+    Denied(String),
+    /// Anything else: what, and why.
+    Failed(String, String),
+}
+
+impl Unread {
+    /// Why `what` was not read, by the system's error.
+    pub fn new(what: impl Into<String>, error: &io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => Self::Absent(what.into()),
+            io::ErrorKind::PermissionDenied => Self::Denied(what.into()),
+            _ => Self::Failed(what.into(), error.to_string()),
+        }
+    }
+}
+
+impl fmt::Display for Unread {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Absent(what) => write!(f, "{what} is not there"),
+            Self::Denied(what) => write!(f, "{what} needs root"),
+            Self::Failed(what, why) => write!(f, "{what}: {why}"),
+        }
+    }
+}
+
+/// A directory with the files of a host below it, and what is not in files below `calls`:
+///
+/// | file | holds |
+/// |---|---|
+/// | `calls/fifo` | a priority, or why there is none |
+/// | `calls/own_address` | an IPv4 address |
+/// | `calls/ethtool/INTERFACE/COMMAND` | the answer's bytes in hexadecimal; `COMMAND` as `0x0e` |
+/// | `calls/wake_ups` | lines of a latency in microseconds and how often |
+#[derive(Clone, Debug)]
+pub struct Tree {
+    root: PathBuf,
+}
+
+impl Tree {
+    /// The host whose files are below `root`.
+    pub fn new(root: impl Into<PathBuf>) -> Self {
+        Self { root: root.into() }
+    }
+
+    fn below(&self, path: &str) -> PathBuf {
+        self.root.join(path.trim_start_matches('/'))
+    }
+
+    fn call(&self, name: &str) -> Result<String, Unread> {
+        self.read(&format!("calls/{name}"))
+    }
+}
+
+impl Host for Tree {
+    fn read(&self, path: &str) -> Result<String, Unread> {
+        let bytes = fs::read(self.below(path)).map_err(|error| Unread::new(path, &error))?;
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
+    }
+
+    fn list(&self, path: &str) -> Result<Vec<String>, Unread> {
+        names_in(&self.below(path)).map_err(|error| Unread::new(path, &error))
+    }
+
+    fn link(&self, path: &str) -> Result<String, Unread> {
+        match fs::read_link(self.below(path)) {
+            Ok(target) => Ok(target.to_string_lossy().into_owned()),
+            Err(error) => Err(Unread::new(path, &error)),
+        }
+    }
+
+    fn kernel(&self) -> Kernel {
+        Kernel::read_below(&self.root)
+    }
+
+    fn fifo(&self) -> Result<i32, String> {
+        let text = self.call("fifo").map_err(|unread| unread.to_string())?;
+        text.trim().parse().map_err(|_| text.trim().to_owned())
+    }
+
+    fn own_address(&self, _: Ipv4Addr) -> Result<Ipv4Addr, Unread> {
+        let text = self.call("own_address")?;
+        text.trim()
+            .parse()
+            .map_err(|_| Unread::Failed("calls/own_address".into(), "not an address".into()))
+    }
+
+    fn ethtool(&self, interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread> {
+        let name = format!("ethtool/{interface}/{:#04x}", question.command());
+        let text = self.call(&name)?;
+        let bytes: Result<Vec<u8>, _> = text
+            .split_whitespace()
+            .map(|word| u8::from_str_radix(word, 16))
+            .collect();
+        bytes.map_err(|_| Unread::Failed(name, "not bytes in hexadecimal".into()))
+    }
+
+    fn wake_ups(&self, _: Duration, progress: &mut dyn FnMut(f64)) -> Result<WakeUps, Unread> {
+        progress(1.0);
+        let text = self.call("wake_ups")?;
+        let mut wake_ups = WakeUps::new(self.fifo().ok());
+        for line in text.lines() {
+            let numbers: Vec<u64> = line.split(' ').flat_map(str::parse).collect();
+            let [us, count] = numbers[..] else {
+                let why = format!("`{line}`, expected two numbers");
+                return Err(Unread::Failed("calls/wake_ups".into(), why));
+            };
+            for _ in 0..count {
+                wake_ups.note(Duration::from_micros(us));
+            }
+        }
+        Ok(wake_ups)
+    }
+}
+
+/// The names in a directory, sorted.
+pub(crate) fn names_in(path: &Path) -> io::Result<Vec<String>> {
+    let mut names = Vec::new();
+    for entry in fs::read_dir(path)? {
+        names.push(entry?.file_name().to_string_lossy().into_owned());
+    }
+    names.sort();
+    Ok(names)
+}

@@ -1,0 +1,154 @@
+//! Checks of a host, its network card and the way to a robot, before an arm moves. Nothing on the
+//! host is changed.
+//!
+//! ```text
+//! Host (files, a few calls) --> Readings --> checks, one function each --> Finding --> Report (text, JSON, script)
+//! ```
+//!
+//! * [`Doctor`]: runs all checks for a [`Purpose`].
+//! * [`Host`]: what can be asked. [`System`] is the running host, [`Tree`] a directory with the
+//!   files of any host, for tests.
+//! * [`Finding`]: what was read, what is wanted, why, by which source, and a command that fixes it.
+//!   What cannot be read is [`Verdict::Unknown`], which is neither good nor bad.
+//! * [`likely_causes`]: for a motion that ended for want of packets.
+//! * [`arrivals`]: what states of a connected robot show. [`ports`]: what answers at its address.
+//!
+//! ```
+//! use franka_doctor::{Doctor, Purpose, System, Verdict};
+//!
+//! let report = Doctor::new(Purpose::Sim).run(&System::default(), &mut |_, _| ());
+//! print!("{}", report.to_text(false));
+//! assert_eq!(report.exit_code(), 0, "any host can run simulated robots");
+//! assert!(report.count(Verdict::Good) > 0);
+//! ```
+//!
+//! Not here: connecting to a robot, Desk, and measuring the round trip to a robot.
+
+mod causes;
+mod checks;
+mod finding;
+mod host;
+mod ports;
+mod readings;
+mod redaction;
+mod report;
+mod route;
+mod system;
+mod timing;
+mod wake_up;
+
+use core::time::Duration;
+use std::net::Ipv4Addr;
+
+pub use causes::{Evidence, likely_causes};
+pub use finding::{Finding, Fix, Group, Needs, Purpose, Verdict};
+pub use host::{Ethtool, Host, Tree, Unread};
+pub use ports::ports;
+pub use readings::Readings;
+pub use report::{Report, SCHEMA};
+pub use system::System;
+pub use timing::{Received, arrivals};
+pub use wake_up::WakeUps;
+
+/// Runs the checks.
+#[derive(Clone, Debug)]
+pub struct Doctor {
+    purpose: Purpose,
+    robot: Option<Ipv4Addr>,
+    cpu: Option<usize>,
+    long: bool,
+    timing: bool,
+    redact: bool,
+}
+
+impl Doctor {
+    /// For a host that is to do this: without a robot's address, with wake-ups measured for 10 s
+    /// unless it only simulates, with names of people and devices replaced.
+    pub fn new(purpose: Purpose) -> Self {
+        Self {
+            purpose,
+            robot: None,
+            cpu: None,
+            long: false,
+            timing: purpose != Purpose::Sim,
+            redact: true,
+        }
+    }
+
+    /// The address of the robot, for the checks of the network card on the way to it. The robot is
+    /// not contacted: see [`ports`].
+    pub fn robot(mut self, address: Ipv4Addr) -> Self {
+        self.robot = Some(address);
+        self
+    }
+
+    /// The processor that the control thread is to be pinned to.
+    pub fn cpu(mut self, cpu: usize) -> Self {
+        self.cpu = Some(cpu);
+        self
+    }
+
+    /// Whether wake-ups are measured for 60 s instead of 10.
+    pub fn long(mut self, long: bool) -> Self {
+        self.long = long;
+        self
+    }
+
+    /// Whether wake-ups are measured. No other check takes time.
+    pub fn timing(mut self, timing: bool) -> Self {
+        self.timing = timing;
+        self
+    }
+
+    /// Whether names of people, hardware addresses, UUIDs and serial numbers are replaced.
+    pub fn redact(mut self, redact: bool) -> Self {
+        self.redact = redact;
+        self
+    }
+
+    /// Checks `host`. `progress` is called with the name of what takes time and the part done of it
+    /// in `[0, 1]`.
+    pub fn run(&self, host: &dyn Host, progress: &mut dyn FnMut(&str, f64)) -> Report {
+        let readings = Readings::new(host, self.robot).pinned(self.cpu);
+        let mut findings: Vec<Finding> = checks::all()
+            .map(|check| check.run(&readings, self.purpose))
+            .collect();
+        if self.timing {
+            let duration = Duration::from_secs(if self.long { 60 } else { 10 });
+            let measured = host.wake_ups(duration, &mut |part| progress("timing.wake_up", part));
+            if let Ok(wake_ups) = &measured {
+                let buckets: Vec<String> = wake_ups
+                    .buckets()
+                    .map(|(us, count)| format!("{us}: {count}"))
+                    .collect();
+                readings.note("wake-ups, us: count", buckets.join(", "));
+            }
+            findings.push(timing::wake_up(measured, self.purpose));
+        }
+        let mut report = Report {
+            schema: SCHEMA,
+            purpose: self.purpose,
+            findings: Vec::new(),
+            readings: readings.raw(),
+        };
+        report.add(findings);
+        if self.redact {
+            self.redacted(host, report)
+        } else {
+            report
+        }
+    }
+
+    /// `report` with what identifies people and devices of `host` replaced.
+    fn redacted(&self, host: &dyn Host, mut report: Report) -> Report {
+        let passwd = host.read("/etc/passwd").unwrap_or_default();
+        let redaction = redaction::Redaction::new(&passwd);
+        for finding in &mut report.findings {
+            finding.read = redaction.apply(&finding.read);
+        }
+        for text in report.readings.values_mut() {
+            *text = redaction.apply(text);
+        }
+        report
+    }
+}

@@ -1,0 +1,175 @@
+//! Findings as text, as JSON, as a script.
+
+use core::fmt::Write as _;
+use std::collections::BTreeMap;
+
+use crate::finding::{Finding, Group, Needs, Purpose, Verdict};
+
+/// What a doctor found on a host.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Report {
+    /// Of the format of this report as JSON: [`SCHEMA`].
+    pub schema: u32,
+    /// What the host is to do.
+    pub purpose: Purpose,
+    /// What was found, in the order of groups.
+    pub findings: Vec<Finding>,
+    /// Everything that was read, by its path or by what was asked.
+    pub readings: BTreeMap<String, String>,
+}
+
+/// Version of the format of reports as JSON.
+pub const SCHEMA: u32 = 1;
+
+impl Report {
+    /// Adds what was found otherwise, such as [`arrivals`](crate::arrivals) of a connected robot.
+    pub fn add(&mut self, findings: impl IntoIterator<Item = Finding>) {
+        self.findings.extend(findings);
+        self.findings.sort_by_key(|finding| finding.group);
+    }
+
+    /// How many findings have this verdict.
+    pub fn count(&self, verdict: Verdict) -> usize {
+        let has = |finding: &&Finding| finding.verdict == verdict;
+        self.findings.iter().filter(has).count()
+    }
+
+    /// A line for each group with its worst verdict, below it what is not good, a count at the end.
+    pub fn to_text(&self, color: bool) -> String {
+        self.text(color, false)
+    }
+
+    /// [`Self::to_text`] with what is good, too, and with why and by which source of everything.
+    pub fn to_detailed_text(&self, color: bool) -> String {
+        self.text(color, true)
+    }
+
+    fn text(&self, color: bool, detailed: bool) -> String {
+        let mut text = String::new();
+        for group in Group::ALL {
+            let of_group = || {
+                self.findings
+                    .iter()
+                    .filter(|finding| finding.group == group)
+            };
+            if of_group().next().is_none() {
+                continue;
+            }
+            let worst = of_group().max_by_key(|finding| weight(finding.verdict));
+            let verdict = worst.map_or(Verdict::Unknown, |finding| finding.verdict);
+            let _ = writeln!(text, "{} {group}", mark(verdict, color));
+            for finding in of_group() {
+                if finding.verdict == Verdict::Good && !detailed {
+                    continue;
+                }
+                let (id, read) = (finding.id, &finding.read);
+                let _ = writeln!(text, "    {} {id}: {read}", mark(finding.verdict, color));
+                let matters = matches!(finding.verdict, Verdict::Warning | Verdict::Failure);
+                if matters || detailed {
+                    let _ = writeln!(text, "        wanted: {}", finding.wanted);
+                    let _ = writeln!(text, "        why: {}", finding.why);
+                    let _ = writeln!(text, "        source: {}", finding.source);
+                }
+                if let Some(fix) = finding.fix.as_ref().filter(|_| matters || detailed) {
+                    let then = match fix.needs {
+                        Needs::Nothing => "",
+                        Needs::Login => " (then log in again)",
+                        Needs::Reboot => " (then reboot)",
+                    };
+                    let _ = writeln!(text, "        fix{then}: {}", fix.command);
+                }
+            }
+        }
+        let _ = writeln!(
+            text,
+            "{} good, {} to know, {} warnings, {} failures, {} unknown, for {}",
+            self.count(Verdict::Good),
+            self.count(Verdict::Info),
+            self.count(Verdict::Warning),
+            self.count(Verdict::Failure),
+            self.count(Verdict::Unknown),
+            match self.purpose {
+                Purpose::Sim => "simulating",
+                Purpose::Read => "reading states",
+                Purpose::Move => "moving a robot",
+            }
+        );
+        text
+    }
+
+    /// The report as JSON, with all that was read.
+    #[cfg(feature = "serde")]
+    pub fn to_json(&self) -> String {
+        serde_json::to_string_pretty(self).expect("texts and numbers, with texts as keys")
+    }
+
+    /// A shell script with the fixes of warnings and failures, for reading before running. Nothing
+    /// is run here.
+    pub fn fix_script(&self) -> String {
+        let mut script = "#!/bin/sh\n# Fixes of `franka doctor`. Read before running.\n".to_owned();
+        let mut done: Vec<&str> = Vec::new();
+        let mut needs = Needs::Nothing;
+        for finding in &self.findings {
+            let matters = matches!(finding.verdict, Verdict::Warning | Verdict::Failure);
+            let Some(fix) = finding.fix.as_ref().filter(|_| matters) else {
+                continue;
+            };
+            let _ = writeln!(script, "\n# {}: {}", finding.id, one_line(&finding.read));
+            if done.contains(&fix.command.as_str()) {
+                let _ = writeln!(script, "# The command above.");
+                continue;
+            }
+            let _ = writeln!(script, "{}", fix.command);
+            done.push(&fix.command);
+            needs = match (needs, fix.needs) {
+                (Needs::Reboot, _) | (_, Needs::Reboot) => Needs::Reboot,
+                (Needs::Login, _) | (_, Needs::Login) => Needs::Login,
+                _ => Needs::Nothing,
+            };
+        }
+        match needs {
+            Needs::Nothing => {}
+            Needs::Login => script += "\necho 'Log in again for this to take effect.'\n",
+            Needs::Reboot => script += "\necho 'Reboot for this to take effect.'\n",
+        }
+        script
+    }
+
+    /// 1 with a failure, 0 otherwise: for programs, which return 2 if they could not run.
+    pub fn exit_code(&self) -> u8 {
+        u8::from(self.count(Verdict::Failure) > 0)
+    }
+}
+
+/// `text` without line breaks, as a comment of a script has to be.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The greatest one decides about a group.
+fn weight(verdict: Verdict) -> u8 {
+    match verdict {
+        Verdict::Info => 0,
+        Verdict::Good => 1,
+        Verdict::Unknown => 2,
+        Verdict::Warning => 3,
+        Verdict::Failure => 4,
+    }
+}
+
+/// Four characters, as `flutter doctor` has them.
+fn mark(verdict: Verdict, color: bool) -> String {
+    let (mark, code) = match verdict {
+        Verdict::Good => ("[OK]", 32),
+        Verdict::Info => ("[i]", 36),
+        Verdict::Warning => ("[!]", 33),
+        Verdict::Failure => ("[X]", 31),
+        Verdict::Unknown => ("[?]", 35),
+    };
+    match color {
+        true => format!("\x1b[{code}m{mark}\x1b[0m"),
+        false => mark.to_owned(),
+    }
+}

@@ -1,0 +1,219 @@
+//! How punctual the host is, and how punctually states of a robot arrive.
+
+use core::time::Duration;
+
+use crate::finding::{Finding, Group, Judged, Matters, Purpose, for_purpose};
+use crate::host::Unread;
+use crate::wake_up::WakeUps;
+
+/// What a measurement of wake-ups shows.
+pub(crate) fn wake_up(measured: Result<WakeUps, Unread>, purpose: Purpose) -> Finding {
+    let judged = match measured {
+        Ok(wake_ups) => judge(&wake_ups),
+        Err(unread) => Judged::unknown(format!("unknown: {unread}")),
+    };
+    Finding {
+        id: "timing.wake_up",
+        group: Group::Timing,
+        verdict: for_purpose(judged.verdict, Matters::Moving, purpose),
+        read: judged.read,
+        wanted: "every wake-up within 100 us; 300 us is usable, more a warning, 500 us a failure",
+        why: "The control thread is late by that much, of the millisecond that a cycle has.",
+        source: "below 100 us: RMP asks for 125 us at 1 kHz; the rest: this project's, from the millisecond of a cycle",
+        fix: None,
+    }
+}
+
+fn judge(wake_ups: &WakeUps) -> Judged {
+    let quantile = |part| wake_ups.quantile(part).unwrap_or_default();
+    let (Some(min), Some(max)) = (wake_ups.min(), wake_ups.max()) else {
+        return Judged::unknown("unknown: nothing was measured");
+    };
+    let scheduling = match wake_ups.priority {
+        Some(priority) => format!("SCHED_FIFO {priority}"),
+        None => "normal scheduling".into(),
+    };
+    let read = format!(
+        "{} wake-ups under {scheduling}: min {}, p50 {}, p99 {}, p99.9 {}, max {} us; {} of 100 us and more, {} of 200, {} of 500",
+        wake_ups.count(),
+        min.as_micros(),
+        quantile(0.5),
+        quantile(0.99),
+        quantile(0.999),
+        max.as_micros(),
+        wake_ups.at_least(100),
+        wake_ups.at_least(200),
+        wake_ups.at_least(500),
+    );
+    match max.as_micros() {
+        ..100 if wake_ups.priority.is_none() => Judged::info(format!(
+            "{read}; says little, as any other program may delay the thread"
+        )),
+        ..100 if wake_ups.count() >= 10_000 => Judged::good(read),
+        ..100 => Judged::info(format!("{read}; too few to call it good")),
+        100..300 => Judged::info(read),
+        300..=500 => Judged::warning(read),
+        _ => Judged::failure(read),
+    }
+}
+
+/// A state of a robot that rests, and when it was received: `message_id`, and the time since any
+/// fixed moment.
+pub type Received = (u64, Duration);
+
+/// What the arrival of states in a row shows, in the order in which they were received: how many
+/// are missing, and how regularly they come. A pure function.
+pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
+    let mut lost = 0;
+    let mut longest = 0;
+    let mut intervals: Vec<Duration> = Vec::with_capacity(states.len());
+    for pair in states.windows(2) {
+        let missing = pair[1].0.saturating_sub(pair[0].0).saturating_sub(1);
+        lost += missing;
+        longest = longest.max(missing);
+        if missing == 0 {
+            intervals.push(pair[1].1.saturating_sub(pair[0].1));
+        }
+    }
+    intervals.sort_unstable();
+    let sent = lost + states.len() as u64;
+    let few = states.len() < STATES_MIN;
+    let losses = match (lost, few) {
+        _ if states.is_empty() => Judged::failure(
+            "no states: `UDP receive: Timeout` means that a firewall keeps them off",
+        ),
+        (0, true) => Judged::info(format!("0 of {sent} lost; too few to call it good")),
+        (0, false) => Judged::good(format!("0 of {sent} lost")),
+        _ => {
+            let read = format!("{lost} of {sent} lost, at most {longest} in a row");
+            match longest > 20 || lost * 100 > sent {
+                true => Judged::failure(read),
+                false => Judged::warning(read),
+            }
+        }
+    };
+    let quantile = |part: f64| {
+        let wanted = (part * intervals.len() as f64).ceil().max(1.0) as usize;
+        intervals[wanted - 1].as_secs_f64() * 1e3
+    };
+    let punctuality = match intervals.last() {
+        None => Judged::unknown("unknown: no two states in a row"),
+        Some(max) => {
+            let (p99, max) = (quantile(0.99), max.as_secs_f64() * 1e3);
+            let read = format!("p50 {:.3}, p99 {p99:.3}, max {max:.3} ms", quantile(0.5));
+            match p99 < 1.1 && max < 1.5 {
+                true if few => Judged::info(format!("{read}; too few to call it good")),
+                true => Judged::good(read),
+                false => Judged::warning(read),
+            }
+        }
+    };
+    let finding = |id, judged: Judged, wanted, why, source| Finding {
+        id,
+        group: Group::Robot,
+        verdict: for_purpose(judged.verdict, Matters::Reading, purpose),
+        read: judged.read,
+        wanted,
+        why,
+        source,
+        fix: judged.fix,
+    };
+    vec![
+        finding(
+            "robot.lost",
+            losses,
+            "0 of 10000 lost; failure above 20 in a row, or above 1 %",
+            "After 20 packets missing in a row the robot ends the motion.",
+            "vendor: FCI documentation, communication_constraints_violation; 1 %: this project's",
+        ),
+        finding(
+            "robot.interval",
+            punctuality,
+            "p99 below 1.1 ms, max below 1.5 ms",
+            "Round trip, work of this computer and the robot's own step have to fit into 1 ms.",
+            "vendor: FCI documentation, network; thresholds: this project's",
+        ),
+    ]
+}
+
+/// Fewer states in a row than ten seconds have, a few lost ones aside, show little.
+const STATES_MIN: usize = 9_900;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::finding::Verdict;
+
+    /// Wake-ups that are late by `us`, `count` of them, and one that is late by `worst`.
+    fn measured(us: u64, count: usize, worst: u64) -> WakeUps {
+        let mut wake_ups = WakeUps::new(Some(99));
+        for _ in 1..count {
+            wake_ups.note(Duration::from_micros(us));
+        }
+        wake_ups.note(Duration::from_micros(worst));
+        wake_ups
+    }
+
+    #[test]
+    fn the_worst_wake_up_decides_and_a_short_measurement_is_never_good() {
+        for (count, worst, expected) in [
+            (10_000, 99, Verdict::Good),
+            (9_999, 99, Verdict::Info),
+            (10_000, 100, Verdict::Info),
+            (10_000, 299, Verdict::Info),
+            (10_000, 300, Verdict::Warning),
+            (10_000, 500, Verdict::Warning),
+            (10_000, 501, Verdict::Failure),
+            (10_000, 90_000, Verdict::Failure),
+        ] {
+            let finding = wake_up(Ok(measured(20, count, worst)), Purpose::Move);
+            assert_eq!(finding.verdict, expected, "{}", finding.read);
+            let sim = wake_up(Ok(measured(20, count, worst)), Purpose::Sim);
+            assert!(matches!(sim.verdict, Verdict::Good | Verdict::Info));
+        }
+        let nothing = wake_up(Ok(WakeUps::new(None)), Purpose::Move);
+        assert_eq!(nothing.verdict, Verdict::Unknown);
+    }
+
+    #[test]
+    fn quantiles_are_those_of_sorted_latencies() {
+        let mut wake_ups = WakeUps::new(None);
+        for us in (1..=1000).rev() {
+            wake_ups.note(Duration::from_micros(us));
+        }
+        wake_ups.note(Duration::from_millis(7));
+        assert_eq!(wake_ups.quantile(0.5), Some(501));
+        assert_eq!(wake_ups.quantile(0.99), Some(991));
+        assert_eq!(wake_ups.quantile(1.0), Some(2000), "stands for more");
+        assert_eq!(wake_ups.max(), Some(Duration::from_millis(7)));
+        assert_eq!((wake_ups.at_least(1000), wake_ups.count()), (2, 1001));
+    }
+
+    /// Verdicts of states whose numbers are these, a millisecond apart each.
+    fn verdicts(numbers: impl Iterator<Item = u64>, late: u64) -> [Verdict; 2] {
+        let at =
+            |number| Duration::from_millis(number) + Duration::from_micros((number % 7) * late);
+        let states: Vec<Received> = numbers.map(|number| (number, at(number))).collect();
+        let findings = arrivals(&states, Purpose::Move);
+        [findings[0].verdict, findings[1].verdict]
+    }
+
+    #[test]
+    fn lost_states_and_irregular_ones_are_told_apart() {
+        use Verdict::{Failure, Good, Info, Unknown, Warning};
+        assert_eq!(verdicts(0..10_000, 10), [Good, Good]);
+        assert_eq!(verdicts(0..100, 10), [Info, Info]);
+        assert_eq!(verdicts(0..10_000, 200), [Good, Warning]);
+        assert_eq!(
+            verdicts((0..10_000).filter(|n| n % 500 != 3), 10),
+            [Warning, Good]
+        );
+        assert_eq!(
+            verdicts((0..10_000).filter(|n| n % 50 != 3), 10)[0],
+            Failure
+        );
+        let gap = |n: &u64| !(100..121).contains(n);
+        assert_eq!(verdicts((0..10_000).filter(gap), 10)[0], Failure);
+        assert_eq!(verdicts(0..0, 10), [Failure, Unknown]);
+    }
+}

@@ -1,0 +1,220 @@
+//! Reports of hosts whose files are in `fixtures`, compared exactly with the texts in `golden`.
+//!
+//! The trees hold the files that the checks read, composed after what such hosts show; none is a
+//! copy of a real host. With `FRANKA_DOCTOR_REWRITE=1` the texts are written anew.
+
+use std::fs;
+use std::net::Ipv4Addr;
+use std::path::{Path, PathBuf};
+
+use franka_doctor::{Doctor, Evidence, Purpose, Readings, Report, Tree, Verdict, likely_causes};
+
+const HOSTS: [&str; 7] = [
+    "ubuntu_pro_realtime",
+    "debian13_realtime",
+    "raspberry_pi5",
+    "container",
+    "wsl",
+    "laptop_on_battery",
+    "usb_card",
+];
+
+const ROBOT: Ipv4Addr = Ipv4Addr::new(172, 16, 0, 2);
+
+fn directory(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests")
+        .join(name)
+}
+
+fn tree(host: &str) -> Tree {
+    Tree::new(directory("fixtures").join(host))
+}
+
+/// The robot that this host has a way to.
+fn robot(host: &str) -> Ipv4Addr {
+    match host {
+        "laptop_on_battery" => Ipv4Addr::new(192, 168, 1, 30),
+        _ => ROBOT,
+    }
+}
+
+fn report(host: &str, purpose: Purpose) -> Report {
+    let doctor = Doctor::new(purpose).robot(robot(host));
+    doctor.run(&tree(host), &mut |_, _| ())
+}
+
+fn verdict(report: &Report, id: &str) -> Verdict {
+    let finding = report.findings.iter().find(|finding| finding.id == id);
+    finding.unwrap_or_else(|| panic!("no {id}")).verdict
+}
+
+#[test]
+fn reports_are_those_in_golden() {
+    let rewrite = std::env::var_os("FRANKA_DOCTOR_REWRITE").is_some();
+    for host in HOSTS {
+        let moving = report(host, Purpose::Move);
+        let text = format!(
+            "{}\n{}\nexit code {}\n\n{}",
+            moving.to_text(false),
+            report(host, Purpose::Read)
+                .to_text(false)
+                .lines()
+                .last()
+                .expect("a count"),
+            moving.exit_code(),
+            moving.fix_script(),
+        );
+        let path = directory("golden").join(format!("{host}.txt"));
+        if rewrite {
+            fs::write(&path, text).expect("a file");
+            continue;
+        }
+        let golden = fs::read_to_string(&path).expect("a golden text");
+        assert_eq!(text, golden, "{host}");
+    }
+}
+
+#[test]
+fn what_each_host_is_known_for_is_found() {
+    use Verdict::{Failure, Good, Info, Unknown, Warning};
+    for (host, id, expected) in [
+        ("ubuntu_pro_realtime", "kernel.rt", Good),
+        ("ubuntu_pro_realtime", "timing.wake_up", Good),
+        ("ubuntu_pro_realtime", "smi", Unknown),
+        // Without /sys/kernel/realtime.
+        ("debian13_realtime", "kernel.rt", Good),
+        // The user is in the group, the session is not yet.
+        ("debian13_realtime", "rt.limits_file", Warning),
+        ("debian13_realtime", "rt.priority", Failure),
+        ("debian13_realtime", "cpu.cstates", Warning),
+        ("raspberry_pi5", "kernel.rt", Failure),
+        ("raspberry_pi5", "virt", Unknown),
+        ("raspberry_pi5", "mem.thp", Unknown),
+        ("container", "virt", Info),
+        ("container", "rt.cgroup", Failure),
+        ("container", "cpu.governor", Unknown),
+        ("container", "nic.route", Warning),
+        ("container", "timing.wake_up", Unknown),
+        ("wsl", "virt", Warning),
+        ("wsl", "timing.wake_up", Failure),
+        ("laptop_on_battery", "power", Warning),
+        ("laptop_on_battery", "nic.kind", Failure),
+        ("laptop_on_battery", "nic.link", Unknown),
+        ("usb_card", "nic.kind", Warning),
+        ("usb_card", "nic.coalesce", Failure),
+        ("usb_card", "nic.errors", Warning),
+    ] {
+        assert_eq!(
+            verdict(&report(host, Purpose::Move), id),
+            expected,
+            "{host}: {id}"
+        );
+    }
+}
+
+#[test]
+fn any_host_may_simulate_and_only_the_good_one_may_move() {
+    for host in HOSTS {
+        assert_eq!(report(host, Purpose::Sim).exit_code(), 0, "{host}");
+        let expected = u8::from(host != "ubuntu_pro_realtime");
+        assert_eq!(report(host, Purpose::Move).exit_code(), expected, "{host}");
+    }
+}
+
+#[test]
+fn unknown_findings_say_what_is_missing_and_have_no_fix() {
+    // A host with no files at all: nothing can be good.
+    let nothing = Tree::new(directory("fixtures").join("none"));
+    let report = Doctor::new(Purpose::Move).run(&nothing, &mut |_, _| ());
+    assert_eq!(
+        report.count(Verdict::Good),
+        0,
+        "{}",
+        report.to_detailed_text(false)
+    );
+    for finding in report
+        .findings
+        .iter()
+        .filter(|found| found.verdict == Verdict::Unknown)
+    {
+        assert!(finding.read.starts_with("unknown: "), "{finding:?}");
+        assert_eq!(finding.fix, None);
+    }
+    assert_eq!(verdict(&report, "nic.route"), Verdict::Unknown);
+}
+
+#[test]
+fn every_finding_has_its_wish_its_reason_and_its_source_and_an_id_of_its_own() {
+    let report = report("usb_card", Purpose::Move);
+    for (index, finding) in report.findings.iter().enumerate() {
+        for text in [
+            finding.wanted,
+            finding.why,
+            finding.source,
+            finding.read.as_str(),
+        ] {
+            assert!(!text.is_empty(), "{finding:?}");
+        }
+        let others = &report.findings[index + 1..];
+        assert!(
+            others.iter().all(|other| other.id != finding.id),
+            "{}",
+            finding.id
+        );
+    }
+}
+
+#[test]
+fn json_has_what_was_read_without_names_and_serial_numbers_unless_asked() {
+    let doctor = Doctor::new(Purpose::Move).robot(ROBOT);
+    for (host, hidden) in [
+        ("raspberry_pi5", "serial=10000000abcdef01"),
+        (
+            "ubuntu_pro_realtime",
+            "6f1d1b7a-0c1e-4b1e-9d6e-0123456789ab",
+        ),
+    ] {
+        let shown = doctor
+            .clone()
+            .redact(false)
+            .run(&tree(host), &mut |_, _| ())
+            .to_json();
+        assert!(shown.contains(hidden), "{shown}");
+        let json = doctor.run(&tree(host), &mut |_, _| ()).to_json();
+        assert!(!json.contains(hidden), "{json}");
+        assert!(json.contains("\"schema\": 1"), "{json}");
+        assert!(
+            json.contains("/proc/sys/kernel/sched_rt_runtime_us"),
+            "{json}"
+        );
+    }
+}
+
+#[test]
+fn the_two_likeliest_causes_are_failures_first() {
+    let causes = |host, evidence| {
+        let tree = tree(host);
+        let readings = Readings::new(&tree, Some(robot(host)));
+        likely_causes(&readings, evidence)
+            .iter()
+            .map(|finding| finding.id)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(
+        causes("usb_card", Evidence::Lost),
+        ["nic.coalesce", "nic.kind"]
+    );
+    assert_eq!(
+        causes("laptop_on_battery", Evidence::Late),
+        ["kernel.rt", "rt.limit"]
+    );
+    assert_eq!(
+        causes("laptop_on_battery", Evidence::LinkLost),
+        ["nic.kind", "nic.power"]
+    );
+    assert_eq!(
+        causes("ubuntu_pro_realtime", Evidence::Late),
+        Vec::<&str>::new()
+    );
+}
