@@ -13,6 +13,7 @@ use serde_json::json;
 
 use crate::connection::{Place, Which, check_ready};
 use crate::ending::{Ending, Failure};
+use crate::interrupt::interrupted;
 use crate::output::{Output, say};
 use crate::question::{self, title};
 
@@ -56,12 +57,18 @@ impl Recover {
         let title = title("recover", robot.model().kind(), place);
         let what = "The robot frees itself. Where the arm presses against something, it may give way by some mm.";
         question::ask(&format!("{title}\n{what}"), self.yes).await?;
-        robot.recover().await.map_err(|error| {
-            Failure::new(
-                Ending::Failed,
-                format!("the robot was not recovered: {error}"),
-            )
-            .advice("If it names a manual recovery, it takes a person at the robot, or Desk.")
+        let interrupt = interrupted()?;
+        let recovered = tokio::select! {
+            recovered = robot.recover() => recovered,
+            () = interrupt => {
+                let message = "interrupted: the robot may recover all the same";
+                return Err(Failure::new(Ending::Interrupted, message).into());
+            }
+        };
+        recovered.map_err(|error| {
+            let message = format!("the robot was not recovered: {error}");
+            Failure::new(Ending::Failed, message)
+                .advice("If it names a manual recovery, it takes a person at the robot, or Desk.")
         })?;
         let mut states = robot.states();
         let idle = states.wait_for(|state| state.robot_mode == RobotMode::Idle);

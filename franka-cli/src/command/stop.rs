@@ -23,7 +23,7 @@ pub(crate) struct Stop {
 impl Stop {
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
         let (robot, place) = self.which.connect().await?;
-        // Connecting took the place of whoever was there before: a motion of theirs has ended.
+        // The motion of a client that has gone ended with its connection.
         let stopped = robot.stop().await;
         let state = robot.state();
         robot.shutdown().await;
