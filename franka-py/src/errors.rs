@@ -3,7 +3,7 @@
 use franka_async::Error;
 use franka_async::MotionError;
 use franka_async::connection::Version;
-use franka_async::diagnosis::Diagnose;
+use franka_async::diagnosis::{Diagnose, Diagnosis};
 use franka_async::error::{
     ActiveError, CommandError, ConnectError, ControlError, GripperError, IdentifyError, ReadError,
     Status, VacuumGripperError,
@@ -113,16 +113,18 @@ fn set_control(exception: &Bound<'_, PyAny>, control: &ControlError) -> PyResult
         RobotKind::Fer => Version::V5,
         _ => Version::V10,
     };
-    exception.setattr("log", ControlLog::new(control.log.clone(), version))?;
+    exception.setattr("log", ControlLog::new(control.clone(), version))?;
     let diagnosis = control.diagnose();
     let text = diagnosis.as_ref().map(ToString::to_string);
     exception.setattr("diagnosis", text)?;
-    let fields = diagnosis.map(|diagnosis| {
-        let json = serde_json::to_string(&diagnosis).expect("numbers and names become JSON");
-        let python = exception.py().import("json")?;
-        python.call_method1("loads", (json,))
-    });
+    let fields = diagnosis.map(|diagnosis| findings(exception.py(), &diagnosis));
     exception.setattr("findings", fields.transpose()?)
+}
+
+/// A diagnosis as data.
+pub(crate) fn findings<'py>(py: Python<'py>, diagnosis: &Diagnosis) -> PyResult<Bound<'py, PyAny>> {
+    let json = serde_json::to_string(diagnosis).expect("numbers and names become JSON");
+    py.import("json")?.call_method1("loads", (json,))
 }
 
 /// The name of what happened.

@@ -24,6 +24,7 @@ mod disturbance;
 mod engagement;
 mod errors;
 mod exit;
+mod explanation;
 mod follow;
 mod gains;
 mod goals;
@@ -83,6 +84,8 @@ mod _native {
     use crate::disturbance::Touch;
     #[pymodule_export]
     use crate::engagement::Engagement;
+    #[pymodule_export]
+    use crate::explanation::{Explanation, explain};
     #[pymodule_export]
     use crate::follow::Latest;
     #[pymodule_export]

@@ -1,9 +1,7 @@
 //! The last cycles of a motion.
 
-use std::sync::Arc;
-
 use franka_async::connection::Version;
-use franka_async::record;
+use franka_async::error::ControlError;
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -19,13 +17,19 @@ use crate::state::RobotState;
 /// `log.sent("tau_J_d")`.
 #[pyclass(frozen, sequence, module = "franka_async")]
 pub(crate) struct ControlLog {
-    log: Arc<record::ControlLog>,
+    error: Box<ControlError>,
     version: Version,
 }
 
 impl ControlLog {
-    pub(crate) fn new(log: Arc<record::ControlLog>, version: Version) -> Self {
-        Self { log, version }
+    pub(crate) fn new(error: ControlError, version: Version) -> Self {
+        let error = Box::new(error);
+        Self { error, version }
+    }
+
+    /// The error whose log it is.
+    pub(crate) fn error(&self) -> &ControlError {
+        &self.error
     }
 
     /// A field of the states, as one array over the cycles.
@@ -81,7 +85,7 @@ pub(crate) fn add_fields(py: Python<'_>) -> PyResult<()> {
 impl ControlLog {
     /// The states, oldest first.
     fn states(&self) -> Vec<RobotState> {
-        let entries = self.log.iter();
+        let entries = self.error.log.iter();
         entries
             .map(|entry| RobotState::new(entry.state, self.version))
             .collect()
@@ -90,7 +94,7 @@ impl ControlLog {
     /// What had been sent before each state, `(N, ...)`; zeros before the first. `name` is
     /// `tau_J_d`, `q_c`, `dq_c`, `O_T_EE_c` or `O_dP_EE_c`.
     fn sent<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let commands = self.log.iter().map(|entry| &entry.command);
+        let commands = self.error.log.iter().map(|entry| &entry.command);
         let values: Vec<Bound<'py, PyAny>> = match name {
             "tau_J_d" => commands
                 .map(|sent| array(py, &sent.tau_J_d).into_any())
@@ -118,14 +122,14 @@ impl ControlLog {
 
     /// Comma-separated values, a line for each cycle; columns are named as by libfranka.
     fn to_csv(&self) -> String {
-        self.log.to_csv()
+        self.error.log.to_csv()
     }
 
     fn __len__(&self) -> usize {
-        self.log.len()
+        self.error.log.len()
     }
 
     fn __repr__(&self) -> String {
-        format!("<ControlLog of {} cycles>", self.log.len())
+        format!("<ControlLog of {} cycles>", self.error.log.len())
     }
 }

@@ -1,6 +1,6 @@
 """Driver for Franka robots: motions are awaitables, states are numpy arrays, control stays on a real-time thread."""
 
-from . import condition, laws, otg, pose, recording, tools
+from . import condition, explanation, laws, otg, pose, recording, tools
 from ._native import (
     COLLISION_THRESHOLDS,
     FLAT_LAYOUT,
@@ -14,6 +14,7 @@ from ._native import (
     Deadman,
     Dynamics,
     Engagement,
+    Explanation,
     Follow,
     Gripper,
     GripperState,
@@ -43,6 +44,7 @@ from ._native import (
     VirtualRobots,
     start_tickets,
     enable_logging,
+    explain,
     record_columns,
     recording_columns,
 )
@@ -117,6 +119,7 @@ __all__ = [
     "Dynamics",
     "Engagement",
     "Event",
+    "Explanation",
     "ExportError",
     "FLAT_LAYOUT",
     "Follow",
@@ -181,6 +184,8 @@ __all__ = [
     "Waypoint",
     "condition",
     "enable_logging",
+    "explain",
+    "explanation",
     "laws",
     "otg",
     "pose",

@@ -1,0 +1,86 @@
+"""Why a robot stopped: the parts of an ``Explanation``, which ``franka_async.explain`` makes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .value import Value
+
+__all__ = ["Approach", "Contact", "Moment", "Peak"]
+
+
+@dataclass(frozen=True)
+class Moment:
+    """Something that happened, and when."""
+
+    time_ms: int
+    """The cycle, by the robot's clock."""
+
+    kind: str
+    """``goal``, ``mode``, ``contact``, ``collision``, ``error``, ``guard``, ``loss`` or ``note``."""
+
+    text: str
+    """What, in words."""
+
+
+@dataclass(frozen=True)
+class Approach:
+    """How near something came to its limit."""
+
+    joint: int | None
+    """The joint, 1 to 7; ``None`` of the end effector."""
+
+    value: float
+    """What was measured: rad, rad/s or N m of joints, m/s or rad/s of the end effector."""
+
+    limit: float
+    """The limit there, on the side of the value."""
+
+    margin: float
+    """From the value to the limit; negative beyond it."""
+
+    time_ms: int
+    """When, by the robot's clock."""
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A largest value."""
+
+    joint: int | None
+    """The joint, 1 to 7; ``None`` of the end effector."""
+
+    value: float
+    """Its size: N m of ``external_torque``, N of ``force``, rad of ``following_error``."""
+
+    time_ms: int
+    """When, by the robot's clock."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contact(Value):
+    """Where something touched the arm, as the external torques of the joints tell. In the base frame."""
+
+    link: int
+    """The link that was touched, 0 to 7; 8 is what is mounted on the flange."""
+
+    point: NDArray[np.float64]
+    """Where, ``(3,)`` m."""
+
+    force: NDArray[np.float64]
+    """What it exerted on the arm, ``(3,)`` N."""
+
+    spread: float
+    """How far the places reach that explain the torques as well, m."""
+
+    probability: float
+    """That it is this link, 0 to 1."""
+
+    next: tuple[int, float] | None
+    """The next likely link, and its probability."""
+
+    time_ms: int
+    """The cycle whose torques tell, by the robot's clock."""

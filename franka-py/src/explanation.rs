@@ -1,0 +1,237 @@
+//! What happened in a recording or in the log of an error, and why the robot stopped.
+
+use franka_async::explain::Explanation as Explained;
+use franka_async::model::{Model, RobotKind};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::array;
+use crate::errors::{findings, variant};
+use crate::log::ControlLog;
+use crate::recording::RecordingFile;
+use crate::state::names;
+
+/// What happened, and why the robot stopped: of a `RecordingFile` or a part of one, of a
+/// `ControlError`, or of its log. What ended is the last motion that the robot stopped; without
+/// such a stop, it is the newest cycle. Raises `TypeError`, and `ValueError` for a recording that
+/// does not say which robot it is of.
+#[pyfunction]
+pub(crate) fn explain(py: Python<'_>, of: &Bound<'_, PyAny>) -> PyResult<Explanation> {
+    if let Ok(recording) = of.cast::<RecordingFile>() {
+        let recording = recording.get();
+        let model = match recording.kind() {
+            Some(RobotKind::Fr3) => Model::fr3(),
+            Some(RobotKind::Fer) => Model::fer(),
+            _ => {
+                let text = "the recording does not say which robot it is of, or is of several: \
+                            choose one by robot(name)";
+                return Err(PyValueError::new_err(text));
+            }
+        };
+        let explained = recording.view(py, |view| Explained::of_recording(view, model));
+        return Ok(Explanation(Box::new(explained?)));
+    }
+    let log = match of.getattr_opt("log")? {
+        Some(log) => log,
+        None => of.clone(),
+    };
+    let Ok(log) = log.cast::<ControlLog>() else {
+        let got = of.get_type().name()?;
+        let expected = "a RecordingFile, a ControlError or a ControlLog";
+        let text = format!("got {got}, expected {expected}");
+        return Err(PyTypeError::new_err(text));
+    };
+    let error = log.get().error();
+    let explained = py.detach(|| Explained::of_error(error));
+    Ok(Explanation(Box::new(explained)))
+}
+
+/// What happened in a series of cycles, and why the robot stopped, as `explain` tells. `print`
+/// shows a report of a page, a notebook the figure as well. Times are the robot's clock, ms.
+#[pyclass(frozen, module = "franka_async")]
+pub(crate) struct Explanation(Box<Explained>);
+
+#[pymethods]
+impl Explanation {
+    /// The robot, `fr3` or `fer`.
+    #[getter]
+    fn robot(&self) -> String {
+        variant(&self.0.robot)
+    }
+
+    /// How many cycles there were.
+    #[getter]
+    fn cycles(&self) -> u64 {
+        self.0.cycles
+    }
+
+    /// The first cycle.
+    #[getter]
+    fn first_ms(&self) -> u64 {
+        self.0.first
+    }
+
+    /// The last cycle.
+    #[getter]
+    fn last_ms(&self) -> u64 {
+        self.0.last
+    }
+
+    /// The cycle that shows the end of the last motion that the robot stopped; without one, the
+    /// last cycle.
+    #[getter]
+    fn end_ms(&self) -> u64 {
+        self.0.end
+    }
+
+    /// Why the robot stopped, in words: which limit was exceeded, what led up to it, what to
+    /// change; `None` if it did not.
+    #[getter]
+    fn cause(&self) -> Option<&str> {
+        self.0.cause.as_ref().map(|cause| &*cause.text)
+    }
+
+    /// The errors that the robot named.
+    #[getter]
+    fn errors(&self) -> Vec<String> {
+        let cause = self.0.cause.as_ref();
+        cause.map_or_else(Vec::new, |cause| names(cause.errors))
+    }
+
+    /// The diagnosis as data, as of `ControlError`; `None` where it is not known.
+    #[getter]
+    fn findings<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let diagnosis = self.0.cause.as_ref();
+        let diagnosis = diagnosis.and_then(|cause| cause.diagnosis.as_ref());
+        diagnosis
+            .map(|diagnosis| findings(py, diagnosis))
+            .transpose()
+    }
+
+    /// What changed, oldest first: a list of `explanation.Moment`.
+    #[getter]
+    fn timeline<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let class = class(py, "Moment")?;
+        let moments = self.0.timeline.iter();
+        moments
+            .map(|moment| class.call1((moment.time, variant(&moment.kind), &*moment.text)))
+            .collect()
+    }
+
+    /// The nearest approach to each limit, an `explanation.Approach` by what it is of: `position`,
+    /// `velocity` and `torque` of joints, `translation` and `rotation` of the end effector.
+    #[getter]
+    fn margins<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let margins = &self.0.margins;
+        let class = class(py, "Approach")?;
+        let all = PyDict::new(py);
+        for (name, approach) in [
+            ("position", &margins.position),
+            ("velocity", &margins.velocity),
+            ("torque", &margins.torque),
+            ("translation", &margins.translation),
+            ("rotation", &margins.rotation),
+        ] {
+            if let Some(near) = approach {
+                let fields = (near.joint, near.value, near.limit, near.margin, near.time);
+                all.set_item(name, class.call1(fields)?)?;
+            }
+        }
+        Ok(all)
+    }
+
+    /// The largest values, an `explanation.Peak` by what it is of: `external_torque`, `force`,
+    /// `following_error`.
+    #[getter]
+    fn peaks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let peaks = &self.0.peaks;
+        let class = class(py, "Peak")?;
+        let all = PyDict::new(py);
+        for (name, peak) in [
+            ("external_torque", &peaks.external_torque),
+            ("force", &peaks.force),
+            ("following_error", &peaks.following_error),
+        ] {
+            if let Some(peak) = peak {
+                all.set_item(name, class.call1((peak.joint, peak.value, peak.time))?)?;
+            }
+        }
+        Ok(all)
+    }
+
+    /// Where something touched the arm as the motion ended, an `explanation.Contact`; `None` where
+    /// the torques do not tell: `contact_unknown` says why.
+    #[getter]
+    fn contact<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let Some((place, contact)) = self
+            .0
+            .contact
+            .as_ref()
+            .and_then(|place| place.contact.as_ref().map(|contact| (place, contact)))
+        else {
+            return Ok(None);
+        };
+        let next = contact.next.map(|(body, share)| (body.number(), share));
+        let fields = (
+            contact.body.number(),
+            array(py, &contact.point),
+            array(py, &contact.force),
+            contact.spread,
+            contact.probability,
+            next,
+            place.time,
+        );
+        class(py, "Contact")?.call1(fields).map(Some)
+    }
+
+    /// Why it is not known for sure what was touched, or nothing is known; `None` if it is.
+    #[getter]
+    fn contact_unknown(&self) -> Option<&str> {
+        self.0.contact.as_ref()?.unknown.as_deref()
+    }
+
+    /// How many states were lost.
+    #[getter]
+    fn lost(&self) -> u64 {
+        self.0.lost.states
+    }
+
+    /// The last second before the end as an SVG image: what touched the arm, velocities and torques
+    /// against their limits, what happened when, and where on the arm the contact was. It has no
+    /// background, and colours that can be told apart on white and on black.
+    fn svg(&self, py: Python<'_>) -> String {
+        py.detach(|| self.0.figure())
+    }
+
+    /// What a notebook shows: the figure and the report.
+    fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
+        let text = py
+            .import("html")?
+            .call_method1("escape", (self.__str__(),))?
+            .extract::<String>()?;
+        Ok(format!("{}<pre>{text}</pre>", self.svg(py)))
+    }
+
+    fn __str__(&self) -> String {
+        self.0.to_string()
+    }
+
+    fn __repr__(&self) -> String {
+        let stopped = match self.errors() {
+            errors if !errors.is_empty() => format!("stopped by {}", errors.join(", ")),
+            _ if self.0.cause.is_some() => "stopped".to_owned(),
+            _ => "not stopped".to_owned(),
+        };
+        format!(
+            "<Explanation of {} cycles of an {}, {stopped}>",
+            self.0.cycles,
+            self.robot()
+        )
+    }
+}
+
+/// A class of `explanation.py`.
+fn class<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+    py.import("franka_async.explanation")?.getattr(name)
+}
