@@ -18,6 +18,7 @@
 //! | `message` | requests and replies, JSON |
 //! | `news` | events as lines for people |
 //! | `pace` | how fast the arm may go, so that none of its points exceeds a speed |
+//! | `page` | the files of the page |
 //! | `source` | where states come from |
 //! | `statistics` | how punctual control is |
 //! | `viewer` | one viewer's socket |
@@ -67,6 +68,7 @@ mod hub;
 mod message;
 mod news;
 mod pace;
+mod page;
 mod source;
 mod statistics;
 mod viewer;
@@ -214,6 +216,7 @@ pub async fn simulator(running: &Arc<Running>, options: Options) -> Result<Route
 fn serve(hub: Arc<Hub>) -> Router {
     Router::new()
         .route("/ws", get(connect))
+        .merge(page::routes())
         .layer(from_fn_with_state(hub.clone(), guard))
         .with_state(hub)
 }

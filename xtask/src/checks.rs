@@ -9,7 +9,7 @@ use clap::ValueEnum;
 
 use crate::step::{Outcome, Steps};
 use crate::workspace::Workspace;
-use crate::{circles, mujoco, names, package, peers, realtime, recordings, tidy};
+use crate::{circles, dashboard, mujoco, names, package, peers, realtime, recordings, tidy};
 
 /// A step that can be chosen with `--only`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -38,6 +38,8 @@ pub(crate) enum Check {
     Python,
     /// Recordings, read by the standard reader in Python.
     Recordings,
+    /// The dashboard's page in a real browser.
+    Dashboard,
 }
 
 /// Runs the chosen steps, or all if none is chosen, up to the first failure.
@@ -68,6 +70,7 @@ impl Check {
             Self::Peers => ("peers", "other clients against the simulator"),
             Self::Python => ("python", "the Python package: its tests and types"),
             Self::Recordings => ("recordings", "recordings read by the standard reader"),
+            Self::Dashboard => ("dashboard", "the dashboard's page in a real browser"),
         }
     }
 
@@ -112,6 +115,7 @@ impl Check {
             Self::Peers => return peers::run(workspace),
             Self::Python => return package::run(workspace),
             Self::Recordings => return recordings::run(workspace),
+            Self::Dashboard => return dashboard::run(workspace),
         }
         Ok(Outcome::Passed)
     }

@@ -1,11 +1,12 @@
 //! One-command tasks of this workspace: `cargo xtask test`, `cargo xtask vectors [DIR]`,
 //! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask arms`, `cargo xtask wheels`,
-//! `cargo xtask mujoco`.
+//! `cargo xtask assets`, `cargo xtask mujoco`.
 //!
 //! | module | task |
 //! |---|---|
 //! | [`checks`] | the steps of `cargo xtask test` |
 //! | [`circles`] | the step that finds imports in a circle between modules |
+//! | [`dashboard`] | the files of the dashboard's page, and the page in a browser |
 //! | [`fuzz`] | the fuzz targets |
 //! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
 //! | [`mujoco`] | the native library of the simulator's MuJoCo plant |
@@ -20,6 +21,7 @@
 
 mod checks;
 mod circles;
+mod dashboard;
 mod fuzz;
 mod live;
 mod mujoco;
@@ -120,6 +122,8 @@ enum Task {
         #[arg(long, value_delimiter = ',')]
         only: Vec<String>,
     },
+    /// Make the files of the dashboard's page anew, from npm packages that are pinned by hash.
+    Assets,
     /// Fetch the native library that the simulator's feature `mujoco` links to.
     Mujoco,
 }
@@ -187,6 +191,7 @@ fn run(task: Task) -> anyhow::Result<()> {
             workspace.run(&mut command)
         }
         Task::Wheels { only } => package::wheels::run(&workspace, &only),
+        Task::Assets => dashboard::assets(&workspace),
         Task::Mujoco => mujoco::provide(&workspace),
     }
 }

@@ -55,7 +55,7 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
     found.extend(names.untold(&table));
     for text in [workspace.root().join("README.md")]
         .into_iter()
-        .chain(files(&workspace.root().join("docs/src"))?)
+        .chain(pages(&workspace.root().join("docs/src"))?)
     {
         let name = text.strip_prefix(workspace.root()).unwrap_or(&text);
         let programs = programs(&fs::read_to_string(&text)?).replace('_', "-");
@@ -258,14 +258,15 @@ fn join(module: &str, name: &str) -> String {
     }
 }
 
-/// The files of a directory.
-fn files(directory: &Path) -> anyhow::Result<Vec<std::path::PathBuf>> {
-    let mut files = Vec::new();
+/// The pages in a directory; there are pictures, too.
+fn pages(directory: &Path) -> anyhow::Result<Vec<std::path::PathBuf>> {
+    let mut pages = Vec::new();
     for entry in fs::read_dir(directory)? {
-        files.push(entry?.path());
+        pages.push(entry?.path());
     }
-    files.sort();
-    Ok(files)
+    pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));
+    pages.sort();
+    Ok(pages)
 }
 
 /// The Rust programs of a page.

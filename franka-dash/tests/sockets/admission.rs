@@ -70,3 +70,21 @@ async fn without_a_token_only_this_computer_is_served() {
         .await
         .expect("a port");
 }
+
+#[test]
+fn the_page_is_served_with_a_policy_that_keeps_everything_else_out() {
+    let served = Served::new(|_| Options::default());
+    for (path, kind) in [
+        ("", "text/html"),
+        ("dash.js", "text/javascript"),
+        ("dash.css", "text/css"),
+        ("licenses", "text/plain"),
+    ] {
+        let answer = ureq::get(format!("http://{}/{path}", served.address)).call();
+        let answer = answer.unwrap_or_else(|error| panic!("{path}: {error}"));
+        let header = |name| answer.headers()[name].to_str().expect("text");
+        assert!(header("content-type").starts_with(kind), "{path}");
+        let policy = header("content-security-policy");
+        assert!(policy.starts_with("default-src 'self';"), "{path}");
+    }
+}

@@ -1,0 +1,50 @@
+// The last 60 seconds: what is shown is the newest frame, or one of these.
+
+const KEPT_MS = 60_000;
+
+export class History extends EventTarget {
+  frames = [];
+  #chosen = null;
+
+  add(frame) {
+    this.frames.push(frame);
+    let old = 0;
+    while (frame.serverMs - this.frames[old].serverMs > KEPT_MS) old += 1;
+    // Rarely, since it moves all that is kept.
+    if (old > 120) this.frames.splice(0, old);
+    if (this.#chosen === null) this.#show(frame);
+  }
+
+  get live() { return this.#chosen === null; }
+
+  get newest() { return this.frames[this.frames.length - 1]; }
+
+  /** Shows what was `seconds` before the newest frame; the newest as it comes for 0. */
+  choose(seconds) {
+    if (!this.newest) return;
+    if (seconds <= 0) {
+      this.#chosen = null;
+      this.#show(this.newest);
+      return;
+    }
+    const wanted = this.newest.serverMs - seconds * 1000;
+    this.#chosen = this.frames.find((frame) => frame.serverMs >= wanted) ?? this.newest;
+    this.#show(this.#chosen);
+  }
+
+  #show(frame) {
+    this.dispatchEvent(new CustomEvent("show", { detail: frame }));
+  }
+
+  /** All that is kept as comma-separated values. */
+  csv() {
+    const names = ["robot_ms", "mode", "success_rate"];
+    const columns = { q: 7, dq: 7, tau: 7, tauExt: 7, force: 6, reference: 7 };
+    for (const [name, count] of Object.entries(columns)) {
+      for (let i = 0; i < count; i += 1) names.push(`${name}_${i}`);
+    }
+    const row = (frame) => [frame.robotMs, frame.mode, frame.success,
+      ...Object.keys(columns).flatMap((name) => Array.from(frame[name]))].join(",");
+    return [names.join(","), ...this.frames.map(row), ""].join("\n");
+  }
+}

@@ -1,0 +1,58 @@
+// Each joint: where it is in its range, where it is to be, a target for it, and two jog buttons.
+
+export class Joints {
+  #rows = [];
+  #hello = null;
+
+  constructor(hold, speed) {
+    const place = document.getElementById("joints");
+    for (let joint = 0; joint < 7; joint += 1) {
+      const row = document.createElement("div");
+      row.className = "joint";
+      row.innerHTML = `<span>J${joint + 1}</span><button type="button" aria-label="joint ${joint + 1} down">−</button>`
+        + `<div class="track"><i></i><i class="reference"></i><input type="range" step="0.001" aria-label="target of joint ${joint + 1}"></div>`
+        + `<button type="button" aria-label="joint ${joint + 1} up">+</button><span class="value"></span>`;
+      place.append(row);
+      const [down, up] = row.querySelectorAll("button");
+      hold.bind(down, () => ({ motion: { kind: "joint", joint, up: false }, speed: speed() }));
+      hold.bind(up, () => ({ motion: { kind: "joint", joint, up: true }, speed: speed() }));
+      const [measured, reference] = row.querySelectorAll("i");
+      this.#rows.push({
+        measured, reference, track: row.querySelector(".track"),
+        target: row.querySelector("input"), value: row.querySelector(".value"), touched: false,
+      });
+      const last = this.#rows[joint];
+      last.target.addEventListener("input", () => { last.touched = true; });
+    }
+    const go = document.createElement("button");
+    go.type = "button";
+    go.id = "go";
+    go.textContent = "Hold to go to the targets";
+    place.append(go);
+    hold.bind(go, () => ({
+      motion: { kind: "joints", q: this.#rows.map(({ target }) => Number(target.value)) }, speed: speed(),
+    }));
+  }
+
+  describe(hello) {
+    this.#hello = hello;
+    this.#rows.forEach(({ target }, i) => {
+      target.min = hello.joint_lower[i] + 0.02;
+      target.max = hello.joint_upper[i] - 0.02;
+    });
+  }
+
+  show(frame) {
+    if (!this.#hello) return;
+    const { joint_lower: lower, joint_upper: upper } = this.#hello;
+    this.#rows.forEach((row, i) => {
+      const share = (q) => `${Math.min(1, Math.max(0, (q - lower[i]) / (upper[i] - lower[i]))) * 100}%`;
+      row.measured.style.left = share(frame.q[i]);
+      row.reference.style.left = share(frame.reference[i]);
+      const distance = Math.min(frame.q[i] - lower[i], upper[i] - frame.q[i]);
+      row.track.classList.toggle("near", distance < 0.1);
+      row.value.textContent = `${((frame.q[i] * 180) / Math.PI).toFixed(1)}°`;
+      if (!row.touched) row.target.value = frame.q[i];
+    });
+  }
+}

@@ -1,0 +1,72 @@
+// The line at the top: mode, session, who commands, how far away the server is; and the stop.
+
+import { MODES, MODE_CLASSES } from "./frame.js";
+
+const ALIVE_MS = 1000;
+
+export class Strip {
+  status = { commander: null, name: null, holding: false };
+  #hello = null;
+
+  constructor(connection) {
+    this.connection = connection;
+    const byId = (id) => document.getElementById(id);
+    this.mode = byId("mode");
+    byId("stop").addEventListener("click", () => this.stop());
+    addEventListener("keydown", (event) => {
+      if (event.key === "Escape" || event.key === " ") {
+        // Also on a focused button, which a space would press.
+        event.preventDefault();
+        this.stop();
+      }
+    }, { capture: true });
+    byId("lease").addEventListener("click", () => {
+      const request = this.commands ? { type: "release" } : { type: "take", name: `viewer ${this.#hello?.viewer}` };
+      connection.send(request);
+    });
+    byId("recover").addEventListener("click", () => connection.send({ type: "recover" }));
+    setInterval(() => { if (this.commands) connection.send({ type: "alive" }); }, ALIVE_MS);
+    connection.addEventListener("closed", () => {
+      this.mode.textContent = "no connection";
+      this.mode.className = "badge";
+      this.setStatus({ commander: null, name: null, holding: false });
+    });
+  }
+
+  get commands() { return this.#hello !== null && this.status.commander === this.#hello.viewer; }
+
+  stop() { this.connection.send({ type: "stop" }); }
+
+  describe(hello) {
+    this.#hello = hello;
+    document.getElementById("robot").textContent = hello.robot + (hello.simulated ? ", simulated" : "");
+    this.setStatus(this.status);
+  }
+
+  setStatus(status) {
+    this.status = status;
+    const hello = this.#hello;
+    const may = hello?.motion_allowed || hello?.simulated;
+    document.getElementById("commander").textContent = status.name ?? "nobody";
+    const lease = document.getElementById("lease");
+    lease.textContent = this.commands ? "Release" : "Take command";
+    lease.disabled = !may || (status.commander !== null && !this.commands);
+    document.getElementById("recover").disabled = !(this.commands && hello.motion_allowed);
+    for (const button of document.querySelectorAll("#jog button, .joint button, #go")) {
+      button.disabled = !(this.commands && hello.motion_allowed);
+    }
+    for (const button of document.querySelectorAll("#faults button")) button.disabled = !this.commands;
+  }
+
+  show(frame) {
+    this.mode.textContent = MODES[frame.mode] ?? "unknown";
+    this.mode.className = `badge ${MODE_CLASSES[frame.mode] ?? ""}`;
+    const session = frame.holding ? "held" : frame.running ? "running" : "none";
+    document.getElementById("session").textContent = session;
+    document.getElementById("success").textContent = frame.running ? `${(frame.success * 100).toFixed(0)} %` : "–";
+  }
+
+  statistics({ round_trip_ms: roundTrip }) {
+    document.getElementById("round-trip").textContent = roundTrip === null ? "–" : `${roundTrip.toFixed(0)} ms`;
+  }
+}

@@ -1,0 +1,67 @@
+//! The page: files that are part of the program. `cargo xtask assets` makes them.
+
+use axum::Router;
+use axum::http::{HeaderName, header};
+use axum::routing::get;
+
+/// The routes of the page's files.
+pub(crate) fn routes<S: Clone + Send + Sync + 'static>() -> Router<S> {
+    let mut router = Router::new();
+    for (path, kind, content) in FILES {
+        router = router.route(path, get(async || (headers(kind), *content)));
+    }
+    router
+}
+
+/// Kept by no cache, so that page and server are of one version.
+fn headers(kind: &'static str) -> [(HeaderName, &'static str); 2] {
+    [
+        (header::CONTENT_TYPE, kind),
+        (header::CACHE_CONTROL, "no-cache"),
+    ]
+}
+
+/// Path, type and content.
+const FILES: &[(&str, &str, &[u8])] = &[
+    (
+        "/",
+        "text/html; charset=utf-8",
+        include_bytes!("../page/index.html"),
+    ),
+    (
+        "/dash.js",
+        "text/javascript; charset=utf-8",
+        include_bytes!("../page/dist/dash.js"),
+    ),
+    (
+        "/dash.css",
+        "text/css; charset=utf-8",
+        include_bytes!("../page/dist/dash.css"),
+    ),
+    (
+        "/icon.svg",
+        "image/svg+xml",
+        include_bytes!("../page/icon.svg"),
+    ),
+    (
+        "/licenses",
+        "text/plain; charset=utf-8",
+        include_bytes!("../page/dist/licenses.txt"),
+    ),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_is_small_and_brings_its_licences() {
+        let size: usize = FILES.iter().map(|(_, _, content)| content.len()).sum();
+        assert!(size < 2_500_000, "{size} bytes");
+        let (.., licences) = FILES.last().expect("files");
+        let licences = std::str::from_utf8(licences).expect("text");
+        for part in ["three.js authors", "Leon Sorokin"] {
+            assert!(licences.contains(part), "{part}");
+        }
+    }
+}

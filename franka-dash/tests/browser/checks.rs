@@ -1,0 +1,194 @@
+//! What a person does with the page, and what has to come of it.
+
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::{Context, ensure};
+use franka_async::state::RobotMode;
+use serde_json::json;
+
+use crate::driver::{Browser, down, move_to, point, up};
+use crate::served::{Served, wait};
+
+/// All checks, one after the other.
+pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    load(page, served)?;
+    shows_the_robot(page, served)?;
+    take(page)?;
+    jog(page, served)?;
+    lose_the_hold(page, served)?;
+    keyboard(page, served)?;
+    push(page, served)?;
+    reflex_and_recovery(page, served)?;
+    leave(page, served)
+}
+
+/// Opens the page, and waits until it shows a state.
+fn load(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    let begin = Instant::now();
+    page.go(&format!("http://{}/", served.address))?;
+    wait("the page", || Ok(page.state()?["ready"] == true))?;
+    println!("the page shows a state after {:.0?}", begin.elapsed());
+    Ok(())
+}
+
+/// The end effector of the scene is that of the robot.
+fn shows_the_robot(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    wait("the drawn arm", || {
+        let shown = page.state()?["endEffector"].clone();
+        let robot = served.robot.pose().translation;
+        let off = |i: usize| shown[i].as_f64().map(|x| (x - robot.vector[i]).abs());
+        Ok((0..3).all(|i| off(i).is_some_and(|off| off < 1e-3)))
+    })
+}
+
+fn take(page: &Browser) -> anyhow::Result<()> {
+    page.click("#lease")?;
+    wait("the lease", || Ok(page.state()?["commands"] == true))
+}
+
+/// Presses the button that moves up, again if the machine was too busy for a hold, until the arm
+/// has moved. It is held on return.
+fn hold_up(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    let start = served.height();
+    for _ in 0..20 {
+        let button = page.find("[data-jog='Z+']")?;
+        page.pointer(&[move_to(button), down()])?;
+        while page.state()?["holding"] == true {
+            if served.height() > start + 0.003 {
+                return Ok(());
+            }
+        }
+        page.pointer(&[up()])?;
+    }
+    anyhow::bail!("the arm does not move while the button is held")
+}
+
+fn jog(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    hold_up(page, served)?;
+    page.pointer(&[up()])?;
+    served.check_rest()
+}
+
+/// Each way in which a browser takes a held button away.
+fn lose_the_hold(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    let button = "document.querySelector(\"[data-jog='Z+']\")";
+    for way in [
+        "dispatchEvent(new Event('blur'))".to_owned(),
+        "dispatchEvent(new Event('pagehide'))".to_owned(),
+        "dispatchEvent(new Event('resize'))".to_owned(),
+        "dispatchEvent(new Event('orientationchange'))".to_owned(),
+        "document.dispatchEvent(new Event('visibilitychange'))".to_owned(),
+        format!("{button}.dispatchEvent(new PointerEvent('pointercancel'))"),
+        format!("{button}.dispatchEvent(new PointerEvent('lostpointercapture'))"),
+        // A page that hangs: no timer runs.
+        "const until = Date.now() + 600; while (Date.now() < until);".to_owned(),
+    ] {
+        hold_up(page, served)?;
+        page.run(&way)?;
+        served.check_rest().with_context(|| way.clone())?;
+        wait("the page", || Ok(page.state()?["holding"] == false))?;
+        page.pointer(&[up()])?;
+    }
+    // The pointer leaves the button.
+    hold_up(page, served)?;
+    page.pointer(&[move_to((5.0, 300.0))])?;
+    served.check_rest().context("the pointer left")?;
+    page.pointer(&[up()])
+}
+
+/// Enter holds a button that has the focus; the space bar stops.
+fn keyboard(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    for stop in [false, true] {
+        let start = served.height();
+        let mut moved = false;
+        for _ in 0..20 {
+            page.run("document.querySelector(\"[data-jog='Z−']\").focus()")?;
+            page.key("keyDown", ENTER)?;
+            while !moved && page.state()?["holding"] == true {
+                moved = served.height() < start - 0.003;
+            }
+            if moved {
+                break;
+            }
+            page.key("keyUp", ENTER)?;
+        }
+        ensure!(moved, "the arm does not move while Enter is held");
+        if stop {
+            page.key("keyDown", " ")?;
+            wait("the stop", || Ok(page.state()?["holding"] == false))?;
+            page.key("keyUp", " ")?;
+        }
+        page.key("keyUp", ENTER)?;
+        served.check_rest()?;
+    }
+    Ok(())
+}
+
+/// Drags link 6: the robot feels it, and the page draws the force.
+fn push(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    page.run("scrollTo(0, 0)")?;
+    let (x, y) = point(&page.state()?["links"][5])?;
+    page.pointer(&[move_to((x, y)), down()])?;
+    page.pointer(&[move_to((x, y - 150.0))])?;
+    wait("the push", || {
+        let force = served.robot.state().O_F_ext_hat_K;
+        let newtons = force[..3].iter().map(|f| f * f).sum::<f64>().sqrt();
+        Ok(newtons > 8.0 && page.state()?["forceShown"] == true)
+    })?;
+    page.pointer(&[up()])?;
+    wait("the end of the push", || {
+        Ok(page.state()?["forceShown"] == false)
+    })
+}
+
+fn reflex_and_recovery(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    page.run("[...document.querySelectorAll('#faults button')].at(-1).click()")?;
+    let is = |mode| Ok(served.robot.state().robot_mode == mode);
+    wait("the reflex", || is(RobotMode::Reflex))?;
+    wait("the reflex in the log", || {
+        let text = page.run("return document.getElementById('events').textContent")?;
+        Ok(text
+            .as_str()
+            .is_some_and(|text| text.contains("cartesian_reflex")))
+    })?;
+    page.click("#recover")?;
+    wait("the recovery", || is(RobotMode::Idle))
+}
+
+/// The page goes away in mid-motion.
+fn leave(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    hold_up(page, served)?;
+    page.go("about:blank")?;
+    served.check_rest().context("the page was left")
+}
+
+/// A picture of the page, with a hand that is pushed.
+pub(crate) fn picture(
+    page: &Browser,
+    served: &Served,
+    dark: bool,
+    path: &Path,
+) -> anyhow::Result<()> {
+    let scheme = if dark { "dark" } else { "light" };
+    let features = json!([{"name": "prefers-color-scheme", "value": scheme}]);
+    let media = json!({"cmd": "Emulation.setEmulatedMedia", "params": {"features": features}});
+    page.post("goog/cdp/execute", &media)?;
+    load(page, served)?;
+    shows_the_robot(page, served)?;
+    take(page)?;
+    let (x, y) = point(&page.state()?["links"][5])?;
+    page.pointer(&[move_to((x, y)), down()])?;
+    page.pointer(&[move_to((x + 60.0, y + 90.0))])?;
+    wait("the force", || Ok(page.state()?["forceShown"] == true))?;
+    wait("some history", || {
+        Ok(page.state()?["frames"]
+            .as_u64()
+            .is_some_and(|frames| frames > 30))
+    })?;
+    page.picture(path)?;
+    page.pointer(&[up()])
+}
+
+/// The key, as WebDriver writes it.
+const ENTER: &str = "\u{e007}";

@@ -1,0 +1,83 @@
+//! The dashboard's page: its files made from pinned packages, and the page in a real browser.
+
+use std::env;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+
+use crate::mujoco;
+use crate::step::Outcome;
+use crate::workspace::Workspace;
+
+/// Makes the files in `franka-dash/page/dist` anew. Needs npm, which checks the packages against
+/// the hashes of the lock file; none of their scripts runs.
+pub(crate) fn assets(workspace: &Workspace) -> anyhow::Result<()> {
+    let page = workspace.root().join("franka-dash").join("page");
+    let work = workspace.target().join("dashboard-page");
+    for name in ["package.json", "package-lock.json"] {
+        copy(&page.join(name), &work.join(name))?;
+    }
+    // Files that no longer exist would do no harm: only what is imported counts.
+    let sources = page.join("src");
+    for entry in fs::read_dir(&sources)? {
+        let name = entry?.file_name();
+        copy(&sources.join(&name), &work.join("src").join(&name))?;
+    }
+    let mut npm = workspace.program("npm");
+    npm.args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]);
+    workspace.run(npm.current_dir(&work))?;
+    let mut esbuild = workspace.program(work.join("node_modules/.bin/esbuild"));
+    esbuild.args(["src/main.js", "--bundle", "--format=esm", "--minify"]);
+    esbuild.args(["--legal-comments=eof", "--log-level=warning"]);
+    let dist = page.join("dist");
+    esbuild.arg(format!("--outfile={}", dist.join("dash.js").display()));
+    workspace.run(esbuild.current_dir(&work))?;
+    let mut licences = String::new();
+    for package in ["three", "uplot"] {
+        let package_directory = work.join("node_modules").join(package);
+        let text = fs::read_to_string(package_directory.join("LICENSE"))?;
+        licences += &format!("{package}\n\n{text}\n");
+    }
+    fs::write(dist.join("licenses.txt"), licences)?;
+    Ok(())
+}
+
+fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
+    let directory = to.parent().context("no directory")?;
+    fs::create_dir_all(directory)?;
+    fs::copy(from, to).with_context(|| from.display().to_string())?;
+    Ok(())
+}
+
+/// Runs the test of the page in a browser.
+pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let browsers = ["chromium", "chromium-browser", "google-chrome"];
+    let found = (find(&["chromedriver"]), find(&browsers));
+    let (Some(driver), Some(browser)) = found else {
+        let why = "no Chromium with chromedriver (Debian: chromium, chromium-driver)";
+        return Outcome::without(why.to_owned());
+    };
+    let mut test = workspace.cargo();
+    // With the features of the step that runs all tests: what it has built is used again.
+    test.args(["test", "--workspace", "--test=browser", "--features"]);
+    test.arg(mujoco::features(workspace)?).arg("--");
+    test.args(["--ignored", "--nocapture"]);
+    test.env("FRANKA_WEBDRIVER", driver);
+    test.env("FRANKA_BROWSER", browser);
+    test.env("FRANKA_PICTURES", workspace.target().join("dashboard"));
+    workspace.run(&mut test)?;
+    Ok(Outcome::Passed)
+}
+
+/// The first of these programs that there is.
+fn find(names: &[impl AsRef<OsStr>]) -> Option<PathBuf> {
+    let path = env::var_os("PATH")?;
+    let places: Vec<_> = env::split_paths(&path).collect();
+    let mut programs = names.iter().flat_map(|name| {
+        let name = name.as_ref();
+        places.iter().map(move |place| place.join(name))
+    });
+    programs.find(|program| program.is_file())
+}
