@@ -1,12 +1,14 @@
 //! One-command tasks of this workspace: `cargo xtask test`, `cargo xtask vectors [DIR]`,
 //! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask arms`, `cargo xtask wheels`,
-//! `cargo xtask assets`, `cargo xtask mujoco`.
+//! `cargo xtask assets`, `cargo xtask dist`, `cargo xtask mujoco`.
 //!
 //! | module | task |
 //! |---|---|
 //! | [`checks`] | the steps of `cargo xtask test` |
 //! | [`circles`] | the step that finds imports in a circle between modules |
+//! | [`cross`] | building for other machines, and running that |
 //! | [`dashboard`] | the files of the dashboard's page, and the page in a browser |
+//! | [`dist`] | the program `franka` for other machines |
 //! | [`fuzz`] | the fuzz targets |
 //! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
 //! | [`mujoco`] | the native library of the simulator's MuJoCo plant |
@@ -21,7 +23,9 @@
 
 mod checks;
 mod circles;
+mod cross;
 mod dashboard;
+mod dist;
 mod fuzz;
 mod live;
 mod mujoco;
@@ -124,6 +128,14 @@ enum Task {
     },
     /// Make the files of the dashboard's page anew, from npm packages that are pinned by hash.
     Assets,
+    /// Build the program `franka` for machines that have nothing else: static for x86-64 and 64-bit
+    /// Arm, and for C libraries from 2.17 on. Measures what was built, and moves a simulated robot
+    /// with it, under qemu if need be.
+    Dist {
+        /// Build for these targets only (may be repeated or separated by commas).
+        #[arg(long, value_delimiter = ',')]
+        only: Vec<String>,
+    },
     /// Fetch the native library that the simulator's feature `mujoco` links to.
     Mujoco,
 }
@@ -192,6 +204,7 @@ fn run(task: Task) -> anyhow::Result<()> {
         }
         Task::Wheels { only } => package::wheels::run(&workspace, &only),
         Task::Assets => dashboard::assets(&workspace),
+        Task::Dist { only } => dist::run(&workspace, &only),
         Task::Mujoco => mujoco::provide(&workspace),
     }
 }

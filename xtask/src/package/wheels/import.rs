@@ -2,11 +2,11 @@
 
 use std::env;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 
 use anyhow::ensure;
 
 use super::Platform;
+use crate::cross::{architecture, emulator, is_installed};
 use crate::package::{OLDEST, directory, module};
 use crate::python::{NEWEST, Python};
 use crate::workspace::Workspace;
@@ -105,36 +105,19 @@ impl Platform {
         has: impl Fn(&str) -> bool,
         root: Option<PathBuf>,
     ) -> Result<(String, PathBuf), String> {
-        let architecture = self.architecture();
-        let emulators = [
-            format!("qemu-{architecture}-static"),
-            format!("qemu-{architecture}"),
-        ];
-        let [wanted, _] = &emulators;
-        let missing = format!("{wanted} is not installed");
-        let emulator = emulators.iter().find(|name| has(name)).ok_or(missing)?;
+        let emulator = emulator(architecture(self.target), has)?;
         let variable = self.root_variable();
         let root = root.ok_or(format!(
             "{variable} names no root directory with its Python and numpy"
         ))?;
         match root.join(PYTHON).exists() {
-            true => Ok((emulator.clone(), root)),
+            true => Ok((emulator, root)),
             false => Err(format!(
                 "{variable} is {}, which has no {PYTHON}",
                 root.display()
             )),
         }
     }
-}
-
-/// Whether a program is there.
-fn is_installed(program: &str) -> bool {
-    let mut command = Command::new(program);
-    command
-        .arg("--version")
-        .stdout(Stdio::null())
-        .stderr(Stdio::null());
-    command.status().is_ok_and(|status| status.success())
 }
 
 /// In a root directory.

@@ -17,10 +17,10 @@ mod import;
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use anyhow::{Context as _, bail, ensure};
 
+use crate::cross::{architecture, lacks, path_with, sysroot};
 use crate::package::{OLDEST, directory, module};
 use crate::python::{NEWEST, Python};
 use crate::step::Outcome;
@@ -121,33 +121,12 @@ pub(crate) fn check(workspace: &Workspace, wheel: &Path) -> anyhow::Result<Outco
 }
 
 impl Platform {
-    fn architecture(&self) -> &'static str {
-        self.target.split('-').next().unwrap_or_default()
-    }
-
     fn is_of_this_machine(&self) -> bool {
         let libc = match cfg!(target_env = "musl") {
             true => "musl",
             false => "gnu",
         };
-        self.architecture() == env::consts::ARCH && self.target.ends_with(libc)
-    }
-
-    /// What the sysroot of a toolchain lacks to build for it, if anything.
-    fn lacks(&self, sysroot: &Path) -> Option<String> {
-        let libraries = sysroot.join("lib/rustlib").join(self.target).join("lib");
-        let is_std = |entry: fs::DirEntry| {
-            let name = entry.file_name().to_string_lossy().into_owned();
-            name.starts_with("libstd-") && name.ends_with(".rlib")
-        };
-        let has_std = fs::read_dir(&libraries)
-            .is_ok_and(|mut entries| entries.any(|entry| entry.is_ok_and(is_std)));
-        let target = self.target;
-        (!has_std).then(|| {
-            format!(
-                "its standard library is not installed; `rustup target add {target}` installs it"
-            )
-        })
+        architecture(self.target) == env::consts::ARCH && self.target.ends_with(libc)
     }
 
     /// Fails unless the name says that the wheel is for this platform, and for every Python.
@@ -168,7 +147,7 @@ fn build(
     platform: &Platform,
     profile: &str,
 ) -> anyhow::Result<Result<PathBuf, String>> {
-    if let Some(why) = platform.lacks(&sysroot()?) {
+    if let Some(why) = lacks(platform.target, &sysroot()?) {
         return Ok(Err(why));
     }
     let python = match Python::find(OLDEST..=NEWEST) {
@@ -203,27 +182,11 @@ fn build(
     ]);
     build.args(["--manifest-path", "franka-py/Cargo.toml", "--out"]);
     build.arg(&out).env("CARGO_TARGET_DIR", workspace.target());
-    // It looks for zig as a module of the first Python.
-    let first = interpreter
-        .parent()
-        .context("an interpreter is in a directory")?
-        .to_owned();
-    let path = env::var_os("PATH").unwrap_or_default();
-    let path = std::iter::once(first).chain(env::split_paths(&path));
-    build.env("PATH", env::join_paths(path)?);
+    build.env("PATH", path_with(&interpreter)?);
     workspace.run(&mut build)?;
     let wheel = only_wheel(&out)?;
     platform.check_name(name_of(&wheel)?)?;
     Ok(Ok(wheel))
-}
-
-/// The directory that the compiler's libraries are in.
-fn sysroot() -> anyhow::Result<PathBuf> {
-    let output = Command::new("rustc")
-        .args(["--print", "sysroot"])
-        .output()?;
-    ensure!(output.status.success(), "rustc does not say where it is");
-    Ok(String::from_utf8(output.stdout)?.trim().into())
 }
 
 /// The one wheel in a directory.
@@ -259,29 +222,6 @@ mod tests {
     pub(super) fn platform(target: &str) -> &'static Platform {
         let mut platforms = PLATFORMS.iter();
         platforms.find(|it| it.target == target).expect("it is one")
-    }
-
-    #[test]
-    fn a_platform_needs_its_standard_library() {
-        let sysroot = tempdir("sysroot");
-        let musl = platform("x86_64-unknown-linux-musl");
-        let why = musl.lacks(&sysroot).expect("there is nothing");
-        assert!(
-            why.ends_with("`rustup target add x86_64-unknown-linux-musl` installs it"),
-            "{why}"
-        );
-        let libraries = sysroot.join("lib/rustlib/x86_64-unknown-linux-musl/lib");
-        fs::create_dir_all(&libraries).unwrap();
-        fs::write(libraries.join("libcore-1.rlib"), "").unwrap();
-        assert!(musl.lacks(&sysroot).is_some(), "core alone will not do");
-        fs::write(libraries.join("libstd-1.rlib"), "").unwrap();
-        assert_eq!(musl.lacks(&sysroot), None);
-        assert!(
-            platform("aarch64-unknown-linux-gnu")
-                .lacks(&sysroot)
-                .is_some()
-        );
-        fs::remove_dir_all(sysroot).unwrap();
     }
 
     #[test]
