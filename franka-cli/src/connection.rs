@@ -1,7 +1,9 @@
 //! Which robot, connecting to it, and whether it may be moved.
 
 use std::fmt;
+use std::net::SocketAddr;
 
+use anyhow::Context as _;
 use clap::Args;
 use franka_async::connection::{Builder, Endpoint};
 use franka_async::error::{CloseReason, ConnectError};
@@ -193,7 +195,7 @@ impl Place {
             )
             .advice("A firewall that stops UDP is the usual cause."),
             Seen::Realtime => Failure::new(Ending::Host, error.to_string()).advice(
-                "For a simulator, --realtime ignore does. For a robot, see the chapter on the real-time set-up.",
+                "For a simulator, --realtime ignore does. For a robot: franka doctor says what is missing.",
             ),
             Seen::Caller => Failure::usage(error.to_string()),
             Seen::Other if self.listed.is_none() && !host.contains(['.', ':']) => Failure::new(
@@ -273,3 +275,41 @@ pub(crate) fn kind_name(kind: RobotKind) -> &'static str {
 
 /// Where a Hand is beside its robot.
 const HAND: u16 = 1338;
+
+/// The first address of an endpoint, with the usual port of the device unless it has one.
+pub(crate) async fn resolve(endpoint: &Endpoint, port: u16) -> anyhow::Result<SocketAddr> {
+    let text = endpoint.to_string();
+    let has_port = match text.rsplit_once(':') {
+        Some((_, port)) => port.parse::<u16>().is_ok(),
+        None => false,
+    };
+    let text = match has_port {
+        true => text,
+        false => format!("{text}:{port}"),
+    };
+    let mut found = tokio::net::lookup_host(&text)
+        .await
+        .map_err(|error| Failure::new(Ending::NoRobot, format!("no address of {text}: {error}")))?;
+    found
+        .next()
+        .with_context(|| format!("no address of {text}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn a_port_is_the_devices_own_unless_it_is_given() {
+        for (text, expected) in [
+            ("127.0.0.1", "127.0.0.1:1337"),
+            ("127.0.0.1:40000", "127.0.0.1:40000"),
+            ("::1", "[::1]:1337"),
+            ("[::1]:40000", "[::1]:40000"),
+        ] {
+            let endpoint = text.parse().expect("an endpoint");
+            let resolved = resolve(&endpoint, 1337).await.expect("an address");
+            assert_eq!(resolved.to_string(), expected);
+        }
+    }
+}

@@ -69,7 +69,7 @@ impl Ending {
     }
 
     /// How an error ends the program.
-    fn of(error: &anyhow::Error) -> Self {
+    pub(crate) fn of(error: &anyhow::Error) -> Self {
         if let Some(failure) = error.downcast_ref::<Failure>() {
             return failure.ending;
         }

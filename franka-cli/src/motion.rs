@@ -1,6 +1,7 @@
 //! A motion under way: connecting for it, recording it, its progress, Ctrl-C.
 
 use std::future::Future;
+use std::net::IpAddr;
 use std::path::PathBuf;
 use std::pin::pin;
 use std::time::Duration;
@@ -11,7 +12,9 @@ use franka_async::error::IdentifyError;
 use franka_async::motion::MotionHandle;
 use franka_async::recording::{RecordOptions, RecordStatus, Recorder, Track};
 use franka_async::replay::ReplayFailure;
+use franka_async::state::RobotError;
 use franka_async::{MotionError, Robot};
+use franka_doctor::{Evidence, Readings, System, likely_causes};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::connection::{Place, Which, check_ready};
@@ -169,17 +172,37 @@ impl Moving {
             _ => Ending::Failed,
         };
         let failure = Failure::new(ending, error.to_string());
+        let causes = evidence(&error).map(|evidence| self.causes(evidence));
+        let causes = causes.unwrap_or_default();
         if !error.control().is_some_and(|error| error.is_reflex()) {
-            return failure.into();
+            return match causes.is_empty() {
+                true => failure.into(),
+                false => failure.advice(causes.trim_end()).into(),
+            };
         }
         let diagnosis = error.diagnose().map(|diagnosis| diagnosis.to_string());
         let diagnosis = diagnosis.unwrap_or_default();
         failure
             .advice(format!(
-                "{}\nWhen the cause is gone: franka recover",
+                "{}\n{causes}When the cause is gone: franka recover",
                 diagnosis.trim_end()
             ))
             .into()
+    }
+
+    /// What most likely kept packets of this computer from coming in time, a line each.
+    fn causes(&self, evidence: Evidence) -> String {
+        let robot = match self.robot.address().ip() {
+            IpAddr::V4(address) => Some(address),
+            IpAddr::V6(_) => None,
+        };
+        let system = System::default();
+        let causes = likely_causes(&Readings::new(&system, robot), evidence);
+        let lines = causes.iter().map(|finding| {
+            let (id, read, wanted) = (finding.id, &finding.read, finding.wanted);
+            format!("likely cause {id}: {read}; wanted: {wanted}\n")
+        });
+        lines.collect()
     }
 
     /// Closes the connection and ends the recording, however the command went.
@@ -207,6 +230,19 @@ pub(crate) fn recorded(status: &RecordStatus) -> String {
         file.unwrap_or_default(),
         status.dropped
     )
+}
+
+/// What a motion shows that ended for want of packets.
+fn evidence(error: &MotionError) -> Option<Evidence> {
+    match error {
+        MotionError::LinkLost { .. } => Some(Evidence::LinkLost),
+        MotionError::Control(error) => {
+            let reason = error.failure.reflex_reason;
+            let lost = RobotError::CommunicationConstraintsViolation;
+            reason.contains(lost).then_some(Evidence::Lost)
+        }
+        _ => None,
+    }
 }
 
 /// Why a motion, or a series of them, did not come to its end.

@@ -4,6 +4,7 @@ mod bench;
 mod cassette;
 mod collision;
 mod completions;
+mod doctor;
 mod explain;
 mod export;
 mod gripper;
@@ -31,6 +32,7 @@ use crate::ending::Ending;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    Doctor(doctor::Doctor),
     State(state::State),
     Read(read::Read),
     #[command(subcommand)]
@@ -86,6 +88,7 @@ impl Command {
         let runtime = tokio::runtime::Runtime::new()?;
         let outcome = runtime.block_on(async {
             match self {
+                Self::Doctor(doctor) => doctor.run().await,
                 Self::State(state) => state.run().await,
                 Self::Read(read) => read.run().await,
                 Self::Model(model) => model.run().await,

@@ -1,15 +1,13 @@
 //! `franka tap`: what passes between clients and a robot, byte for byte.
 
-use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::net::{IpAddr, Ipv4Addr};
 use std::path::PathBuf;
 
-use anyhow::Context as _;
 use clap::Args;
 use franka_async::cassette::{Device, Route, Tap as Recording};
-use franka_async::connection::Endpoint;
 use serde_json::json;
 
-use crate::connection::Which;
+use crate::connection::{Which, resolve};
 use crate::ending::{Ending, Failure};
 use crate::interrupt::interrupted;
 use crate::output::{Output, say};
@@ -90,43 +88,5 @@ impl Tap {
                 report.dropped
             )
         })
-    }
-}
-
-/// The first address of an endpoint, with the usual port of the device unless it has one.
-async fn resolve(endpoint: &Endpoint, port: u16) -> anyhow::Result<SocketAddr> {
-    let text = endpoint.to_string();
-    let has_port = match text.rsplit_once(':') {
-        Some((_, port)) => port.parse::<u16>().is_ok(),
-        None => false,
-    };
-    let text = match has_port {
-        true => text,
-        false => format!("{text}:{port}"),
-    };
-    let mut found = tokio::net::lookup_host(&text)
-        .await
-        .map_err(|error| Failure::new(Ending::NoRobot, format!("no address of {text}: {error}")))?;
-    found
-        .next()
-        .with_context(|| format!("no address of {text}"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[tokio::test]
-    async fn a_port_is_the_devices_own_unless_it_is_given() {
-        for (text, expected) in [
-            ("127.0.0.1", "127.0.0.1:1337"),
-            ("127.0.0.1:40000", "127.0.0.1:40000"),
-            ("::1", "[::1]:1337"),
-            ("[::1]:40000", "[::1]:40000"),
-        ] {
-            let endpoint = text.parse().expect("an endpoint");
-            let resolved = resolve(&endpoint, 1337).await.expect("an address");
-            assert_eq!(resolved.to_string(), expected);
-        }
     }
 }

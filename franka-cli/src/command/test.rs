@@ -86,7 +86,7 @@ impl Communication {
             let about = match verdict {
                 "good" => "",
                 "usable" => ": motions will be rough, and may be stopped",
-                _ => ": see the chapter on the real-time set-up",
+                _ => ": franka doctor says what may be the cause",
             };
             let tables: String = all.iter().map(table).collect();
             format!("{tables}{style}{verdict}{style:#}{about}")

@@ -69,6 +69,33 @@ fn this_computer_is_measured() {
 }
 
 #[test]
+fn this_computer_and_the_way_to_a_robot_are_checked() {
+    let home = Home::new();
+    let text = home.run(&["doctor", "--for", "sim"]).done();
+    assert!(
+        text.contains("for simulating") && !text.contains('\x1b'),
+        "{text}"
+    );
+    let script = home.run(&["doctor", "--for", "sim", "--fix"]).done();
+    assert!(script.starts_with("#!/bin/sh"), "{script}");
+    Simulated::each(|sim| {
+        let robot = sim.address();
+        let ran = home.run(&["doctor", &robot, "--for", "read", "--quick", "--json"]);
+        // Whether this computer is fit for it is not judged here.
+        assert!(matches!(ran.code, Some(0 | 1)), "{ran:?}");
+        assert_eq!(ran.err, "", "{ran:?}");
+        let json: serde_json::Value = serde_json::from_str(&ran.out).expect("JSON");
+        let findings = json["findings"].as_array().expect("findings");
+        let ids = findings.iter().filter_map(|finding| finding["id"].as_str());
+        let ids: Vec<&str> = ids.collect();
+        assert!(ids.len() > 10, "{ids:?}");
+        assert!(ids.contains(&"robot.lost"), "{ids:?}");
+    });
+    let ran = home.run(&["doctor", "127.0.0.1:1", "--for", "read", "--quick"]);
+    assert!(ran.err.contains("not checked"), "{ran:?}");
+}
+
+#[test]
 fn the_simulator_is_a_robot_until_ctrl_c() {
     let home = Home::new();
     for robot in ["fr3", "fer"] {
