@@ -42,6 +42,7 @@ mod pose;
 mod record;
 mod recorder;
 mod recording;
+mod replay;
 mod robot;
 mod runtime;
 mod settings;

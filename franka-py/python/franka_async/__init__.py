@@ -61,6 +61,7 @@ from .errors import (
     ReadError,
     RecordError,
     RecordingError,
+    ReplayError,
     TeamError,
 )
 from .goal import (
@@ -166,6 +167,7 @@ __all__ = [
     "RecordingFile",
     "Reference",
     "Reflex",
+    "ReplayError",
     "Robot",
     "RobotState",
     "Settling",

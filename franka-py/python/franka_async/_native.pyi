@@ -15,7 +15,7 @@ from .goal import Budget, Chunk, Controller, Destination, Gains, Joints, Margin,
 from .motion import MotionReport, Progress, Reference
 from .options import EngageOptions, FollowOptions, GoalOptions, MotionOptions, RecordOptions, SessionOptions, SimOptions, TuneOptions
 from .otg import Synchronisation
-from .recording import Episode, RecordedEvent, RecordedRobot, RecordStatus, Recovery
+from .recording import Episode, RecordedEvent, RecordedRobot, RecordStatus, Recovery, ReplayReport
 from .settings import VirtualWall
 from .streams import Reading, Stream
 from .supervision import CloseReason, Event, Health, Policy, Reflex
@@ -574,6 +574,14 @@ class Robot:
     def stop(self) -> Operation[None]: ...
     def recover(self) -> Operation[None]: ...
     def move_to(self, target: Destination, **options: Unpack[MotionOptions]) -> Motion: ...
+    def replay(
+        self,
+        recording: RecordingFile,
+        *,
+        speed: float = 1.0,
+        source: Literal["reference", "measured"] = "reference",
+        targets: Literal["joints", "poses"] = "joints",
+    ) -> Operation[ReplayReport]: ...
     def move_joints(self, q: ArrayLike, **options: Unpack[MotionOptions]) -> Motion: ...
     def move_by(
         self,
@@ -657,6 +665,14 @@ class Arm:
     """A session of target control: the arm is held, and goes from goal to goal without a stop in between."""
 
     def move_to(self, target: Destination, **options: Unpack[MotionOptions]) -> Motion: ...
+    def replay(
+        self,
+        recording: RecordingFile,
+        *,
+        speed: float = 1.0,
+        source: Literal["reference", "measured"] = "reference",
+        targets: Literal["joints", "poses"] = "joints",
+    ) -> Operation[ReplayReport]: ...
     def move_joints(self, q: ArrayLike, **options: Unpack[MotionOptions]) -> Motion: ...
     def move_by(
         self,

@@ -25,6 +25,7 @@ __all__ = [
     "ReadError",
     "RecordError",
     "RecordingError",
+    "ReplayError",
     "TeamError",
 ]
 
@@ -79,6 +80,12 @@ class MotionError(FrankaError):
 
     code: int | None = None
     """What a control law returned that gave up, below 0; `None` unless the kind is ``given_up``."""
+
+
+class ReplayError(MotionError):
+    """A recorded motion was not made again. Unless the kind is ``off`` nothing has moved."""
+
+    is_ready_for_more = True
 
 
 class TeamError(MotionError):

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from .errors import RecordError
 
-__all__ = ["BlackBox", "Episode", "RecordStatus", "RecordedEvent", "RecordedRobot", "Recovery"]
+__all__ = ["BlackBox", "Episode", "RecordStatus", "RecordedEvent", "RecordedRobot", "Recovery", "ReplayReport", "Spread"]
 
 
 @dataclass(frozen=True)
@@ -143,3 +143,34 @@ class Recovery:
 
     damage: str | None
     """What was wrong with the file; ``None`` if nothing was."""
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How distances spread."""
+
+    median: float
+    """Half of them are less."""
+
+    p95: float
+    """95 % of them are less."""
+
+    max: float
+    """The greatest."""
+
+
+@dataclass(frozen=True)
+class ReplayReport:
+    """How a replay went."""
+
+    duration: float
+    """From the first target to the last, s."""
+
+    joints: Spread
+    """Between the joints and where they were in the recording, the one that was furthest off in each state, rad."""
+
+    position: Spread
+    """Between the end effector and where it was in the recording, m."""
+
+    states: int
+    """States that were compared."""

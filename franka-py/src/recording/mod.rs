@@ -11,7 +11,7 @@ use franka_async::model::RobotKind;
 use franka_async::recording::event::{Event, EventKind};
 use franka_async::recording::{
     Cycle, Episode, GripperState, HostTime, RecordedRobot, Recording, RecordingError,
-    RobotRecording,
+    RobotRecording, Sample, Samples,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -281,6 +281,13 @@ impl RecordingFile {
             .robot(robot)
             .map_err(|error| error.raise(py))?;
         Ok(py.detach(|| read(&view.from(self.from).to(self.to))))
+    }
+
+    /// The samples of the robot, which has been chosen.
+    pub(crate) fn samples(&self) -> Result<Vec<Sample>, RecordingError> {
+        let robot = self.robot.as_deref().unwrap_or_default();
+        let view = self.recording.robot(robot)?.from(self.from).to(self.to);
+        Samples::new(view.cycles(), view.gripper_states()).collect()
     }
 
     fn cycles(&self, py: Python<'_>) -> PyResult<EachCycle> {

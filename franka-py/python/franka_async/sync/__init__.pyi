@@ -9,11 +9,11 @@ from typing_extensions import Unpack
 from ..goal import Budget, Chunk, Controller, Destination, Gains, Joints, Margin, Target, Waypoint
 from ..motion import MotionReport, Reference
 from ..options import EngageOptions, FollowOptions, GoalOptions, MotionOptions, RecordOptions, SessionOptions, TuneOptions
-from ..recording import RecordStatus
+from ..recording import RecordStatus, ReplayReport
 from ..settings import VirtualWall
 from ..streams import Reading, Stream
 from ..supervision import CloseReason, Event, Health, Policy, Reflex
-from .._native import ActiveControl, EpisodeUnderWay, Follow, GripperState, Identified, Latest, Model, Motion, Recording, RobotState, VacuumGripperState
+from .._native import ActiveControl, EpisodeUnderWay, Follow, GripperState, Identified, Latest, Model, Motion, Recording, RecordingFile, RobotState, VacuumGripperState
 from .. import _native
 from . import tools as tools
 
@@ -28,6 +28,9 @@ class Arm:
     """A session of target control: the arm is held, and goes from goal to goal without a stop in between."""
 
     def move_to(self, target: Destination, **options: Unpack[MotionOptions]) -> MotionReport:
+        ...
+
+    def replay(self, recording: RecordingFile, *, speed: float=1.0, source: Literal['reference', 'measured']='reference', targets: Literal['joints', 'poses']='joints') -> ReplayReport:
         ...
 
     def move_joints(self, q: ArrayLike, **options: Unpack[MotionOptions]) -> MotionReport:
@@ -276,6 +279,9 @@ class Robot:
         ...
 
     def move_to(self, target: Destination, **options: Unpack[MotionOptions]) -> MotionReport:
+        ...
+
+    def replay(self, recording: RecordingFile, *, speed: float=1.0, source: Literal['reference', 'measured']='reference', targets: Literal['joints', 'poses']='joints') -> ReplayReport:
         ...
 
     def move_joints(self, q: ArrayLike, **options: Unpack[MotionOptions]) -> MotionReport:

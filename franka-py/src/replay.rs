@@ -1,0 +1,190 @@
+//! Recorded motions, which an arm makes again.
+
+use franka_async::Error;
+use franka_async::model::{Model, RobotKind};
+use franka_async::recording::RecordingError;
+use franka_async::replay::{
+    ReplayError, ReplayFailure, ReplayOptions, ReplayPlan, ReplayReport, ReplaySource,
+    ReplayTargets, Spread,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyAny;
+
+use crate::arm::Arm;
+use crate::errors::{Raise, made, variant};
+use crate::operation::Operation;
+use crate::recording::{RecordingFile, value};
+use crate::robot::Robot;
+
+#[pymethods]
+impl Robot {
+    /// Moves to where a recorded motion begins, makes it again, and lets the arm go: a session with
+    /// the defaults, and `Arm.replay` in it.
+    #[pyo3(signature = (recording, *, speed = 1.0, source = "reference", targets = "joints"))]
+    fn replay(
+        &self,
+        py: Python<'_>,
+        recording: &Bound<'_, RecordingFile>,
+        speed: f64,
+        source: &str,
+        targets: &str,
+    ) -> PyResult<Operation> {
+        let robot = self.connected()?;
+        let motion = Motion::new(py, recording, speed, source, targets)?;
+        Ok(Operation::new("Robot.replay", async move {
+            let plan = motion.plan(robot.model()).await?;
+            Ok::<_, Failure>(Report(robot.replay(&plan).await?))
+        }))
+    }
+}
+
+#[pymethods]
+impl Arm {
+    /// Moves to where the recorded motion begins, as `move_joints` does, and then follows the
+    /// motion of a `RecordingFile`, or of the part of one that `between` gives, with all guards of
+    /// the session. Returns a `recording.ReplayReport` once the arm rests.
+    ///
+    /// `speed` is 0.01 to 1, as a share of the recorded one. `source` is `reference`, where the arm
+    /// was to be, or `measured`, where it was: of arms that were moved by hand. `targets` is
+    /// `joints`, or `poses`: the hand moves as recorded, the elbow as it can.
+    ///
+    /// Raises `ReplayError` for a motion that is not one for this arm, before anything moves, and
+    /// of the kind `off` once the arm is far from where it was in the recording; `MotionError`,
+    /// `RecordingError`, `ValueError`. Cancelling brakes the arm.
+    #[pyo3(signature = (recording, *, speed = 1.0, source = "reference", targets = "joints"))]
+    fn replay(
+        &self,
+        py: Python<'_>,
+        recording: &Bound<'_, RecordingFile>,
+        speed: f64,
+        source: &str,
+        targets: &str,
+    ) -> PyResult<Operation> {
+        let arm = self.session()?;
+        let motion = Motion::new(py, recording, speed, source, targets)?;
+        Ok(Operation::new("Arm.replay", async move {
+            let plan = motion.plan(arm.robot().model()).await?;
+            Ok::<_, Failure>(Report(arm.replay(&plan).await?))
+        }))
+    }
+}
+
+/// A recorded motion that is to be made again.
+struct Motion {
+    recording: RecordingFile,
+    kind: RobotKind,
+    options: ReplayOptions,
+}
+
+impl Motion {
+    fn new(
+        py: Python<'_>,
+        recording: &Bound<'_, RecordingFile>,
+        speed: f64,
+        source: &str,
+        targets: &str,
+    ) -> PyResult<Self> {
+        let refused = |text: String| Err(PyValueError::new_err(text));
+        let source = match source {
+            "reference" => ReplaySource::Reference,
+            "measured" => ReplaySource::Measured,
+            _ => {
+                return refused(format!(
+                    "source is {source:?}, expected 'reference' or 'measured'"
+                ));
+            }
+        };
+        let targets = match targets {
+            "joints" => ReplayTargets::Joints,
+            "poses" => ReplayTargets::Poses,
+            _ => {
+                return refused(format!(
+                    "targets is {targets:?}, expected 'joints' or 'poses'"
+                ));
+            }
+        };
+        // Which robot it is has to be clear.
+        recording.get().view(py, |_| ())?;
+        let Some(kind) = recording.get().kind() else {
+            return refused("the recording does not say which robot it is of".to_owned());
+        };
+        let options = ReplayOptions::default().speed(speed);
+        Ok(Self {
+            recording: recording.get().clone(),
+            kind,
+            options: options.source(source).targets(targets),
+        })
+    }
+
+    /// Reads it, on a thread that may block, and makes it ready for an arm.
+    async fn plan(self, model: &Model) -> Result<ReplayPlan, Failure> {
+        let Self {
+            recording,
+            kind,
+            options,
+        } = self;
+        let samples = tokio::task::spawn_blocking(move || recording.samples());
+        let samples = samples.await.expect("it does not panic")?;
+        let plan = ReplayPlan::new(kind, &samples, options, model);
+        Ok(plan.map_err(ReplayFailure::Refused)?)
+    }
+}
+
+enum Failure {
+    Recording(RecordingError),
+    Replay(ReplayFailure),
+}
+
+impl From<RecordingError> for Failure {
+    fn from(error: RecordingError) -> Self {
+        Self::Recording(error)
+    }
+}
+
+impl From<ReplayFailure> for Failure {
+    fn from(failure: ReplayFailure) -> Self {
+        Self::Replay(failure)
+    }
+}
+
+impl Raise for Failure {
+    fn raise(self, py: Python<'_>) -> PyErr {
+        let failure = match self {
+            Self::Recording(error) => return error.raise(py),
+            Self::Replay(failure) => failure,
+        };
+        let text = failure.to_string();
+        let (kind, party) = match failure {
+            ReplayFailure::Motion(error) => return Error::from(error).raise(py),
+            ReplayFailure::Refused(ReplayError::Speed { .. }) => {
+                return PyValueError::new_err(text);
+            }
+            ReplayFailure::Refused(error) => (variant(&error), "caller"),
+            failure => (variant(&failure), "robot"),
+        };
+        made(py, "ReplayError", &kind, party, &text)
+    }
+}
+
+/// A [`ReplayReport`] on its way into Python.
+struct Report(ReplayReport);
+
+impl<'py> IntoPyObject<'py> for Report {
+    type Target = PyAny;
+    type Output = Bound<'py, PyAny>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let report = self.0;
+        let spread = |spread: Spread| value(py, "Spread", (spread.median, spread.p95, spread.max));
+        let (joints, position) = (spread(report.joints)?, spread(report.position)?);
+        let fields = (
+            report.duration.as_secs_f64(),
+            joints,
+            position,
+            report.states,
+        );
+        value(py, "ReplayReport", fields)
+    }
+}
