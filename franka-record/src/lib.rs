@@ -1,6 +1,10 @@
 //! Flight recorder for Franka robots: every cycle in an MCAP file, every reflex explained, every
 //! session replayed.
 
+// The tests of modules share sources with those beside `src`.
+#[cfg(test)]
+extern crate self as franka_record;
+
 pub mod cassette;
 mod cycle;
 mod episodes;

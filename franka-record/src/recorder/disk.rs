@@ -18,6 +18,8 @@ pub(super) struct DiskStatus {
     pub(super) backlog: u64,
     /// Bytes in files.
     pub(super) written: u64,
+    /// Cycles in what could not be written.
+    pub(super) cycles_lost: u64,
     /// The files of the recording, oldest first.
     pub(super) files: Vec<PathBuf>,
     /// The files of the black box.
@@ -39,8 +41,8 @@ pub(super) struct Disk {
 enum Job {
     /// Ends the file that is open and begins this one.
     Open(PathBuf, Option<File>),
-    /// Appends whole chunks.
-    Append(Vec<u8>),
+    /// Appends whole chunks with this many cycles.
+    Append(Vec<u8>, u64),
     /// Writes a file of the black box at once and deletes the oldest beyond `keep`.
     BlackBox {
         directory: PathBuf,
@@ -86,14 +88,14 @@ impl Disk {
         lock(&self.status).error.is_none()
     }
 
-    /// Notes why the recording cannot go on; the first reason stays.
+    /// Notes why the recording cannot go on.
     pub(super) fn fail(&self, error: RecordError) {
-        lock(&self.status).error.get_or_insert(error);
+        fail(&self.status, error);
     }
 
     /// Notes why a black box could not be written.
     pub(super) fn fail_black_box(&self, error: RecordError) {
-        lock(&self.status).black_box_error = Some(error);
+        fail_black_box(&self.status, error);
     }
 
     /// Begins a file, which may be open already.
@@ -101,9 +103,15 @@ impl Disk {
         self.order(Job::Open(path, file), 0);
     }
 
-    pub(super) fn append(&self, bytes: Vec<u8>) {
+    /// Appends whole chunks, in which there are this many cycles.
+    pub(super) fn append(&self, bytes: Vec<u8>, cycles: u64) {
         let length = bytes.len();
-        self.order(Job::Append(bytes), length);
+        self.order(Job::Append(bytes, cycles), length);
+    }
+
+    /// Counts cycles that were to be written and are not.
+    pub(super) fn lose(&self, cycles: u64) {
+        lock(&self.status).cycles_lost += cycles;
     }
 
     pub(super) fn black_box(&self, directory: PathBuf, dump: black_box::Dump, keep: usize) {
@@ -122,6 +130,22 @@ impl Disk {
         // The thread is there as long as this is.
         let _ = self.jobs.send(job);
     }
+}
+
+/// Notes and logs why the recording cannot go on; the first reason stays.
+fn fail(status: &Mutex<DiskStatus>, error: RecordError) {
+    let mut status = lock(status);
+    if status.error.is_none() {
+        status.error = Some(error.clone());
+        drop(status);
+        tracing::error!(%error, "the recording ends here; robots go on");
+    }
+}
+
+/// Notes and logs why a black box could not be written; the newest reason stays.
+fn fail_black_box(status: &Mutex<DiskStatus>, error: RecordError) {
+    tracing::error!(%error, "no black box of the incident");
+    lock(status).black_box_error = Some(error);
 }
 
 /// Makes a file that is not there yet.
@@ -205,17 +229,21 @@ impl DiskThread {
                     Err(error) => self.fail(error),
                 }
             }
-            Job::Append(bytes) => {
-                if let Some(open) = &mut self.open {
-                    match open.append(&bytes) {
-                        Ok(()) => lock(&self.status).written += bytes.len() as u64,
-                        Err(error) => {
-                            self.open = None;
-                            self.fail(error);
-                        }
-                    }
+            Job::Append(bytes, cycles) => {
+                let length = bytes.len() as u64;
+                let appended = self.open.as_mut().map(|open| open.append(&bytes));
+                let mut status = lock(&self.status);
+                status.backlog -= length;
+                if let Some(Ok(())) = appended {
+                    status.written += length;
+                } else {
+                    status.cycles_lost += cycles;
                 }
-                lock(&self.status).backlog -= bytes.len() as u64;
+                drop(status);
+                if let Some(Err(error)) = appended {
+                    self.open = None;
+                    self.fail(error);
+                }
             }
             Job::BlackBox {
                 directory,
@@ -225,25 +253,21 @@ impl DiskThread {
             } => {
                 let path = directory.join(&name);
                 let written = write_whole(&directory, &path, &bytes);
-                let mut status = lock(&self.status);
-                status.backlog -= bytes.len() as u64;
+                lock(&self.status).backlog -= bytes.len() as u64;
                 match written {
-                    Ok(()) => status.black_boxes.push(path),
+                    Ok(()) => lock(&self.status).black_boxes.push(path),
                     Err(source) => {
-                        status.black_box_error = Some(RecordError::BlackBox {
-                            path,
-                            source: source.into(),
-                        });
+                        let source = source.into();
+                        fail_black_box(&self.status, RecordError::BlackBox { path, source });
                     }
                 }
-                drop(status);
                 delete_oldest(&directory, keep);
             }
         }
     }
 
     fn fail(&self, error: RecordError) {
-        lock(&self.status).error.get_or_insert(error);
+        fail(&self.status, error);
     }
 
     /// Waits until the disk has what was written, if that is wanted.

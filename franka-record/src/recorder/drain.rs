@@ -46,6 +46,8 @@ pub(super) struct Drain {
     sources: Vec<Source>,
     files: Files,
     clock: RecordClock,
+    /// The wall clock.
+    wall: fn() -> HostTime,
     /// When the wall clock is compared again.
     compare_due: Instant,
     /// The wall clock minus recorded time, `[ns]`.
@@ -90,6 +92,7 @@ impl Drain {
         path: Option<PathBuf>,
         disk: Disk,
         status: Arc<Mutex<DrainStatus>>,
+        wall: fn() -> HostTime,
     ) -> Result<Self, RecordError> {
         Ok(Self {
             orders,
@@ -97,6 +100,7 @@ impl Drain {
             sources: Vec::new(),
             files: Files::begin(clock.now(), options, path, disk)?,
             clock,
+            wall,
             compare_due: Instant::now(),
             offset: 0,
         })
@@ -217,7 +221,7 @@ impl Drain {
         }
         self.compare_due = now + COMPARE_PERIOD;
         let time = self.clock.now();
-        let offset = HostTime::now().as_nanos() as i64 - time.as_nanos() as i64;
+        let offset = (self.wall)().as_nanos() as i64 - time.as_nanos() as i64;
         if (offset - self.offset).abs() >= STEP_MIN {
             self.offset = offset;
             for source in &mut self.sources {
@@ -229,11 +233,20 @@ impl Drain {
     fn finish(mut self) {
         for (index, source) in self.sources.iter_mut().enumerate() {
             source.pass(HostTime::from_nanos(u64::MAX), &mut self.files);
-            let missing = self.files.take_missing(index);
-            let lost = source.note_end(self.clock.now(), &mut self.files);
+            let now = self.clock.now();
+            let missing = self.files.take_missing_at_end(index);
+            if missing > 0 {
+                let kind = EventKind::Dropped { cycles: missing };
+                source.event(now, kind, &mut self.files);
+            }
+            let lost = source.note_end(now, &mut self.files);
             lock(&self.status).dropped += missing + lost;
         }
         self.files.finish();
+        // Of those that thinning has held back until now.
+        for index in 0..self.sources.len() {
+            lock(&self.status).dropped += self.files.take_missing_at_end(index);
+        }
         lock(&self.status).ended = true;
     }
 }

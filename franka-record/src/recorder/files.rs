@@ -49,6 +49,8 @@ struct Open {
     first: PathBuf,
     number: u32,
     bytes: u64,
+    /// Cycles since it was last flushed.
+    cycles: u64,
     /// Time of its first message.
     began: Option<HostTime>,
     /// Time of the newest message when it was last flushed, and when that was.
@@ -116,6 +118,7 @@ impl Files {
         let written = match &mut self.open {
             Some(open) if !(is_cycle && open.full) => {
                 open.began.get_or_insert(message.time);
+                open.cycles += u64::from(is_cycle);
                 open.file.write(message)
             }
             _ => {
@@ -135,11 +138,17 @@ impl Files {
     pub(super) fn take_missing(&mut self, robot: usize) -> u64 {
         let open = self.open.as_ref();
         let full = open.is_some_and(|open| open.full);
-        match self.robots.get_mut(robot) {
-            // Told once there is room for it.
-            Some(robot) if !full => mem::take(&mut robot.missing),
-            _ => 0,
+        // Told once there is room for more.
+        if full {
+            return 0;
         }
+        self.take_missing_at_end(robot)
+    }
+
+    /// As [`Self::take_missing`], when no cycle follows.
+    pub(super) fn take_missing_at_end(&mut self, robot: usize) -> u64 {
+        let robot = self.robots.get_mut(robot);
+        robot.map_or(0, |robot| mem::take(&mut robot.missing))
     }
 
     /// Ends the chunk if messages of `now` are too late for it.
@@ -168,7 +177,7 @@ impl Files {
     /// Writes what is due at `now`. Called some 50 times a second.
     pub(super) fn tick(&mut self, now: HostTime) {
         if !self.disk.is_well() {
-            self.open = None;
+            self.give_up();
         }
         if let Some(open) = &self.open
             && open.flushed_at.elapsed() >= self.options.flush
@@ -224,8 +233,11 @@ impl Files {
         self.dump(HostTime::from_nanos(u64::MAX));
         if let Some(open) = self.open.take() {
             match open.file.finish() {
-                Ok(bytes) => self.disk.append(bytes),
-                Err(error) => self.disk.fail(error),
+                Ok(bytes) => self.disk.append(bytes, open.cycles),
+                Err(error) => {
+                    self.disk.lose(open.cycles);
+                    self.disk.fail(error);
+                }
             }
         }
     }
@@ -234,7 +246,14 @@ impl Files {
     fn check(&mut self, result: Result<(), RecordError>) {
         if let Err(error) = result {
             self.disk.fail(error);
-            self.open = None;
+            self.give_up();
+        }
+    }
+
+    /// Leaves the file as it is on the disk.
+    fn give_up(&mut self) {
+        if let Some(open) = self.open.take() {
+            self.disk.lose(open.cycles);
         }
     }
 }
@@ -246,6 +265,7 @@ impl Open {
             first,
             number,
             bytes: 0,
+            cycles: 0,
             began: None,
             flushed: HostTime::default(),
             flushed_at: Instant::now(),
@@ -258,8 +278,9 @@ impl Open {
         self.flushed = newest;
         self.flushed_at = Instant::now();
         self.bytes += bytes.len() as u64;
+        let cycles = mem::take(&mut self.cycles);
         if !bytes.is_empty() {
-            disk.append(bytes);
+            disk.append(bytes, cycles);
         }
         self.full = disk.backlog() >= BACKLOG_MAX;
         Ok(())
@@ -267,7 +288,7 @@ impl Open {
 
     /// Ends this file and begins the next.
     fn follow(self, session: &Session, disk: &Disk) -> Result<Self, RecordError> {
-        disk.append(self.file.finish()?);
+        disk.append(self.file.finish()?, self.cycles);
         let number = self.number + 1;
         let next = Self::begin(self.first, number, session)?;
         disk.open(numbered(&next.first, number), None);
@@ -286,7 +307,7 @@ fn numbered(first: &Path, number: u32) -> PathBuf {
 }
 
 /// Bytes that may wait for the disk: more than a minute of one robot.
-const BACKLOG_MAX: u64 = 64 << 20;
+pub(super) const BACKLOG_MAX: u64 = 64 << 20;
 
 #[cfg(test)]
 mod tests {

@@ -20,9 +20,12 @@ mod frames;
 mod mcap_file;
 mod options;
 mod session;
+#[cfg(test)]
+mod tests;
 mod thinning;
 
 use core::time::Duration;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -93,6 +96,16 @@ impl Recorder {
         options.check()?;
         // Made here, so that the caller has the error.
         let file = path.map(disk::create).transpose()?;
+        Self::start_with(path, file, options, HostTime::now)
+    }
+
+    /// Begins a recording in `file`, which is at `path`. `wall` is the wall clock.
+    fn start_with(
+        path: Option<&Path>,
+        file: Option<File>,
+        options: RecordOptions,
+        wall: fn() -> HostTime,
+    ) -> Result<Self, RecordError> {
         let (orders, queue) = mpsc::sync_channel(ORDERS_MAX);
         let (written, done) = mpsc::channel();
         let clock = RecordClock::start();
@@ -109,6 +122,7 @@ impl Recorder {
             path.map(Path::to_owned),
             disk,
             drained.clone(),
+            wall,
         )?;
         thread::Builder::new()
             .name("franka-record".to_owned())
@@ -162,7 +176,7 @@ impl Recorder {
         let drained = *lock(&self.drained);
         RecordStatus {
             cycles: drained.cycles,
-            dropped: drained.dropped,
+            dropped: drained.dropped + disk.cycles_lost,
             events_dropped: drained.events_dropped,
             bytes: disk.written,
             waiting: disk.backlog,
@@ -216,8 +230,8 @@ impl Drop for Recorder {
 pub struct RecordStatus {
     /// Cycles taken, of all robots.
     pub cycles: u64,
-    /// Cycles for which there was no room: in the ring, as this host was busy, or in memory, as the
-    /// disk was. The file says where they are missing.
+    /// Cycles for which there was no room: in the ring, as this host was busy, or in memory or on
+    /// the disk. The file says where they are missing, unless it has ended there.
     pub dropped: u64,
     /// Events for which there was no room.
     pub events_dropped: u64,

@@ -1,9 +1,13 @@
 //! What is in the files, whatever happens to them.
 
+use std::path::Path;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
 use franka_model::RobotKind;
-use franka_record::EventKind;
 use franka_record::event::{Ending, Outcome};
-use franka_record::recorder::{BlackBox, RecordError, Recorder, Robot, Rotation};
+use franka_record::recorder::{BlackBox, RecordError, RecordOptions, Recorder, Robot, Rotation};
+use franka_record::{EventKind, Recording};
 
 use crate::feed::{Arm, Scratch, quick};
 
@@ -56,7 +60,7 @@ fn a_folder_that_is_not_there_is_told_at_once() {
 #[test]
 fn a_recording_goes_on_in_the_next_file() {
     let scratch = Scratch::new();
-    let options = franka_record::recorder::RecordOptions {
+    let options = RecordOptions {
         rotation: Rotation {
             bytes: Some(1_000_000),
             time: None,
@@ -83,7 +87,7 @@ fn a_recording_goes_on_in_the_next_file() {
 fn the_last_seconds_are_written_when_a_reflex_ends_a_motion() {
     let scratch = Scratch::new();
     let black_box = BlackBox {
-        before: std::time::Duration::from_secs(2),
+        before: Duration::from_secs(2),
         keep: 2,
         ..BlackBox::new(scratch.path("boxes"))
     };
@@ -120,3 +124,133 @@ fn the_last_seconds_are_written_when_a_reflex_ends_a_motion() {
         .count();
     assert!((2000..=3100).contains(&cycles), "{cycles}");
 }
+
+#[test]
+fn what_was_written_before_the_disk_was_full_is_readable_and_the_error_is_told_once() {
+    if let Some(path) = std::env::var_os(FULL) {
+        return record_until_full(Path::new(&path));
+    }
+    let scratch = Scratch::new();
+    let path = scratch.path("full.mcap");
+    // A limit of the process stands for the end of the disk: the write that crosses it is cut short
+    // and the next one fails. Of the shell, it counts blocks of 512 or 1024 bytes.
+    let mut child = Command::new("sh");
+    child
+        .arg("-c")
+        .arg("trap '' XFSZ; ulimit -f 900; exec \"$0\" \"$@\"");
+    child.arg(std::env::current_exe().unwrap());
+    let name = "what_was_written_before_the_disk_was_full_is_readable_and_the_error_is_told_once";
+    child.args(["--exact", &format!("files::{name}"), "--nocapture"]);
+    let output = child.env(FULL, &path).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}{errors}");
+    assert_eq!(said.matches("ERROR").count(), 1, "{said}");
+    assert!(said.contains("full.mcap"), "{said}");
+}
+
+/// Records past the limit of this process.
+fn record_until_full(path: &Path) {
+    tracing_subscriber::fmt().with_ansi(false).init();
+    let options = RecordOptions {
+        flush: Duration::from_millis(100),
+        ..RecordOptions::default()
+    };
+    let recorder = Recorder::to_file(path, options).unwrap();
+    let (mut arm, handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
+    // Cycles are taken, and nobody waits, whatever becomes of the file.
+    let patience = Instant::now() + Duration::from_secs(60);
+    while recorder.status().error.is_none() {
+        assert!(Instant::now() < patience, "the limit does not hold");
+        arm.run(&recorder, 500);
+    }
+    arm.run(&recorder, 500);
+    handle.note("not recorded");
+    let before = recorder.status();
+    assert!(before.dropped > 0, "{before:?}");
+    let error = recorder.finish().unwrap_err();
+    let RecordError::Write { bytes, source, .. } = &error else {
+        panic!("{error}");
+    };
+    assert_eq!(source.kind(), std::io::ErrorKind::FileTooLarge);
+    let length = std::fs::metadata(path).unwrap().len();
+    assert_eq!((length, *bytes), (before.bytes, before.bytes));
+
+    let recording = Recording::open(path).unwrap();
+    let damage = recording.damage().expect("it has no end");
+    assert!(damage.contains("end is missing"), "{damage}");
+    let robot = recording.robot("").unwrap();
+    let times = robot.cycles().map(|cycle| cycle.unwrap().record.time);
+    let times: Vec<_> = times.collect();
+    assert!(times.len() > 100, "{}", times.len());
+    assert_eq!(times, (1..=times.len() as u64).collect::<Vec<_>>());
+    // The newest cycle is counted with the one after it.
+    let kept = before.cycles - before.dropped;
+    assert!(
+        (kept - 1..=kept).contains(&(times.len() as u64)),
+        "{before:?}"
+    );
+}
+
+#[test]
+fn a_recording_does_not_go_on_in_a_file_of_another() {
+    let scratch = Scratch::new();
+    let taken = scratch.path("run-0002.mcap");
+    std::fs::write(&taken, b"of somebody else").unwrap();
+    let options = RecordOptions {
+        rotation: Rotation {
+            bytes: Some(1_000_000),
+            time: None,
+        },
+        ..quick()
+    };
+    let recorder = Recorder::to_file(scratch.path("run.mcap"), options).unwrap();
+    let (mut arm, _handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fer));
+    arm.run(&recorder, 6000);
+    let error = recorder.finish().unwrap_err();
+    assert!(
+        matches!(&error, RecordError::Exists { path } if *path == taken),
+        "{error}"
+    );
+    assert_eq!(std::fs::read(&taken).unwrap(), b"of somebody else");
+    let first = Recording::open(scratch.path("run.mcap")).unwrap();
+    assert_eq!(first.damage(), None);
+    let robot = first.robot("").unwrap();
+    assert!(robot.cycles().map(Result::unwrap).count() > 1000);
+}
+
+/// A folder that is a file takes none, whoever asks.
+#[test]
+fn a_folder_that_takes_no_files_is_told_and_the_recording_goes_on() {
+    let scratch = Scratch::new();
+    let folder = scratch.path("file");
+    std::fs::write(&folder, b"").unwrap();
+    let error = Recorder::to_file(folder.join("run.mcap"), quick()).map(drop);
+    let error = error.unwrap_err();
+    assert!(matches!(error, RecordError::Create { .. }), "{error}");
+
+    let options = RecordOptions {
+        black_box: Some(BlackBox {
+            after: Duration::ZERO,
+            ..BlackBox::new(&folder)
+        }),
+        ..quick()
+    };
+    let recorder = Recorder::to_file(scratch.path("run.mcap"), options).unwrap();
+    let (mut arm, handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
+    arm.run(&recorder, 1000);
+    handle.event(EventKind::Outcome(Outcome {
+        ending: Ending::Reflex,
+        ..Outcome::default()
+    }));
+    arm.run(&recorder, 1000);
+    let status = recorder.finish().unwrap();
+    let error = status.black_box_error.expect("it cannot be written");
+    assert!(matches!(error, RecordError::BlackBox { .. }), "{error}");
+    assert!(error.to_string().contains("-fr3-reflex.mcap"), "{error}");
+    assert_eq!((status.cycles, status.dropped), (2000, 0));
+    assert!(status.black_boxes.is_empty());
+}
+
+/// Names the file to the process whose disk is full.
+const FULL: &str = "FRANKA_RECORD_FULL";
