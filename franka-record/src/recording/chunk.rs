@@ -45,11 +45,14 @@ impl Chunk {
                 Ok(records) => records,
                 Err(reason) => return damaged(&reason),
             },
-            other => {
-                return damaged(&format!(
-                    "it is compressed with {other:?}; lz4 and no compression can be read"
-                ));
+            ZSTD => {
+                return Err(RecordingError::Compression {
+                    offset,
+                    got: ZSTD.to_owned(),
+                });
             }
+            // No other is in the format.
+            other => return damaged(&format!("its compression is called {other:?}")),
         };
         if records.len() as u64 != header.size {
             return damaged("its data has another length than it says");
@@ -76,6 +79,9 @@ impl Chunk {
         self.next < self.records.len()
     }
 }
+
+/// The compression of the format that is not read.
+const ZSTD: &str = "zstd";
 
 /// At most one byte more than `size` of LZ4 frames. The memory grows with what comes out.
 fn decompress(data: &[u8], size: u64) -> Result<Vec<u8>, String> {

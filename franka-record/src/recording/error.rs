@@ -36,6 +36,17 @@ pub enum RecordingError {
         /// What is wrong.
         reason: String,
     },
+    /// A chunk is compressed in another way than recordings are: another tool has written the file
+    /// anew. The tool's option for it is `lz4` or none.
+    #[error(
+        "the chunk at byte {offset} is compressed with {got:?}; expected \"lz4\" or no compression"
+    )]
+    Compression {
+        /// Where it begins.
+        offset: u64,
+        /// What the file says.
+        got: String,
+    },
     /// A message is none of its kind. Those after it can be read.
     #[error("a message of {topic} in the chunk at byte {offset} is damaged: {reason}")]
     Message {

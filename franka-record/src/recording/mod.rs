@@ -154,7 +154,7 @@ impl Recording {
                     }
                 }
                 // It is told again where it is read.
-                Err(RecordingError::Chunk { .. }) => {}
+                Err(RecordingError::Chunk { .. } | RecordingError::Compression { .. }) => {}
                 Err(error) => return Err(error),
             }
         }

@@ -32,11 +32,12 @@ impl Recording {
     /// Writes all that is whole in the MCAP file `damaged` to a new file, with the index that was
     /// missing: every message of every whole chunk, attachments and metadata, as the standard
     /// tool's `mcap recover` does. It does so for any MCAP file that is compressed with LZ4 or not
-    /// at all.
+    /// at all; messages outside of chunks are left out.
     ///
     /// # Errors
-    /// [`RecordingError::NotMcap`], [`RecordingError::Read`], and [`RecordingError::File`] if there
-    /// is a file at `whole` already or it cannot be written; it is then removed again.
+    /// [`RecordingError::NotMcap`], [`RecordingError::Compression`], [`RecordingError::Read`], and
+    /// [`RecordingError::File`] if there is a file at `whole` already or it cannot be written; it
+    /// is then removed again.
     pub fn recover(
         damaged: impl AsRef<Path>,
         whole: impl AsRef<Path>,

@@ -1,6 +1,6 @@
 //! Files that are cut, damaged or left by a killed program.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -16,14 +16,14 @@ use crate::any_bytes;
 use crate::feed::{Arm, Scratch, quick};
 
 /// A short recording, and where its chunks end.
-fn recording(scratch: &Scratch) -> (Vec<u8>, Vec<usize>) {
+fn recording(scratch: &Scratch, kind: RobotKind) -> (Vec<u8>, Vec<usize>) {
     let path = scratch.path("whole.mcap");
     let options = RecordOptions {
         flush: Duration::from_millis(15),
         ..quick()
     };
     let recorder = Recorder::to_file(&path, options).unwrap();
-    let (mut arm, _handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
+    let (mut arm, _handle) = Arm::attach(&recorder, Robot::new(kind));
     arm.run(&recorder, CYCLES as u64);
     recorder.finish().unwrap();
     let bytes = std::fs::read(path).unwrap();
@@ -36,31 +36,16 @@ fn recording(scratch: &Scratch) -> (Vec<u8>, Vec<usize>) {
     (bytes, ends)
 }
 
-/// Cycles per whole chunk of these bytes, as the crate of the format reads them.
+/// Cycles in these whole chunks, as the crate of the format reads them.
 fn cycles_by_standard(bytes: &[u8]) -> usize {
-    use mcap::read::{ChunkFlattener, Options};
-    let mut records =
-        ChunkFlattener::new_with_options(bytes, Options::IgnoreEndMagic.into()).unwrap();
-    let mut channel = None;
-    let mut count = 0;
-    while let Some(Ok(record)) = records.next() {
-        match record {
-            mcap::records::Record::Channel(found) if found.topic == "/cycle" => {
-                channel = Some(found.id);
-            }
-            mcap::records::Record::Message { header, .. } => {
-                count += usize::from(Some(header.channel_id) == channel);
-            }
-            _ => {}
-        }
-    }
-    count
+    let messages = by_standard(bytes).into_iter();
+    messages.filter(|(topic, ..)| topic == "/cycle").count()
 }
 
 #[test]
 fn a_file_that_is_cut_keeps_every_chunk_before_the_cut() {
     let scratch = Scratch::new();
-    let (bytes, ends) = recording(&scratch);
+    let (bytes, ends) = recording(&scratch, RobotKind::Fr3);
     let cycles: Vec<_> = ends
         .iter()
         .map(|end| cycles_by_standard(&bytes[..*end]))
@@ -86,7 +71,7 @@ fn a_file_that_is_cut_keeps_every_chunk_before_the_cut() {
 #[test]
 fn damaged_bytes_are_told_and_the_rest_is_read() {
     let scratch = Scratch::new();
-    let (bytes, _) = recording(&scratch);
+    let (bytes, _) = recording(&scratch, RobotKind::Fr3);
     let mut random = SmallRng::seed_from_u64(20);
     for _ in 0..300 {
         let mut damaged = bytes.clone();
@@ -120,7 +105,7 @@ fn damaged_bytes_are_told_and_the_rest_is_read() {
 #[test]
 fn a_recovered_file_is_whole_and_has_the_same_messages() {
     let scratch = Scratch::new();
-    let (bytes, ends) = recording(&scratch);
+    let (bytes, ends) = recording(&scratch, RobotKind::Fr3);
     let cut = ends[ends.len() / 2] + 100;
     let (damaged, whole) = (scratch.path("cut.mcap"), scratch.path("recovered.mcap"));
     std::fs::write(&damaged, &bytes[..cut]).unwrap();
@@ -149,6 +134,114 @@ fn a_recovered_file_is_whole_and_has_the_same_messages() {
     assert!(cycles(&before) == cycles(&after));
     let again = Recording::recover(&damaged, &whole).unwrap_err();
     assert!(matches!(again, RecordingError::File { .. }), "{again}");
+}
+
+/// What the standard tool recovers, by its source: the messages of every whole chunk up to where
+/// the file is cut. Its records are read here by the crate of the format.
+#[test]
+fn files_cut_anywhere_are_recovered_as_the_standard_tool_does() {
+    let scratch = Scratch::new();
+    for kind in RobotKind::ALL {
+        let (bytes, ends) = recording(&scratch, kind);
+        let messages: Vec<_> = ends.iter().map(|end| by_standard(&bytes[..*end])).collect();
+        let (damaged, whole) = (scratch.path("cut.mcap"), scratch.path("recovered.mcap"));
+        let mut random = SmallRng::seed_from_u64(22);
+        for _ in 0..1000 / RobotKind::ALL.len() {
+            let cut = random.random_range(8..bytes.len());
+            std::fs::write(&damaged, &bytes[..cut]).unwrap();
+            let recovery = Recording::recover(&damaged, &whole).unwrap();
+            let chunks = ends.iter().filter(|end| **end <= cut).count();
+            assert_eq!(
+                (recovery.chunks, recovery.lost),
+                (chunks as u64, 0),
+                "{cut}"
+            );
+            assert!(recovery.damage.is_some(), "{cut}");
+            let recovered = std::fs::read(&whole).unwrap();
+            std::fs::remove_file(&whole).unwrap();
+            // Strictly: with its end, and every sum right.
+            let recovered: Vec<_> = mcap::MessageStream::new(&recovered)
+                .unwrap()
+                .map(|message| {
+                    let message = message.unwrap();
+                    let topic = message.channel.topic.clone();
+                    (
+                        topic,
+                        message.sequence,
+                        message.log_time,
+                        message.data.to_vec(),
+                    )
+                })
+                .collect();
+            let expected = chunks
+                .checked_sub(1)
+                .map_or(&[][..], |last| &messages[last]);
+            assert!(recovered == expected, "cut at {cut}");
+        }
+        std::fs::remove_file(scratch.path("whole.mcap")).unwrap();
+    }
+}
+
+/// Topic, sequence number, time and data of each message of these whole chunks.
+fn by_standard(bytes: &[u8]) -> Vec<(String, u32, u64, Vec<u8>)> {
+    use mcap::read::{ChunkFlattener, Options};
+    use mcap::records::Record;
+    let records = ChunkFlattener::new_with_options(bytes, Options::IgnoreEndMagic.into());
+    let (mut topics, mut messages) = (BTreeMap::new(), Vec::new());
+    for record in records.unwrap() {
+        match record {
+            Ok(Record::Channel(channel)) => {
+                topics.insert(channel.id, channel.topic);
+            }
+            Ok(Record::Message { header, data }) => {
+                let topic = topics[&header.channel_id].clone();
+                messages.push((topic, header.sequence, header.log_time, data.to_vec()));
+            }
+            Ok(_) => {}
+            Err(_) => break,
+        }
+    }
+    messages
+}
+
+#[test]
+fn a_compression_that_is_not_read_is_an_error_and_no_damage() {
+    let scratch = Scratch::new();
+    let (path, whole) = (scratch.path("zstd.mcap"), scratch.path("recovered.mcap"));
+    let (bytes, _) = recording(&scratch, RobotKind::Fr3);
+    let mut file = bytes;
+    // Its first chunk, as another tool would have named its compression.
+    let at = file
+        .windows(7)
+        .position(|part| part == b"\x03\0\0\0lz4")
+        .unwrap();
+    file.splice(at..at + 7, *b"\x04\0\0\0zstd");
+    let length = file[at - 36..at - 28]
+        .try_into()
+        .map(u64::from_le_bytes)
+        .unwrap();
+    file[at - 36..at - 28].copy_from_slice(&(length + 1).to_le_bytes());
+    std::fs::write(&path, &file).unwrap();
+    let recording = Recording::open(&path).unwrap();
+    let error = recording
+        .robot("")
+        .unwrap()
+        .cycles()
+        .find_map(Result::err)
+        .unwrap();
+    let offset = at - 37;
+    assert_eq!(
+        error.to_string(),
+        format!(
+            "the chunk at byte {offset} is compressed with \"zstd\"; expected \"lz4\" or no compression"
+        )
+    );
+    let error = Recording::recover(&path, &whole).unwrap_err();
+    assert!(
+        matches!(error, RecordingError::Compression { .. }),
+        "{error}"
+    );
+    assert!(!whole.exists());
 }
 
 #[test]
