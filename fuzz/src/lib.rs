@@ -1,8 +1,11 @@
-//! Fuzz targets of the protocol: what they check, and what they start from.
+//! Fuzz targets of the protocol and of recordings: what they check, and what they start from.
 //!
-//! Both are the sources of a test of `franka-proto`, which runs them on a fixed sequence of inputs.
+//! Both are the sources of tests of `franka-proto` and `franka-record`, which run them on a fixed
+//! sequence of inputs.
 
 #[path = "../../franka-proto/tests/protocol/any_bytes/checks.rs"]
 pub mod checks;
+#[path = "../../franka-record/tests/recording/any_bytes.rs"]
+pub mod recordings;
 #[path = "../../franka-proto/tests/protocol/any_bytes/seeds.rs"]
 pub mod seeds;

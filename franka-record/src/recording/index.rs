@@ -15,6 +15,8 @@ pub(super) struct Index {
     pub(super) metadata: Vec<Entry>,
     /// Bodies of schema and channel records outside of chunks.
     pub(super) described: Vec<(u8, Vec<u8>)>,
+    /// Where the data ends, if the file was gone through to there.
+    pub(super) data_end: Option<u64>,
     /// Why the file is not as it was to be, if it is not.
     pub(super) damage: Option<String>,
 }
@@ -38,11 +40,7 @@ pub(super) struct Entry {
 impl Index {
     /// The index of a file.
     pub(super) fn of(bytes: &Bytes) -> Result<Self, RecordingError> {
-        let first = bytes.read(0, bytes.length().min(MAGIC.len() as u64))?;
-        let first = first.unwrap_or_default();
-        if first != MAGIC {
-            return Err(RecordingError::NotMcap { got: first });
-        }
+        Self::check_magic(bytes)?;
         match Self::of_summary(bytes)? {
             Ok(index) => Ok(index),
             Err(why) => {
@@ -50,6 +48,14 @@ impl Index {
                 index.damage.get_or_insert(why);
                 Ok(index)
             }
+        }
+    }
+
+    fn check_magic(bytes: &Bytes) -> Result<(), RecordingError> {
+        let first = bytes.read(0, bytes.length().min(MAGIC.len() as u64))?;
+        match first.unwrap_or_default() {
+            first if first == MAGIC => Ok(()),
+            got => Err(RecordingError::NotMcap { got }),
         }
     }
 
@@ -128,7 +134,8 @@ impl Index {
     }
 
     /// The index found by going from record to record, up to where that ends.
-    fn of_records(bytes: &Bytes) -> Result<Self, RecordingError> {
+    pub(super) fn of_records(bytes: &Bytes) -> Result<Self, RecordingError> {
+        Self::check_magic(bytes)?;
         let mut index = Self::default();
         let mut offset = MAGIC.len() as u64;
         loop {
@@ -165,7 +172,10 @@ impl Index {
                     let body = bytes.read(offset + HEADER, body)?.unwrap_or_default();
                     index.described.push((kind, body));
                 }
-                op::DATA_END | op::FOOTER => break,
+                op::DATA_END | op::FOOTER => {
+                    index.data_end = Some(offset);
+                    break;
+                }
                 _ => {}
             }
             offset = end;

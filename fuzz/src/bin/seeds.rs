@@ -1,5 +1,5 @@
-//! Writes the golden messages and the cassettes of the tests as seeds of the targets: `seeds
-//! DIRECTORY` makes `DIRECTORY/<target>/<seed>`.
+//! Writes the golden messages, the cassettes of the tests and short recordings as seeds of the
+//! targets: `seeds DIRECTORY` makes `DIRECTORY/<target>/<seed>`.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
@@ -31,10 +31,13 @@ fn main() -> io::Result<()> {
             cassettes += 1;
         }
     }
-    println!(
-        "{} seeds in {}",
-        seeds.len() + cassettes,
-        directory.display()
-    );
+    let recordings = franka_fuzz::recordings::seeds();
+    for (name, bytes) in &recordings {
+        let target = directory.join("recording");
+        fs::create_dir_all(&target)?;
+        fs::write(target.join(name), bytes)?;
+    }
+    let count = seeds.len() + cassettes + recordings.len();
+    println!("{count} seeds in {}", directory.display());
     Ok(())
 }

@@ -5,6 +5,8 @@ mod write;
 
 pub use write::CassetteWriter;
 
+use crate::recording::RecordingError;
+
 /// Why a cassette cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -12,8 +14,11 @@ pub enum CassetteError {
     /// The file cannot be opened, read or written.
     #[error("cannot access the cassette: {0}")]
     Io(#[from] std::io::Error),
-    /// The file is no MCAP file, or cannot be written.
+    /// The file is no MCAP file.
     #[error("not a readable MCAP file: {0}")]
+    NotMcap(#[from] RecordingError),
+    /// The file cannot be written.
+    #[error("cannot write the MCAP file: {0}")]
     Mcap(#[from] mcap::McapError),
     /// The file is MCAP, and no cassette.
     #[error("not a cassette: no metadata record `{START}` before the first message")]
@@ -159,10 +164,23 @@ mod tests {
         }
     }
 
+    /// The length of a text says 4 GB: nothing is reserved for it, and the rest is read.
+    #[test]
+    fn a_length_beyond_the_file_is_not_believed() {
+        let cassette = sample();
+        let mut file = cassette.to_bytes().unwrap();
+        // That of the profile, behind the magic bytes and the start of the first record.
+        file[17..21].fill(0xff);
+        let read = Cassette::read(&file).unwrap();
+        assert_eq!(read.connections, cassette.connections);
+        let damage = read.damage.unwrap();
+        assert!(damage.contains("checksum of its data"), "{damage}");
+    }
+
     #[test]
     fn what_is_no_cassette_says_so() {
         let error = Cassette::read(b"GIF89a").unwrap_err();
-        assert!(matches!(error, CassetteError::Mcap(_)), "{error}");
+        assert!(matches!(error, CassetteError::NotMcap(_)), "{error}");
         let mut other = mcap::Writer::new(Cursor::new(Vec::new())).unwrap();
         other.finish().unwrap();
         let error = Cassette::read(&other.into_inner().into_inner()).unwrap_err();

@@ -1,15 +1,12 @@
 //! Reads the file of a cassette, whatever its bytes.
 
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
-use mcap::records::MessageHeader;
-use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
-
 use super::{CassetteError, END, START, VERSION};
 use crate::cassette::{Cassette, Connection, Device, Event, Payload, Side};
+use crate::recording::{Record, each_record};
 
 impl Cassette {
     /// Reads the file at `path`.
@@ -27,34 +24,10 @@ impl Cassette {
     /// [`CassetteError`] if the bytes are no cassette, whatever they are.
     pub fn read(file: &[u8]) -> Result<Self, CassetteError> {
         let mut reading = Reading::default();
-        let mut rest = file;
-        let options = LinearReaderOptions::default()
-            .with_record_length_limit(RECORD_LENGTH_MAX)
-            .with_prevalidate_chunk_crcs(true)
-            .with_validate_data_section_crc(true);
-        let mut reader = LinearReader::new_with_options(options);
-        let damage = loop {
-            match reader.next_event() {
-                None => break None,
-                Some(Ok(LinearReadEvent::ReadRequest(wanted))) => {
-                    let count = wanted.min(rest.len());
-                    reader.insert(count).copy_from_slice(&rest[..count]);
-                    reader.notify_read(count);
-                    rest = &rest[count..];
-                }
-                Some(Ok(LinearReadEvent::Record { opcode, data })) => {
-                    match mcap::parse_record(opcode, data) {
-                        Ok(record) => reading.on_record(record)?,
-                        Err(error) => break Some(error),
-                    }
-                }
-                Some(Err(error)) => break Some(error),
-            }
-        };
-        match (reading.started, damage) {
-            (None, Some(error)) => Err(error.into()),
-            (None, None) => Err(CassetteError::NotACassette),
-            (Some(started), damage) => Ok(reading.cassette(started, damage)),
+        let damage = each_record(file, |record| reading.on_record(record))?;
+        match reading.started {
+            None => Err(CassetteError::NotACassette),
+            Some(started) => Ok(reading.cassette(started, damage)),
         }
     }
 }
@@ -67,7 +40,6 @@ struct Reading {
     /// By device and number; the first is when it was met, for the order.
     connections: BTreeMap<(Device, usize), (usize, Connection)>,
     missing_at_end: u64,
-    finished: bool,
 }
 
 struct ReadChannel {
@@ -78,23 +50,26 @@ struct ReadChannel {
 }
 
 impl Reading {
-    fn on_record(&mut self, record: mcap::records::Record<'_>) -> Result<(), CassetteError> {
-        use mcap::records::Record;
+    fn on_record(&mut self, record: Record<'_>) -> Result<(), CassetteError> {
         match record {
-            // What follows repeats channels and metadata.
-            Record::DataEnd(_) => self.finished = true,
-            _ if self.finished => {}
-            Record::Metadata(metadata) => self.on_metadata(&metadata)?,
-            Record::Channel(channel) => self.on_channel(channel)?,
-            Record::Message { header, data } => self.on_message(&header, data)?,
-            _ => {}
+            Record::Metadata { name, entries } => self.on_metadata(name, &entries),
+            Record::Channel { id, topic } => self.on_channel(id, topic),
+            Record::Message {
+                channel,
+                sequence,
+                log_time,
+                data,
+            } => self.on_message(channel, sequence, log_time, data),
         }
-        Ok(())
     }
 
-    fn on_metadata(&mut self, metadata: &mcap::records::Metadata) -> Result<(), CassetteError> {
-        let field = |key| metadata.metadata.get(key).map(String::as_str);
-        match metadata.name.as_str() {
+    fn on_metadata(
+        &mut self,
+        name: &str,
+        entries: &BTreeMap<String, String>,
+    ) -> Result<(), CassetteError> {
+        let field = |key| entries.get(key).map(String::as_str);
+        match name {
             START => {
                 let version = field("version").unwrap_or_default();
                 if version != VERSION {
@@ -113,16 +88,16 @@ impl Reading {
         Ok(())
     }
 
-    fn on_channel(&mut self, channel: mcap::records::Channel) -> Result<(), CassetteError> {
-        let (stream, connection, from) = parse_topic(&channel.topic).ok_or_else(|| {
-            let topic = channel.topic.clone();
+    fn on_channel(&mut self, id: u16, topic: &str) -> Result<(), CassetteError> {
+        let (stream, connection, from) = parse_topic(topic).ok_or_else(|| {
+            let topic = topic.to_owned();
             CassetteError::Channel { topic }
         })?;
         let order = self.connections.len();
         self.connections
             .entry(connection)
             .or_insert_with(|| (order, Connection::new(connection.0)));
-        self.channels.entry(channel.id).or_insert(ReadChannel {
+        self.channels.entry(id).or_insert(ReadChannel {
             connection,
             stream,
             from,
@@ -133,37 +108,39 @@ impl Reading {
 
     fn on_message(
         &mut self,
-        header: &MessageHeader,
-        data: Cow<'_, [u8]>,
+        channel: u16,
+        sequence: u32,
+        log_time: u64,
+        data: &[u8],
     ) -> Result<(), CassetteError> {
         let started = self.started.ok_or(CassetteError::NotACassette)?;
         // A message without a channel is damage of the file; there is nothing to put it to.
-        let Some(channel) = self.channels.get_mut(&header.channel_id) else {
+        let Some(channel) = self.channels.get_mut(&channel) else {
             return Ok(());
         };
         let Some((_, connection)) = self.connections.get_mut(&channel.connection) else {
             return Ok(());
         };
-        let missing = u64::from(header.sequence.wrapping_sub(channel.next));
-        channel.next = header.sequence.wrapping_add(1);
+        let missing = u64::from(sequence.wrapping_sub(channel.next));
+        channel.next = sequence.wrapping_add(1);
         let counter = match channel.stream {
             true => &mut connection.missing_stream,
             false => &mut connection.missing_datagrams,
         };
         *counter = counter.saturating_add(missing);
         connection.events.push(Event {
-            at: Duration::from_nanos(header.log_time.saturating_sub(started)),
+            at: Duration::from_nanos(log_time.saturating_sub(started)),
             from: channel.from,
             what: match (channel.stream, data.is_empty()) {
                 (true, true) => Payload::End,
-                (true, false) => Payload::Stream(data.into_owned()),
-                (false, _) => Payload::Datagram(data.into_owned()),
+                (true, false) => Payload::Stream(data.to_vec()),
+                (false, _) => Payload::Datagram(data.to_vec()),
             },
         });
         Ok(())
     }
 
-    fn cassette(self, started: u64, damage: Option<mcap::McapError>) -> Cassette {
+    fn cassette(self, started: u64, damage: Option<String>) -> Cassette {
         let mut connections: Vec<_> = self.connections.into_values().collect();
         connections.sort_by_key(|(order, _)| *order);
         let connections = connections.into_iter().map(|(_, mut connection)| {
@@ -180,7 +157,7 @@ impl Reading {
             started,
             connections,
             dropped: self.missing_at_end.max(counted),
-            damage: damage.map(|error| error.to_string()),
+            damage,
         }
     }
 }
@@ -203,7 +180,3 @@ fn parse_topic(topic: &str) -> Option<(bool, (Device, usize), Side)> {
     let complete = parts.next().is_none();
     complete.then_some((stream, (device, number), from))
 }
-
-/// The longest record that a reader takes: above any chunk and message written here. Without a
-/// bound, a damaged length would have it ask for memory without end.
-const RECORD_LENGTH_MAX: usize = 64 << 20;

@@ -1,0 +1,102 @@
+//! The records of a whole MCAP file in memory, whatever its bytes.
+
+use std::collections::BTreeMap;
+
+use super::bytes::Bytes;
+use super::chunk::Chunk;
+use super::error::RecordingError;
+use super::index::Index;
+use super::wire::{self, Fields, HEADER, MAGIC, op};
+
+/// A record.
+pub(crate) enum Record<'a> {
+    Metadata {
+        name: &'a str,
+        entries: BTreeMap<String, String>,
+    },
+    Channel {
+        id: u16,
+        topic: &'a str,
+    },
+    Message {
+        channel: u16,
+        sequence: u32,
+        log_time: u64,
+        data: &'a [u8],
+    },
+}
+
+/// Calls `take` with all metadata, and then with the channels and messages of every chunk, in the
+/// order of the file. Ends at the first chunk that is damaged. Returns what is wrong with the file,
+/// if something is.
+///
+/// No length in the file is believed before the bytes are there.
+///
+/// # Errors
+/// Those of `take`, and [`RecordingError::NotMcap`].
+pub(crate) fn each_record<E: From<RecordingError>>(
+    file: &[u8],
+    mut take: impl FnMut(Record<'_>) -> Result<(), E>,
+) -> Result<Option<String>, E> {
+    let bytes = Bytes::of_memory(file.to_vec());
+    let index = Index::of_records(&bytes)?;
+    for entry in &index.metadata {
+        let record = bytes.read(entry.offset, entry.length);
+        let record = record.map_err(RecordingError::from)?;
+        let Some((op::METADATA, body, _)) = record.as_deref().and_then(wire::split) else {
+            continue;
+        };
+        let mut fields = Fields(body);
+        let (Some(name), Some(entries)) = (fields.text(), fields.map()) else {
+            return Ok(Some(format!("metadata at byte {}", entry.offset)));
+        };
+        take(Record::Metadata { name, entries })?;
+    }
+    for entry in &index.chunks {
+        let mut chunk = match Chunk::read(&bytes, entry) {
+            Ok(chunk) => chunk,
+            Err(error) => return Ok(Some(error.to_string())),
+        };
+        while let Some((kind, body)) = chunk.next() {
+            let record = match kind {
+                op::CHANNEL => wire::Channel::read(body).map(|channel| Record::Channel {
+                    id: channel.id,
+                    topic: channel.topic,
+                }),
+                op::MESSAGE => wire::Message::read(body).map(|message| Record::Message {
+                    channel: message.channel,
+                    sequence: message.sequence,
+                    log_time: message.log_time,
+                    data: message.data,
+                }),
+                _ => continue,
+            };
+            let Some(record) = record else {
+                let at = entry.offset;
+                return Ok(Some(format!("a short record in the chunk at byte {at}")));
+            };
+            take(record)?;
+        }
+        if chunk.is_cut() {
+            let at = entry.offset;
+            return Ok(Some(format!(
+                "the last record of the chunk at byte {at} is cut"
+            )));
+        }
+    }
+    Ok(index
+        .damage
+        .or_else(|| damage_outside(file, index.data_end)))
+}
+
+/// What is wrong outside of chunks: with the sum over all before `data_end`, or the end.
+fn damage_outside(file: &[u8], data_end: Option<u64>) -> Option<String> {
+    let data_end = usize::try_from(data_end?).ok()?;
+    let (data, rest) = file.split_at_checked(data_end)?;
+    let mut fields = Fields(rest.get(HEADER as usize..)?);
+    let crc = fields.u32()?;
+    if crc != 0 && crc32fast::hash(data) != crc {
+        return Some("the checksum of its data is wrong".to_owned());
+    }
+    (!file.ends_with(MAGIC)).then(|| "its end is missing".to_owned())
+}
