@@ -11,7 +11,8 @@ use super::error::RecordError;
 /// How a recording is written.
 #[derive(Clone, Debug)]
 pub struct RecordOptions {
-    /// Cycles at the full rate only around what is notable, else every tenth; off by default.
+    /// Cycles at the full rate only around what is notable, else every tenth, and of what viewers
+    /// show (`/tf`, `/target`, `/joints`, `/scene`) every second message; off by default.
     ///
     /// Notable are reflexes and other errors, contacts and collisions, a lost link, motions that
     /// fail or are given up by a guard, lost cycles and remarks of level error: from 0.5 s before

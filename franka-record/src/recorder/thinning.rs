@@ -1,4 +1,5 @@
-//! Cycles at the full rate around what is notable, and at a tenth of it elsewhere.
+//! Cycles at the full rate around what is notable, and at a tenth of it elsewhere; what viewers
+//! show, at half its rate elsewhere.
 
 use core::time::Duration;
 use std::collections::VecDeque;
@@ -11,10 +12,10 @@ use crate::schema::Topic;
 #[derive(Debug, Default)]
 pub(super) struct Thinning {
     waiting: VecDeque<(Message, bool)>,
-    /// Until when cycles are kept.
+    /// Until when everything is kept.
     notable_until: HostTime,
-    /// Cycles so far.
-    cycles: u64,
+    /// Messages so far, by robot and topic.
+    counts: Vec<[u64; Topic::ALL.len()]>,
 }
 
 impl Thinning {
@@ -35,14 +36,20 @@ impl Thinning {
             self.notable_until = now + AFTER;
             self.waiting.iter_mut().for_each(|(_, kept)| *kept = true);
         }
-        let kept = match message.topic {
-            Topic::Cycle => {
-                self.cycles += 1;
-                self.cycles % ONE_IN == 1 || now <= self.notable_until
-            }
-            _ => true,
-        };
+        let is_next = self.is_next(message.robot, message.topic);
+        let kept = is_next || now <= self.notable_until;
         self.waiting.push_back((message, kept));
+    }
+
+    /// Counts a message; returns whether it is kept also where nothing happens.
+    fn is_next(&mut self, robot: usize, topic: Topic) -> bool {
+        if self.counts.len() <= robot {
+            self.counts.resize(robot + 1, Default::default());
+        }
+        let count = &mut self.counts[robot][topic as usize];
+        let is_next = count.is_multiple_of(one_in(topic));
+        *count += 1;
+        is_next
     }
 
     /// Passes on what waits.
@@ -57,41 +64,68 @@ impl Thinning {
 
 const BEFORE: Duration = Duration::from_millis(500);
 const AFTER: Duration = Duration::from_secs(1);
-const ONE_IN: u64 = 10;
+
+/// Of how many messages one is kept where nothing happens.
+fn one_in(topic: Topic) -> u64 {
+    match topic {
+        Topic::Cycle => 10,
+        Topic::Tf | Topic::Target | Topic::Joints | Topic::Scene => 2,
+        Topic::Tool | Topic::Event | Topic::Log | Topic::Gripper => 1,
+    }
+}
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn kept(notable: impl Fn(u64) -> bool) -> Vec<u64> {
+    /// The milliseconds of the messages that are kept of two robots with one message each.
+    fn kept(topic: Topic, notable: impl Fn(u64) -> bool) -> Vec<u64> {
         let mut thinning = Thinning::default();
         let mut kept = Vec::new();
         let start = HostTime::from_nanos(1_700_000_000_000_000_000);
-        let mut note = |message: Message| kept.push(message.time.since(start).as_millis() as u64);
+        let mut note = |message: Message| {
+            if message.robot == 1 {
+                kept.push(message.time.since(start).as_millis() as u64);
+            }
+        };
         for ms in 0..5000 {
-            let message = Message {
-                robot: 0,
-                topic: Topic::Cycle,
-                time: start + Duration::from_millis(ms),
-                data: Box::default(),
-                notable: notable(ms),
-            };
-            thinning.push(message, &mut note);
+            for robot in 0..2 {
+                let message = Message {
+                    robot,
+                    topic,
+                    time: start + Duration::from_millis(ms),
+                    data: Box::default(),
+                    notable: notable(ms),
+                };
+                thinning.push(message, &mut note);
+            }
         }
         thinning.finish(note);
         kept
     }
 
+    const RATES: [(Topic, usize); 4] = [
+        (Topic::Cycle, 10),
+        (Topic::Tf, 2),
+        (Topic::Scene, 2),
+        (Topic::Event, 1),
+    ];
+
     #[test]
-    fn one_cycle_in_ten_is_kept_where_nothing_happens() {
-        let expected: Vec<_> = (0..5000).step_by(10).collect();
-        assert!(kept(|_| false) == expected);
+    fn one_message_in_some_is_kept_of_each_robot_where_nothing_happens() {
+        for (topic, rate) in RATES {
+            let expected: Vec<_> = (0..5000).step_by(rate).collect();
+            assert!(kept(topic, |_| false) == expected, "{topic:?}");
+        }
     }
 
     #[test]
-    fn every_cycle_is_kept_around_what_is_notable() {
+    fn every_message_is_kept_around_what_is_notable() {
         let around = |ms: u64| (1500..=3000).contains(&ms);
-        let expected: Vec<_> = (0..5000).filter(|ms| ms % 10 == 0 || around(*ms)).collect();
-        assert!(kept(|ms| ms == 2000) == expected);
+        for (topic, rate) in RATES {
+            let is_kept = |ms: &u64| ms.is_multiple_of(rate as u64) || around(*ms);
+            let expected: Vec<_> = (0..5000).filter(is_kept).collect();
+            assert!(kept(topic, |ms| ms == 2000) == expected, "{topic:?}");
+        }
     }
 }
