@@ -1,12 +1,13 @@
-//! Recordings, read by the standard reader in Python.
+//! Recordings and datasets, read by the standard readers in Python.
 
 use crate::mujoco;
 use crate::python::{NEWEST, Python, Version};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
-/// Installs the reader in a virtual environment of its own, and has it decode recordings of both
-/// robots.
+/// Installs the readers in a virtual environment of their own, and has them decode recordings of
+/// both robots and a dataset. LeRobot's own loader, which is large, reads the dataset too if
+/// `FRANKA_LEROBOT_PYTHON` names an interpreter that has it.
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let python = match Python::find(OLDEST..=NEWEST) {
         Ok(python) => python,
@@ -19,7 +20,7 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     // With the features of the step that runs all tests: what it has built is used again.
     test.args(["test", "--workspace", "--test=recording", "--features"]);
     test.arg(mujoco::features(workspace)?).arg("--");
-    test.args(["--ignored", "--nocapture", "python_decodes"]);
+    test.args(["--ignored", "--nocapture", "python_"]);
     workspace.run(test.env("FRANKA_RECORD_PYTHON", interpreter))?;
     Ok(Outcome::Passed)
 }

@@ -11,6 +11,7 @@ use franka_record::replay::{ReplayError, ReplayOptions, ReplayPlan};
 use franka_record::{Episode, EventKind, GripperState, Recording, Sample, Samples};
 
 use crate::feed::{Arm, Scratch, quick};
+use crate::standard::{PYTHON, python};
 
 /// Four seconds of an arm with a gripper that closes; from the first to the third one is an
 /// episode.
@@ -33,6 +34,36 @@ fn recorded(path: &std::path::Path) {
     arm.run(&recorder, 4000);
     recorder.finish().unwrap();
 }
+
+#[test]
+#[ignore = "needs Python with pyarrow: `cargo xtask test --only recordings` has it"]
+fn python_reads_a_dataset_of_a_recording() {
+    let scratch = Scratch::new();
+    let path = scratch.path("run.mcap");
+    recorded(&path);
+    let recording = Recording::open(&path).unwrap();
+    let robot = recording.robot("").unwrap();
+    let folder = scratch.path("dataset");
+    let mut dataset = Dataset::create(&folder, DatasetOptions::new("fr3").gripper(true)).unwrap();
+    let mut frames = 0;
+    // Twice the same samples, under two tasks.
+    for task in ["pick the cube", "pick it again"] {
+        let samples = Samples::new(robot.cycles(), robot.gripper_states());
+        let samples: Vec<Sample> = samples.collect::<Result<_, _>>().unwrap();
+        frames += dataset.add_episode(task, Some(true), samples).unwrap();
+    }
+    dataset.finish().unwrap();
+
+    let arguments = [folder.into_os_string(), frames.to_string().into()];
+    python("dataset.py", PYTHON, &arguments);
+    if std::env::var_os(LEROBOT).is_some() {
+        let arguments = [&["--lerobot".into()], &arguments[..]].concat();
+        python("dataset.py", LEROBOT, &arguments);
+    }
+}
+
+/// Names an interpreter that has LeRobot.
+const LEROBOT: &str = "FRANKA_LEROBOT_PYTHON";
 
 #[test]
 fn an_episode_of_a_file_becomes_a_dataset_a_table_and_a_replay() {

@@ -1,5 +1,6 @@
-//! Recordings read by the standard reader in Python.
+//! Recordings read by the standard reader in Python, and how scripts are run.
 
+use std::ffi::OsString;
 use std::path::Path;
 use std::process::Command;
 
@@ -13,7 +14,6 @@ use crate::feed::{Arm, Scratch, quick};
 #[test]
 #[ignore = "needs Python with mcap: `cargo xtask test --only recordings` has it"]
 fn python_decodes_every_message_of_both_robots() {
-    let interpreter = std::env::var_os(PYTHON).expect("the interpreter is named");
     let scratch = Scratch::new();
     let mut paths = Vec::new();
     for kind in RobotKind::ALL {
@@ -37,18 +37,28 @@ fn python_decodes_every_message_of_both_robots() {
     assert!(recovery.damage.is_some());
     paths.push(recovered);
 
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python/decode.py");
-    let mut decode = Command::new(interpreter);
-    decode.arg(script).arg(CYCLES.to_string()).args(&paths);
-    let output = decode.output().unwrap();
-    let said = String::from_utf8_lossy(&output.stdout);
+    let mut arguments = vec![CYCLES.to_string().into()];
+    arguments.extend(paths.iter().map(OsString::from));
+    let said = python("decode.py", PYTHON, &arguments);
+    assert_eq!(said.matches("ok ").count(), paths.len(), "{said}");
+}
+
+/// Runs a script of `tests/python` with the interpreter that `variable` names, and returns what it
+/// prints.
+pub(crate) fn python(script: &str, variable: &str, arguments: &[OsString]) -> String {
+    let interpreter = std::env::var_os(variable).expect("the interpreter is named");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python");
+    let mut command = Command::new(interpreter);
+    command.arg(folder.join(script)).args(arguments);
+    let output = command.output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
     let errors = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}{errors}");
-    assert_eq!(said.matches("ok ").count(), paths.len(), "{said}");
     print!("{said}");
+    said
 }
 
 const CYCLES: u64 = 5000;
 
 /// Names the interpreter that has the packages.
-const PYTHON: &str = "FRANKA_RECORD_PYTHON";
+pub(crate) const PYTHON: &str = "FRANKA_RECORD_PYTHON";
