@@ -341,6 +341,7 @@
 //! | `explain` | why a motion ended, and where the arm was touched (feature `record`) |
 //! | `replay`, `export` | recorded motions again, and as tables and datasets (features `record`, `export`) |
 //! | `cassette` | sessions byte for byte, played back as the robot (features `record`, `pcap`) |
+//! | `doctor` | checks of this computer (feature `doctor`) |
 //! | `metrics` | statistics as OpenMetrics text (feature `metrics`) |
 //! | `blocking` | programs without async (feature `blocking`) |
 //!
@@ -385,6 +386,8 @@ mod destination;
 mod device_connection;
 pub mod diagnosis;
 mod dial;
+#[cfg(feature = "doctor")]
+pub mod doctor;
 mod endpoint;
 pub mod error;
 #[cfg(feature = "record")]

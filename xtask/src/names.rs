@@ -26,13 +26,15 @@ const ROOT_MAX: usize = 40;
 const PRELUDE: &str = "prelude";
 
 /// Names of different items in different modules.
-const NAMESAKES: [&str; 7] = [
+const NAMESAKES: [&str; 9] = [
     "Axis",
     "Condition",
+    "Finding",
     "Grasp",
     "Load",
     "Quantity",
     "State",
+    "System",
     "collision",
 ];
 

@@ -1,0 +1,193 @@
+//! Checks of this computer, and what on it may explain a motion that ended for want of packets.
+//!
+//! ```no_run
+//! # use franka_async::{Robot, doctor};
+//! # async fn run(robot: Robot) {
+//! if let Err(error) = robot.move_joints([0.0; 7]).await
+//!     && let Some(diagnosis) = doctor::diagnose(&error, robot.address().ip()).await
+//! {
+//!     println!("{diagnosis}");
+//! }
+//! # }
+//! ```
+
+use std::fmt;
+use std::net::{IpAddr, Ipv4Addr};
+
+use franka_proto::{Errors, RobotError};
+use franka_rt::lifecycle::MotionError;
+
+use crate::diagnosis::{Diagnose, Diagnosis};
+
+pub use franka_doctor::{
+    Doctor, Ethtool, Evidence, Finding, Fix, Group, Host, Needs, Purpose, Readings, Received,
+    Report, System, Tree, Unread, Verdict, WakeUps, arrivals, likely_causes, ports,
+};
+
+/// Why a motion ended for want of packets.
+///
+/// `Display` is the diagnosis of the log, if there is one, and a line for each cause on this host.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct HostDiagnosis {
+    /// What was seen of the motion.
+    pub evidence: Evidence,
+    /// What the log of the motion shows, if the robot stopped itself.
+    pub diagnosis: Option<Diagnosis>,
+    /// The two likeliest causes on this host, or fewer if fewer are found.
+    pub causes: Vec<Finding>,
+}
+
+impl fmt::Display for HostDiagnosis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(diagnosis) = &self.diagnosis {
+            writeln!(f, "{diagnosis}")?;
+        }
+        if self.causes.is_empty() {
+            return write!(f, "on this computer: nothing was found that explains it");
+        }
+        for (index, cause) in self.causes.iter().enumerate() {
+            let lead = match index {
+                0 => "likely on this computer:",
+                _ => "\nor:",
+            };
+            write!(
+                f,
+                "{lead} {}: {}; wanted: {}",
+                cause.id, cause.read, cause.wanted
+            )?;
+            if let Some(fix) = &cause.fix {
+                write!(f, "; change: {}", fix.command)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Why a motion of the robot at this address ended for want of packets, with the two likeliest
+/// causes on this host; `None` if it ended otherwise.
+///
+/// Reads files and asks the driver of the network card, on a thread for blocking work: some
+/// milliseconds.
+///
+/// # Panics
+/// Outside of a Tokio runtime.
+///
+/// # Cancel safety
+/// Dropping the future gives the answer up; nothing is changed.
+pub async fn diagnose(error: &MotionError, robot: IpAddr) -> Option<HostDiagnosis> {
+    let evidence = evidence(error)?;
+    let error = error.clone();
+    let looked = tokio::task::spawn_blocking(move || HostDiagnosis {
+        evidence,
+        diagnosis: diagnosis(&error),
+        causes: causes(&System::default(), robot, evidence),
+    });
+    looked.await.ok()
+}
+
+/// The two likeliest causes on `host`.
+fn causes(host: &dyn Host, robot: IpAddr, evidence: Evidence) -> Vec<Finding> {
+    let robot: Option<Ipv4Addr> = match robot {
+        IpAddr::V4(address) => Some(address),
+        IpAddr::V6(address) => address.to_ipv4_mapped(),
+    };
+    likely_causes(&Readings::new(host, robot), evidence)
+}
+
+/// What the log shows.
+#[expect(
+    clippy::disallowed_methods,
+    reason = "this is a thread for blocking work, and no task"
+)]
+fn diagnosis(error: &MotionError) -> Option<Diagnosis> {
+    error.diagnose()
+}
+
+/// What an error shows of packets that did not come in time; `None` if nothing.
+fn evidence(error: &MotionError) -> Option<Evidence> {
+    match error {
+        MotionError::LinkLost { .. } => Some(Evidence::LinkLost),
+        MotionError::AfterReaction { error, .. } => evidence(error),
+        MotionError::Control(error) => {
+            let errors = error.errors.union(error.failure.reflex_reason);
+            of_errors(errors, error.statistics.overruns)
+        }
+        _ => None,
+    }
+}
+
+/// What the errors of a robot show, after a motion with so many commands that left too late.
+fn of_errors(errors: Errors, overruns: u64) -> Option<Evidence> {
+    if !errors.contains(RobotError::CommunicationConstraintsViolation) {
+        return None;
+    }
+    Some(match overruns {
+        0 => Evidence::Lost,
+        _ => Evidence::Late,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    const LINK_LOST: MotionError = MotionError::LinkLost {
+        silence: Duration::from_secs(1),
+    };
+
+    #[test]
+    fn only_motions_that_end_for_want_of_packets_have_evidence() {
+        assert_eq!(evidence(&LINK_LOST), Some(Evidence::LinkLost));
+        assert_eq!(evidence(&MotionError::Stopped), None);
+        let starved = Errors::from(RobotError::CommunicationConstraintsViolation);
+        assert_eq!(of_errors(starved, 0), Some(Evidence::Lost));
+        assert_eq!(of_errors(starved, 3), Some(Evidence::Late));
+        assert_eq!(of_errors(RobotError::CartesianReflex.into(), 3), None);
+    }
+
+    #[test]
+    fn the_text_names_the_causes_of_a_host_with_a_slow_card() {
+        let fixture = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../franka-doctor/tests/fixtures/usb_card"
+        );
+        let robot = Ipv4Addr::new(172, 16, 0, 2);
+        let found = HostDiagnosis {
+            evidence: Evidence::Lost,
+            diagnosis: None,
+            causes: causes(&Tree::new(fixture), robot.into(), Evidence::Lost),
+        };
+        let text = found.to_string();
+        let [first, second] = text.lines().collect::<Vec<_>>()[..] else {
+            panic!("two causes: {text}")
+        };
+        assert!(
+            first.starts_with("likely on this computer: nic.coalesce: 15000 us"),
+            "{text}"
+        );
+        assert!(first.ends_with("rx-usecs 0 rx-frames 1"), "{text}");
+        assert!(second.starts_with("or: nic.kind: "), "{text}");
+        let nothing = HostDiagnosis {
+            causes: Vec::new(),
+            ..found
+        };
+        let expected = "on this computer: nothing was found that explains it";
+        assert_eq!(nothing.to_string(), expected);
+    }
+
+    #[tokio::test]
+    async fn a_lost_link_is_diagnosed_on_this_host() {
+        let robot = IpAddr::from(Ipv4Addr::LOCALHOST);
+        let found = diagnose(&LINK_LOST, robot).await.expect("a lost link");
+        assert_eq!(
+            (found.evidence, found.diagnosis.as_ref()),
+            (Evidence::LinkLost, None)
+        );
+        // There is no network card on the way to this very computer.
+        assert_eq!(found.causes, []);
+        assert_eq!(diagnose(&MotionError::Busy, robot).await, None);
+    }
+}
