@@ -44,6 +44,9 @@ mod programs {
     #[doc = include_str!("../../docs/src/control.md")]
     struct Control;
 
+    #[doc = include_str!("../../docs/src/explaining.md")]
+    struct Explaining;
+
     #[doc = include_str!("../../docs/src/gripper.md")]
     struct Gripper;
 
@@ -58,6 +61,9 @@ mod programs {
 
     #[doc = include_str!("../../docs/src/realtime.md")]
     struct Realtime;
+
+    #[doc = include_str!("../../docs/src/replaying.md")]
+    struct Replaying;
 
     #[doc = include_str!("../../docs/src/services.md")]
     struct Services;

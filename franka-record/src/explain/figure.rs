@@ -4,6 +4,7 @@ use svg::node::element::path::Data;
 use svg::node::element::{Group, Line, Path, Rectangle, Text, Title};
 use svg::{Document, Node};
 
+use super::polyline::thinned;
 use super::{Explanation, MomentKind, Trace, sketch};
 
 /// Where a panel is, and what it spans.
@@ -117,24 +118,34 @@ impl Panel {
         group
     }
 
-    fn curve(&self, explanation: &Explanation, of: Curve<'_>, color: &str) -> Path {
-        let mut data = Data::new();
-        let mut pen = false;
+    /// The points of a curve, in several runs where states are missing between.
+    fn runs(&self, explanation: &Explanation, of: Curve<'_>) -> Vec<Vec<(f64, f64)>> {
+        let mut runs = vec![Vec::new()];
         for trace in &explanation.last_second {
             let value = of(trace);
-            // A gap where states are missing.
-            pen &= value.is_finite() && trace.lost == 0;
-            if !value.is_finite() {
-                continue;
+            if trace.lost > 0 || !value.is_finite() {
+                runs.push(Vec::new());
             }
-            let before = (explanation.end - trace.time.min(explanation.end)) as f64;
-            let at = (short(self.x(before)), short(self.y(value)));
-            data = if pen {
-                data.line_to(at)
-            } else {
-                data.move_to(at)
-            };
-            pen = true;
+            if value.is_finite() {
+                let before = (explanation.end - trace.time.min(explanation.end)) as f64;
+                let run = runs.last_mut().expect("there is one from the beginning");
+                run.push((self.x(before), self.y(value)));
+            }
+        }
+        runs.retain(|run| !run.is_empty());
+        runs
+    }
+
+    fn curve(&self, explanation: &Explanation, of: Curve<'_>, color: &str) -> Path {
+        let mut data = Data::new();
+        for run in self.runs(explanation, of) {
+            let mut points = thinned(&run, TOLERANCE)
+                .into_iter()
+                .map(|(x, y)| (short(x), short(y)));
+            data = points
+                .next()
+                .map_or(data.clone(), |first| data.move_to(first));
+            data = points.fold(data, Data::line_to);
         }
         Path::new()
             .set("d", data)
@@ -262,7 +273,7 @@ fn number(value: f64) -> String {
 
 /// Hundredths of a pixel are enough.
 fn short(value: f64) -> f64 {
-    (value * 100.0).round() / 100.0
+    (value * 10.0).round() / 10.0
 }
 
 fn shortened(content: &str, most: usize) -> String {
@@ -281,6 +292,10 @@ const TOP: f64 = 72.0;
 const CURVES: f64 = 660.0;
 const PANEL: f64 = 120.0;
 const GAP: f64 = 28.0;
+
+/// How far a curve may be drawn from where it is: less than shows.
+const TOLERANCE: f64 = 0.2;
+
 const SKETCH_LEFT: f64 = 770.0;
 const SKETCH_SIZE: f64 = 220.0;
 

@@ -14,7 +14,7 @@
 //! | `margins` | the nearest approach to each limit, and peaks |
 //! | `place` | the contact when the motion ended |
 //! | `report` | the text |
-//! | `figure`, `sketch` | the figure: curves, and the arm with the contact |
+//! | `figure`, `polyline`, `sketch` | the figure: curves with few points, and the arm with the contact |
 //!
 //! What ended is the last motion that the robot stopped; without such a stop, it is the newest
 //! cycle. Memory is bounded, however many cycles there are.
@@ -39,6 +39,7 @@
 mod figure;
 mod margins;
 mod place;
+mod polyline;
 mod report;
 mod sketch;
 #[cfg(test)]
