@@ -24,6 +24,8 @@ pub(super) enum Order {
     Resume(usize, Box<CycleReader>),
     Event(usize, Box<Event>),
     Gripper(usize, HostTime, GripperState),
+    #[cfg(feature = "foxglove")]
+    Serve(Box<super::live::Server>),
     Finish,
 }
 
@@ -140,6 +142,8 @@ impl Drain {
                 Order::Gripper(robot, time, state) => {
                     self.wait(robot, Waiting::Gripper(time, state));
                 }
+                #[cfg(feature = "foxglove")]
+                Order::Serve(server) => self.files.serve(*server),
                 Order::Finish => return false,
             }
             next = match self.orders.try_recv() {

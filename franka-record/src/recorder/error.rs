@@ -74,6 +74,15 @@ pub enum RecordError {
         /// What the system says.
         source: Arc<io::Error>,
     },
+    /// The server for viewers cannot listen.
+    #[cfg(feature = "foxglove")]
+    #[error("cannot serve viewers at {address}: {reason}")]
+    Live {
+        /// The address that was asked for.
+        address: core::net::SocketAddr,
+        /// What the server says.
+        reason: String,
+    },
     /// The bytes of the file could not be put together. Please report it.
     #[error("cannot encode the recording: {reason}")]
     Encode {

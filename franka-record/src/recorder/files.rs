@@ -26,6 +26,9 @@ pub(super) struct Files {
     wanted: bool,
     last_seconds: Option<LastSeconds>,
     thinning: Option<Thinning>,
+    /// Who shows the messages while they come.
+    #[cfg(feature = "foxglove")]
+    server: Option<super::live::Server>,
     /// Time of the newest message.
     newest: HostTime,
     robots: Vec<RobotFiles>,
@@ -79,6 +82,8 @@ impl Files {
             open,
             last_seconds: options.black_box.clone().map(LastSeconds::new),
             thinning: options.thinned.then(Thinning::default),
+            #[cfg(feature = "foxglove")]
+            server: None,
             newest: HostTime::default(),
             robots: Vec::new(),
             chunk: 0,
@@ -92,7 +97,21 @@ impl Files {
             Some(open) => open.file.add_robot(&robot),
             None => Ok(()),
         };
+        #[cfg(feature = "foxglove")]
+        let added = match &mut self.server {
+            Some(server) => added.and(server.add_robot(&robot)),
+            None => added,
+        };
         let added = added.and(self.session.add_robot(robot));
+        self.check(added);
+    }
+
+    /// Serves the messages that come from now on to viewers.
+    #[cfg(feature = "foxglove")]
+    pub(super) fn serve(&mut self, mut server: super::live::Server) {
+        let mut robots = self.session.robots().iter();
+        let added = robots.try_for_each(|robot| server.add_robot(robot));
+        self.server = Some(server);
         self.check(added);
     }
 
@@ -100,6 +119,10 @@ impl Files {
     pub(super) fn pass(&mut self, messages: &mut Vec<Message>) {
         for message in messages.drain(..) {
             self.newest = self.newest.max(message.time);
+            #[cfg(feature = "foxglove")]
+            if let Some(server) = &mut self.server {
+                server.send(&message);
+            }
             if let Some(last_seconds) = &mut self.last_seconds {
                 last_seconds.push(message.clone());
             }

@@ -17,6 +17,8 @@ mod encoder;
 mod error;
 mod files;
 mod frames;
+#[cfg(feature = "foxglove")]
+mod live;
 mod mcap_file;
 mod options;
 mod session;
@@ -36,6 +38,8 @@ use franka_rt::thread::CycleReader;
 use self::disk::{Disk, DiskStatus};
 use self::drain::{Drain, DrainStatus, Order};
 pub use self::error::RecordError;
+#[cfg(feature = "foxglove")]
+pub use self::live::Live;
 pub use self::options::{Attachment, BlackBox, RecordOptions, Robot, Rotation};
 pub use self::session::RecordClock;
 use crate::{Event, EventKind, GripperState, HostTime};
@@ -90,6 +94,17 @@ impl Recorder {
             ..RecordOptions::default()
         };
         Self::start(None, options)
+    }
+
+    /// Records nothing, and serves what a recording would have to Foxglove: see [`Self::serve`].
+    ///
+    /// # Errors
+    /// As [`Self::serve`], and [`RecordError::Thread`].
+    #[cfg(feature = "foxglove")]
+    pub fn live(live: &Live) -> Result<(Self, core::net::SocketAddr), RecordError> {
+        let recorder = Self::start(None, RecordOptions::default())?;
+        let address = recorder.serve(live)?;
+        Ok((recorder, address))
     }
 
     fn start(path: Option<&Path>, options: RecordOptions) -> Result<Self, RecordError> {
@@ -163,6 +178,22 @@ impl Recorder {
             drained: self.drained.clone(),
             robot: index,
         })
+    }
+
+    /// Serves the channels of the recording from now on, until it ends, to Foxglove ("Open
+    /// connection", "Foxglove WebSocket") and to whoever else speaks `foxglove.sdk.v1`. Returns the
+    /// address, whose port the system chooses if it is 0. A viewer that is too slow loses messages;
+    /// the recording loses none for it. Blocks until the server listens.
+    ///
+    /// # Errors
+    /// [`RecordError::Live`] if it cannot listen there, [`RecordError::Option`],
+    /// [`RecordError::Ended`].
+    #[cfg(feature = "foxglove")]
+    pub fn serve(&self, live: &Live) -> Result<core::net::SocketAddr, RecordError> {
+        let (server, address) = live::Server::start(live)?;
+        let order = Order::Serve(Box::new(server));
+        self.orders.send(order).map_err(|_| RecordError::Ended)?;
+        Ok(address)
     }
 
     /// The clock of recorded time.

@@ -5,6 +5,7 @@ mod damaged;
 mod exporting;
 mod feed;
 mod files;
+mod live;
 mod reading;
 mod standard;
 mod viewers;

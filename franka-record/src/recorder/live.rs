@@ -1,0 +1,160 @@
+//! The channels of a recording as a live source for Foxglove, over a WebSocket.
+
+use core::fmt;
+use core::net::SocketAddr;
+use std::sync::Arc;
+use std::thread;
+
+use foxglove::{
+    Context, PartialMetadata, RawChannel, Schema, WebSocketServer, WebSocketServerHandle,
+};
+use tokio::runtime::{Builder, Runtime};
+
+use super::encoder::Message;
+use super::error::RecordError;
+use super::options::Robot;
+use crate::schema::{DESCRIPTORS, Topic};
+
+/// Where Foxglove finds the channels of a recording while it is made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Live {
+    /// Where the server listens. `127.0.0.1:8765`, by default, is what Foxglove proposes. Whoever
+    /// reaches the address can watch the robot; nobody can move it.
+    pub address: SocketAddr,
+    /// Of the cycles every so many, 20 by default: 50 a second. All other channels are whole.
+    pub every: u32,
+}
+
+impl Default for Live {
+    fn default() -> Self {
+        Self {
+            address: SocketAddr::from(([127, 0, 0, 1], 8765)),
+            every: 20,
+        }
+    }
+}
+
+/// A server, and the channels that it offers.
+pub(super) struct Server {
+    /// A thread of its own: neither the recorder's nor the program's waits for a viewer.
+    runtime: Option<Runtime>,
+    handle: Option<WebSocketServerHandle>,
+    context: Arc<Context>,
+    /// The channels of each robot, by topic.
+    channels: Vec<Vec<Arc<RawChannel>>>,
+    every: u32,
+    /// Cycles so far, of all robots.
+    cycles: u32,
+}
+
+impl Server {
+    /// Starts a server, and returns the address at which it listens.
+    pub(super) fn start(live: &Live) -> Result<(Self, SocketAddr), RecordError> {
+        if live.every == 0 {
+            return Err(RecordError::Option {
+                what: "live.every",
+                got: "0".to_owned(),
+                expected: "1 or more",
+            });
+        }
+        let mut address = live.address;
+        let host = match address {
+            SocketAddr::V4(address) => address.ip().to_string(),
+            SocketAddr::V6(address) => format!("[{}]", address.ip()),
+        };
+        let context = Context::new();
+        let server = WebSocketServer::new()
+            .name("franka-record")
+            .context(&context)
+            .message_backlog_size(BACKLOG)
+            .bind(host, address.port());
+        // On a thread of its own, as this one may belong to a runtime.
+        let started = thread::scope(|scope| {
+            let start = scope.spawn(|| {
+                let runtime = Builder::new_multi_thread()
+                    .worker_threads(1)
+                    .thread_name("franka-live")
+                    .enable_all()
+                    .build()
+                    .map_err(|error| error.to_string())?;
+                let server = server.tokio_runtime(runtime.handle());
+                let handle = runtime.block_on(server.start());
+                Ok((runtime, handle.map_err(|error| error.to_string())?))
+            });
+            start.join().expect("no panic")
+        });
+        let (runtime, handle) = started.map_err(|reason: String| RecordError::Live {
+            address: live.address,
+            reason,
+        })?;
+        address.set_port(handle.port());
+        let server = Self {
+            runtime: Some(runtime),
+            handle: Some(handle),
+            context,
+            channels: Vec::new(),
+            every: live.every,
+            cycles: 0,
+        };
+        Ok((server, address))
+    }
+
+    /// Offers the channels of the next robot.
+    pub(super) fn add_robot(&mut self, robot: &Robot) -> Result<(), RecordError> {
+        let channels = Topic::ALL.map(|topic| {
+            let schema = Schema::new(topic.schema(), "protobuf", DESCRIPTORS);
+            self.context
+                .channel_builder(topic.channel(&robot.name))
+                .message_encoding("protobuf")
+                .schema(schema)
+                .build_raw()
+                .map_err(|error| RecordError::Encode {
+                    reason: error.to_string(),
+                })
+        });
+        let channels = channels.into_iter().collect::<Result<_, _>>()?;
+        self.channels.push(channels);
+        Ok(())
+    }
+
+    /// Offers a message to the viewers that ask for its channel. Never waits: a viewer that is too
+    /// slow loses the oldest ones.
+    pub(super) fn send(&mut self, message: &Message) {
+        if message.topic == Topic::Cycle {
+            self.cycles = self.cycles.wrapping_add(1);
+            if !self.cycles.is_multiple_of(self.every) {
+                return;
+            }
+        }
+        let robot = self.channels.get(message.robot);
+        if let Some(channel) = robot.and_then(|channels| channels.get(message.topic as usize)) {
+            let time = PartialMetadata {
+                log_time: Some(message.time.as_nanos()),
+            };
+            channel.log_with_meta(&message.data, time);
+        }
+    }
+}
+
+impl Drop for Server {
+    /// Ends the connections, without waiting for viewers.
+    fn drop(&mut self) {
+        if let Some(handle) = self.handle.take() {
+            drop(handle.stop());
+        }
+        if let Some(runtime) = self.runtime.take() {
+            runtime.shutdown_background();
+        }
+    }
+}
+
+impl fmt::Debug for Server {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Server")
+            .field("robots", &self.channels.len())
+            .finish_non_exhaustive()
+    }
+}
+
+/// Messages that wait for a viewer, who has asked for everything of one robot: two seconds.
+const BACKLOG: usize = 512;
