@@ -28,6 +28,8 @@ mod entries;
 mod words;
 
 use std::collections::BTreeMap;
+#[cfg(feature = "foxglove")]
+use std::net::SocketAddr;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -36,6 +38,8 @@ use franka_record::event::{EventKind, Level};
 use franka_record::recorder;
 use franka_rt::thread::{AttachError, CycleFeed};
 
+#[cfg(feature = "foxglove")]
+pub use franka_record::recorder::Live;
 pub use franka_record::recorder::{
     Attachment, BlackBox, RecordError, RecordOptions, RecordStatus, Rotation,
 };
@@ -131,6 +135,29 @@ impl Recorder {
     /// As [`Self::to_file`].
     pub fn black_box(black_box: BlackBox) -> Result<Self, RecordError> {
         Self::around(recorder::Recorder::black_box(black_box)?)
+    }
+
+    /// Writes no file, and serves what a recording would have to Foxglove: see [`Self::serve`].
+    /// Returns the address at which it does, too.
+    ///
+    /// # Errors
+    /// As [`Self::serve`].
+    #[cfg(feature = "foxglove")]
+    pub fn live(live: &Live) -> Result<(Self, SocketAddr), RecordError> {
+        let (inner, address) = recorder::Recorder::live(live)?;
+        Ok((Self::around(inner)?, address))
+    }
+
+    /// Serves the channels of the recording from now on, until it ends, to Foxglove ("Open
+    /// connection", "Foxglove WebSocket"), and returns the address at which it does. A viewer that is
+    /// too slow loses messages; the recording loses none for it. Blocks until the server listens.
+    ///
+    /// # Errors
+    /// [`RecordError::Live`] if it cannot listen there, [`RecordError::Option`] for an option out
+    /// of range, [`RecordError::Ended`].
+    #[cfg(feature = "foxglove")]
+    pub fn serve(&self, live: &Live) -> Result<SocketAddr, RecordError> {
+        self.inner.serve(live)
     }
 
     fn around(inner: recorder::Recorder) -> Result<Self, RecordError> {

@@ -1,10 +1,11 @@
 //! `franka record`: what happens to a robot, in a file.
 
+use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use franka_async::recording::{BlackBox, RecordOptions, Recorder, Track};
+use franka_async::recording::{BlackBox, Live, RecordOptions, Recorder, Track};
 use indicatif::ProgressBar;
 use serde_json::json;
 
@@ -32,6 +33,9 @@ pub(crate) struct Record {
     /// A folder for the last seconds before each incident
     #[arg(long, value_name = "FOLDER")]
     black_box: Option<PathBuf>,
+    /// Have Foxglove watch meanwhile, at this address of this host: 127.0.0.1:8765 if none is given
+    #[arg(long, value_name = "ADDRESS", num_args = 0..=1)]
+    live: Option<Option<SocketAddr>>,
     #[command(flatten)]
     output: Output,
 }
@@ -46,6 +50,13 @@ impl Record {
         };
         let recorder = Recorder::to_file(&self.file, options);
         let recorder = recorder.map_err(|error| Failure::new(Ending::Host, error.to_string()))?;
+        if let Some(address) = self.live {
+            let mut live = Live::default();
+            live.address = address.unwrap_or(live.address);
+            let served = recorder.serve(&live);
+            let address = served.map_err(|error| Failure::new(Ending::Host, error.to_string()))?;
+            say(&format!("Foxglove can watch at ws://{address}"));
+        }
         recorder.attach(&robot, Track::default()).await?;
         say(&format!(
             "recording {place} to {}; Ctrl-C ends",

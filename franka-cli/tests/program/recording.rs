@@ -71,9 +71,14 @@ fn a_motion_is_recorded_exported_and_replayed() {
 fn states_are_recorded_until_ctrl_c() {
     let (home, sim) = (Home::new(), Simulated::fr3());
     let robot = sim.address();
-    let json = home
-        .run(&["record", "a.mcap", &robot, "--seconds", "0.3", "--json"])
-        .json();
+    let live = ["--live", "127.0.0.1:0"];
+    let record = ["record", "a.mcap", &robot, "--seconds", "0.3", "--json"];
+    let ran = home.run(&[&record[..], &live].concat());
+    assert!(
+        ran.err.contains("Foxglove can watch at ws://127.0.0.1:"),
+        "{ran:?}"
+    );
+    let json = ran.json();
     assert!(json["cycles"].as_u64() > Some(0), "{json}");
     let mut program = home.start(&["record", "b.mcap", &robot, "--black-box", "box"]);
     until("a file", || home.path("b.mcap").exists());
