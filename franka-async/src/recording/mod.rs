@@ -149,8 +149,9 @@ impl Recorder {
     }
 
     /// Serves the channels of the recording from now on, until it ends, to Foxglove ("Open
-    /// connection", "Foxglove WebSocket"), and returns the address at which it does. A viewer that is
-    /// too slow loses messages; the recording loses none for it. Blocks until the server listens.
+    /// connection", "Foxglove WebSocket"), and returns the address at which it does. A viewer that
+    /// is too slow loses messages; the recording loses none for it. Blocks until the server
+    /// listens.
     ///
     /// # Errors
     /// [`RecordError::Live`] if it cannot listen there, [`RecordError::Option`] for an option out
