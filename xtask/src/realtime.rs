@@ -24,7 +24,8 @@ pub(crate) fn obtain() -> Result<(), String> {
 /// Set for the tests where the right is there: the control thread then has to have its priority.
 pub(crate) const GRANTED: &str = "FRANKA_REALTIME_GRANTED";
 
-fn succeeds(line: &[&str]) -> bool {
+/// Whether a program can be run without input, and succeeds.
+pub(crate) fn succeeds(line: &[&str]) -> bool {
     let mut command = Command::new(line[0]);
     command.args(&line[1..]).stdin(Stdio::null());
     command.stdout(Stdio::null()).stderr(Stdio::null());

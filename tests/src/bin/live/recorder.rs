@@ -130,7 +130,10 @@ impl Turn {
                 let nanos = u64::try_from(longest.as_nanos()).expect("less than centuries");
                 let seen = before.iter().find(|(time, _)| *time == longest);
                 let new = count - seen.map_or(0, |(_, seen)| *seen);
-                times.record_n(nanos, new).expect("it grows as it needs");
+                // The maximum counts what was recorded no time, too.
+                if new > 0 {
+                    times.record_n(nanos, new).expect("it grows as it needs");
+                }
             }
         };
         let buckets = || {
