@@ -58,7 +58,7 @@ async fn record(robot: &Robot, path: &Path) -> anyhow::Result<()> {
     recorder.attach(robot, Track::default()).await?;
     let arm = robot.engage(Engage::default()).await?;
     let start = robot.pose();
-    recorder.begin_episode("square-1", "draw half of a square");
+    recorder.begin_episode("square-1", "draw half of a square")?;
     for offset in [[0.0, 0.1, 0.0], [0.0, 0.1, -0.1]] {
         let [x, y, z] = offset;
         arm.move_to(Pose::translation(x, y, z) * start).await?;

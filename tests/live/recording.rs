@@ -353,7 +353,11 @@ async fn actions_and_states_of_a_hand_are_recorded() {
         "no robot called \"left\" is attached to the recorder"
     );
     recorder.attach_gripper(&gripper, "").unwrap();
-    recorder.begin_episode("one", "grasp the object");
+    let refused = recorder.begin_episode("one/two", "grasp the object");
+    let expected =
+        "got the episode name \"one/two\", expected 1 to 128 letters, digits, '-' and '_'";
+    assert_eq!(refused.unwrap_err().to_string(), expected);
+    recorder.begin_episode("one", "grasp the object").unwrap();
     assert!(gripper.homing().await.unwrap());
     assert!(gripper.grasp(Grasp::new(0.05, 0.1, 40.0)).await.unwrap());
     assert!(!gripper.grasp(Grasp::new(0.01, 0.1, 40.0)).await.unwrap());

@@ -270,10 +270,19 @@ impl Recorder {
     }
 
     /// Records that an episode begins: its name, and what is to be done.
-    pub fn begin_episode(&self, name: impl Into<String>, task: impl Into<String>) {
+    ///
+    /// # Errors
+    /// [`EpisodeError`], by [`Episode::check`]: nothing is recorded then.
+    pub fn begin_episode(
+        &self,
+        name: impl Into<String>,
+        task: impl Into<String>,
+    ) -> Result<(), EpisodeError> {
         let (name, task) = (name.into(), task.into());
+        Episode::check(&name, &task)?;
         let begin = EventKind::EpisodeStart { name, task };
         self.entries.tell(None, &begin);
+        Ok(())
     }
 
     /// Records that the episode ends, and whether the task was done, if somebody judged that.

@@ -69,7 +69,8 @@ impl EpisodeUnderWay {
             return refused("another episode of this recording is under way: it has to end first");
         }
         let begun = episode.tell(this.py(), |recorder| {
-            recorder.begin_episode(&*episode.name, &*episode.task);
+            let begun = recorder.begin_episode(&*episode.name, &*episode.task);
+            begun.expect("episode() has checked the name and the task");
         });
         if begun.is_err() {
             episode.shared.in_episode.store(false, Ordering::Relaxed);
