@@ -4,6 +4,7 @@ mod bench;
 mod cassette;
 mod collision;
 mod completions;
+mod dash;
 mod doctor;
 mod explain;
 mod export;
@@ -50,7 +51,8 @@ pub(crate) enum Command {
     #[command(subcommand)]
     Robots(robots::Robots),
     #[command(about = "Be a simulated robot", after_help = sim::EXAMPLES)]
-    Sim(franka_sim::command_line::Arguments),
+    Sim(sim::Sim),
+    Dash(dash::Dash),
     Record(record::Record),
     Explain(explain::Explain),
     Replay(replay::Replay),
@@ -100,7 +102,8 @@ impl Command {
                 Self::Gripper(gripper) => gripper.run().await,
                 Self::Tool(tool) => tool.run().await,
                 Self::Collision(collision) => collision.run().await,
-                Self::Sim(arguments) => sim::run(&arguments).await,
+                Self::Sim(sim) => sim.run().await,
+                Self::Dash(dash) => dash.run().await,
                 Self::Record(record) => record.run().await,
                 Self::Replay(replay) => replay.run().await,
                 Self::Tap(tap) => tap.run().await,

@@ -1,9 +1,15 @@
 //! `franka sim`: the simulator.
 
 use std::io;
+use std::net::SocketAddr;
+use std::sync::Arc;
 
+use clap::Args;
+use franka_dash::Options;
+use franka_sim::Running;
 use franka_sim::command_line::Arguments;
 
+use super::dash::{PAGE, listen};
 use crate::ending::{Ending, Failure};
 use crate::output::line;
 
@@ -15,12 +21,42 @@ Examples:
   franka sim --robot fer --network fer-stalls
                                           a Panda that sends its states as late as a Panda does
   franka sim --wait-for-commands          for a busy computer
-  franka sim --port 0                     on free ports, which it prints";
+  franka sim --port 0                     on free ports, which it prints
+  franka sim --dash                       with a page that shows it and lets it be pushed";
 
-/// Simulates until Ctrl-C.
-pub(super) async fn run(arguments: &Arguments) -> anyhow::Result<Ending> {
-    let ready = |lines: &str| line(lines).map_err(io::Error::other);
-    let outcome = arguments.run(ready).await;
-    outcome.map_err(|error| Failure::new(Ending::Host, error.to_string()))?;
-    Ok(Ending::Done)
+/// The simulator, with or without the dashboard.
+#[derive(Debug, Args)]
+pub(crate) struct Sim {
+    #[command(flatten)]
+    arguments: Arguments,
+    /// Show the robot in the browser, where it can be pushed and disturbed, at this address:
+    /// 127.0.0.1:8080 if none is given
+    #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1)]
+    dash: Option<Option<SocketAddr>>,
+}
+
+impl Sim {
+    /// Simulates until Ctrl-C.
+    pub(super) async fn run(self) -> anyhow::Result<Ending> {
+        let options = Options::default();
+        let page = match self.dash {
+            Some(address) => Some(listen(address.unwrap_or(PAGE), &options).await?),
+            None => None,
+        };
+        let ready = async |sim: &Arc<Running>, lines: &str| {
+            line(lines).map_err(io::Error::other)?;
+            let Some(page) = page else {
+                return Ok(());
+            };
+            line(&format!("dashboard on http://{}/", page.local_addr()?))
+                .map_err(io::Error::other)?;
+            let router = franka_dash::simulator(sim, options).await;
+            let router = router.map_err(io::Error::other)?;
+            tokio::spawn(async move { axum::serve(page, router).await });
+            Ok(())
+        };
+        let outcome = self.arguments.run(ready).await;
+        outcome.map_err(|error| Failure::new(Ending::Host, error.to_string()))?;
+        Ok(Ending::Done)
+    }
 }

@@ -13,6 +13,7 @@
 //! | `settings` | tool, collision, recovery, stop |
 //! | `recording` | recordings and cassettes |
 //! | `measuring` | tests of connections, benchmarks |
+//! | `pages` | the dashboard |
 //! | `papers` | help, completions, man pages, the book |
 
 mod asking;
@@ -21,6 +22,7 @@ mod fingers;
 mod links;
 mod measuring;
 mod moving;
+mod pages;
 mod papers;
 mod program;
 mod recording;

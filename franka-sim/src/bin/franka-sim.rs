@@ -14,7 +14,7 @@ async fn main() -> ExitCode {
         .with_ansi(std::io::stderr().is_terminal())
         .with_target(false)
         .init();
-    let ready = |lines: &str| writeln!(std::io::stdout(), "{lines}");
+    let ready = async |_: &_, lines: &str| writeln!(std::io::stdout(), "{lines}");
     match Arguments::parse().run(ready).await {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -12,19 +12,25 @@ mod setup;
 mod values;
 
 use std::io;
+use std::sync::Arc;
 
 use tokio::signal::unix::{SignalKind, signal};
 
 pub use arguments::{Arguments, Kind, NetworkKind, PlantKind};
 pub use values::numbers;
 
+use crate::Running;
+
 impl Arguments {
-    /// Simulates until SIGINT or SIGTERM comes. Once the robot is ready, `ready` is called with a
-    /// line for each address that it listens on.
+    /// Simulates until SIGINT or SIGTERM comes. Once the robot is ready, `ready` is called with it
+    /// and a line for each address that it listens on.
     ///
     /// # Errors
     /// Options that make no robot, an address that is taken, or a simulation that has ended.
-    pub async fn run(&self, ready: impl FnOnce(&str) -> io::Result<()>) -> io::Result<()> {
+    pub async fn run(
+        &self,
+        ready: impl AsyncFnOnce(&Arc<Running>, &str) -> io::Result<()>,
+    ) -> io::Result<()> {
         let mut interrupt = signal(SignalKind::interrupt())?;
         let mut terminate = signal(SignalKind::terminate())?;
         let sim = self.sim().map_err(io::Error::other)?;
@@ -39,13 +45,17 @@ impl Arguments {
         if let Some(gripper) = sim.vacuum_gripper() {
             lines += &format!("\nvacuum gripper on {}", gripper.addr());
         }
-        ready(&lines)?;
+        let sim = Arc::new(sim);
+        ready(&sim, &lines).await?;
         tokio::select! {
             _ = interrupt.recv() => {}
             _ = terminate.recv() => {}
             () = sim.ended() => return Err(io::Error::other("the simulation has ended")),
         }
-        sim.stop().await;
+        // Whoever else has it, stops it by leaving.
+        if let Some(sim) = Arc::into_inner(sim) {
+            sim.stop().await;
+        }
         Ok(())
     }
 }

@@ -1,0 +1,86 @@
+//! `franka dash`: the dashboard of a robot, in the browser.
+
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
+
+use anyhow::Context;
+use clap::Args;
+use franka_dash::{BindError, Options};
+use tokio::net::TcpListener;
+
+use crate::connection::Which;
+use crate::ending::{Ending, Failure};
+use crate::interrupt::interrupted;
+use crate::output::line;
+use crate::robots_file::Realtime;
+
+/// Show the robot in the browser; with --allow-motion, move it while a button is held
+///
+/// Until Ctrl-C. A page in a browser is neither an emergency stop nor an enabling device.
+#[derive(Debug, Args)]
+pub(crate) struct Dash {
+    #[command(flatten)]
+    which: Which,
+    /// Where to listen; other addresses than this computer's own take --token
+    #[arg(long, value_name = "ADDRESS:PORT", default_value_t = PAGE)]
+    listen: SocketAddr,
+    /// Let the viewer that takes command move the arm and recover the robot
+    #[arg(long)]
+    allow_motion: bool,
+    /// Whether the control thread has to have real-time scheduling with --allow-motion [default:
+    /// that of the robot in the file, or enforce]
+    #[arg(long, value_enum)]
+    realtime: Option<Realtime>,
+    /// Ask pages for this token: http://ADDRESS:PORT/#TOKEN
+    #[arg(long)]
+    token: Option<String>,
+}
+
+impl Dash {
+    pub(super) async fn run(self) -> anyhow::Result<Ending> {
+        let mut options = Options::default();
+        if self.allow_motion {
+            options = options.allow_motion();
+        }
+        if let Some(token) = &self.token {
+            options = options.token(token);
+        }
+        let listener = listen(self.listen, &options).await?;
+        let address = listener.local_addr().context("the address of the page")?;
+        let interrupt = interrupted()?;
+        let place = self.which.place()?;
+        // A page that moves nothing needs no real-time scheduling.
+        let realtime = match self.allow_motion {
+            true => self.realtime,
+            false => Some(Realtime::Ignore),
+        };
+        // Events are explained by the last second.
+        let robot = place.connect(realtime, |builder| builder.log_size(1000));
+        let robot = robot.await?;
+        line(&format!("{place}: http://{address}/"))?;
+        let page = franka_dash::router(robot.clone(), options);
+        let ended = tokio::select! {
+            () = interrupt => Ok(Ending::Done),
+            reason = robot.closed() => {
+                let text = format!("the connection to the robot has ended: {reason}");
+                Err(Failure::new(Ending::NoRobot, text).into())
+            }
+            served = async { axum::serve(listener, page).await } => {
+                served.map(|()| Ending::Done).map_err(Into::into)
+            }
+        };
+        robot.shutdown().await;
+        ended
+    }
+}
+
+/// Listens for pages.
+pub(super) async fn listen(address: SocketAddr, options: &Options) -> Result<TcpListener, Failure> {
+    let bound = franka_dash::bind(address, options).await;
+    bound.map_err(|error| match &error {
+        BindError::NoToken { .. } => Failure::usage(error.to_string()),
+        _ => Failure::new(Ending::Host, format!("{:#}", anyhow::Error::new(error))),
+    })
+}
+
+/// Where pages find the dashboard by default.
+pub(super) const PAGE: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 8080));

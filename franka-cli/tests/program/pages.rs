@@ -1,0 +1,61 @@
+//! The dashboard, served for a robot and by the simulator.
+
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::TcpStream;
+
+use nix::sys::signal::Signal;
+
+use crate::program::{Home, Started};
+use crate::simulated::Simulated;
+
+/// The address in the first line that has one, and that serves the page.
+fn page(program: &mut Started) -> String {
+    let out = program.child().stdout.as_mut().expect("piped");
+    let lines = BufReader::new(out).lines().map(|line| line.expect("text"));
+    let mut addresses = lines.filter_map(|line| Some(line.split_once("http://")?.1.to_owned()));
+    let address = addresses.next().expect("an address");
+    address.trim_end_matches('/').to_owned()
+}
+
+/// What the server answers to a browser.
+fn get(address: &str, path: &str) -> String {
+    let mut socket = TcpStream::connect(address).expect("it listens");
+    let request = format!("GET {path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n\r\n");
+    socket.write_all(request.as_bytes()).expect("it reads");
+    let mut answer = String::new();
+    socket.read_to_string(&mut answer).expect("text");
+    answer
+}
+
+#[test]
+fn the_dashboard_is_served_until_ctrl_c() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let robot = sim.address();
+    let free = ["--listen", "127.0.0.1:0"];
+    let moving = ["dash", &robot, "--allow-motion", "--realtime", "ignore"];
+    let moving = [&moving[..], &free].concat();
+    let watching = [&["dash", &robot][..], &free].concat();
+    for arguments in [
+        &watching[..],
+        &moving,
+        &["sim", "--port", "0", "--dash", "127.0.0.1:0"],
+    ] {
+        let mut program = home.start(arguments);
+        let address = page(&mut program);
+        let answer = get(&address, "/");
+        assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
+        assert!(answer.contains("<title>"), "{answer}");
+        assert!(get(&address, "/dash.js").starts_with("HTTP/1.1 200"));
+        program.signal(Signal::SIGINT);
+        program.ended().done();
+    }
+}
+
+#[test]
+fn pages_for_other_computers_take_a_token() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let open = ["dash", &sim.address(), "--listen", "0.0.0.0:0"];
+    home.run(&open).failed(2, &["token"]);
+    let open = ["sim", "--port", "0", "--dash", "0.0.0.0:0"];
+    home.run(&open).failed(2, &["token"]);
+}
