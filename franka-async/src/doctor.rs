@@ -20,8 +20,9 @@ use franka_rt::lifecycle::MotionError;
 use crate::diagnosis::{Diagnose, Diagnosis};
 
 pub use franka_doctor::{
-    Doctor, Ethtool, Evidence, Finding, Fix, Group, Host, Needs, Purpose, Readings, Received,
-    Report, System, Tree, Unread, Verdict, WakeUps, arrivals, likely_causes, ports,
+    Answer, Doctor, Ethtool, Evidence, Finding, Fix, Group, Host, Needs, Purpose, Readings,
+    Received, Report, System, Tree, Unread, Verdict, WakeUps, answers, arrivals, handshake,
+    likely_causes, ports,
 };
 
 /// Why a motion ended for want of packets.

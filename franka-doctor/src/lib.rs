@@ -12,6 +12,7 @@
 //!   What cannot be read is [`Verdict::Unknown`], which is neither good nor bad.
 //! * [`likely_causes`]: for a motion that ended for want of packets.
 //! * [`arrivals`]: what states of a connected robot show. [`ports`]: what answers at its address.
+//!   [`answers`] and [`handshake`]: which version it speaks, and whether it is free.
 //!
 //! ```
 //! use franka_doctor::{Doctor, Purpose, System, Verdict};
@@ -22,11 +23,12 @@
 //! assert!(report.count(Verdict::Good) > 0);
 //! ```
 //!
-//! Not here: connecting to a robot, Desk, and measuring the round trip to a robot.
+//! Not here: Desk, and measuring the round trip to a robot.
 
 mod causes;
 mod checks;
 mod finding;
+mod handshake;
 mod host;
 mod ports;
 mod readings;
@@ -42,6 +44,7 @@ use std::net::Ipv4Addr;
 
 pub use causes::{Evidence, likely_causes};
 pub use finding::{Finding, Fix, Group, Needs, Purpose, Verdict};
+pub use handshake::{Answer, answers, handshake};
 pub use host::{Ethtool, Host, Tree, Unread};
 pub use ports::ports;
 pub use readings::Readings;
@@ -76,7 +79,7 @@ impl Doctor {
     }
 
     /// The address of the robot, for the checks of the network card on the way to it. The robot is
-    /// not contacted: see [`ports`].
+    /// not contacted: see [`ports`] and [`answers`].
     pub fn robot(mut self, address: Ipv4Addr) -> Self {
         self.robot = Some(address);
         self

@@ -7,7 +7,10 @@ use anstream::ColorChoice;
 use clap::{Args, ValueEnum};
 use franka_async::Robot;
 use franka_async::record::CycleFeed;
-use franka_doctor::{Doctor as Checks, Purpose, Received, Report, System, arrivals, ports};
+use franka_doctor::{
+    Answer, Doctor as Checks, Purpose, Received, Report, System, answers, arrivals, handshake,
+    ports,
+};
 
 use crate::connection::{Place, Which, resolve};
 use crate::ending::Ending;
@@ -137,22 +140,27 @@ impl Doctor {
         let connected = place
             .connect(Some(Realtime::Ignore), |builder| builder)
             .await;
-        match connected {
+        let answered = match connected {
             Ok(robot) => {
+                let answered = vec![Answer::Accepted(robot.version())];
                 let states = received(&robot, self.length()).await;
                 robot.shutdown().await;
                 report.add(arrivals(&states?, purpose));
+                answered
             }
             // The report is about the rest all the same.
             Err(error) => {
                 say(&format!("the robot's states were not checked: {error:#}"));
-                // Whoever has the robot is not disturbed by what follows.
-                if Ending::of(&error) == Ending::Taken {
-                    return Ok(());
+                match Ending::of(&error) {
+                    Ending::Taken => vec![Answer::Closed],
+                    _ => tokio::task::spawn_blocking(move || answers(address)).await?,
                 }
             }
-        }
-        if address.port() == ROBOT {
+        };
+        report.add(handshake(&answered, purpose));
+        // Whoever has the robot is not disturbed by what follows.
+        let taken = answered.last() == Some(&Answer::Closed);
+        if address.port() == ROBOT && !taken {
             let found = tokio::task::spawn_blocking(move || ports(address.ip(), purpose)).await?;
             report.add(found);
         }

@@ -1,5 +1,9 @@
 //! Tests of connections, benchmarks, and the simulator as a command. No figure is judged.
 
+use std::io::{Read as _, Write as _};
+use std::net::TcpListener;
+
+use franka_async::{Realtime, Robot};
 use franka_sim::Sim;
 use nix::sys::signal::Signal;
 
@@ -90,9 +94,58 @@ fn this_computer_and_the_way_to_a_robot_are_checked() {
         let ids: Vec<&str> = ids.collect();
         assert!(ids.len() > 10, "{ids:?}");
         assert!(ids.contains(&"robot.lost"), "{ids:?}");
+        for id in ["robot.version", "robot.busy"] {
+            assert_eq!(verdict(&json, id), "good", "{id}");
+        }
     });
     let ran = home.run(&["doctor", "127.0.0.1:1", "--for", "read", "--quick"]);
     assert!(ran.err.contains("not checked"), "{ran:?}");
+    assert!(
+        ran.out.contains("robot.version: unknown: no connection"),
+        "{ran:?}"
+    );
+}
+
+/// What a report in JSON says of this check.
+fn verdict<'a>(report: &'a serde_json::Value, id: &str) -> &'a str {
+    let findings = report["findings"].as_array().expect("findings");
+    let found = findings.iter().find(|finding| finding["id"] == id);
+    let found = found.unwrap_or_else(|| panic!("no {id}"));
+    found["verdict"].as_str().expect("a text")
+}
+
+#[test]
+fn a_robot_that_is_taken_or_too_old_is_reported() {
+    let home = Home::new();
+    Simulated::each(|sim| {
+        let robot = sim.address();
+        let runtime = tokio::runtime::Runtime::new().expect("a runtime");
+        let builder = Robot::builder(robot.as_str()).realtime(Realtime::Ignore);
+        let first = runtime.block_on(builder.connect()).expect("connected");
+        let ran = home.run(&["doctor", &robot, "--for", "read", "--quick", "--json"]);
+        assert!(ran.err.contains("somebody else"), "{ran:?}");
+        let json: serde_json::Value = serde_json::from_str(&ran.out).expect("JSON");
+        assert_eq!(verdict(&json, "robot.busy"), "warning");
+        assert_eq!(verdict(&json, "robot.version"), "unknown");
+        runtime.block_on(first.shutdown());
+    });
+    let old = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let robot = old.local_addr().expect("bound").to_string();
+    // Serves whoever comes until the process ends.
+    std::thread::spawn(move || {
+        for client in old.incoming() {
+            let mut client = client.expect("a client");
+            let mut handshake = [0; 16];
+            client.read_exact(&mut handshake).expect("a handshake");
+            // The answer to the first request, of 15 bytes in all: incompatible, version 7.
+            let refusal = [0, 0, 0, 0, 0, 0, 0, 0, 15, 0, 0, 0, 1, 7, 0];
+            client.write_all(&refusal).expect("sent");
+        }
+    });
+    let ran = home.run(&["doctor", &robot, "--for", "read", "--quick"]);
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    let advice = "update the robot's system to 5.9.0 or later (Desk, Settings, System)";
+    assert!(ran.out.contains(advice), "{ran:?}");
 }
 
 #[test]
