@@ -21,8 +21,8 @@ use crate::diagnosis::{Diagnose, Diagnosis};
 
 pub use franka_doctor::{
     Answer, Doctor, Ethtool, Evidence, Finding, Fix, Group, Host, Needs, Purpose, Readings,
-    Received, Report, System, Tree, Unread, Verdict, WakeUps, answers, arrivals, handshake,
-    likely_causes, ports,
+    Received, Report, RoundTrips, System, Tree, Unread, Verdict, WakeUps, answers, arrivals,
+    handshake, likely_causes, ports,
 };
 
 /// Why a motion ended for want of packets.

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use franka_rt::sched::Kernel;
 
+use crate::round_trip::RoundTrips;
 use crate::wake_up::WakeUps;
 
 /// A host that can be asked. [`System`](crate::System) is the running one, [`Tree`] a directory.
@@ -37,6 +38,14 @@ pub trait Host {
         duration: Duration,
         progress: &mut dyn FnMut(f64),
     ) -> Result<WakeUps, Unread>;
+    /// Times until `robot` answers echo requests (ICMP) of 1200 bytes, `count` of them, one each
+    /// millisecond at most. `progress` is called as by [`Self::wake_ups`].
+    fn round_trips(
+        &self,
+        robot: Ipv4Addr,
+        count: u64,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<RoundTrips, Unread>;
 }
 
 /// A question to the driver of a network card. None changes a setting, or takes privilege.
@@ -114,6 +123,7 @@ impl fmt::Display for Unread {
 /// | `calls/own_address` | an IPv4 address |
 /// | `calls/ethtool/INTERFACE/COMMAND` | the answer's bytes in hexadecimal; `COMMAND` as `0x0e` |
 /// | `calls/wake_ups` | lines of a latency in microseconds and how often |
+/// | `calls/round_trips` | a line of how many were sent and how many of these were answered, then as above |
 #[derive(Clone, Debug)]
 pub struct Tree {
     root: PathBuf,
@@ -131,6 +141,20 @@ impl Tree {
 
     fn call(&self, name: &str) -> Result<String, Unread> {
         self.read(&format!("calls/{name}"))
+    }
+
+    /// The lines of a file of two numbers each.
+    fn pairs(&self, name: &str) -> Result<Vec<(u64, u64)>, Unread> {
+        let text = self.call(name)?;
+        let pair = |line: &str| {
+            let numbers: Vec<u64> = line.split(' ').flat_map(str::parse).collect();
+            let [first, second] = numbers[..] else {
+                let why = format!("`{line}`, expected two numbers");
+                return Err(Unread::Failed(format!("calls/{name}"), why));
+            };
+            Ok((first, second))
+        };
+        text.lines().map(pair).collect()
     }
 }
 
@@ -179,19 +203,34 @@ impl Host for Tree {
 
     fn wake_ups(&self, _: Duration, progress: &mut dyn FnMut(f64)) -> Result<WakeUps, Unread> {
         progress(1.0);
-        let text = self.call("wake_ups")?;
         let mut wake_ups = WakeUps::new(self.fifo().ok());
-        for line in text.lines() {
-            let numbers: Vec<u64> = line.split(' ').flat_map(str::parse).collect();
-            let [us, count] = numbers[..] else {
-                let why = format!("`{line}`, expected two numbers");
-                return Err(Unread::Failed("calls/wake_ups".into(), why));
-            };
+        for (us, count) in self.pairs("wake_ups")? {
             for _ in 0..count {
                 wake_ups.note(Duration::from_micros(us));
             }
         }
         Ok(wake_ups)
+    }
+
+    fn round_trips(
+        &self,
+        _: Ipv4Addr,
+        _: u64,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<RoundTrips, Unread> {
+        progress(1.0);
+        let pairs = self.pairs("round_trips")?;
+        let mut round_trips = RoundTrips::default();
+        for (index, (first, count)) in pairs.into_iter().enumerate() {
+            match index {
+                0 => round_trips.sent = first,
+                _ => {
+                    let times = (0..count).map(|_| Duration::from_micros(first));
+                    round_trips.times.extend(times);
+                }
+            }
+        }
+        Ok(round_trips)
     }
 }
 

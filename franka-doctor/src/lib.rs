@@ -23,17 +23,20 @@
 //! assert!(report.count(Verdict::Good) > 0);
 //! ```
 //!
-//! Not here: Desk, and measuring the round trip to a robot.
+//! Not here: Desk.
 
+mod card_errors;
 mod causes;
 mod checks;
 mod finding;
 mod handshake;
 mod host;
+mod ping;
 mod ports;
 mod readings;
 mod redaction;
 mod report;
+mod round_trip;
 mod route;
 mod system;
 mod timing;
@@ -42,6 +45,8 @@ mod wake_up;
 use core::time::Duration;
 use std::net::Ipv4Addr;
 
+use card_errors::CardErrors;
+
 pub use causes::{Evidence, likely_causes};
 pub use finding::{Finding, Fix, Group, Needs, Purpose, Verdict};
 pub use handshake::{Answer, answers, handshake};
@@ -49,6 +54,7 @@ pub use host::{Ethtool, Host, Tree, Unread};
 pub use ports::ports;
 pub use readings::Readings;
 pub use report::{Report, SCHEMA};
+pub use round_trip::RoundTrips;
 pub use system::System;
 pub use timing::{Received, arrivals};
 pub use wake_up::WakeUps;
@@ -61,6 +67,7 @@ pub struct Doctor {
     cpu: Option<usize>,
     long: bool,
     timing: bool,
+    ping: bool,
     redact: bool,
 }
 
@@ -74,12 +81,13 @@ impl Doctor {
             cpu: None,
             long: false,
             timing: purpose != Purpose::Sim,
+            ping: false,
             redact: true,
         }
     }
 
     /// The address of the robot, for the checks of the network card on the way to it. The robot is
-    /// not contacted: see [`ports`] and [`answers`].
+    /// not contacted: see [`Self::ping`], [`ports`] and [`answers`].
     pub fn robot(mut self, address: Ipv4Addr) -> Self {
         self.robot = Some(address);
         self
@@ -91,15 +99,24 @@ impl Doctor {
         self
     }
 
-    /// Whether wake-ups are measured for 60 s instead of 10.
+    /// Whether wake-ups are measured for 60 s instead of 10, and 10 000 round trips instead of
+    /// 1000.
     pub fn long(mut self, long: bool) -> Self {
         self.long = long;
         self
     }
 
-    /// Whether wake-ups are measured. No other check takes time.
+    /// Whether wake-ups are measured, and round trips if [`Self::ping`] says so. No other check
+    /// takes time.
     pub fn timing(mut self, timing: bool) -> Self {
         self.timing = timing;
+        self
+    }
+
+    /// Whether the round trip to the robot is measured, with echo requests of 1200 bytes each
+    /// millisecond. They may cost whoever drives the robot some packets.
+    pub fn ping(mut self, ping: bool) -> Self {
+        self.ping = ping;
         self
     }
 
@@ -117,6 +134,7 @@ impl Doctor {
             .map(|check| check.run(&readings, self.purpose))
             .collect();
         if self.timing {
+            let before = CardErrors::read(&readings);
             let duration = Duration::from_secs(if self.long { 60 } else { 10 });
             let measured = host.wake_ups(duration, &mut |part| progress("timing.wake_up", part));
             if let Ok(wake_ups) = &measured {
@@ -127,6 +145,17 @@ impl Doctor {
                 readings.note("wake-ups, us: count", buckets.join(", "));
             }
             findings.push(timing::wake_up(measured, self.purpose));
+            if let Some(robot) = self.robot.filter(|_| self.ping) {
+                let count = if self.long { 10_000 } else { 1000 };
+                let mut shown = |part| progress("robot.ping", part);
+                let measured = host.round_trips(robot, count, &mut shown);
+                findings.push(ping::ping(measured, self.purpose));
+            }
+            // Packets of this computer to itself pass no card.
+            if readings.route().is_ok_and(|route| route.interface != "lo") {
+                let after = CardErrors::read(&readings);
+                findings.push(card_errors::meanwhile(before, after, self.purpose));
+            }
         }
         let mut report = Report {
             schema: SCHEMA,

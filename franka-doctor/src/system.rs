@@ -14,6 +14,7 @@ use nix::sys::time::TimeSpec;
 use nix::time::{ClockId, ClockNanosleepFlags, clock_gettime, clock_nanosleep};
 
 use crate::host::{Ethtool, Host, Unread, names_in};
+use crate::round_trip::{self, RoundTrips};
 use crate::wake_up::WakeUps;
 
 /// The host that this runs on.
@@ -123,31 +124,64 @@ impl Host for System {
         duration: Duration,
         progress: &mut dyn FnMut(f64),
     ) -> Result<WakeUps, Unread> {
-        let what = "the wake-up of a thread";
         let cycles = u64::try_from(duration.as_millis())
             .unwrap_or(u64::MAX)
             .max(1);
+        let measured = self.measured(cycles, progress, |priority, done| {
+            wake_ups(priority, cycles, done)
+        });
+        measured.map_err(|why| Unread::Failed("the wake-up of a thread".into(), why))
+    }
+
+    fn round_trips(
+        &self,
+        robot: Ipv4Addr,
+        count: u64,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<RoundTrips, Unread> {
+        let measured = self.measured(count, progress, |_, done| {
+            round_trip::measure(robot, count, done).map_err(|error| match error.kind() {
+                io::ErrorKind::PermissionDenied => {
+                    "net.ipv4.ping_group_range has no group of this user".to_owned()
+                }
+                _ => error.to_string(),
+            })
+        });
+        measured.map_err(|why| Unread::Failed(format!("echo requests to {robot}"), why))
+    }
+}
+
+impl System {
+    /// What `measure` returns on a thread with the scheduling of the control thread. It gets the
+    /// priority of this thread and counts what is done, of `total`.
+    fn measured<T: Send>(
+        &self,
+        total: u64,
+        progress: &mut dyn FnMut(f64),
+        measure: impl FnOnce(Option<i32>, &AtomicU64) -> Result<T, String> + Send,
+    ) -> Result<T, String> {
         let done = AtomicU64::new(0);
         let scheduling = self.scheduling();
         thread::scope(|scope| {
             let measuring = thread::Builder::new()
-                .name("franka-wake".into())
-                .spawn_scoped(scope, || measure(&scheduling, cycles, &done))
-                .map_err(|error| Unread::new(what, &error))?;
+                .name("franka-doctor".into())
+                .spawn_scoped(scope, || {
+                    let granted = scheduling.enter().map_err(|error| error.to_string())?;
+                    measure(granted.priority, &done)
+                })
+                .map_err(|error| error.to_string())?;
             while !measuring.is_finished() {
                 thread::sleep(Duration::from_millis(100));
-                progress(done.load(Ordering::Relaxed) as f64 / cycles as f64);
+                progress(done.load(Ordering::Relaxed) as f64 / total as f64);
             }
-            let measured = measuring.join().expect("measuring does not panic");
-            measured.map_err(|why| Unread::Failed(what.into(), why))
+            measuring.join().expect("measuring does not panic")
         })
     }
 }
 
 /// Sleeps until each of `cycles` milliseconds, and notes how late it was each time.
-fn measure(scheduling: &Scheduling, cycles: u64, done: &AtomicU64) -> Result<WakeUps, String> {
-    let granted = scheduling.enter().map_err(|error| error.to_string())?;
-    let mut wake_ups = WakeUps::new(granted.priority);
+fn wake_ups(priority: Option<i32>, cycles: u64, done: &AtomicU64) -> Result<WakeUps, String> {
+    let mut wake_ups = WakeUps::new(priority);
     let clock = ClockId::CLOCK_MONOTONIC;
     let now = || {
         clock_gettime(clock)

@@ -92,10 +92,7 @@ pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
             }
         }
     };
-    let quantile = |part: f64| {
-        let wanted = (part * intervals.len() as f64).ceil().max(1.0) as usize;
-        intervals[wanted - 1].as_secs_f64() * 1e3
-    };
+    let quantile = |part| quantile(&intervals, part).as_secs_f64() * 1e3;
     let punctuality = match intervals.last() {
         None => Judged::unknown("unknown: no two states in a row"),
         Some(max) => {
@@ -134,6 +131,15 @@ pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
             "vendor: FCI documentation, network; thresholds: this project's",
         ),
     ]
+}
+
+/// The shortest of `sorted` that the part `part` (in `[0, 1]`) of them does not exceed.
+///
+/// # Panics
+/// If there are none.
+pub(crate) fn quantile(sorted: &[Duration], part: f64) -> Duration {
+    let wanted = (part * sorted.len() as f64).ceil().max(1.0) as usize;
+    sorted[wanted - 1]
 }
 
 /// Fewer states in a row than ten seconds have, a few lost ones aside, show little.

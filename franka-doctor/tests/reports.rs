@@ -40,7 +40,7 @@ fn robot(host: &str) -> Ipv4Addr {
 }
 
 fn report(host: &str, purpose: Purpose) -> Report {
-    let doctor = Doctor::new(purpose).robot(robot(host));
+    let doctor = Doctor::new(purpose).robot(robot(host)).ping(true);
     doctor.run(&tree(host), &mut |_, _| ())
 }
 
@@ -104,6 +104,13 @@ fn what_each_host_is_known_for_is_found() {
         ("usb_card", "nic.kind", Warning),
         ("usb_card", "nic.coalesce", Failure),
         ("usb_card", "nic.errors", Warning),
+        ("ubuntu_pro_realtime", "robot.ping", Good),
+        ("debian13_realtime", "robot.ping", Info),
+        ("container", "robot.ping", Unknown),
+        ("container", "nic.mtu", Warning),
+        ("usb_card", "nic.errors_now", Good),
+        ("laptop_on_battery", "robot.ping", Failure),
+        ("usb_card", "robot.ping", Failure),
     ] {
         assert_eq!(
             verdict(&report(host, Purpose::Move), id),

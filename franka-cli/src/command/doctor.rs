@@ -8,8 +8,8 @@ use clap::{Args, ValueEnum};
 use franka_async::Robot;
 use franka_async::record::CycleFeed;
 use franka_doctor::{
-    Answer, Doctor as Checks, Purpose, Received, Report, System, answers, arrivals, handshake,
-    ports,
+    Answer, Doctor as Checks, Finding, Purpose, Received, Report, System, answers, arrivals,
+    handshake, ports,
 };
 
 use crate::connection::{Place, Which, resolve};
@@ -20,8 +20,9 @@ use crate::robots_file::Realtime;
 
 /// Check this computer, and the way to a robot
 ///
-/// Changes nothing. With a robot, its ports are tried and its states counted while it rests; it is
-/// not moved. Exit code 1: something would keep the purpose from being served.
+/// Changes nothing. With a robot, its states are counted while it rests, its ports tried and echo
+/// requests sent, unless somebody else has it; it is not moved. Exit code 1: something would keep
+/// the purpose from being served.
 #[derive(Debug, Args)]
 pub(crate) struct Doctor {
     #[command(flatten)]
@@ -76,10 +77,16 @@ impl Doctor {
             Some(place) => Some(resolve(&place.address, ROBOT).await?),
             None => None,
         };
-        let mut report = self.host(address.map(|address| address.ip())).await?;
+        // The robot first: whoever has it is not disturbed by what follows.
+        let mut found = Vec::new();
+        let mut taken = false;
         if let (Some(place), Some(address)) = (&place, address) {
-            self.robot(&mut report, place, address).await?;
+            (found, taken) = self.robot(place, address).await?;
         }
+        let mut report = self
+            .host(address.map(|address| address.ip()), !taken)
+            .await?;
+        report.add(found);
         if self.output.json {
             line(&report.to_json())?;
         } else if self.fix {
@@ -107,9 +114,12 @@ impl Doctor {
         })
     }
 
-    /// The checks of this computer, with the card on the way to `robot`.
-    async fn host(&self, robot: Option<IpAddr>) -> anyhow::Result<Report> {
-        let mut checks = Checks::new(self.purpose.purpose()).long(self.long);
+    /// The checks of this computer, with the card on the way to `robot`, which may be sent echo
+    /// requests if `ping`.
+    async fn host(&self, robot: Option<IpAddr>, ping: bool) -> anyhow::Result<Report> {
+        let mut checks = Checks::new(self.purpose.purpose())
+            .long(self.long)
+            .ping(ping);
         if let Some(IpAddr::V4(robot)) = robot {
             checks = checks.robot(robot);
         }
@@ -129,13 +139,14 @@ impl Doctor {
         Ok(report)
     }
 
-    /// What answers at the robot's address, and how regularly its states come.
+    /// What answers at the robot's address, and how regularly its states come; and whether somebody
+    /// else has the robot.
     async fn robot(
         &self,
-        report: &mut Report,
         place: &Place,
         address: SocketAddr,
-    ) -> anyhow::Result<()> {
+    ) -> anyhow::Result<(Vec<Finding>, bool)> {
+        let mut found = Vec::new();
         let purpose = self.purpose.purpose();
         let connected = place
             .connect(Some(Realtime::Ignore), |builder| builder)
@@ -145,7 +156,7 @@ impl Doctor {
                 let answered = vec![Answer::Accepted(robot.version())];
                 let states = received(&robot, self.length()).await;
                 robot.shutdown().await;
-                report.add(arrivals(&states?, purpose));
+                found.extend(arrivals(&states?, purpose));
                 answered
             }
             // The report is about the rest all the same.
@@ -157,14 +168,13 @@ impl Doctor {
                 }
             }
         };
-        report.add(handshake(&answered, purpose));
-        // Whoever has the robot is not disturbed by what follows.
+        found.extend(handshake(&answered, purpose));
         let taken = answered.last() == Some(&Answer::Closed);
         if address.port() == ROBOT && !taken {
-            let found = tokio::task::spawn_blocking(move || ports(address.ip(), purpose)).await?;
-            report.add(found);
+            let ports = tokio::task::spawn_blocking(move || ports(address.ip(), purpose)).await?;
+            found.extend(ports);
         }
-        Ok(())
+        Ok((found, taken))
     }
 }
 

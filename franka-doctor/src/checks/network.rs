@@ -1,6 +1,9 @@
 //! The way to the robot, and the network card on it.
 
+use franka_proto::RobotState;
+
 use super::{Check, VENDOR};
+use crate::card_errors::CardErrors;
 use crate::finding::{Group, Judged, Matters, Needs, Verdict};
 use crate::host::{Ethtool, Unread};
 use crate::readings::{NET, Readings};
@@ -286,36 +289,24 @@ const ETH_FLAG_LRO: u32 = 1 << 15;
 fn mtu(readings: &Readings<'_>) -> Result<Judged, Unread> {
     let card = card!(readings);
     let mtu: u32 = readings.number(&format!("{NET}/{card}/mtu"))?;
+    // Headers of IP and UDP have 20 and 8 bytes, and all fragments but the last a multiple of 8.
+    let bytes = RobotState::MAX_SIZE as u32 + 8;
+    let packets = match mtu.saturating_sub(20) {
+        room if room >= bytes => 1,
+        room => bytes.div_ceil((room / 8 * 8).max(8)),
+    };
+    let read = format!("{mtu}: the longest state comes in {packets} packets");
     Ok(match mtu {
-        1500 => Judged::good("1500"),
-        ..1500 => Judged::warning(mtu.to_string()),
-        _ => Judged::info(mtu.to_string()),
+        1500 => Judged::good(read),
+        ..1500 => Judged::warning(read),
+        _ => Judged::info(read),
     }
     .fix(Needs::Nothing, format!("sudo ip link set {card} mtu 1500")))
 }
 
 fn errors(readings: &Readings<'_>) -> Result<Judged, Unread> {
-    let card = card!(readings);
-    let mut seen = Vec::new();
-    for name in [
-        "rx_errors",
-        "rx_dropped",
-        "rx_crc_errors",
-        "rx_missed_errors",
-        "collisions",
-    ] {
-        let count: u64 = readings.number(&format!("{NET}/{card}/statistics/{name}"))?;
-        if count > 0 {
-            seen.push(format!("{name} {count}"));
-        }
-    }
-    let bad = seen.iter().any(|text| !text.starts_with("rx_dropped"));
-    Ok(match (seen.is_empty(), bad) {
-        (true, _) => Judged::good("none"),
-        // Packets of protocols that nobody listens to count as dropped.
-        (false, false) => Judged::info(seen.join(", ")),
-        (false, true) => Judged::warning(seen.join(", ")),
-    })
+    let _ = card!(readings);
+    Ok(CardErrors::read(readings)?.judged())
 }
 
 fn card_power(readings: &Readings<'_>) -> Result<Judged, Unread> {

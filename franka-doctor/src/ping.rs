@@ -1,0 +1,118 @@
+//! What round trips to the robot show.
+
+use core::time::Duration;
+
+use crate::finding::{Finding, Group, Judged, Matters, Purpose, for_purpose};
+use crate::host::Unread;
+use crate::round_trip::{PAYLOAD, RoundTrips};
+use crate::timing::quantile;
+
+/// What a measurement of round trips shows. A pure function.
+pub(crate) fn ping(measured: Result<RoundTrips, Unread>, purpose: Purpose) -> Finding {
+    let judged = match measured {
+        Ok(round_trips) => judge(round_trips),
+        Err(unread) => Judged::unknown(format!("unknown: {unread}")),
+    };
+    Finding {
+        id: "robot.ping",
+        group: Group::Robot,
+        verdict: for_purpose(judged.verdict, Matters::Reading, purpose),
+        read: judged.read,
+        wanted: "p50 below 0.3 ms, p99 below 0.4, max below 0.6, none lost; p50 above 0.4 ms a warning, p50 above 0.8 or any lost a failure",
+        why: "Round trip, work of this computer and the robot's own step have to fit into 1 ms.",
+        source: "vendor: FCI documentation, network test with 1200 bytes each millisecond; libfranka issue 174: 0.3 to 0.4 ms at most",
+        fix: judged.fix,
+    }
+}
+
+fn judge(RoundTrips { sent, mut times }: RoundTrips) -> Judged {
+    times.sort_unstable();
+    let Some(&max) = times.last() else {
+        return Judged::unknown(format!(
+            "unknown: none of {sent} echo requests was answered: nobody is there, or they are blocked"
+        ));
+    };
+    let (p50, p99) = (quantile(&times, 0.5), quantile(&times, 0.99));
+    let lost = sent.saturating_sub(times.len() as u64);
+    let ms = |time: Duration| time.as_secs_f64() * 1e3;
+    let read = format!(
+        "p50 {:.3}, p99 {:.3}, max {:.3} ms; {lost} of {sent} lost, of {PAYLOAD} bytes each",
+        ms(p50),
+        ms(p99),
+        ms(max)
+    );
+    let us = Duration::from_micros;
+    if lost > 0 || p50 > us(800) {
+        Judged::failure(read)
+    } else if p50 > us(400) {
+        Judged::warning(read)
+    } else if p50 >= us(300) || p99 >= us(400) || max >= us(600) {
+        Judged::info(read)
+    } else if sent < SENT_MIN {
+        Judged::info(format!("{read}; too few to call it good"))
+    } else {
+        Judged::good(read)
+    }
+}
+
+/// Fewer show little.
+const SENT_MIN: u64 = 1000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::finding::Verdict;
+
+    /// 1000 requests: 500 take `half` microseconds, 490 `most`, and the rest `worst`; `lost` of
+    /// these have no answer.
+    fn measured(half: u64, most: u64, worst: u64, lost: usize) -> RoundTrips {
+        let us = [vec![worst; 10 - lost], vec![half; 500], vec![most; 490]].concat();
+        RoundTrips {
+            sent: 1000,
+            times: us.into_iter().map(Duration::from_micros).collect(),
+        }
+    }
+
+    #[test]
+    fn the_median_and_losses_decide_and_a_short_measurement_is_never_good() {
+        use Verdict::{Failure, Good, Info, Warning};
+        for (round_trips, expected) in [
+            // The vendor's example.
+            (measured(147, 240, 502, 0), Good),
+            (measured(299, 399, 599, 0), Good),
+            (measured(300, 399, 599, 0), Info),
+            (measured(299, 400, 599, 0), Info),
+            // A healthy one, libfranka issue 123.
+            (measured(115, 169, 3_754, 0), Info),
+            (measured(401, 410, 502, 0), Warning),
+            (measured(800, 810, 900, 0), Warning),
+            (measured(830, 840, 900, 0), Failure),
+            (measured(147, 240, 502, 1), Failure),
+        ] {
+            let finding = ping(Ok(round_trips), Purpose::Move);
+            assert_eq!(finding.verdict, expected, "{}", finding.read);
+        }
+        let few = RoundTrips {
+            sent: 999,
+            times: vec![Duration::from_micros(150); 999],
+        };
+        assert_eq!(ping(Ok(few), Purpose::Move).verdict, Info);
+        let text = ping(Ok(measured(147, 240, 502, 1)), Purpose::Read).read;
+        let expected = "p50 0.147, p99 0.240, max 0.502 ms; 1 of 1000 lost, of 1200 bytes each";
+        assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn silence_and_sockets_that_are_refused_are_unknown() {
+        let silent = RoundTrips {
+            sent: 20,
+            times: Vec::new(),
+        };
+        let refused = Unread::Failed("echo requests".into(), "not allowed".into());
+        for measured in [Ok(silent), Err(refused)] {
+            let finding = ping(measured, Purpose::Move);
+            assert_eq!(finding.verdict, Verdict::Unknown);
+            assert!(finding.read.starts_with("unknown: "), "{}", finding.read);
+        }
+    }
+}
