@@ -20,9 +20,9 @@ use franka_rt::lifecycle::MotionError;
 use crate::diagnosis::{Diagnose, Diagnosis};
 
 pub use franka_doctor::{
-    Answer, Doctor, Ethtool, Evidence, Finding, Fix, Group, Host, Needs, Purpose, Readings,
+    Answer, Doctor, DryRun, Ethtool, Evidence, Finding, Fix, Group, Host, Needs, Purpose, Readings,
     Received, Report, RoundTrips, System, Tree, Unread, Verdict, WakeUps, answers, arrivals,
-    handshake, likely_causes, ports,
+    dry_run, handshake, likely_causes, ports,
 };
 
 /// Why a motion ended for want of packets.

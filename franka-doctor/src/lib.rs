@@ -13,6 +13,7 @@
 //! * [`likely_causes`]: for a motion that ended for want of packets.
 //! * [`arrivals`]: what states of a connected robot show. [`ports`]: what answers at its address.
 //!   [`answers`] and [`handshake`]: which version it speaks, and whether it is free.
+//! * [`dry_run`]: what the control loop shows that ran against a simulated robot.
 //!
 //! ```
 //! use franka_doctor::{Doctor, Purpose, System, Verdict};
@@ -28,6 +29,7 @@
 mod card_errors;
 mod causes;
 mod checks;
+mod dry_run;
 mod finding;
 mod handshake;
 mod host;
@@ -48,6 +50,7 @@ use std::net::Ipv4Addr;
 use card_errors::CardErrors;
 
 pub use causes::{Evidence, likely_causes};
+pub use dry_run::{DryRun, dry_run};
 pub use finding::{Finding, Fix, Group, Needs, Purpose, Verdict};
 pub use handshake::{Answer, answers, handshake};
 pub use host::{Ethtool, Host, Tree, Unread};

@@ -1,11 +1,12 @@
 //! `franka bench`: this computer, without a robot.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand};
 use franka_async::control::{Finish, Torques};
-use franka_async::realtime::Scheduling;
-use franka_async::{Realtime, Robot};
+use franka_async::realtime::{Granted, Scheduling, Stats};
+use franka_async::{MotionError, MotionReport, Realtime, Robot};
 use franka_sim::Sim;
 use indicatif::ProgressBar;
 use serde_json::json;
@@ -101,21 +102,10 @@ fn measure(count: usize, bar: &ProgressBar) -> Result<(Option<i32>, Vec<Duration
 
 impl Loop {
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
-        let failed = |error: std::io::Error| Failure::new(Ending::Host, error.to_string());
         // It waits for commands that a busy computer sends late, rather than stop itself.
-        let sim = Sim::fr3().wait_for_commands(PATIENCE).start();
-        let sim = sim.await.map_err(failed)?;
-        let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
-        let robot = builder.connect().await?;
-        let (mut time, seconds) = (Duration::ZERO, self.seconds);
-        let control = robot.control_torques(move |_, step| {
-            time += step;
-            Torques([0.0; 7]).finish_if(time >= seconds)
-        });
-        let report = control.await?;
-        let (stats, granted) = (robot.stats(), robot.granted());
-        robot.shutdown().await;
-        sim.stop().await;
+        let sim = Sim::fr3().wait_for_commands(PATIENCE);
+        let (outcome, stats, granted) = dry_run(sim, self.seconds).await?;
+        let report = outcome?;
         let value = json!({
             "robot": "simulated FR3 in this process",
             "priority": granted.priority,
@@ -133,6 +123,28 @@ impl Loop {
             format!("{}scheduling     {scheduling}", table(&value))
         })
     }
+}
+
+/// Runs the control loop for `length` against `sim` in this process: what came of it, what the loop
+/// has counted, and what the operating system granted it.
+pub(super) async fn dry_run(
+    sim: Sim,
+    length: Duration,
+) -> anyhow::Result<(Result<MotionReport, MotionError>, Arc<Stats>, Arc<Granted>)> {
+    let failed = |error: std::io::Error| Failure::new(Ending::Host, error.to_string());
+    let sim = sim.start().await.map_err(failed)?;
+    let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+    let robot = builder.connect().await?;
+    let mut time = Duration::ZERO;
+    let control = robot.control_torques(move |_, step| {
+        time += step;
+        Torques([0.0; 7]).finish_if(time >= length)
+    });
+    let outcome = control.await;
+    let (stats, granted) = (robot.stats(), robot.granted());
+    robot.shutdown().await;
+    sim.stop().await;
+    Ok((outcome, stats, granted))
 }
 
 /// For a command of a computer that is busy with something else.

@@ -1,17 +1,21 @@
 //! `franka doctor`: this computer and the way to a robot, checked before an arm moves.
 
 use std::net::{IpAddr, SocketAddr};
+use std::pin::pin;
 use std::time::{Duration, Instant};
 
 use anstream::ColorChoice;
 use clap::{Args, ValueEnum};
 use franka_async::Robot;
+use franka_async::realtime::Scheduling;
 use franka_async::record::CycleFeed;
 use franka_doctor::{
-    Answer, Doctor as Checks, Finding, Purpose, Received, Report, System, answers, arrivals,
-    handshake, ports,
+    Answer, Doctor as Checks, DryRun, Finding, Purpose, Received, Report, System, answers,
+    arrivals, dry_run, handshake, ports,
 };
+use franka_sim::Sim;
 
+use super::bench;
 use crate::connection::{Place, Which, resolve};
 use crate::ending::Ending;
 use crate::motion::progress_bar;
@@ -36,7 +40,7 @@ pub(crate) struct Doctor {
     /// Measure for a minute, instead of ten seconds
     #[arg(long)]
     long: bool,
-    /// Measure nothing that takes time
+    /// Measure for a second, and neither wake-ups nor round trips
     #[arg(long, conflicts_with = "long")]
     quick: bool,
     /// Say what is good, too, and why and by which source
@@ -87,6 +91,9 @@ impl Doctor {
             .host(address.map(|address| address.ip()), !taken)
             .await?;
         report.add(found);
+        if self.purpose != For::Sim {
+            report.add(self.dry_run().await);
+        }
         if self.output.json {
             line(&report.to_json())?;
         } else if self.fix {
@@ -105,7 +112,7 @@ impl Doctor {
         })
     }
 
-    /// How long states are counted.
+    /// How long states are counted, and the dry run takes.
     fn length(&self) -> Duration {
         Duration::from_secs(match (self.quick, self.long) {
             (true, _) => 1,
@@ -137,6 +144,42 @@ impl Doctor {
         let report = tokio::task::spawn_blocking(run).await?;
         bar.finish_and_clear();
         Ok(report)
+    }
+
+    /// The control loop of the driver against a simulated robot in this process.
+    async fn dry_run(&self) -> Option<Finding> {
+        let bar = progress_bar();
+        bar.set_message("timing.dry_run");
+        let (begin, length) = (Instant::now(), self.length());
+        let mut run = pin!(bench::dry_run(punctual(), length));
+        let mut clock = tokio::time::interval(Duration::from_millis(100));
+        let ran = loop {
+            tokio::select! {
+                biased;
+                ran = &mut run => break ran,
+                _ = clock.tick() => {
+                    let part = begin.elapsed().as_secs_f64() / length.as_secs_f64();
+                    bar.set_position((part * 1000.0) as u64);
+                }
+            }
+        };
+        bar.finish_and_clear();
+        match ran {
+            Ok((outcome, stats, granted)) => {
+                let run = DryRun {
+                    ended: outcome.err().map(|error| error.to_string()),
+                    ..DryRun::new(&stats, granted.priority)
+                };
+                Some(dry_run(&run, self.purpose.purpose()))
+            }
+            // The report is about the rest all the same.
+            Err(error) => {
+                say(&format!(
+                    "there was no dry run of the control loop: {error:#}"
+                ));
+                None
+            }
+        }
     }
 
     /// What answers at the robot's address, and how regularly its states come; and whether somebody
@@ -176,6 +219,22 @@ impl Doctor {
         }
         Ok((found, taken))
     }
+}
+
+/// A simulated robot that keeps its millisecond as well as this computer can, and ends a motion if
+/// too many commands are late.
+fn punctual() -> Sim {
+    // On the thread of the robot. What is refused leaves it as it is.
+    let mut scheduling = Some(Scheduling {
+        realtime: franka_async::Realtime::Ignore,
+        prefault_stack: 0,
+        ..Scheduling::default()
+    });
+    Sim::fr3().every_millisecond(move |_| {
+        if let Some(scheduling) = scheduling.take() {
+            let _ = scheduling.enter();
+        }
+    })
 }
 
 /// States as they arrive, for some seconds.

@@ -93,7 +93,9 @@ fn this_computer_and_the_way_to_a_robot_are_checked() {
         let ids = findings.iter().filter_map(|finding| finding["id"].as_str());
         let ids: Vec<&str> = ids.collect();
         assert!(ids.len() > 10, "{ids:?}");
-        assert!(ids.contains(&"robot.lost"), "{ids:?}");
+        for id in ["robot.lost", "timing.dry_run"] {
+            assert!(ids.contains(&id), "{ids:?}");
+        }
         for id in ["robot.version", "robot.busy"] {
             assert_eq!(verdict(&json, id), "good", "{id}");
         }
