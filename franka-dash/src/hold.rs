@@ -23,9 +23,9 @@ pub(crate) struct Hold {
 }
 
 impl Hold {
-    /// The hold, and what its motion needs.
-    pub(crate) fn new() -> (Self, DeadmanMonitor, CancellationToken) {
-        let (deadman, monitor) = Deadman::new(SILENCE);
+    /// The hold, and what its motion needs. News of it may come later by `patience`.
+    pub(crate) fn new(patience: Duration) -> (Self, DeadmanMonitor, CancellationToken) {
+        let (deadman, monitor) = Deadman::new(SILENCE + patience);
         deadman.keep_alive();
         let end = CancellationToken::new();
         let told = end.clone();

@@ -43,11 +43,16 @@ impl Hub {
         source: Source,
         simulated: Option<Simulated>,
         motion: bool,
+        patience: Duration,
         admission: Admission,
     ) -> Arc<Self> {
         let permissions = Permissions {
             motion: motion && source.robot().is_some(),
             disturbances: simulated.is_some(),
+            patience: match simulated {
+                Some(_) => patience,
+                None => Duration::ZERO,
+            },
         };
         let hub = Arc::new(Self {
             admission,
@@ -194,7 +199,7 @@ impl Hub {
 
     fn begin(self: &Arc<Self>, number: u64, motion: Motion, speed: f64) -> Option<Hold> {
         let robot = self.source.robot()?.clone();
-        let (hold, deadman, end) = Hold::new();
+        let (hold, deadman, end) = Hold::new(self.permissions.patience);
         let hub = self.clone();
         tokio::spawn(async move {
             let ended = hold::run(&robot, motion, speed, deadman, end).await;

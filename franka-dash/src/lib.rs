@@ -76,6 +76,7 @@ mod viewer;
 use std::io;
 use std::net::SocketAddr;
 use std::sync::Arc;
+use std::time::Duration;
 
 use axum::Router;
 use axum::extract::{Request, State, WebSocketUpgrade};
@@ -98,6 +99,7 @@ pub struct Options {
     admission: Admission,
     motion: bool,
     simulated: Option<Simulated>,
+    patience: Duration,
 }
 
 impl Options {
@@ -125,6 +127,13 @@ impl Options {
     /// that is shown.
     pub fn simulated(mut self, running: &Arc<Running>) -> Self {
         self.simulated = Some(Simulated::new(running.clone()));
+        self
+    }
+
+    /// Lets messages of a held button come this much later than they must: for tests of the page on
+    /// a busy computer. Counts with [`Self::simulated`] only: a robot has no patience.
+    pub fn patience(mut self, patience: Duration) -> Self {
+        self.patience = patience;
         self
     }
 }
@@ -183,11 +192,13 @@ pub fn router(robot: Robot, options: Options) -> Router {
         admission,
         motion,
         simulated,
+        patience,
     } = options;
     serve(Hub::start(
         Source::Robot(robot),
         simulated,
         motion,
+        patience,
         admission,
     ))
 }
@@ -209,6 +220,7 @@ pub async fn simulator(running: &Arc<Running>, options: Options) -> Result<Route
         watched,
         simulated,
         false,
+        options.patience,
         options.admission,
     )))
 }

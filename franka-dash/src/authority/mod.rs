@@ -32,6 +32,8 @@ pub(crate) struct Permissions {
     pub(crate) motion: bool,
     /// Disturbances of a simulated robot.
     pub(crate) disturbances: bool,
+    /// How much later messages may come: none but for a simulated robot.
+    pub(crate) patience: Duration,
 }
 
 /// What the server has to do.
@@ -161,8 +163,9 @@ impl Authority {
     /// Ends what has been silent for too long. To be called every few milliseconds.
     pub(crate) fn tick(&mut self, now: Duration) -> Option<Lost> {
         self.now = self.now.max(now);
+        let deadman = DEADMAN + self.permissions.patience;
         let lease = self.lease.as_mut()?;
-        let silent = |hold: &mut Hold| self.now - hold.heard > DEADMAN;
+        let silent = |hold: &mut Hold| self.now - hold.heard > deadman;
         if lease.hold.take_if(silent).is_some() {
             return Some(Lost::Silent);
         }
@@ -219,6 +222,7 @@ impl Authority {
         let Permissions {
             motion: motions,
             disturbances,
+            patience,
         } = self.permissions;
         let lease = self.lease.as_mut().filter(|lease| lease.viewer == viewer);
         let lease = lease.ok_or(Refusal::NoLease)?;
@@ -244,7 +248,9 @@ impl Authority {
                 }
                 match round_trip {
                     None => return Err(Refusal::Unmeasured),
-                    Some(got) if got > ROUND_TRIP_MAX => return Err(Refusal::Latency(got)),
+                    Some(got) if got > ROUND_TRIP_MAX + patience => {
+                        return Err(Refusal::Latency(got));
+                    }
                     Some(_) => {}
                 }
                 self.holds += 1;

@@ -25,6 +25,7 @@ impl Server {
         Self::with(Permissions {
             motion: true,
             disturbances: true,
+            patience: Duration::ZERO,
         })
     }
 
@@ -258,10 +259,24 @@ fn a_begin_is_refused_with_the_reason() {
 }
 
 #[test]
+fn patience_moves_the_deadman_by_as_much() {
+    let mut server = Server::with(Permissions {
+        motion: true,
+        disturbances: true,
+        patience: Duration::from_secs(1),
+    });
+    server.take(COMMANDER);
+    assert!(server.begin(COMMANDER).effect.is_some());
+    assert_eq!(server.pass(1150), None);
+    assert_eq!(server.pass(1), Some(Lost::Silent));
+}
+
+#[test]
 fn a_view_only_server_takes_stops_and_nothing_else() {
     let mut server = Server::with(Permissions {
         motion: false,
         disturbances: false,
+        patience: Duration::ZERO,
     });
     assert_eq!(server.take(COMMANDER).refusal, Some(Refusal::ViewOnly));
     assert_eq!(server.begin(COMMANDER).refusal, Some(Refusal::NoLease));
@@ -271,6 +286,7 @@ fn a_view_only_server_takes_stops_and_nothing_else() {
     let mut server = Server::with(Permissions {
         motion: false,
         disturbances: true,
+        patience: Duration::ZERO,
     });
     assert_eq!(server.take(COMMANDER).refusal, None);
     assert_eq!(server.begin(COMMANDER).refusal, Some(Refusal::ViewOnly));
@@ -297,6 +313,7 @@ fn only_a_simulated_robot_is_disturbed_and_within_bounds() {
     let mut robot = Server::with(Permissions {
         motion: true,
         disturbances: false,
+        patience: Duration::ZERO,
     });
     robot.take(COMMANDER);
     let refusal = robot.ask(COMMANDER, push(20.0)).refusal;

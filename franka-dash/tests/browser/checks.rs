@@ -1,7 +1,7 @@
 //! What a person does with the page, and what has to come of it.
 
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use anyhow::{Context, ensure};
 use franka_async::state::RobotMode;
@@ -51,7 +51,8 @@ fn take(page: &Browser) -> anyhow::Result<()> {
 /// has moved. It is held on return.
 fn hold_up(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let start = served.height();
-    for _ in 0..20 {
+    let begin = Instant::now();
+    while begin.elapsed() < LONGEST {
         let button = page.find("[data-jog='Z+']")?;
         page.pointer(&[move_to(button), down()])?;
         while page.state()?["holding"] == true {
@@ -82,7 +83,7 @@ fn lose_the_hold(page: &Browser, served: &Served) -> anyhow::Result<()> {
         format!("{button}.dispatchEvent(new PointerEvent('pointercancel'))"),
         format!("{button}.dispatchEvent(new PointerEvent('lostpointercapture'))"),
         // A page that hangs: no timer runs.
-        "const until = Date.now() + 600; while (Date.now() < until);".to_owned(),
+        "const until = Date.now() + 4000; while (Date.now() < until);".to_owned(),
     ] {
         hold_up(page, served)?;
         page.run(&way)?;
@@ -101,8 +102,8 @@ fn lose_the_hold(page: &Browser, served: &Served) -> anyhow::Result<()> {
 fn keyboard(page: &Browser, served: &Served) -> anyhow::Result<()> {
     for stop in [false, true] {
         let start = served.height();
-        let mut moved = false;
-        for _ in 0..20 {
+        let (mut moved, begin) = (false, Instant::now());
+        while begin.elapsed() < LONGEST {
             page.run("document.querySelector(\"[data-jog='Z−']\").focus()")?;
             page.key("keyDown", ENTER)?;
             while !moved && page.state()?["holding"] == true {
@@ -189,6 +190,9 @@ pub(crate) fn picture(
     page.picture(path)?;
     page.pointer(&[up()])
 }
+
+/// Until a hold begins, on a machine where the page answers late.
+const LONGEST: Duration = Duration::from_secs(60);
 
 /// The key, as WebDriver writes it.
 const ENTER: &str = "\u{e007}";

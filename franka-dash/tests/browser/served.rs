@@ -27,6 +27,7 @@ impl Served {
             let builder = Robot::builder(running.addr()).realtime(Realtime::Ignore);
             let robot = builder.connect().await?;
             let options = Options::default().allow_motion().simulated(&running);
+            let options = options.patience(PATIENCE);
             let listener = franka_dash::bind("127.0.0.1:0".parse()?, &options).await?;
             let address = listener.local_addr()?;
             let router = franka_dash::router(robot.clone(), options);
@@ -79,3 +80,7 @@ pub(crate) fn wait(
     }
     anyhow::bail!("waited for {what} in vain")
 }
+
+/// How much later than on a robot the browser may send: pictures are drawn without a graphics card,
+/// beside whatever else the machine does.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(2);
