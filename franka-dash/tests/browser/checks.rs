@@ -42,9 +42,17 @@ fn shows_the_robot(page: &Browser, served: &Served) -> anyhow::Result<()> {
     })
 }
 
+/// Takes command, again where a page that was too busy has lost its connection.
 fn take(page: &Browser) -> anyhow::Result<()> {
-    page.click("#lease")?;
-    wait("the lease", || Ok(page.state()?["commands"] == true))
+    let commands = || Ok(page.state()?["commands"] == true);
+    let begin = Instant::now();
+    while !commands()? {
+        ensure!(begin.elapsed() < LONGEST, "the page gets no lease");
+        page.click("#lease")?;
+        // Else the server is asked once more.
+        let _ = wait("the lease", commands);
+    }
+    Ok(())
 }
 
 /// Presses the button that moves up, again if the machine was too busy for a hold, until the arm
@@ -53,6 +61,7 @@ fn hold_up(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let start = served.height();
     let begin = Instant::now();
     while begin.elapsed() < LONGEST {
+        take(page)?;
         let button = page.find("[data-jog='Z+']")?;
         page.pointer(&[move_to(button), down()])?;
         while page.state()?["holding"] == true {
@@ -62,7 +71,9 @@ fn hold_up(page: &Browser, served: &Served) -> anyhow::Result<()> {
         }
         page.pointer(&[up()])?;
     }
-    anyhow::bail!("the arm does not move while the button is held")
+    let log = page.run("return document.getElementById('events').textContent")?;
+    let state = page.state()?;
+    anyhow::bail!("the arm does not move while the button is held: {log}\n{state}")
 }
 
 fn jog(page: &Browser, served: &Served) -> anyhow::Result<()> {
@@ -104,6 +115,7 @@ fn keyboard(page: &Browser, served: &Served) -> anyhow::Result<()> {
         let start = served.height();
         let (mut moved, begin) = (false, Instant::now());
         while begin.elapsed() < LONGEST {
+            take(page)?;
             page.run("document.querySelector(\"[data-jog='Z−']\").focus()")?;
             page.key("keyDown", ENTER)?;
             while !moved && page.state()?["holding"] == true {
@@ -128,6 +140,7 @@ fn keyboard(page: &Browser, served: &Served) -> anyhow::Result<()> {
 
 /// Drags link 6: the robot feels it, and the page draws the force.
 fn push(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    take(page)?;
     page.run("scrollTo(0, 0)")?;
     let (x, y) = point(&page.state()?["links"][5])?;
     page.pointer(&[move_to((x, y)), down()])?;
