@@ -39,7 +39,7 @@ Exit codes:
     1  the robot refused, or the motion ended short of its goal (a reflex, an obstacle)
     2  wrong arguments
     3  no connection to the robot, or it was lost
-    4  somebody else has the robot
+    4  another client is connected to the robot
     5  not confirmed: declined, or no terminal to ask on and no --yes
     6  this computer does not give what it takes: real-time rights, a file, a port
     7  the robot needs a person: user stop, brakes, Desk
@@ -53,7 +53,7 @@ impl Ending {
     /// Prints why a command failed, and returns how that ends the program.
     pub(crate) fn report(error: &anyhow::Error) -> Self {
         let ending = Self::of(error);
-        // Whoever read the output has closed it: nobody is left to tell.
+        // The reader has closed the pipe: an error text would reach no one.
         if is_broken_pipe(error) {
             return Self::Done;
         }

@@ -43,7 +43,7 @@ impl Drop for Hold {
     }
 }
 
-/// How a hold ended that nobody let go.
+/// How a motion ended before its button was released.
 #[derive(Debug)]
 pub(crate) enum Ended {
     /// At the target, or told to.

@@ -117,7 +117,7 @@ impl Doctor {
     }
 
     /// Whether the round trip to the robot is measured, with echo requests of 1200 bytes each
-    /// millisecond. They may cost whoever drives the robot some packets.
+    /// millisecond. They may delay packets of a client that drives the robot.
     pub fn ping(mut self, ping: bool) -> Self {
         self.ping = ping;
         self

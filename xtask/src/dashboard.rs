@@ -76,8 +76,8 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-/// Installs the browser from Debian's packages where nobody else uses the machine: with `CI=true`,
-/// as root. Whether that has worked shows by whether it is there.
+/// With `CI=true`, tries to install the browser from Debian's packages, which takes root. The
+/// caller checks whether it is there afterwards.
 fn install() {
     if is_ci() {
         println!("no browser is found; installing Debian's chromium and chromium-driver");

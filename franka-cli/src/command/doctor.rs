@@ -25,8 +25,8 @@ use crate::robots_file::Realtime;
 /// Check this computer, and the way to a robot
 ///
 /// Changes nothing. With a robot, its states are counted while it rests, its ports tried and echo
-/// requests sent, unless somebody else has it; it is not moved. Exit code 1: something would keep
-/// the purpose from being served.
+/// requests sent, unless another client is connected to it; it is not moved. Exit code 1: a check
+/// failed that the purpose needs.
 #[derive(Debug, Args)]
 pub(crate) struct Doctor {
     #[command(flatten)]
@@ -81,7 +81,8 @@ impl Doctor {
             Some(place) => Some(resolve(&place.address, ROBOT).await?),
             None => None,
         };
-        // The robot first: whoever has it is not disturbed by what follows.
+        // The robot first: with another client connected, checks that would disturb it are left
+        // out.
         let mut found = Vec::new();
         let mut taken = false;
         if let (Some(place), Some(address)) = (&place, address) {
@@ -182,8 +183,7 @@ impl Doctor {
         }
     }
 
-    /// What answers at the robot's address, and how regularly its states come; and whether somebody
-    /// else has the robot.
+    /// The findings on the robot's address and its states, and whether another client is connected.
     async fn robot(
         &self,
         place: &Place,

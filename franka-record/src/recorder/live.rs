@@ -18,8 +18,8 @@ use crate::schema::{DESCRIPTORS, Topic};
 /// Where Foxglove finds the channels of a recording while it is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Live {
-    /// Where the server listens. `127.0.0.1:8765`, by default, is what Foxglove proposes. Whoever
-    /// reaches the address can watch the robot; nobody can move it.
+    /// Where the server listens. `127.0.0.1:8765`, by default, is what Foxglove proposes. Every
+    /// client that can connect to it can watch. The server takes no commands.
     pub address: SocketAddr,
     /// Of the cycles every so many, 20 by default: 50 a second. All other channels are whole.
     pub every: u32,

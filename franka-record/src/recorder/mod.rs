@@ -181,9 +181,9 @@ impl Recorder {
     }
 
     /// Serves the channels of the recording from now on, until it ends, to Foxglove ("Open
-    /// connection", "Foxglove WebSocket") and to whoever else speaks `foxglove.sdk.v1`. Returns the
-    /// address, whose port the system chooses if it is 0. A viewer that is too slow loses messages;
-    /// the recording loses none for it. Blocks until the server listens.
+    /// connection", "Foxglove WebSocket") and other clients that speak `foxglove.sdk.v1`. Returns
+    /// the address, whose port the system chooses if it is 0. A viewer that is too slow loses
+    /// messages; the recording loses none for it. Blocks until the server listens.
     ///
     /// # Errors
     /// [`RecordError::Live`] if it cannot listen there, [`RecordError::Option`],

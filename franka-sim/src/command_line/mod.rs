@@ -52,7 +52,7 @@ impl Arguments {
             _ = terminate.recv() => {}
             () = sim.ended() => return Err(io::Error::other("the simulation has ended")),
         }
-        // Whoever else has it, stops it by leaving.
+        // Otherwise, the last owner stops it by dropping it.
         if let Some(sim) = Arc::into_inner(sim) {
             sim.stop().await;
         }
