@@ -1,20 +1,18 @@
 //! A motion under way: connecting for it, recording it, its progress, Ctrl-C.
 
 use std::future::Future;
-use std::net::IpAddr;
 use std::path::PathBuf;
 use std::pin::pin;
 use std::time::Duration;
 
 use clap::Args;
 use franka_async::diagnosis::Diagnose;
+use franka_async::doctor;
 use franka_async::error::IdentifyError;
 use franka_async::motion::MotionHandle;
 use franka_async::recording::{RecordOptions, RecordStatus, Recorder, Track};
 use franka_async::replay::ReplayFailure;
-use franka_async::state::RobotError;
 use franka_async::{MotionError, Robot};
-use franka_doctor::{Evidence, Readings, System, likely_causes};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::connection::{Place, Which, check_ready};
@@ -127,7 +125,10 @@ impl Moving {
         let outcome = loop {
             tokio::select! {
                 biased;
-                outcome = &mut motion => break outcome.map_err(|error| self.explain(error)),
+                outcome = &mut motion => break match outcome {
+                    Ok(value) => Ok(value),
+                    Err(error) => Err(self.explain(error).await),
+                },
                 () = &mut interrupt => break Err(self.brake().await),
                 _ = clock.tick() => {
                     if let Some((bar, handle)) = &bar && let Some(progress) = handle.progress() {
@@ -151,7 +152,7 @@ impl Moving {
                 let message = "interrupted: the arm was braked, and rests";
                 Failure::new(Ending::Interrupted, message).into()
             }
-            Ok(Err(error)) => self.explain(error).context("braking"),
+            Ok(Err(error)) => self.explain(error).await.context("braking"),
             Err(_) => {
                 let seconds = PATIENCE.as_secs();
                 let message = format!("the arm has not come to rest in {seconds} s after Ctrl-C");
@@ -162,7 +163,7 @@ impl Moving {
     }
 
     /// Why a motion failed, with what to do next.
-    pub(crate) fn explain(&self, error: impl Into<Cause>) -> anyhow::Error {
+    pub(crate) async fn explain(&self, error: impl Into<Cause>) -> anyhow::Error {
         let error = match error.into() {
             Cause::Motion(error) => error,
             Cause::Other(text) => return Failure::new(Ending::Failed, text).into(),
@@ -172,37 +173,21 @@ impl Moving {
             _ => Ending::Failed,
         };
         let failure = Failure::new(ending, error.to_string());
-        let causes = evidence(&error).map(|evidence| self.causes(evidence));
-        let causes = causes.unwrap_or_default();
-        if !error.control().is_some_and(|error| error.is_reflex()) {
-            return match causes.is_empty() {
-                true => failure.into(),
-                false => failure.advice(causes.trim_end()).into(),
-            };
-        }
-        let diagnosis = error.diagnose().map(|diagnosis| diagnosis.to_string());
-        let diagnosis = diagnosis.unwrap_or_default();
-        failure
-            .advice(format!(
-                "{}\n{causes}When the cause is gone: franka recover",
-                diagnosis.trim_end()
-            ))
-            .into()
-    }
-
-    /// What most likely kept packets of this computer from coming in time, a line each.
-    fn causes(&self, evidence: Evidence) -> String {
-        let robot = match self.robot.address().ip() {
-            IpAddr::V4(address) => Some(address),
-            IpAddr::V6(_) => None,
+        // For want of packets, with the causes on this computer; else why the robot stopped.
+        let advice = match doctor::diagnose(&error, self.robot.address().ip()).await {
+            Some(diagnosis) => Some(diagnosis.to_string()),
+            None => error.diagnose().map(|diagnosis| diagnosis.to_string()),
         };
-        let system = System::default();
-        let causes = likely_causes(&Readings::new(&system, robot), evidence);
-        let lines = causes.iter().map(|finding| {
-            let (id, read, wanted) = (finding.id, &finding.read, finding.wanted);
-            format!("likely cause {id}: {read}; wanted: {wanted}\n")
-        });
-        lines.collect()
+        let recover = match error.control().is_some_and(|error| error.is_reflex()) {
+            true => "When the cause is gone: franka recover",
+            false => "",
+        };
+        let advice = advice.unwrap_or_default();
+        let advice = format!("{}\n{recover}", advice.trim_end());
+        match advice.trim() {
+            "" => failure.into(),
+            advice => failure.advice(advice).into(),
+        }
     }
 
     /// Closes the connection and ends the recording, however the command went.
@@ -230,19 +215,6 @@ pub(crate) fn recorded(status: &RecordStatus) -> String {
         file.unwrap_or_default(),
         status.dropped
     )
-}
-
-/// What a motion shows that ended for want of packets.
-fn evidence(error: &MotionError) -> Option<Evidence> {
-    match error {
-        MotionError::LinkLost { .. } => Some(Evidence::LinkLost),
-        MotionError::Control(error) => {
-            let reason = error.failure.reflex_reason;
-            let lost = RobotError::CommunicationConstraintsViolation;
-            reason.contains(lost).then_some(Evidence::Lost)
-        }
-        _ => None,
-    }
 }
 
 /// Why a motion, or a series of them, did not come to its end.

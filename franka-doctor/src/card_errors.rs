@@ -1,6 +1,6 @@
 //! Errors that the network card on the way to the robot has counted.
 
-use crate::finding::{Finding, Group, Judged, Matters, Purpose, for_purpose};
+use crate::finding::{About, Finding, Group, Judged, Matters, Purpose};
 use crate::host::Unread;
 use crate::readings::{NET, Readings};
 
@@ -49,20 +49,16 @@ pub(crate) fn meanwhile(
     after: Result<CardErrors, Unread>,
     purpose: Purpose,
 ) -> Finding {
-    let judged = match (before, after) {
-        (Ok(before), Ok(after)) => after.since(before).judged(),
-        (Err(unread), _) | (_, Err(unread)) => Judged::unknown(format!("unknown: {unread}")),
-    };
-    Finding {
+    let judged = before.and_then(|before| Ok(after?.since(before).judged()));
+    let about = About {
         id: "nic.errors_now",
         group: Group::NetworkCard,
-        verdict: for_purpose(judged.verdict, Matters::Reading, purpose),
-        read: judged.read,
+        matters: Matters::Reading,
         wanted: "none while wake-ups and round trips are measured",
         why: "Old errors may be those of another cable; these are not.",
         source: "general knowledge of network cards",
-        fix: judged.fix,
-    }
+    };
+    about.finding(judged, purpose)
 }
 
 /// Files of the card's statistics.

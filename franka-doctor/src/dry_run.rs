@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use franka_rt::stats::Stats;
 
-use crate::finding::{Finding, Group, Judged, Matters, Purpose, for_purpose};
+use crate::finding::{About, Finding, Group, Judged, Matters, Purpose};
 
 /// Times of a control loop that ran against a simulated robot. The slack of a cycle is the time
 /// from the departure of its command to when the next state is due.
@@ -49,17 +49,15 @@ impl DryRun {
 
 /// What a dry run shows: `timing.dry_run`. A pure function.
 pub fn dry_run(run: &DryRun, purpose: Purpose) -> Finding {
-    let judged = judge(run);
-    Finding {
+    let about = About {
         id: "timing.dry_run",
         group: Group::Timing,
-        verdict: for_purpose(judged.verdict, Matters::Moving, purpose),
-        read: judged.read,
+        matters: Matters::Moving,
         wanted: "no command late, a slack above 200 us in 99 % of the cycles; 1 % late or an early end a failure",
         why: "The driver's own loop with its sockets; only the network card and the robot are missing.",
         source: "thresholds: this project's, from the millisecond of a cycle; a pause of the simulated robot's thread counts for the 32 to 64 commands after it",
-        fix: judged.fix,
-    }
+    };
+    about.finding(Ok(judge(run)), purpose)
 }
 
 fn judge(run: &DryRun) -> Judged {

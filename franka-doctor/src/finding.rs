@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use crate::host::Unread;
+
 /// What the host is to do. Decides which findings are failures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -169,6 +171,50 @@ impl Judged {
     }
 }
 
+/// The parts of a finding that do not depend on what was read.
+pub(crate) struct About {
+    pub(crate) id: &'static str,
+    pub(crate) group: Group,
+    pub(crate) matters: Matters,
+    pub(crate) wanted: &'static str,
+    pub(crate) why: &'static str,
+    pub(crate) source: &'static str,
+}
+
+impl About {
+    /// Of a finding on the robot, which matters for reading its states, too.
+    pub(crate) fn robot(
+        id: &'static str,
+        wanted: &'static str,
+        why: &'static str,
+        source: &'static str,
+    ) -> Self {
+        Self {
+            id,
+            group: Group::Robot,
+            matters: Matters::Reading,
+            wanted,
+            why,
+            source,
+        }
+    }
+
+    /// The finding for this purpose. What could not be read is unknown.
+    pub(crate) fn finding(self, judged: Result<Judged, Unread>, purpose: Purpose) -> Finding {
+        let judged = judged.unwrap_or_else(|unread| Judged::unknown(format!("unknown: {unread}")));
+        Finding {
+            id: self.id,
+            group: self.group,
+            verdict: for_purpose(judged.verdict, self.matters, purpose),
+            read: judged.read,
+            wanted: self.wanted,
+            why: self.why,
+            source: self.source,
+            fix: judged.fix,
+        }
+    }
+}
+
 /// The least purpose that a check decides about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Matters {
@@ -179,7 +225,7 @@ pub(crate) enum Matters {
 }
 
 /// What `verdict`, for a host that is to move a robot, is for `purpose`.
-pub(crate) fn for_purpose(verdict: Verdict, matters: Matters, purpose: Purpose) -> Verdict {
+fn for_purpose(verdict: Verdict, matters: Matters, purpose: Purpose) -> Verdict {
     match (purpose, matters, verdict) {
         (Purpose::Sim, _, Verdict::Warning | Verdict::Failure) => Verdict::Info,
         (Purpose::Read, Matters::Moving, Verdict::Warning) => Verdict::Info,

@@ -9,7 +9,7 @@ use franka_proto::client::{Event, Session};
 use franka_proto::framing::next_message_within;
 use franka_proto::{IncompatibleVersion, Protocol as _, Version};
 
-use crate::finding::{Finding, Group, Judged, Matters, Purpose, for_purpose};
+use crate::finding::{About, Finding, Judged, Purpose};
 
 /// How an attempt to open a session with a robot ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,31 +44,21 @@ pub fn answers(address: SocketAddr) -> Vec<Answer> {
 /// What the answers of a robot show, in the order in which they were got: `robot.version` and
 /// `robot.busy`. A pure function.
 pub fn handshake(answers: &[Answer], purpose: Purpose) -> Vec<Finding> {
-    let finding = |id, judged: Judged, wanted, why, source| Finding {
-        id,
-        group: Group::Robot,
-        verdict: for_purpose(judged.verdict, Matters::Reading, purpose),
-        read: judged.read,
-        wanted,
-        why,
-        source,
-        fix: judged.fix,
-    };
+    let speaks = About::robot(
+        "robot.version",
+        "version 10 (Franka Research 3, system 5.9.0 or later) or 5 (Franka Emika Robot, system 4.2.1 or later)",
+        "The robot's system decides which version of the protocol it speaks; others are refused.",
+        "vendor: table of compatible versions, libfranka 0.21",
+    );
+    let is_free = About::robot(
+        "robot.busy",
+        "the robot opens a session",
+        "A robot takes one client at a time.",
+        "vendor: FCI documentation; how a robot refuses a second client was not seen on an arm",
+    );
     vec![
-        finding(
-            "robot.version",
-            version(answers),
-            "version 10 (Franka Research 3, system 5.9.0 or later) or 5 (Franka Emika Robot, system 4.2.1 or later)",
-            "The robot's system decides which version of the protocol it speaks; others are refused.",
-            "vendor: table of compatible versions, libfranka 0.21",
-        ),
-        finding(
-            "robot.busy",
-            busy(answers),
-            "the robot opens a session",
-            "A robot takes one client at a time.",
-            "vendor: FCI documentation; how a robot refuses a second client was not seen on an arm",
-        ),
+        speaks.finding(Ok(version(answers)), purpose),
+        is_free.finding(Ok(busy(answers)), purpose),
     ]
 }
 

@@ -2,34 +2,27 @@
 
 use core::time::Duration;
 
-use crate::finding::{Finding, Group, Judged, Matters, Purpose, for_purpose};
+use crate::finding::{About, Finding, Judged, Purpose};
 use crate::host::Unread;
 use crate::round_trip::{PAYLOAD, RoundTrips};
 use crate::timing::quantile;
 
 /// What a measurement of round trips shows. A pure function.
 pub(crate) fn ping(measured: Result<RoundTrips, Unread>, purpose: Purpose) -> Finding {
-    let judged = match measured {
-        Ok(round_trips) => judge(round_trips),
-        Err(unread) => Judged::unknown(format!("unknown: {unread}")),
-    };
-    Finding {
-        id: "robot.ping",
-        group: Group::Robot,
-        verdict: for_purpose(judged.verdict, Matters::Reading, purpose),
-        read: judged.read,
-        wanted: "p50 below 0.3 ms, p99 below 0.4, max below 0.6, none lost; p50 above 0.4 ms a warning, p50 above 0.8 or any lost a failure",
-        why: "Round trip, work of this computer and the robot's own step have to fit into 1 ms.",
-        source: "vendor: FCI documentation, network test with 1200 bytes each millisecond; libfranka issue 174: 0.3 to 0.4 ms at most",
-        fix: judged.fix,
-    }
+    let about = About::robot(
+        "robot.ping",
+        "p50 below 0.3 ms, p99 below 0.4, max below 0.6, none lost; p50 above 0.4 ms a warning, p50 above 0.8 or any lost a failure",
+        "Round trip, work of this computer and the robot's own step have to fit into 1 ms.",
+        "vendor: FCI documentation, network test with 1200 bytes each millisecond; libfranka issue 174: 0.3 to 0.4 ms at most",
+    );
+    about.finding(measured.map(judge), purpose)
 }
 
 fn judge(RoundTrips { sent, mut times }: RoundTrips) -> Judged {
     times.sort_unstable();
     let Some(&max) = times.last() else {
         return Judged::unknown(format!(
-            "unknown: none of {sent} echo requests was answered: nobody is there, or they are blocked"
+            "unknown: none of {sent} echo requests was answered: no such computer, or they are blocked"
         ));
     };
     let (p50, p99) = (quantile(&times, 0.5), quantile(&times, 0.99));

@@ -4,7 +4,7 @@ use core::time::Duration;
 use std::io;
 use std::net::{IpAddr, SocketAddr, TcpStream};
 
-use crate::finding::{Finding, Group, Judged, Matters, Needs, Purpose, for_purpose};
+use crate::finding::{About, Finding, Judged, Needs, Purpose};
 
 /// Connects to the ports of robot and end effectors, for a second each, and closes at once. Sends
 /// no request. The caller makes sure that nobody drives the robot.
@@ -70,19 +70,16 @@ impl Port {
             .fix(Needs::Nothing, "ip -brief address && ip route"),
             Err(error) => Judged::info(format!("port {number}: {error}")),
         };
-        Finding {
-            id: self.id,
-            group: Group::Robot,
-            verdict: for_purpose(judged.verdict, Matters::Reading, purpose),
-            read: judged.read,
-            wanted: match self.always {
+        let about = About::robot(
+            self.id,
+            match self.always {
                 true => "open within 1 s",
                 false => "open within 1 s, if there is such an end effector",
             },
-            why: "Commands go over this connection; it is open while FCI is active.",
-            source: "vendor: FCI documentation and the texts of libfranka",
-            fix: judged.fix,
-        }
+            "Commands go over this connection; it is open while FCI is active.",
+            "vendor: FCI documentation and the texts of libfranka",
+        );
+        about.finding(Ok(judged), purpose)
     }
 }
 

@@ -2,26 +2,21 @@
 
 use core::time::Duration;
 
-use crate::finding::{Finding, Group, Judged, Matters, Purpose, for_purpose};
+use crate::finding::{About, Finding, Group, Judged, Matters, Purpose};
 use crate::host::Unread;
 use crate::wake_up::WakeUps;
 
 /// What a measurement of wake-ups shows.
 pub(crate) fn wake_up(measured: Result<WakeUps, Unread>, purpose: Purpose) -> Finding {
-    let judged = match measured {
-        Ok(wake_ups) => judge(&wake_ups),
-        Err(unread) => Judged::unknown(format!("unknown: {unread}")),
-    };
-    Finding {
+    let about = About {
         id: "timing.wake_up",
         group: Group::Timing,
-        verdict: for_purpose(judged.verdict, Matters::Moving, purpose),
-        read: judged.read,
+        matters: Matters::Moving,
         wanted: "every wake-up within 100 us; 300 us is usable, more a warning, 500 us a failure",
         why: "The control thread is late by that much, of the millisecond that a cycle has.",
         source: "below 100 us: RMP asks for 125 us at 1 kHz; the rest: this project's, from the millisecond of a cycle",
-        fix: None,
-    }
+    };
+    about.finding(measured.map(|wake_ups| judge(&wake_ups)), purpose)
 }
 
 fn judge(wake_ups: &WakeUps) -> Judged {
@@ -105,31 +100,21 @@ pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
             }
         }
     };
-    let finding = |id, judged: Judged, wanted, why, source| Finding {
-        id,
-        group: Group::Robot,
-        verdict: for_purpose(judged.verdict, Matters::Reading, purpose),
-        read: judged.read,
-        wanted,
-        why,
-        source,
-        fix: judged.fix,
-    };
+    let lost = About::robot(
+        "robot.lost",
+        "0 of 10000 lost; failure above 20 in a row, or above 1 %",
+        "After 20 packets missing in a row the robot ends the motion.",
+        "vendor: FCI documentation, communication_constraints_violation; 1 %: this project's",
+    );
+    let interval = About::robot(
+        "robot.interval",
+        "p99 below 1.1 ms, max below 1.5 ms",
+        "Round trip, work of this computer and the robot's own step have to fit into 1 ms.",
+        "vendor: FCI documentation, network; thresholds: this project's",
+    );
     vec![
-        finding(
-            "robot.lost",
-            losses,
-            "0 of 10000 lost; failure above 20 in a row, or above 1 %",
-            "After 20 packets missing in a row the robot ends the motion.",
-            "vendor: FCI documentation, communication_constraints_violation; 1 %: this project's",
-        ),
-        finding(
-            "robot.interval",
-            punctuality,
-            "p99 below 1.1 ms, max below 1.5 ms",
-            "Round trip, work of this computer and the robot's own step have to fit into 1 ms.",
-            "vendor: FCI documentation, network; thresholds: this project's",
-        ),
+        lost.finding(Ok(losses), purpose),
+        interval.finding(Ok(punctuality), purpose),
     ]
 }
 

@@ -7,12 +7,12 @@ use std::time::{Duration, Instant};
 use anstream::ColorChoice;
 use clap::{Args, ValueEnum};
 use franka_async::Robot;
-use franka_async::realtime::Scheduling;
-use franka_async::record::CycleFeed;
-use franka_doctor::{
+use franka_async::doctor::{
     Answer, Doctor as Checks, DryRun, Finding, Purpose, Received, Report, System, answers,
     arrivals, dry_run, handshake, ports,
 };
+use franka_async::realtime::Scheduling;
+use franka_async::record::CycleFeed;
 use franka_sim::Sim;
 
 use super::bench;

@@ -117,7 +117,9 @@ impl Guide {
             Ok(())
         };
         let guided: Result<(), MotionError> = guided.await;
-        guided.map_err(|error| moving.explain(error))?;
-        Ok(robot.state().q)
+        match guided {
+            Ok(()) => Ok(robot.state().q),
+            Err(error) => Err(moving.explain(error).await),
+        }
     }
 }

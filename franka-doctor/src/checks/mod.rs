@@ -5,7 +5,7 @@ mod network;
 mod processor;
 mod scheduling;
 
-use crate::finding::{Finding, Group, Judged, Matters, Purpose, for_purpose};
+use crate::finding::{About, Finding, Group, Judged, Matters, Purpose};
 use crate::host::Unread;
 use crate::readings::Readings;
 
@@ -25,18 +25,15 @@ pub(crate) struct Check {
 impl Check {
     /// What this check finds. What cannot be read is unknown.
     pub(crate) fn run(&self, readings: &Readings<'_>, purpose: Purpose) -> Finding {
-        let judged = (self.judge)(readings)
-            .unwrap_or_else(|unread| Judged::unknown(format!("unknown: {unread}")));
-        Finding {
+        let about = About {
             id: self.id,
             group: self.group,
-            verdict: for_purpose(judged.verdict, self.matters, purpose),
-            read: judged.read,
+            matters: self.matters,
             wanted: self.wanted,
             why: self.why,
             source: self.source,
-            fix: judged.fix,
-        }
+        };
+        about.finding((self.judge)(readings), purpose)
     }
 }
 
