@@ -2,13 +2,14 @@
 
 use franka_async::model::Wrench;
 use franka_async::state::RobotMode;
-use franka_sim::Sim;
+use franka_sim::network::{BurstLoss, Conditions, Loss};
+use franka_sim::{Network, Sim};
 use nix::sys::signal::Signal;
 
 use crate::program::Home;
 use crate::simulated::Simulated;
 
-/// Arguments of a motion that nobody is asked about.
+/// Arguments of a motion that starts without a question.
 fn moving<'a>(robot: &'a str, rest: &[&'a str]) -> Vec<&'a str> {
     let all = ["move", robot, "--realtime", "ignore", "--yes"];
     all.iter().chain(rest).copied().collect()
@@ -119,6 +120,28 @@ fn a_reflex_is_explained() {
         let text = home.run(&["recover", &robot]).done();
         assert!(text.contains("nothing to recover"), "{text}");
     });
+}
+
+#[test]
+fn a_motion_that_ends_for_want_of_packets_names_causes_on_this_computer() {
+    // After some 200 commands no more get through.
+    let lost = Conditions {
+        loss: Loss::Bursts(BurstLoss {
+            begin: 0.005,
+            end: 0.0,
+            good: 0.0,
+            bad: 1.0,
+        }),
+        ..Conditions::default()
+    };
+    let network = Network::new(1, Conditions::default(), lost);
+    let (home, sim) = (Home::new(), Simulated::start(Sim::fr3().network(network)));
+    let texts = [
+        "communication_constraints_violation",
+        "on this computer:",
+        "franka recover",
+    ];
+    home.run(&moving(&sim.address(), &SLOW)).failed(1, &texts);
 }
 
 #[test]

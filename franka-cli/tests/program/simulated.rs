@@ -34,7 +34,8 @@ impl Simulated {
         Self::start(sim.wait_for_commands(PATIENCE))
     }
 
-    fn start(sim: Sim) -> Self {
+    /// As it is, with a tool and a Hand.
+    pub(crate) fn start(sim: Sim) -> Self {
         let runtime = Runtime::new().expect("a runtime");
         let object = Fingers::new().with_object(0.03);
         let sim = sim.tool(Tool::hand()).hand(object, 0);

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
 use anyhow::{Context, ensure};
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 use serde_json::{Value, json};
 
 /// The program that drives browsers.
@@ -124,7 +125,7 @@ impl Browser {
         let url = format!("{}/screenshot", self.session);
         let answer: Value = ureq::get(&url).call()?.body_mut().read_json()?;
         let encoded = answer["value"].as_str().context("a picture")?;
-        std::fs::write(path, decode(encoded)?)?;
+        std::fs::write(path, BASE64_STANDARD.decode(encoded)?)?;
         Ok(())
     }
 
@@ -174,26 +175,4 @@ fn post(url: &str, body: &Value) -> anyhow::Result<Value> {
     let value = answer["value"].take();
     ensure!(value.get("error").is_none(), "{url}: {value}");
     Ok(value)
-}
-
-/// Decodes base64.
-fn decode(text: &str) -> anyhow::Result<Vec<u8>> {
-    let (mut bytes, mut bits, mut held) = (Vec::new(), 0u32, 0);
-    for digit in text.bytes().filter(|digit| *digit != b'=') {
-        let value = match digit {
-            b'A'..=b'Z' => digit - b'A',
-            b'a'..=b'z' => digit - b'a' + 26,
-            b'0'..=b'9' => digit - b'0' + 52,
-            b'+' => 62,
-            b'/' => 63,
-            _ => anyhow::bail!("no base64: {digit}"),
-        };
-        bits = bits << 6 | u32::from(value);
-        held += 6;
-        if held >= 8 {
-            held -= 8;
-            bytes.push((bits >> held) as u8);
-        }
-    }
-    Ok(bytes)
 }
