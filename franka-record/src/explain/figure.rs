@@ -139,13 +139,13 @@ impl Panel {
     fn curve(&self, explanation: &Explanation, of: Curve<'_>, color: &str) -> Path {
         let mut data = Data::new();
         for run in self.runs(explanation, of) {
-            let mut points = thinned(&run, TOLERANCE)
-                .into_iter()
-                .map(|(x, y)| (short(x), short(y)));
-            data = points
-                .next()
-                .map_or(data.clone(), |first| data.move_to(first));
-            data = points.fold(data, Data::line_to);
+            for (index, (x, y)) in thinned(&run, TOLERANCE).into_iter().enumerate() {
+                let point = (short(x), short(y));
+                data = match index {
+                    0 => data.move_to(point),
+                    _ => data.line_to(point),
+                };
+            }
         }
         Path::new()
             .set("d", data)
@@ -271,7 +271,7 @@ fn number(value: f64) -> String {
     format!("{}", value + 0.0)
 }
 
-/// Hundredths of a pixel are enough.
+/// Tenths of a pixel are enough.
 fn short(value: f64) -> f64 {
     (value * 10.0).round() / 10.0
 }
