@@ -4,8 +4,7 @@ use std::io::{self, BufRead, IsTerminal, Write};
 
 use franka_async::goal::Budget;
 use franka_async::model::{EndEffector, RobotKind, inverse_kinematics};
-use franka_async::nalgebra::{Matrix4, Vector3};
-use franka_async::state::RobotState;
+use franka_async::nalgebra::Vector3;
 use franka_async::{Pose, Robot};
 use tokio::sync::oneshot;
 
@@ -22,7 +21,7 @@ pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
     if !(io::stdin().is_terminal() && io::stderr().is_terminal()) {
         let failure = Failure::new(
             Ending::NotConfirmed,
-            "nobody can be asked: the program has no terminal. Nothing has moved.",
+            "cannot ask: the program has no terminal. Nothing has moved.",
         );
         return Err(failure
             .advice("--yes agrees beforehand, for scripts.")
@@ -40,7 +39,7 @@ pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
     std::thread::spawn(move || {
         let mut line = String::new();
         let read = io::stdin().lock().read_line(&mut line);
-        // Nobody waits any more after Ctrl-C.
+        // After Ctrl-C the receiver is gone.
         let _ = answer.send(read.map(|_| line));
     });
     tokio::select! {
@@ -95,7 +94,12 @@ impl Target {
             }
             Self::Pose(pose) => {
                 let seed = state.q.into();
-                let q = inverse_kinematics::solve(model, pose, &end_effector(&state), &seed);
+                let q = inverse_kinematics::solve(
+                    model,
+                    pose,
+                    &EndEffector::from_arrays(&state.F_T_EE, &state.EE_T_K),
+                    &seed,
+                );
                 let q = q.map_err(|error| {
                     let message = format!("the arm cannot go there: {error}");
                     Failure::new(Ending::Failed, message)
@@ -128,14 +132,6 @@ impl Target {
             degrees(by),
             shift.norm() * 1e3,
         ))
-    }
-}
-
-/// The robot's end effector, as far as it is a rigid transformation.
-pub(crate) fn end_effector(state: &RobotState) -> EndEffector {
-    EndEffector {
-        f_t_ee: Matrix4::from_column_slice(&state.F_T_EE),
-        ee_t_k: Matrix4::from_column_slice(&state.EE_T_K),
     }
 }
 

@@ -1,40 +1,26 @@
 //! How fast the arm may go, so that none of its points exceeds a speed.
 
 use franka_async::goal::Budget;
+use franka_async::model::geometry::{FLANGE, JOINT_ORIGINS};
 use franka_async::model::{Frame, JointVector, Model};
 use franka_async::nalgebra::Vector3;
 use franka_async::state::RobotState;
 
 use crate::frame::end_effector;
 
-/// Distances that the arm can be stretched to, `[m]`: shoulder to elbow and so on, along the chain.
-mod link {
-    pub(super) const UPPER_ARM: f64 = 0.316;
-    pub(super) const ELBOW: f64 = 0.0825;
-    pub(super) const FOREARM: f64 = 0.384;
-    pub(super) const WRIST: f64 = 0.088;
-    pub(super) const FLANGE: f64 = 0.107;
-    /// Half the width of a hand, and more than the radius of any link.
-    pub(super) const BODY: f64 = 0.11;
-}
+/// Half the width of a hand, and more than the radius of any link, `[m]`.
+const BODY: f64 = 0.11;
 
 /// Bound on the distance of any point of the arm from the axis of each joint, `[m]`, at any
 /// posture, with a tool that ends `tool` from the flange: the sum of what is between.
 fn reach(tool: f64) -> [f64; 7] {
-    use link::{BODY, ELBOW, FLANGE, FOREARM, UPPER_ARM, WRIST};
-    let hand = FLANGE + tool + BODY;
-    let wrist = WRIST + hand;
-    let elbow = ELBOW + FOREARM + wrist;
-    let shoulder = UPPER_ARM + ELBOW + elbow;
-    [
-        shoulder,
-        shoulder,
-        ELBOW + elbow,
-        elbow,
-        wrist,
-        wrist,
-        tool + BODY,
-    ]
+    let mut rest = FLANGE + tool + BODY;
+    let mut reach = [rest; 7];
+    for joint in (0..6).rev() {
+        rest += JOINT_ORIGINS[joint + 1].translation.norm();
+        reach[joint] = rest;
+    }
+    reach
 }
 
 fn tool_length(state: &RobotState) -> f64 {

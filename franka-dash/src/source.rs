@@ -35,10 +35,7 @@ pub(crate) struct Watched {
 impl Watched {
     pub(crate) fn new(kind: RobotKind, state: RobotState) -> Self {
         Self {
-            model: match kind {
-                RobotKind::Fer => Model::fer(),
-                _ => Model::fr3(),
-            },
+            model: Model::of(kind),
             newest: Mutex::new(state),
         }
     }

@@ -1,18 +1,19 @@
 //! `franka bench`: this computer, without a robot.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use clap::{Args, Subcommand};
 use franka_async::control::{Finish, Torques};
-use franka_async::realtime::{Granted, Scheduling, Stats};
+use franka_async::doctor::{Host as _, System};
+use franka_async::realtime::{Granted, Stats};
 use franka_async::{MotionError, MotionReport, Realtime, Robot};
 use franka_sim::Sim;
-use indicatif::ProgressBar;
 use serde_json::json;
 
 use super::test::{quantiles, table};
 use crate::ending::{Ending, Failure};
+use crate::motion::progress_bar;
 use crate::output::Output;
 use crate::values::seconds;
 
@@ -43,23 +44,29 @@ pub(crate) struct Loop {
     output: Output,
 }
 
+impl Bench {
+    pub(super) async fn run(self) -> anyhow::Result<Ending> {
+        match self {
+            Self::Wake(wake) => wake.run(),
+            Self::Loop(bench) => bench.run().await,
+        }
+    }
+}
+
 impl Wake {
-    pub(super) fn run(self) -> anyhow::Result<Ending> {
-        let count = self.seconds.as_millis() as usize;
-        let bar = ProgressBar::new(count as u64);
-        let moved = bar.clone();
-        let measured = std::thread::spawn(move || measure(count, &moved)).join();
+    fn run(self) -> anyhow::Result<Ending> {
+        let bar = progress_bar();
+        let measured = System::default().wake_ups(self.seconds, &mut |part| {
+            bar.set_position((part * 1000.0) as u64);
+        });
         bar.finish_and_clear();
-        let (priority, mut late) = measured
-            .map_err(|_| Failure::new(Ending::Failed, "the measuring thread has panicked"))?
-            .map_err(|error| Failure::new(Ending::Host, error))?;
-        late.sort_unstable();
-        let at = |quantile: f64| {
-            late[((late.len() - 1) as f64 * quantile).round() as usize].as_micros() as u64
-        };
-        let [p50, p99, p999, max] = [0.5, 0.99, 0.999, 1.0].map(at);
+        let late = measured.map_err(|error| Failure::new(Ending::Host, error.to_string()))?;
+        let priority = late.priority;
+        let quantile = |part| late.quantile(part).expect("at least one wake-up");
+        let [p50, p99, p999] = [0.5, 0.99, 0.999].map(quantile);
+        let max = late.max().expect("at least one wake-up").as_micros() as u64;
         let value = json!({
-            "wakes": late.len(),
+            "wakes": late.count(),
             "priority": priority,
             "late_us": { "p50": p50, "p99": p99, "p999": p999, "max": max },
         });
@@ -70,38 +77,14 @@ impl Wake {
             };
             format!(
                 "{} wake-ups {scheduling}\nlate by        {p50:>6}  99 % {p99:>6}  99.9 % {p999:>6}  max {max:>6}  us",
-                late.len()
+                late.count()
             )
         })
     }
 }
 
-/// Sleeps until each of `count` milliseconds; returns the priority of the thread, and how late it
-/// woke.
-fn measure(count: usize, bar: &ProgressBar) -> Result<(Option<i32>, Vec<Duration>), String> {
-    let scheduling = Scheduling {
-        realtime: Realtime::Ignore,
-        ..Scheduling::default()
-    };
-    let granted = scheduling.enter().map_err(|error| error.to_string())?;
-    let mut late = Vec::with_capacity(count);
-    let mut due = Instant::now();
-    for i in 0..count {
-        due += PERIOD;
-        std::thread::sleep(due.saturating_duration_since(Instant::now()));
-        let now = Instant::now();
-        late.push(now.saturating_duration_since(due));
-        // What was missed meanwhile is not made up for.
-        due = due.max(now - PERIOD);
-        if i % 100 == 0 {
-            bar.set_position(i as u64);
-        }
-    }
-    Ok((granted.priority, late))
-}
-
 impl Loop {
-    pub(super) async fn run(self) -> anyhow::Result<Ending> {
+    async fn run(self) -> anyhow::Result<Ending> {
         // It waits for commands that a busy computer sends late, rather than stop itself.
         let sim = Sim::fr3().wait_for_commands(PATIENCE);
         let (outcome, stats, granted) = dry_run(sim, self.seconds).await?;
@@ -149,6 +132,3 @@ pub(super) async fn dry_run(
 
 /// For a command of a computer that is busy with something else.
 const PATIENCE: Duration = Duration::from_secs(1);
-
-/// Of a robot.
-const PERIOD: Duration = Duration::from_millis(1);

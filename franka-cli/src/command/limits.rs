@@ -44,16 +44,10 @@ impl Kind {
 }
 
 impl Limits {
-    pub(super) fn is_offline(&self) -> bool {
-        self.kind.is_some()
-    }
-
-    pub(super) fn print_constants(self) -> anyhow::Result<Ending> {
-        let kind = self.kind.unwrap_or(Kind::Fr3);
-        print(kind.model(), self.output)
-    }
-
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
+        if let Some(kind) = self.kind {
+            return print(kind.model(), self.output);
+        }
         let (robot, _) = self.which.connect().await?;
         robot.shutdown().await;
         print(robot.model(), self.output)

@@ -76,17 +76,6 @@ impl Command {
 
     /// Does what the command says.
     pub(crate) fn run(self) -> anyhow::Result<Ending> {
-        match self {
-            Self::Limits(limits) if limits.is_offline() => return limits.print_constants(),
-            Self::Robots(robots) => return robots.run(),
-            Self::Explain(explain) => return explain.run(),
-            Self::Export(export) => return export.run(),
-            Self::Cassette(cassette) => return cassette.run(),
-            Self::Completions(completions) => return completions.run(),
-            Self::Man(man) => return man.run(),
-            Self::Bench(bench::Bench::Wake(wake)) => return wake.run(),
-            _ => {}
-        }
         let runtime = tokio::runtime::Runtime::new()?;
         let outcome = runtime.block_on(async {
             match self {
@@ -108,8 +97,13 @@ impl Command {
                 Self::Replay(replay) => replay.run().await,
                 Self::Tap(tap) => tap.run().await,
                 Self::Test(test) => test.run().await,
-                Self::Bench(bench::Bench::Loop(bench)) => bench.run().await,
-                _ => unreachable!("done without a runtime"),
+                Self::Bench(bench) => bench.run().await,
+                Self::Robots(robots) => robots.run(),
+                Self::Explain(explain) => explain.run(),
+                Self::Export(export) => export.run(),
+                Self::Cassette(cassette) => cassette.run(),
+                Self::Completions(completions) => completions.run(),
+                Self::Man(man) => man.run(),
             }
         });
         // Whatever still runs has nothing to do with the robot: its connection is closed.

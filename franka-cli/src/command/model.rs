@@ -14,7 +14,6 @@ use super::limits::Kind;
 use crate::connection::Which;
 use crate::ending::{Ending, Failure};
 use crate::output::{Output, numbers as columns};
-use crate::question::end_effector;
 use crate::values::{PartialPose, partial_pose};
 
 /// Compute with the model of the arm
@@ -115,7 +114,7 @@ impl Arm {
         Ok(Known {
             model: robot.model().clone(),
             q: self.q.unwrap_or(state.q).into(),
-            ee: end_effector(&state),
+            ee: EndEffector::from_arrays(&state.F_T_EE, &state.EE_T_K),
             load: Load {
                 mass: total.m_total,
                 com: Vector3::from(total.F_x_Ctotal),
