@@ -365,6 +365,8 @@
 //! It neither reconnects nor recovers unless it is told to supervise, and moves nothing by itself.
 //! It is no safety function. It has not been run against a real arm yet.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod active_control;
 mod arm;
 mod asynchronous_control;

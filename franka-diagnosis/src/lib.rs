@@ -62,6 +62,8 @@
 //! values that it lies between), virtual walls or filters of the robot's own, and the log does not
 //! show what happened before its first cycle.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod advice;
 mod cause;
 mod command_steps;

@@ -26,6 +26,8 @@
 //!
 //! Not here: Desk.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 mod card_errors;
 mod causes;
 mod checks;

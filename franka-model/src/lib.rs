@@ -64,6 +64,7 @@
 //!
 //! Friction, rotor inertia and joint elasticity are not part of the model, as they are not part of
 //! the vendor's.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
 #![cfg_attr(not(feature = "model-library"), forbid(unsafe_code))]
 

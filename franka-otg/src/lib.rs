@@ -129,6 +129,7 @@
 //! and the two families of step two are derived in these files; the tests hold them against plain
 //! bisection, and against vectors made with Ruckig 0.19.4.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
 #![forbid(unsafe_code)]
 

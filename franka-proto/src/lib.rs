@@ -70,6 +70,7 @@
 //!
 //! Sockets and deadlines; which state to accept and when to answer it (that is the cycle); limits
 //! and filters.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,6 +1,8 @@
 //! Flight recorder for Franka robots: every cycle in an MCAP file, every reflex explained, every
 //! session replayed.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 // The tests of modules share sources with those beside `src`.
 #[cfg(test)]
 extern crate self as franka_record;

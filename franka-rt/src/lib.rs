@@ -25,6 +25,8 @@
 //! This crate knows no async runtime, opens no TCP connection and reads no file but those that tell
 //! of a real-time kernel.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 pub mod control;
 pub mod driver;
 pub mod event_fd;

@@ -66,6 +66,8 @@
 //!   force estimate, what counts as unstable) has values chosen here, which are options:
 //!   [`Unpublished`]. None has been measured on a robot.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
+
 pub mod arm;
 mod brake;
 #[cfg(feature = "command-line")]
