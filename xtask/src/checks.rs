@@ -9,7 +9,9 @@ use clap::ValueEnum;
 
 use crate::step::{Outcome, Steps};
 use crate::workspace::Workspace;
-use crate::{circles, dashboard, mujoco, names, package, peers, realtime, recordings, tidy};
+use crate::{
+    circles, dashboard, mujoco, names, package, peers, realtime, recordings, release, tidy,
+};
 
 /// A step that can be chosen with `--only`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -20,6 +22,8 @@ pub(crate) enum Check {
     Circles,
     /// Few names at the root of the driver, none of them in two places.
     Names,
+    /// Crates that can be published, one version everywhere, the form of the change log.
+    Release,
     /// The native library of the simulator's MuJoCo plant, which the next three steps build with.
     Mujoco,
     /// Lints, warnings denied.
@@ -61,6 +65,7 @@ impl Check {
             Self::Fmt => ("fmt", "formatting, and comments as wide as code"),
             Self::Circles => ("circles", "imports between the modules of a crate"),
             Self::Names => ("names", "what programs name, and where it is"),
+            Self::Release => ("release", "crates, version and change log"),
             Self::Mujoco => ("mujoco", "the native library of the MuJoCo plant"),
             Self::Clippy => ("clippy", "lints of every target, warnings denied"),
             Self::Doc => ("doc", "documentation, warnings denied"),
@@ -86,6 +91,7 @@ impl Check {
             }
             Self::Circles => circles::check(workspace)?,
             Self::Names => names::check(workspace)?,
+            Self::Release => return release::check(workspace, release::Depth::default()),
             Self::Mujoco => {
                 if let Err(why) = mujoco::prepare(workspace)? {
                     return Outcome::without(why);

@@ -1,6 +1,7 @@
 //! One-command tasks of this workspace: `cargo xtask test`, `cargo xtask vectors [DIR]`,
 //! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask arms`, `cargo xtask wheels`,
-//! `cargo xtask assets`, `cargo xtask dist`, `cargo xtask mujoco`.
+//! `cargo xtask assets`, `cargo xtask dist`, `cargo xtask mujoco`, `cargo xtask release-check`,
+//! `cargo xtask version X.Y.Z`.
 //!
 //! | module | task |
 //! |---|---|
@@ -17,6 +18,7 @@
 //! | [`peers`] | the step that drives the simulator with other clients |
 //! | [`python`] | virtual environments, for these two |
 //! | [`realtime`] | the right to real-time scheduling |
+//! | [`release`] | what a release takes: crates, version, change log |
 //! | [`step`] | steps with headers, times and a summary |
 //! | [`tidy`] | the width of comments |
 //! | [`workspace`] | where things are, and running a program |
@@ -35,6 +37,7 @@ mod peers;
 mod python;
 mod realtime;
 mod recordings;
+mod release;
 mod step;
 mod tidy;
 mod workspace;
@@ -42,6 +45,7 @@ mod workspace;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use anyhow::Context as _;
 use clap::{Parser, Subcommand};
 
 use crate::checks::Check;
@@ -138,6 +142,26 @@ enum Task {
     },
     /// Fetch the native library that the simulator's feature `mujoco` links to.
     Mujoco,
+    /// Check what a release takes: what the crates say of themselves, their packages, one version
+    /// everywhere, the change log. Nothing is published.
+    ReleaseCheck {
+        /// Build every crate from its package, beside the packages of the others.
+        #[arg(long)]
+        verify: bool,
+        /// Say what is still missing to publish this very version.
+        #[arg(long = "final")]
+        last: bool,
+    },
+    /// Print what the change log tells of the version of the workspace.
+    ReleaseNotes,
+    /// Set the version of all crates, of the citation and of what is unreleased in the change log.
+    Version {
+        /// X.Y.Z.
+        version: String,
+        /// The day of the release, YYYY-MM-DD; without it, today.
+        #[arg(long)]
+        date: Option<String>,
+    },
 }
 
 fn main() -> ExitCode {
@@ -206,5 +230,19 @@ fn run(task: Task) -> anyhow::Result<()> {
         Task::Assets => dashboard::assets(&workspace),
         Task::Dist { only } => dist::run(&workspace, &only),
         Task::Mujoco => mujoco::provide(&workspace),
+        Task::ReleaseCheck { verify, last } => {
+            let outcome = release::check(&workspace, release::Depth { verify, last })?;
+            println!("{outcome:?}");
+            Ok(())
+        }
+        Task::ReleaseNotes => {
+            let version = release::version::of(&workspace)?;
+            let log = release::changelog::read(&workspace)?;
+            let notes = log.notes_of(&version);
+            let notes = notes.with_context(|| format!("CHANGELOG.md: no section [{version}]"))?;
+            println!("{notes}");
+            Ok(())
+        }
+        Task::Version { version, date } => release::version::set(&workspace, &version, date),
     }
 }

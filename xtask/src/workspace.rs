@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, bail, ensure};
+use serde_json::Value;
 
 /// The workspace that this program belongs to.
 #[derive(Debug)]
@@ -14,6 +15,8 @@ pub(crate) struct Workspace {
     target: PathBuf,
     /// Name of each library and program, and the file of its root.
     crates: Vec<(String, PathBuf)>,
+    /// Cargo's description of each package.
+    packages: Vec<Value>,
 }
 
 impl Workspace {
@@ -27,7 +30,7 @@ impl Workspace {
             .output()
             .context("cannot run cargo")?;
         ensure!(output.status.success(), "cargo metadata failed");
-        let metadata: serde_json::Value = serde_json::from_slice(&output.stdout)?;
+        let metadata: Value = serde_json::from_slice(&output.stdout)?;
         let target = metadata["target_directory"]
             .as_str()
             .context("cargo metadata names no target directory")?;
@@ -35,12 +38,18 @@ impl Workspace {
             root: root.to_owned(),
             target: target.into(),
             crates: libraries_and_programs(&metadata),
+            packages: list(&metadata["packages"]),
         })
     }
 
     /// Name of each library and program of the workspace, and the file of its root.
     pub(crate) fn crates(&self) -> &[(String, PathBuf)] {
         &self.crates
+    }
+
+    /// Cargo's description of each package of the workspace.
+    pub(crate) fn packages(&self) -> &[Value] {
+        &self.packages
     }
 
     /// The directory of the root manifest.
@@ -94,9 +103,8 @@ impl Workspace {
 }
 
 /// The targets of all packages that are libraries or programs, from Cargo's description.
-fn libraries_and_programs(metadata: &serde_json::Value) -> Vec<(String, PathBuf)> {
-    let list = |value: &serde_json::Value| value.as_array().cloned().unwrap_or_default();
-    let text = |value: &serde_json::Value| value.as_str().unwrap_or_default().to_owned();
+fn libraries_and_programs(metadata: &Value) -> Vec<(String, PathBuf)> {
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     let mut crates = Vec::new();
     for target in list(&metadata["packages"])
         .iter()
@@ -108,6 +116,11 @@ fn libraries_and_programs(metadata: &serde_json::Value) -> Vec<(String, PathBuf)
         }
     }
     crates
+}
+
+/// The elements of an array; none of what is no array.
+fn list(value: &Value) -> Vec<Value> {
+    value.as_array().cloned().unwrap_or_default()
 }
 
 /// The command as one would type it: variables that differ from this program's, program, arguments.
