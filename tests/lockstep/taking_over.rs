@@ -132,8 +132,8 @@ fn a_program_that_comes_after_an_unreadable_reply_waits_for_the_end_of_the_one_b
 fn a_program_waits_for_the_end_of_what_was_taken_back() {
     let move_joint = |lockstep: &mut Lockstep| lockstep.begin(Target::Joints(ready_turned(0, 0.3)));
     let program = |lockstep: &mut Lockstep| hold(lockstep).expect("nothing moves");
-    let befores: [&dyn Fn(&mut Lockstep) -> GoalId; 2] = [&program, &move_joint];
-    for (before, after) in befores
+    let earlier: [&dyn Fn(&mut Lockstep) -> GoalId; 2] = [&program, &move_joint];
+    for (before, after) in earlier
         .iter()
         .flat_map(|before| [0, 1, 2, 3, 50].map(|ms| (before, ms)))
     {

@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use crate::step::{Outcome, Steps};
 use crate::workspace::Workspace;
 use crate::{
-    circles, dashboard, mujoco, names, package, peers, realtime, recordings, release, tidy,
+    circles, dashboard, mujoco, names, package, peers, realtime, recordings, release, texts, tidy,
 };
 
 /// A step that can be chosen with `--only`.
@@ -22,6 +22,10 @@ pub(crate) enum Check {
     Circles,
     /// Few names at the root of the driver, none of them in two places.
     Names,
+    /// Spelling, and the workflows.
+    Texts,
+    /// Licences and sources of the dependencies.
+    Dependencies,
     /// Crates that can be published, one version everywhere, the form of the change log.
     Release,
     /// The native library of the simulator's MuJoCo plant, which the next three steps build with.
@@ -65,6 +69,8 @@ impl Check {
             Self::Fmt => ("fmt", "formatting, and comments as wide as code"),
             Self::Circles => ("circles", "imports between the modules of a crate"),
             Self::Names => ("names", "what programs name, and where it is"),
+            Self::Texts => ("texts", "spelling, and the workflows"),
+            Self::Dependencies => ("dependencies", "their licences and sources"),
             Self::Release => ("release", "crates, version and change log"),
             Self::Mujoco => ("mujoco", "the native library of the MuJoCo plant"),
             Self::Clippy => ("clippy", "lints of every target, warnings denied"),
@@ -91,6 +97,8 @@ impl Check {
             }
             Self::Circles => circles::check(workspace)?,
             Self::Names => names::check(workspace)?,
+            Self::Texts => return texts::check(workspace),
+            Self::Dependencies => return texts::dependencies(workspace),
             Self::Release => return release::check(workspace, release::Depth::default()),
             Self::Mujoco => {
                 if let Err(why) = mujoco::prepare(workspace)? {

@@ -20,6 +20,7 @@
 //! | [`realtime`] | the right to real-time scheduling |
 //! | [`release`] | what a release takes: crates, version, change log |
 //! | [`step`] | steps with headers, times and a summary |
+//! | [`texts`] | the steps that check spelling, workflows and dependencies |
 //! | [`tidy`] | the width of comments |
 //! | [`workspace`] | where things are, and running a program |
 
@@ -39,6 +40,7 @@ mod realtime;
 mod recordings;
 mod release;
 mod step;
+mod texts;
 mod tidy;
 mod workspace;
 
@@ -156,10 +158,10 @@ enum Task {
     ReleaseNotes,
     /// Set the version of all crates, of the citation and of what is unreleased in the change log.
     Version {
-        /// X.Y.Z.
-        version: String,
+        /// X.Y.Z; without it, the version is printed.
+        version: Option<String>,
         /// The day of the release, YYYY-MM-DD; without it, today.
-        #[arg(long)]
+        #[arg(long, requires = "version")]
         date: Option<String>,
     },
 }
@@ -243,6 +245,13 @@ fn run(task: Task) -> anyhow::Result<()> {
             println!("{notes}");
             Ok(())
         }
-        Task::Version { version, date } => release::version::set(&workspace, &version, date),
+        Task::Version {
+            version: Some(version),
+            date,
+        } => release::version::set(&workspace, &version, date),
+        Task::Version { version: None, .. } => {
+            println!("{}", release::version::of(&workspace)?);
+            Ok(())
+        }
     }
 }

@@ -11,6 +11,8 @@ use crate::release::changelog;
 use crate::workspace::Workspace;
 
 const MANIFEST: &str = "Cargo.toml";
+/// The workspaces whose lock files name the version.
+const LOCKED: [&str; 2] = [MANIFEST, "fuzz/Cargo.toml"];
 const CITATION: &str = "CITATION.cff";
 
 /// The version of the workspace.
@@ -96,8 +98,10 @@ pub(crate) fn set(
     )?;
     let text = changelog::released(&read(workspace, changelog::FILE)?, version, &date);
     write(workspace, changelog::FILE, &text)?;
-    let mut lock = workspace.cargo();
-    workspace.run(lock.args(["update", "--workspace", "--offline"]))?;
+    for manifest in LOCKED {
+        let mut lock = workspace.cargo();
+        workspace.run(lock.args(["update", "--workspace", "--manifest-path", manifest]))?;
+    }
     println!("{version}, {date}: look at the difference, commit it, tag it v{version}");
     Ok(())
 }
