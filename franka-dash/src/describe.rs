@@ -5,8 +5,9 @@ use franka_async::model::{EndEffector, Frame, JointVector, Model, RobotKind};
 use franka_async::{READY, pose};
 use serde::Serialize;
 
-use crate::authority::{Permissions, SPEED_MAX, SPEED_MIN, ViewerId};
+use crate::authority::{Permissions, ViewerId};
 use crate::frame;
+use crate::request::{SPEED_MAX, SPEED_MIN};
 use crate::source::Source;
 
 /// The robot and what this viewer may ask for.

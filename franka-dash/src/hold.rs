@@ -11,9 +11,8 @@ use franka_async::nalgebra::{UnitQuaternion, Vector3};
 use franka_async::{Arm, Engage, MotionError, Pose, READY, Robot, pose};
 use tokio::time::{MissedTickBehavior, interval};
 
-use crate::authority::SPEED_MAX;
-use crate::message::{Axes, Motion};
 use crate::pace;
+use crate::request::{Axes, Motion, SPEED_MAX};
 
 /// A hold as the server keeps it. Dropping it brakes the arm: the control thread by the deadman,
 /// whatever becomes of this process's runtime, and the task by the token.

@@ -9,12 +9,14 @@ use tokio::sync::{Semaphore, broadcast, watch};
 use tokio::time::{MissedTickBehavior, interval};
 
 use crate::admission::Admission;
-use crate::authority::{Authority, Effect, Lost, Permissions, Refusal, Step, ViewerId};
-use crate::disturbance::Disturbance;
+use crate::authority::{Authority, Effect, Lost, Permissions, Refusal, Status, Step, ViewerId};
+
 use crate::hold::{self, Ended, Hold};
-use crate::message::{Level, Motion, News, Request, Status};
 use crate::news;
-use crate::source::{Simulated, Source};
+use crate::reply::{Level, News};
+use crate::request::{Disturbance, Motion, Request};
+use crate::simulated::Simulated;
+use crate::source::Source;
 
 /// What all viewers share.
 pub(crate) struct Hub {

@@ -9,16 +9,18 @@
 //! | module | content |
 //! |---|---|
 //! | `admission` | `Host`, `Origin` and token of a request |
+//! | `any_messages` | what has to hold whatever viewers send, for tests |
 //! | `authority` | lease, hold and deadman: a state machine without clock and sockets |
 //! | `describe` | what a page is told first |
-//! | `disturbance` | what can be done to a simulated robot |
 //! | `frame` | the binary state frame |
 //! | `hold` | the motion of one hold |
 //! | `hub` | what all viewers share |
-//! | `message` | requests and replies, JSON |
 //! | `news` | events as lines for people |
 //! | `pace` | how fast the arm may go, so that none of its points exceeds a speed |
 //! | `page` | the files of the page |
+//! | `reply` | what viewers are told, JSON |
+//! | `request` | what viewers ask for, JSON |
+//! | `simulated` | what is done to a simulated robot |
 //! | `source` | where states come from |
 //! | `statistics` | how punctual control is |
 //! | `viewer` | one viewer's socket |
@@ -59,16 +61,19 @@
 //! TLS: put a proxy in front where the network is not trusted.
 
 mod admission;
+#[cfg(test)]
+mod any_messages;
 mod authority;
 mod describe;
-mod disturbance;
 mod frame;
 mod hold;
 mod hub;
-mod message;
 mod news;
 mod pace;
 mod page;
+mod reply;
+mod request;
+mod simulated;
 mod source;
 mod statistics;
 mod viewer;
@@ -90,7 +95,8 @@ use tokio::net::TcpListener;
 
 use admission::Admission;
 use hub::Hub;
-use source::{Simulated, Source, Watched};
+use simulated::Simulated;
+use source::{Source, Watched};
 
 /// Who may see and do what. The default is view-only, for this computer.
 #[derive(Clone, Default)]

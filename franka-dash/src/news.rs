@@ -4,7 +4,7 @@ use franka_async::diagnosis::Diagnose;
 use franka_async::state::RobotState;
 use franka_async::supervision::EventKind;
 
-use crate::message::Level;
+use crate::reply::Level;
 
 /// Level, line and explanation of an event; `None` for what the page shows anyway.
 pub(crate) fn of_event(kind: &EventKind) -> Option<(Level, String, Option<String>)> {

@@ -21,7 +21,8 @@ use crate::authority::ViewerId;
 use crate::describe::Hello;
 use crate::frame;
 use crate::hub::Hub;
-use crate::message::{Reply, Request};
+use crate::reply::Reply;
+use crate::request::Request;
 use crate::statistics::Statistics;
 
 /// Serves a viewer until it goes, and then ends what it held.

@@ -19,8 +19,9 @@ use core::time::Duration;
 
 pub(crate) use refusal::Refusal;
 
-use crate::disturbance::Disturbance;
-use crate::message::{Motion, Request, Status};
+use serde::Serialize;
+
+use crate::request::{Disturbance, Motion, Request};
 
 /// Numbers a viewer.
 pub(crate) type ViewerId = u64;
@@ -34,6 +35,17 @@ pub(crate) struct Permissions {
     pub(crate) disturbances: bool,
     /// How much later messages may come: none but for a simulated robot.
     pub(crate) patience: Duration,
+}
+
+/// Who may command, and what is going on.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct Status {
+    /// Number of the viewer that has the lease.
+    pub(crate) commander: Option<u64>,
+    /// The name that it gave.
+    pub(crate) name: Option<String>,
+    /// Whether a hold goes on.
+    pub(crate) holding: bool,
 }
 
 /// What the server has to do.
@@ -138,6 +150,7 @@ impl Authority {
         if let Some(lease) = self.lease.as_mut().filter(|lease| lease.viewer == viewer) {
             lease.heard = self.now;
         }
+        let valid = request.check().map_err(Refusal::Value);
         let step = match request {
             Request::Stop {} => {
                 let hold = self.lease.as_mut().and_then(|lease| lease.hold.take());
@@ -147,8 +160,8 @@ impl Authority {
                 })
             }
             Request::Seen { .. } => Ok(Step::default()),
-            Request::Take { name } => self.take(viewer, name),
-            request => self.commanded(viewer, round_trip, request),
+            Request::Take { name } => valid.and_then(|()| self.take(viewer, name)),
+            request => self.commanded(viewer, round_trip, request, valid),
         };
         let step = step.unwrap_or_else(|refusal| Step {
             refusal: Some(refusal),
@@ -196,9 +209,6 @@ impl Authority {
             Some(lease) if lease.viewer != viewer => {
                 return Err(Refusal::Taken(lease.name.clone()));
             }
-            _ if name.trim().is_empty() || name.chars().count() > NAME_MAX => {
-                return Err(Refusal::Name);
-            }
             Some(_) => {}
             None => {
                 self.lease = Some(Lease {
@@ -218,6 +228,7 @@ impl Authority {
         viewer: ViewerId,
         round_trip: Option<Duration>,
         request: Request,
+        valid: Result<(), Refusal>,
     ) -> Result<Step, Refusal> {
         let Permissions {
             motion: motions,
@@ -226,6 +237,15 @@ impl Authority {
         } = self.permissions;
         let lease = self.lease.as_mut().filter(|lease| lease.viewer == viewer);
         let lease = lease.ok_or(Refusal::NoLease)?;
+        if let Request::Begin { .. } = request
+            && let hold @ Some(_) = lease.hold.take()
+        {
+            return Ok(Step {
+                refusal: Some(Refusal::Holding),
+                ..ended(hold, Lost::Replaced)
+            });
+        }
+        valid?;
         Ok(match request {
             Request::Release {} => {
                 let hold = lease.hold.take();
@@ -233,18 +253,8 @@ impl Authority {
                 ended(hold, Lost::Released)
             }
             Request::Begin { motion, speed } => {
-                if let hold @ Some(_) = lease.hold.take() {
-                    return Ok(Step {
-                        refusal: Some(Refusal::Holding),
-                        ..ended(hold, Lost::Replaced)
-                    });
-                }
                 if !motions {
                     return Err(Refusal::ViewOnly);
-                }
-                motion.check().map_err(Refusal::Motion)?;
-                if !(SPEED_MIN..=SPEED_MAX).contains(&speed) {
-                    return Err(Refusal::Speed(speed));
                 }
                 match round_trip {
                     None => return Err(Refusal::Unmeasured),
@@ -281,7 +291,6 @@ impl Authority {
             Request::Recover {} if motions => effect(Effect::Recover),
             Request::Recover {} => return Err(Refusal::ViewOnly),
             Request::Disturb { disturbance } if disturbances => {
-                disturbance.check().map_err(Refusal::Disturbance)?;
                 effect(Effect::Disturb(disturbance))
             }
             Request::Disturb { .. } => return Err(Refusal::NoSimulator),
@@ -315,14 +324,5 @@ pub(crate) const LEASE: Duration = Duration::from_secs(5);
 
 /// Greatest round trip to begin a motion with.
 pub(crate) const ROUND_TRIP_MAX: Duration = Duration::from_millis(100);
-
-/// Greatest speed of any point of the arm, `[m/s]`: the reduced speed of ISO 10218-1.
-pub(crate) const SPEED_MAX: f64 = 0.25;
-
-/// Least speed, `[m/s]`.
-pub(crate) const SPEED_MIN: f64 = 0.001;
-
-/// Characters of a name.
-pub(crate) const NAME_MAX: usize = 40;
 
 const _: () = assert!(DEADMAN.as_millis() <= 200);

@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use super::{NAME_MAX, ROUND_TRIP_MAX, SPEED_MAX, SPEED_MIN};
+use super::ROUND_TRIP_MAX;
 
 /// Why a request has no effect. The text says what was got and what is expected.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -13,12 +13,8 @@ pub(crate) enum Refusal {
     Taken(String),
     #[error("this viewer does not command; take the lease first")]
     NoLease,
-    #[error("a name has 1 to {NAME_MAX} characters")]
-    Name,
     #[error("{0}")]
-    Motion(&'static str),
-    #[error("{0} m/s is no speed for a hold, which takes {SPEED_MIN} to {SPEED_MAX} m/s")]
-    Speed(f64),
+    Value(String),
     #[error("the round trip to the page has not been measured within the last second")]
     Unmeasured,
     #[error("the round trip to the page takes {0:.0?}; motions need {ROUND_TRIP_MAX:?} or less")]
@@ -29,6 +25,4 @@ pub(crate) enum Refusal {
     NoHold,
     #[error("only a simulated robot can be disturbed")]
     NoSimulator,
-    #[error("{0}")]
-    Disturbance(&'static str),
 }

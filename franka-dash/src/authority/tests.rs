@@ -5,7 +5,7 @@ use rand::seq::IndexedRandom;
 use rand::{Rng, SeedableRng};
 
 use super::*;
-use crate::message::Axes;
+use crate::request::Axes;
 
 const COMMANDER: ViewerId = 1;
 const OTHER: ViewerId = 2;
@@ -230,7 +230,7 @@ fn a_begin_is_refused_with_the_reason() {
     server.take(COMMANDER);
     for speed in [0.0, -0.1, 0.2501, f64::NAN, f64::INFINITY] {
         let refusal = server.ask(COMMANDER, begin(speed)).refusal;
-        assert!(matches!(refusal, Some(Refusal::Speed(_))), "{speed}");
+        assert!(matches!(refusal, Some(Refusal::Value(_))), "{speed}");
     }
     for motion in [
         Motion::Joint { joint: 7, up: true },
@@ -242,7 +242,7 @@ fn a_begin_is_refused_with_the_reason() {
     ] {
         let request = Request::Begin { motion, speed: 0.1 };
         let refusal = server.ask(COMMANDER, request).refusal;
-        assert!(matches!(refusal, Some(Refusal::Motion(_))), "{motion:?}");
+        assert!(matches!(refusal, Some(Refusal::Value(_))), "{motion:?}");
     }
     let now = server.now;
     let slow = Duration::from_millis(101);

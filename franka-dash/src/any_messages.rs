@@ -1,0 +1,142 @@
+//! Whatever viewers send: read or refused, and never the cause of what they may not do. The check of
+//! a test, and of the fuzz target `dashboard`.
+
+use core::time::Duration;
+
+use crate::authority::{Authority, DEADMAN, Effect, LEASE, Permissions};
+use crate::request::Request;
+
+/// Has an authority take messages, and panics if one of them gets what it must not.
+///
+/// Each line of `bytes` is a message: a byte for the viewer, one for the milliseconds since the last
+/// message, and the text. The first byte of all is what the server permits.
+pub(crate) fn check(bytes: &[u8]) {
+    let Some((permitted, bytes)) = bytes.split_first() else {
+        return;
+    };
+    let permissions = Permissions {
+        motion: permitted & 1 != 0,
+        disturbances: permitted & 2 != 0,
+        patience: Duration::ZERO,
+    };
+    let mut authority = Authority::new(permissions);
+    let (mut now, mut fed) = (Duration::ZERO, Duration::ZERO);
+    for line in bytes.split(|byte| *byte == b'\n') {
+        let [viewer, wait, text @ ..] = line else {
+            continue;
+        };
+        now += Duration::from_millis(u64::from(*wait));
+        authority.tick(now);
+        let before = authority.status();
+        let silent = now - fed > DEADMAN;
+        assert!(!before.holding || !silent, "moves without messages");
+        let Ok(request) = serde_json::from_slice::<Request>(text) else {
+            continue;
+        };
+        let (viewer, valid) = (u64::from(viewer % 4), request.check().is_ok());
+        let round_trip = Some(Duration::from_millis(u64::from(viewer)));
+        let is_stop = matches!(request, Request::Stop {});
+        let step = authority.handle(now, viewer, round_trip, request);
+        let after = authority.status();
+        match &step.effect {
+            None => {}
+            Some(Effect::Stop) => assert!(is_stop && !after.holding),
+            Some(effect) => {
+                assert_eq!(before.commander, Some(viewer), "{effect:?}");
+                assert!(valid && step.refusal.is_none(), "{effect:?}");
+                let permitted = match effect {
+                    Effect::Disturb(_) => permissions.disturbances,
+                    _ => permissions.motion,
+                };
+                assert!(permitted, "{effect:?}");
+            }
+        }
+        if let Some(Effect::Begin { .. } | Effect::KeepAlive) = step.effect {
+            fed = now;
+        }
+        if before.commander.is_some() && before.commander != Some(viewer) {
+            assert_eq!(after.commander, before.commander, "the lease is taken away");
+            assert!(after.holding == before.holding || is_stop);
+        }
+        assert!(!after.holding || after.commander.is_some());
+    }
+    now += LEASE + Duration::from_millis(1);
+    authority.tick(now);
+    assert!(!authority.status().holding);
+}
+
+/// Messages of every kind, as the page sends them, for one run of [`check`].
+pub(crate) fn seeds() -> Vec<Vec<u8>> {
+    let session = |permitted: u8| {
+        let mut bytes = vec![permitted];
+        for text in REQUESTS {
+            bytes.extend([b'1', b' ']);
+            bytes.extend(text.as_bytes());
+            bytes.push(b'\n');
+        }
+        bytes
+    };
+    (b'0'..=b'3').map(session).collect()
+}
+
+/// A request of each kind.
+pub(crate) const REQUESTS: &[&str] = &[
+    r#"{"type":"take","name":"Ada"}"#,
+    r#"{"type":"seen","server_ms":12}"#,
+    r#"{"type":"alive"}"#,
+    r#"{"type":"begin","motion":{"kind":"joint","joint":3,"up":true},"speed":0.05}"#,
+    r#"{"type":"hold","seq":1}"#,
+    r#"{"type":"hold","seq":2}"#,
+    r#"{"type":"end"}"#,
+    r#"{"type":"begin","motion":{"kind":"translate","direction":[0,0,-1],"axes":"base"},"speed":0.1}"#,
+    r#"{"type":"stop"}"#,
+    r#"{"type":"begin","motion":{"kind":"rotate","direction":[0,0,1],"axes":"tool"},"speed":0.05}"#,
+    r#"{"type":"end"}"#,
+    r#"{"type":"begin","motion":{"kind":"joints","q":[0,0,0,-1.5,0,1.5,0]},"speed":0.25}"#,
+    r#"{"type":"end"}"#,
+    r#"{"type":"begin","motion":{"kind":"ready"},"speed":0.25}"#,
+    r#"{"type":"end"}"#,
+    r#"{"type":"recover"}"#,
+    r#"{"type":"disturb","disturbance":{"kind":"push","link":7,"offset":[0,0,0],"force":[0,0,-30]}}"#,
+    r#"{"type":"disturb","disturbance":{"kind":"user_stop","pressed":true}}"#,
+    r#"{"type":"disturb","disturbance":{"kind":"guide","pressed":true}}"#,
+    r#"{"type":"disturb","disturbance":{"kind":"brakes","closed":true}}"#,
+    r#"{"type":"disturb","disturbance":{"kind":"reflex"}}"#,
+    r#"{"type":"release"}"#,
+];
+
+#[cfg(test)]
+mod tests {
+    use rand::rngs::SmallRng;
+    use rand::{Rng, SeedableRng};
+
+    use super::*;
+
+    /// Messages with bytes changed, cut and repeated.
+    #[test]
+    fn no_messages_get_what_they_must_not() {
+        let seed: u64 = rand::rng().random();
+        println!("seed {seed}");
+        let mut random = SmallRng::seed_from_u64(seed);
+        for session in seeds() {
+            check(&session);
+            for _ in 0..10_000 {
+                let mut bytes = session.clone();
+                for _ in 0..random.random_range(1..6) {
+                    let at = random.random_range(0..bytes.len());
+                    match random.random_range(0..4) {
+                        0 => bytes[at] = random.random(),
+                        1 => bytes.insert(at, bytes[at]),
+                        2 => drop(bytes.drain(at..bytes.len().min(at + 9))),
+                        _ => bytes.extend_from_within(at..),
+                    }
+                    bytes.truncate(8000);
+                    if bytes.is_empty() {
+                        break;
+                    }
+                }
+                check(&bytes);
+            }
+        }
+    }
+}

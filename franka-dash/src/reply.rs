@@ -1,0 +1,43 @@
+//! What viewers are told, as JSON. State frames are binary: [`frame`](crate::frame).
+
+use serde::Serialize;
+
+use crate::authority::Status;
+use crate::statistics::Statistics;
+
+/// To a viewer.
+#[derive(Clone, Debug, Serialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub(crate) enum Reply {
+    /// A request that had no effect, and why.
+    Refused { why: String },
+    /// Who may command, and what is going on.
+    Status(Status),
+    /// Something that happened.
+    Event(News),
+    /// Events that this viewer was too slow for.
+    Missed { events: u64 },
+    /// How punctual control is.
+    Statistics(Statistics),
+}
+
+/// How much an event asks for attention.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Level {
+    Info,
+    Warning,
+    Error,
+}
+
+/// Something that happened.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct News {
+    /// Time of the server, `[ms]`.
+    pub(crate) server_ms: u64,
+    pub(crate) level: Level,
+    /// One line.
+    pub(crate) text: String,
+    /// Why, and what to change; several lines.
+    pub(crate) detail: Option<String>,
+}

@@ -1,0 +1,158 @@
+//! What viewers ask for, as JSON: plain data, and whether its numbers make sense.
+
+mod disturbance;
+mod motion;
+
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+
+use serde::Deserialize;
+
+pub(crate) use disturbance::{Disturbance, PUSH_MS};
+pub(crate) use motion::{Axes, Motion, SPEED_MAX, SPEED_MIN};
+
+/// From a viewer.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum Request {
+    /// Acknowledges the state frame of this time of the server, `[ms]`: the next one may be sent.
+    Seen { server_ms: u64 },
+    /// Asks for the lease, under a name that the others see.
+    Take { name: String },
+    /// Keeps the lease.
+    Alive {},
+    /// Gives the lease back.
+    Release {},
+    /// Begins a hold: the arm moves while `Hold` follows.
+    Begin {
+        motion: Motion,
+        /// Greatest speed of any point of the arm, `[m/s]`.
+        speed: f64,
+    },
+    /// Goes on with the hold; counts from 1 without a gap.
+    Hold { seq: u32 },
+    /// The pointer or key was let go.
+    End {},
+    /// Brakes whatever moves. Open to every viewer.
+    Stop {},
+    /// Recovers the robot from a reflex; moves nothing.
+    Recover {},
+    /// Disturbs a simulated robot.
+    Disturb { disturbance: Disturbance },
+}
+
+impl Request {
+    /// Whether its numbers make sense; otherwise what was got, and what they have to be.
+    pub(crate) fn check(&self) -> Result<(), String> {
+        match self {
+            Self::Begin { motion, speed } => {
+                motion.check()?;
+                within("a speed", " m/s", *speed, SPEED_MIN..=SPEED_MAX)
+            }
+            Self::Disturb { disturbance } => disturbance.check(),
+            Self::Take { name } => match name.chars().count() {
+                1..=NAME_MAX if !name.trim().is_empty() => Ok(()),
+                got => Err(format!(
+                    "a name has 1 to {NAME_MAX} characters, and not only spaces; got {got}"
+                )),
+            },
+            Self::Seen { .. }
+            | Self::Alive {}
+            | Self::Release {}
+            | Self::Hold { .. }
+            | Self::End {}
+            | Self::Stop {}
+            | Self::Recover {} => Ok(()),
+        }
+    }
+}
+
+/// Whether `got` is in a range; otherwise a text that says so. `what` is the name of the number, and
+/// `unit` follows it: empty, or with a space before it.
+fn within<T: PartialOrd + Display>(
+    what: &str,
+    unit: &str,
+    got: T,
+    range: RangeInclusive<T>,
+) -> Result<(), String> {
+    match range.contains(&got) {
+        true => Ok(()),
+        false => Err(format!(
+            "{what} is {} to {}{unit}, got {got}",
+            range.start(),
+            range.end()
+        )),
+    }
+}
+
+/// Characters of a name.
+const NAME_MAX: usize = 40;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::any_messages::REQUESTS;
+
+    fn read(text: &str) -> Request {
+        serde_json::from_str(text).unwrap_or_else(|error| panic!("{text}: {error}"))
+    }
+
+    #[test]
+    fn requests_are_read_as_documented() {
+        for text in REQUESTS {
+            read(text)
+                .check()
+                .unwrap_or_else(|why| panic!("{text}: {why}"));
+        }
+        assert_eq!(read(r#"{"type":"hold","seq":4}"#), Request::Hold { seq: 4 });
+    }
+
+    #[test]
+    fn what_is_missing_unknown_or_of_another_type_is_not_read() {
+        for text in [
+            "",
+            "null",
+            "{}",
+            r#"{"type":"hold"}"#,
+            r#"{"type":"hold","seq":-1}"#,
+            r#"{"type":"hold","seq":4294967296}"#,
+            r#"{"type":"hold","seq":1,"also":2}"#,
+            r#"{"type":"stop","also":2}"#,
+            r#"{"type":"begin","motion":{"kind":"joints","q":[1,2]},"speed":0.1}"#,
+            r#"{"type":"begin","motion":{"kind":"ready"},"speed":"fast"}"#,
+            r#"{"type":"fly"}"#,
+        ] {
+            assert!(serde_json::from_str::<Request>(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_out_of_range_is_refused_with_what_was_got() {
+        for (text, got) in [
+            (r#"{"type":"take","name":"  "}"#, "got 2"),
+            (
+                r#"{"type":"begin","motion":{"kind":"ready"},"speed":0.2501}"#,
+                "a speed is 0.001 to 0.25 m/s, got 0.2501",
+            ),
+            (
+                r#"{"type":"begin","motion":{"kind":"joint","joint":7,"up":true},"speed":0.1}"#,
+                "a joint is 0 to 6, got 7",
+            ),
+            (
+                r#"{"type":"disturb","disturbance":{"kind":"push","link":0,"offset":[0,0,0],"force":[0,0,0]}}"#,
+                "a link to push is 1 to 7, got 0",
+            ),
+            (
+                r#"{"type":"disturb","disturbance":{"kind":"push","link":1,"offset":[0,2,0],"force":[0,0,0]}}"#,
+                "-1 to 1 m, got 2",
+            ),
+            (
+                r#"{"type":"disturb","disturbance":{"kind":"push","link":1,"offset":[0,0,0],"force":[0,0,-201]}}"#,
+                "got -201",
+            ),
+        ] {
+            let why = read(text).check().expect_err(text);
+            assert!(why.contains(got), "{why}");
+        }
+    }
+}

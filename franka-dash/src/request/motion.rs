@@ -1,0 +1,57 @@
+//! What moves while a hold goes on.
+
+use serde::Deserialize;
+
+use super::within;
+
+/// Axes that a direction is given in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Axes {
+    Base,
+    Tool,
+}
+
+/// What moves while a hold goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum Motion {
+    /// The end effector along a direction.
+    Translate { direction: [f64; 3], axes: Axes },
+    /// The end effector about an axis through its origin.
+    Rotate { direction: [f64; 3], axes: Axes },
+    /// One joint, 0 to 6, up or down, as far as its range.
+    Joint { joint: usize, up: bool },
+    /// All joints to these positions, `[rad]`.
+    Joints { q: [f64; 7] },
+    /// All joints to the ready pose.
+    Ready {},
+}
+
+impl Motion {
+    /// Whether the numbers make a motion; otherwise what is wrong with them.
+    pub(super) fn check(&self) -> Result<(), String> {
+        match self {
+            Self::Translate { direction, .. } | Self::Rotate { direction, .. } => {
+                let norm = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+                match norm.is_finite() && norm > 1e-6 {
+                    true => Ok(()),
+                    false => Err(format!(
+                        "a direction has three finite numbers, not all zero; got {direction:?}"
+                    )),
+                }
+            }
+            Self::Joint { joint, .. } => within("a joint", "", *joint, 0..=6),
+            Self::Joints { q } if !q.iter().all(|x| x.is_finite()) => {
+                Err(format!("joint positions are finite numbers; got {q:?}"))
+            }
+            Self::Joints { .. } | Self::Ready {} => Ok(()),
+        }
+    }
+}
+
+/// Greatest speed of any point of the arm, `[m/s]`: the reduced speed of ISO 10218-1.
+pub(crate) const SPEED_MAX: f64 = 0.25;
+
+/// Least speed, `[m/s]`.
+pub(crate) const SPEED_MIN: f64 = 0.001;
