@@ -1,7 +1,8 @@
-//! Fuzz targets of the protocol and of recordings: what they check, and what they start from.
+//! Fuzz targets of the protocol, of recordings and of the dashboard: what they check, and what they
+//! start from.
 //!
-//! Both are the sources of tests of `franka-proto` and `franka-record`, which run them on a fixed
-//! sequence of inputs.
+//! Both are the sources of tests of `franka-proto`, `franka-record` and `franka-dash`, which run them
+//! on fewer inputs. Of the dashboard, only what takes messages is built.
 
 #[path = "../../franka-proto/tests/protocol/any_bytes/checks.rs"]
 pub mod checks;
@@ -9,3 +10,22 @@ pub mod checks;
 pub mod recordings;
 #[path = "../../franka-proto/tests/protocol/any_bytes/seeds.rs"]
 pub mod seeds;
+
+#[path = "../../franka-dash/src/any_messages.rs"]
+mod any_messages;
+#[allow(dead_code)]
+#[path = "../../franka-dash/src/authority/mod.rs"]
+mod authority;
+#[allow(dead_code, unused_imports)]
+#[path = "../../franka-dash/src/request/mod.rs"]
+mod request;
+
+/// Has a dashboard's authority take messages: see `any_messages`.
+pub fn dashboard(bytes: &[u8]) {
+    any_messages::check(bytes);
+}
+
+/// Messages of every kind that a page sends.
+pub fn dashboard_sessions() -> Vec<Vec<u8>> {
+    any_messages::seeds()
+}

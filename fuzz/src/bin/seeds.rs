@@ -1,5 +1,5 @@
-//! Writes the golden messages, the cassettes of the tests and short recordings as seeds of the
-//! targets: `seeds DIRECTORY` makes `DIRECTORY/<target>/<seed>`.
+//! Writes the golden messages, the cassettes of the tests, short recordings and sessions of the
+//! dashboard as seeds of the targets: `seeds DIRECTORY` makes `DIRECTORY/<target>/<seed>`.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
@@ -37,7 +37,13 @@ fn main() -> io::Result<()> {
         fs::create_dir_all(&target)?;
         fs::write(target.join(name), bytes)?;
     }
-    let count = seeds.len() + cassettes + recordings.len();
+    let sessions = franka_fuzz::dashboard_sessions();
+    let target = directory.join("dashboard");
+    fs::create_dir_all(&target)?;
+    for (number, session) in sessions.iter().enumerate() {
+        fs::write(target.join(number.to_string()), session)?;
+    }
+    let count = seeds.len() + cassettes + recordings.len() + sessions.len();
     println!("{count} seeds in {}", directory.display());
     Ok(())
 }
