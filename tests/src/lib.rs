@@ -44,6 +44,9 @@ mod programs {
     #[doc = include_str!("../../docs/src/control.md")]
     struct Control;
 
+    #[doc = include_str!("../../docs/src/doctor.md")]
+    struct Doctor;
+
     #[doc = include_str!("../../docs/src/explaining.md")]
     struct Explaining;
 
@@ -70,6 +73,9 @@ mod programs {
 
     #[doc = include_str!("../../docs/src/sessions.md")]
     struct Sessions;
+
+    #[doc = include_str!("../../docs/src/several-arms.md")]
+    struct SeveralArms;
 
     #[doc = include_str!("../../docs/src/simulated-robot.md")]
     struct SimulatedRobot;

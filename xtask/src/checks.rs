@@ -10,7 +10,8 @@ use clap::ValueEnum;
 use crate::step::{Outcome, Steps};
 use crate::workspace::Workspace;
 use crate::{
-    circles, dashboard, mujoco, names, package, peers, realtime, recordings, release, texts, tidy,
+    book, circles, dashboard, mujoco, names, package, peers, realtime, recordings, release, texts,
+    tidy,
 };
 
 /// A step that can be chosen with `--only`.
@@ -28,6 +29,8 @@ pub(crate) enum Check {
     Dependencies,
     /// Crates that can be published, one version everywhere, the form of the change log.
     Release,
+    /// The book: its pages, programs and links.
+    Book,
     /// The native library of the simulator's MuJoCo plant, which the next three steps build with.
     Mujoco,
     /// Lints, warnings denied.
@@ -72,6 +75,7 @@ impl Check {
             Self::Texts => ("texts", "spelling, and the workflows"),
             Self::Dependencies => ("dependencies", "their licences and sources"),
             Self::Release => ("release", "crates, version and change log"),
+            Self::Book => ("book", "pages, programs and links of the book"),
             Self::Mujoco => ("mujoco", "the native library of the MuJoCo plant"),
             Self::Clippy => ("clippy", "lints of every target, warnings denied"),
             Self::Doc => ("doc", "documentation, warnings denied"),
@@ -100,6 +104,7 @@ impl Check {
             Self::Texts => return texts::check(workspace),
             Self::Dependencies => return texts::dependencies(workspace),
             Self::Release => return release::check(workspace, release::Depth::default()),
+            Self::Book => return book::check(workspace),
             Self::Mujoco => {
                 if let Err(why) = mujoco::prepare(workspace)? {
                     return Outcome::without(why);

@@ -1,10 +1,11 @@
 //! One-command tasks of this workspace: `cargo xtask test`, `cargo xtask vectors [DIR]`,
 //! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask arms`, `cargo xtask wheels`,
-//! `cargo xtask assets`, `cargo xtask dist`, `cargo xtask mujoco`, `cargo xtask release-check`,
-//! `cargo xtask version X.Y.Z`.
+//! `cargo xtask assets`, `cargo xtask dist`, `cargo xtask book`, `cargo xtask mujoco`,
+//! `cargo xtask release-check`, `cargo xtask version X.Y.Z`.
 //!
 //! | module | task |
 //! |---|---|
+//! | [`book`] | the book, checked or served |
 //! | [`checks`] | the steps of `cargo xtask test` |
 //! | [`circles`] | the step that finds imports in a circle between modules |
 //! | [`cross`] | building for other machines, and running that |
@@ -24,6 +25,7 @@
 //! | [`tidy`] | the width of comments |
 //! | [`workspace`] | where things are, and running a program |
 
+mod book;
 mod checks;
 mod circles;
 mod cross;
@@ -142,6 +144,15 @@ enum Task {
         #[arg(long, value_delimiter = ',')]
         only: Vec<String>,
     },
+    /// Build the book with the references of Rust and Python beside it, and serve it.
+    Book {
+        /// Port on this computer.
+        #[arg(long, default_value_t = 3000)]
+        port: u16,
+        /// Build it below `target/book` and end.
+        #[arg(long, conflicts_with = "port")]
+        build_only: bool,
+    },
     /// Fetch the native library that the simulator's feature `mujoco` links to.
     Mujoco,
     /// Check what a release takes: what the crates say of themselves, their packages, one version
@@ -231,6 +242,7 @@ fn run(task: Task) -> anyhow::Result<()> {
         Task::Wheels { only } => package::wheels::run(&workspace, &only),
         Task::Assets => dashboard::assets(&workspace),
         Task::Dist { only } => dist::run(&workspace, &only),
+        Task::Book { port, build_only } => book::serve(&workspace, (!build_only).then_some(port)),
         Task::Mujoco => mujoco::provide(&workspace),
         Task::ReleaseCheck { verify, last } => {
             let outcome = release::check(&workspace, release::Depth { verify, last })?;

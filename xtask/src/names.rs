@@ -260,15 +260,19 @@ fn join(module: &str, name: &str) -> String {
     }
 }
 
-/// The pages in a directory; there are pictures, too.
-fn pages(directory: &Path) -> anyhow::Result<Vec<std::path::PathBuf>> {
-    let mut pages = Vec::new();
+/// The pages in a directory and in those within; there are pictures, too.
+pub(crate) fn pages(directory: &Path) -> anyhow::Result<Vec<std::path::PathBuf>> {
+    let mut found = Vec::new();
     for entry in fs::read_dir(directory)? {
-        pages.push(entry?.path());
+        let path = entry?.path();
+        if path.is_dir() {
+            found.extend(pages(&path)?);
+        } else if path.extension().is_some_and(|extension| extension == "md") {
+            found.push(path);
+        }
     }
-    pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));
-    pages.sort();
-    Ok(pages)
+    found.sort();
+    Ok(found)
 }
 
 /// The Rust programs of a page.
