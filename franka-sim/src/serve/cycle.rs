@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use super::EveryMillisecond;
+use super::Hook;
 use super::clock::{Clock, PERIOD, Pace};
 use super::device_server::DeviceServer;
 use super::in_step::InStep;
@@ -22,7 +22,8 @@ pub(super) struct Cycle {
     pub(super) robot: DeviceServer<Robot>,
     pub(super) hand: Option<DeviceServer<Hand>>,
     pub(super) vacuum: Option<DeviceServer<VacuumGripper>>,
-    pub(super) every_millisecond: Option<EveryMillisecond>,
+    pub(super) every_millisecond: Option<Hook>,
+    pub(super) after_each_state: Option<Hook>,
     pub(super) in_step: Option<InStep>,
 }
 
@@ -147,11 +148,14 @@ impl Cycle {
         if let Some(others) = &self.in_step {
             others.meet();
         }
-        if let Some(EveryMillisecond(job)) = &mut self.every_millisecond {
+        if let Some(Hook(job)) = &mut self.every_millisecond {
             job(self.robot.device_mut());
         }
         // The end of the robot's service ends the thread, and with it the other devices.
         let goes_on = self.robot.cycle(now, pace);
+        if let Some(Hook(job)) = &mut self.after_each_state {
+            job(self.robot.device_mut());
+        }
         if let Some(hand) = &mut self.hand {
             self.robot.device_mut().couple(hand.device_mut());
             hand.cycle(now, pace);
@@ -188,6 +192,7 @@ mod tests {
             hand: Some(hand_server),
             vacuum: None,
             every_millisecond: None,
+            after_each_state: None,
             in_step: None,
         };
         assert!(!cycle.has_client());

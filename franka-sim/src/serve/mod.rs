@@ -84,16 +84,17 @@ pub struct Sim {
     patience: Duration,
     /// The network of the arm's interface; `None` is the host's own.
     network: Option<Network>,
-    every_millisecond: Option<EveryMillisecond>,
+    every_millisecond: Option<Hook>,
+    after_each_state: Option<Hook>,
     in_step: Option<InStep>,
 }
 
-/// What [`Sim::every_millisecond`] runs.
-struct EveryMillisecond(Box<dyn FnMut(&mut Robot) + Send>);
+/// What [`Sim::every_millisecond`] and [`Sim::after_each_state`] run.
+struct Hook(Box<dyn FnMut(&mut Robot) + Send>);
 
-impl fmt::Debug for EveryMillisecond {
+impl fmt::Debug for Hook {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("EveryMillisecond")
+        f.write_str("Hook")
     }
 }
 
@@ -133,6 +134,7 @@ impl Sim {
             patience: Duration::ZERO,
             network: None,
             every_millisecond: None,
+            after_each_state: None,
             in_step: None,
         }
     }
@@ -265,7 +267,15 @@ impl Sim {
     /// disturb it in its own time, whatever the clock. The thread that keeps the millisecond runs
     /// it, so it should not take long.
     pub fn every_millisecond(mut self, job: impl FnMut(&mut Robot) + Send + 'static) -> Self {
-        self.every_millisecond = Some(EveryMillisecond(Box::new(job)));
+        self.every_millisecond = Some(Hook(Box::new(job)));
+        self
+    }
+
+    /// Runs `job` on the robot each time that a state of it has been handed to the kernel, or would
+    /// have been with a client: to note when. The same thread runs it as that of
+    /// [`Self::every_millisecond`].
+    pub fn after_each_state(mut self, job: impl FnMut(&mut Robot) + Send + 'static) -> Self {
+        self.after_each_state = Some(Hook(Box::new(job)));
         self
     }
 
@@ -321,6 +331,7 @@ impl Sim {
             hand: hand_server,
             vacuum: vacuum_server,
             every_millisecond: self.every_millisecond,
+            after_each_state: self.after_each_state,
             in_step: self.in_step,
         };
         let (virtual_time, patience) = (self.virtual_time, self.patience);

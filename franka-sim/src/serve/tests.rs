@@ -113,17 +113,23 @@ fn states_come_every_millisecond_even_while_the_runtime_is_blocked() {
 }
 
 #[test]
-fn a_job_of_every_millisecond_misses_none() {
+fn jobs_before_and_after_each_state_miss_none() {
     let (sender, seen) = std::sync::mpsc::channel();
-    // Sends nothing once the test has seen enough.
+    let before = sender.clone();
+    // They send nothing once the test has seen enough.
     let sim = Sim::fr3().every_millisecond(move |robot| {
-        let _ = sender.send(robot.state().message_id);
+        let _ = before.send(("before", robot.state().message_id));
+    });
+    let sim = sim.after_each_state(move |robot| {
+        let _ = sender.send(("after", robot.state().message_id));
     });
     let runtime = runtime();
     let _sim = runtime.block_on(sim.start()).expect("a robot");
-    let seen: Vec<_> = seen.iter().take(50).collect();
-    let next_to_each_other = |pair: &[u64]| pair[1] == pair[0] + 1;
-    assert!(seen.windows(2).all(next_to_each_other), "{seen:?}");
+    let seen: Vec<_> = seen.iter().take(100).collect();
+    let (_, first) = seen[0];
+    let expected = (first..).flat_map(|id| [("before", id), ("after", id + 1)]);
+    let expected: Vec<_> = expected.take(100).collect();
+    assert_eq!(seen, expected);
 }
 
 #[test]
