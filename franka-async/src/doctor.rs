@@ -21,9 +21,11 @@ use crate::diagnosis::{Diagnose, Diagnosis};
 
 pub use franka_doctor::{
     Answer, Doctor, DryRun, Ethtool, Evidence, Finding, Fix, Group, Host, Needs, Purpose, Readings,
-    Received, Report, RoundTrips, System, Tree, Unread, Verdict, WakeUps, answers, arrivals,
-    dry_run, handshake, likely_causes, ports,
+    Received, Report, RoundTrips, Selection, System, Tree, Unread, Verdict, WakeUps, answers,
+    arrivals, at_rest, dry_run, firewall, handshake, likely_causes, ports,
 };
+#[cfg(feature = "doctor-desk")]
+pub use franka_doctor::{DeskState, SelfTest, ask_desk, web};
 
 /// Why a motion ended for want of packets.
 ///

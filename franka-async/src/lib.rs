@@ -341,7 +341,7 @@
 //! | `explain` | why a motion ended, and where the arm was touched (feature `record`) |
 //! | `replay`, `export` | recorded motions again, and as tables and datasets (features `record`, `export`) |
 //! | `cassette` | sessions byte for byte, played back as the robot (features `record`, `pcap`) |
-//! | `doctor` | checks of this computer (feature `doctor`) |
+//! | `doctor` | checks of this computer (features `doctor`, `doctor-desk`) |
 //! | `metrics` | statistics as OpenMetrics text (feature `metrics`) |
 //! | `blocking` | programs without async (feature `blocking`) |
 //!

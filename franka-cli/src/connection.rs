@@ -146,6 +146,16 @@ impl Place {
         realtime: Option<Realtime>,
         options: impl FnOnce(Builder) -> Builder,
     ) -> anyhow::Result<Robot> {
+        let robot = self.attempt(realtime, options).await;
+        robot.map_err(|(_, failure)| failure.into())
+    }
+
+    /// [`Self::connect`], with what kept the connection from being made.
+    pub(crate) async fn attempt(
+        &self,
+        realtime: Option<Realtime>,
+        options: impl FnOnce(Builder) -> Builder,
+    ) -> Result<Robot, (Seen, Failure)> {
         let realtime = match realtime.or(self.realtime).unwrap_or(Realtime::Enforce) {
             Realtime::Enforce => franka_async::Realtime::Enforce,
             Realtime::Ignore => franka_async::Realtime::Ignore,
@@ -154,7 +164,7 @@ impl Place {
         let robot = options(builder).connect().await;
         robot.map_err(|error| {
             let seen = seen!(error);
-            self.no_connection("robot", seen, error.into()).into()
+            (seen, self.no_connection("robot", seen, error.into()))
         })
     }
 
@@ -175,7 +185,7 @@ impl Place {
                 format!("no {device} at {self}: the connection was refused"),
             )
             .advice(
-                "Is it the right address, and is FCI activated in Desk? For a simulator: does `franka sim` run?",
+                "Is it the right address, and is FCI activated in Desk? franka doctor asks Desk for the reason. For a simulator: does `franka sim` run?",
             ),
             Seen::Silent => Failure::new(
                 Ending::NoRobot,
@@ -212,8 +222,8 @@ impl Place {
 }
 
 /// What kept a connection from being made, whatever the device.
-#[derive(Clone, Copy, Debug)]
-enum Seen {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Seen {
     Refused,
     Silent,
     Closed,

@@ -11,7 +11,7 @@ pub(crate) struct CardErrors([u64; NAMES.len()]);
 impl CardErrors {
     /// Since the card was set up.
     pub(crate) fn read(readings: &Readings<'_>) -> Result<Self, Unread> {
-        let card = readings.route()?.interface;
+        let card = readings.interface()?;
         let mut counts = [0; NAMES.len()];
         for (count, name) in counts.iter_mut().zip(NAMES) {
             *count = readings.number(&format!("{NET}/{card}/statistics/{name}"))?;

@@ -2,48 +2,52 @@
 
 use core::time::Duration;
 
-use franka_rt::stats::Stats;
-
 use crate::finding::{About, Finding, Group, Judged, Matters, Purpose};
+use crate::timing::quantile;
 
-/// Times of a control loop that ran against a simulated robot. The slack of a cycle is the time
-/// from the departure of its command to when the next state is due.
+/// How fast a control loop answered a simulated robot.
 ///
-/// States are due by the most punctual of the last 32 to 64, and the clock of a simulated robot
-/// stands still while its thread is held up: one such pause takes its length from the slack of as
-/// many commands.
+/// Times count from when the robot's thread had sent a state. So they are the loop's own: a robot
+/// whose thread is held up sends later, and none of that counts.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DryRun {
     /// The `SCHED_FIFO` priority of the loop; `None` under the normal scheduler.
     pub priority: Option<i32>,
-    /// Commands sent.
-    pub commands: u64,
-    /// Commands that left after the next state was due: their slack counts as zero.
-    pub overruns: u64,
-    /// The slack that half of the commands had at least, to 1/16.
-    pub slack_p50: Duration,
-    /// The slack that 99 % of the commands had at least, to 1/16.
-    pub slack_p99: Duration,
-    /// The shortest slack, exactly.
-    pub slack_min: Duration,
+    /// Of each state that a command was due for, the time until a command left that answered it or
+    /// a newer one. Sorted.
+    pub answers: Vec<Duration>,
+    /// How often the simulated robot sent a state more than 2 ms after the one before.
+    pub pauses: usize,
     /// Why the run ended early, if it did.
     pub ended: Option<String>,
 }
 
 impl DryRun {
-    /// What the loop of a run that did not end early has counted, at this priority.
-    pub fn new(stats: &Stats, priority: Option<i32>) -> Self {
-        let slack = |part| stats.slack.quantile(part).unwrap_or_default();
-        Self {
-            priority,
-            commands: stats.commands.get(),
-            overruns: stats.overrun.count(),
-            slack_p50: slack(0.5),
-            // The shortest ones are the worst.
-            slack_p99: slack(0.01),
-            slack_min: stats.slack.min().unwrap_or_default(),
-            ended: None,
+    /// Compares when states were `sent` with when the commands that answered them had `left`, both
+    /// by `message_id` of the state, in its order, by one clock. States before the first command
+    /// and after the last one are left out.
+    pub fn new(sent: &[(u64, Duration)], left: &[(u64, Duration)]) -> Self {
+        let mut run = Self::default();
+        let mut commands = left.iter().peekable();
+        let first = left.first().map_or(u64::MAX, |(id, _)| *id);
+        let mut before = None;
+        for (id, at) in sent.iter().filter(|(id, _)| *id >= first) {
+            while commands.next_if(|(answered, _)| answered < id).is_some() {}
+            let Some((_, departure)) = commands.peek() else {
+                break;
+            };
+            run.answers.push(departure.saturating_sub(*at));
+            let gap = before.map(|before| at.saturating_sub(before));
+            run.pauses += usize::from(gap > Some(PAUSE));
+            before = Some(*at);
         }
+        run.answers.sort_unstable();
+        run
+    }
+
+    /// How many answers took longer than a cycle.
+    fn late(&self) -> usize {
+        self.answers.len() - self.answers.partition_point(|answer| *answer <= CYCLE)
     }
 }
 
@@ -53,83 +57,121 @@ pub fn dry_run(run: &DryRun, purpose: Purpose) -> Finding {
         id: "timing.dry_run",
         group: Group::Timing,
         matters: Matters::Moving,
-        wanted: "no command late, a slack above 200 us in 99 % of the cycles; 1 % late or an early end a failure",
+        wanted: "every answer within 1 ms, 99 % of them within 0.8 ms; 1 % late or an early end a failure",
         why: "The driver's own loop with its sockets; only the network card and the robot are missing.",
-        source: "thresholds: this project's, from the millisecond of a cycle; a pause of the simulated robot's thread counts for the 32 to 64 commands after it",
+        source: "thresholds: this project's, from the millisecond of a cycle",
     };
     about.finding(Ok(judge(run)), purpose)
 }
 
 fn judge(run: &DryRun) -> Judged {
-    if run.commands == 0 {
+    let (count, late) = (run.answers.len(), run.late());
+    let Some(max) = run.answers.last() else {
         return Judged::unknown("unknown: no command was sent");
-    }
+    };
     let scheduling = match run.priority {
         Some(priority) => format!("SCHED_FIFO {priority}"),
         None => "normal scheduling".into(),
     };
-    let read = format!(
-        "{} commands under {scheduling}, {} late; slack p50 {}, p99 {}, min {} us",
-        run.commands,
-        run.overruns,
-        run.slack_p50.as_micros(),
-        run.slack_p99.as_micros(),
-        run.slack_min.as_micros(),
+    let (p50, p99) = (quantile(&run.answers, 0.5), quantile(&run.answers, 0.99));
+    let mut read = format!(
+        "{count} states answered under {scheduling}: p50 {}, p99 {}, max {} us; {late} later than 1 ms",
+        p50.as_micros(),
+        p99.as_micros(),
+        max.as_micros(),
     );
+    if run.pauses > 0 {
+        read += &format!(
+            "; the simulated robot was held up {} times, which does not count",
+            run.pauses
+        );
+    }
     if let Some(why) = &run.ended {
         Judged::failure(format!("{read}; ended early: {why}"))
-    } else if run.overruns * 100 >= run.commands {
+    } else if late * 100 >= count {
         Judged::failure(read)
-    } else if run.overruns > 0 {
+    } else if late > 0 {
         Judged::warning(read)
-    } else if run.slack_p99 <= SLACK_GOOD {
+    } else if p99 >= ANSWER_GOOD {
         Judged::info(read)
     } else if run.priority.is_none() {
         Judged::info(format!(
             "{read}; says little, as any other program may delay the loop"
         ))
-    } else if run.commands < COMMANDS_MIN {
+    } else if count < ANSWERS_MIN {
         Judged::info(format!("{read}; too few to call it good"))
     } else {
         Judged::good(read)
     }
 }
 
-const SLACK_GOOD: Duration = Duration::from_micros(200);
+/// What a robot gives a program for its answer.
+const CYCLE: Duration = Duration::from_millis(1);
 
-/// Fewer commands than ten seconds have, some at begin and end aside, show little.
-const COMMANDS_MIN: u64 = 9_900;
+const ANSWER_GOOD: Duration = Duration::from_micros(800);
+
+/// States are a millisecond apart.
+const PAUSE: Duration = Duration::from_millis(2);
+
+/// Fewer answers than ten seconds have, some at begin and end aside, show little.
+const ANSWERS_MIN: usize = 9_900;
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::finding::Verdict;
 
+    const US: fn(u64) -> Duration = Duration::from_micros;
+
+    /// Ten states a millisecond apart, from number 5 on, at these delays of the robot's.
+    fn sent(delay: impl Fn(u64) -> u64) -> Vec<(u64, Duration)> {
+        (5..15).map(|id| (id, US(id * 1000 + delay(id)))).collect()
+    }
+
     #[test]
-    fn late_commands_decide_and_then_the_slack() {
+    fn answers_count_from_when_the_state_was_sent() {
+        let punctual = sent(|_| 0);
+        // Two states come before the first command, and two after the last one.
+        let left = |punctual: &[(u64, Duration)]| -> Vec<_> {
+            let commands = punctual[2..8].iter();
+            commands.map(|(id, at)| (*id, *at + US(80))).collect()
+        };
+        let run = DryRun::new(&punctual, &left(&punctual));
+        assert_eq!((run.answers, run.pauses), (vec![US(80); 6], 0));
+        // A robot that stands still for 20 ms: none of it is the loop's.
+        let paused = sent(|id| if id < 9 { 0 } else { 20_000 });
+        let run = DryRun::new(&paused, &left(&paused));
+        assert_eq!((run.answers, run.pauses), (vec![US(80); 6], 1));
+    }
+
+    #[test]
+    fn states_that_were_not_answered_count_until_the_next_command() {
+        let sent = sent(|_| 0);
+        // The loop is held up from state 6 until 2.5 ms after it, and skips 7.
+        let left = [(5, US(5100)), (6, US(8500)), (8, US(8600)), (9, US(9100))];
+        let run = DryRun::new(&sent, &left);
+        assert_eq!(run.answers, [US(100), US(100), US(600), US(1600), US(2500)]);
+        assert_eq!((run.late(), run.pauses), (2, 0));
+        let none = DryRun::new(&sent, &[]);
+        assert_eq!(none, DryRun::default());
+    }
+
+    #[test]
+    fn late_answers_decide_and_then_the_rest() {
+        let answers = |count: usize, most: u64, late: usize| {
+            [vec![US(most); count - late], vec![US(1001); late]].concat()
+        };
         let good = DryRun {
             priority: Some(99),
-            commands: 10_000,
-            overruns: 0,
-            slack_p50: Duration::from_micros(900),
-            slack_p99: Duration::from_micros(700),
-            slack_min: Duration::from_micros(150),
-            ended: None,
+            answers: answers(10_000, 799, 0),
+            ..DryRun::default()
         };
-        let slack = |us| DryRun {
-            slack_p99: Duration::from_micros(us),
-            ..good.clone()
-        };
-        let late = |overruns| DryRun {
-            overruns,
+        let with = |answers: Vec<Duration>| DryRun {
+            answers,
             ..good.clone()
         };
         let normal = DryRun {
             priority: None,
-            ..good.clone()
-        };
-        let short = DryRun {
-            commands: 9_899,
             ..good.clone()
         };
         let ended = DryRun {
@@ -140,22 +182,26 @@ mod tests {
         for (run, expected) in [
             (good.clone(), Good),
             (ended, Failure),
-            (slack(201), Good),
-            (slack(200), Info),
+            (with(answers(10_000, 800, 0)), Info),
             (normal, Info),
-            (short, Info),
-            (late(1), Warning),
-            (late(99), Warning),
-            (late(100), Failure),
+            (with(answers(9_899, 100, 0)), Info),
+            (with(answers(10_000, 100, 1)), Warning),
+            (with(answers(10_000, 100, 99)), Warning),
+            (with(answers(10_000, 100, 100)), Failure),
             (DryRun::default(), Unknown),
         ] {
             let finding = dry_run(&run, Purpose::Move);
             assert_eq!(finding.verdict, expected, "{}", finding.read);
         }
-        assert_eq!(dry_run(&late(100), Purpose::Read).verdict, Warning);
+        let late = DryRun {
+            pauses: 2,
+            ..with(answers(10_000, 100, 100))
+        };
+        let finding = dry_run(&late, Purpose::Read);
+        assert_eq!(finding.verdict, Warning);
         assert_eq!(
-            dry_run(&late(3), Purpose::Move).read,
-            "10000 commands under SCHED_FIFO 99, 3 late; slack p50 900, p99 700, min 150 us"
+            finding.read,
+            "10000 states answered under SCHED_FIFO 99: p50 100, p99 100, max 1001 us; 100 later than 1 ms; the simulated robot was held up 2 times, which does not count"
         );
     }
 }

@@ -6,6 +6,7 @@ use std::fs;
 use std::io;
 use std::net::Ipv4Addr;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use franka_rt::sched::Kernel;
 
@@ -31,6 +32,14 @@ pub trait Host {
     fn own_address(&self, robot: Ipv4Addr) -> Result<Ipv4Addr, Unread>;
     /// What the driver of `interface` answers: the bytes of a structure of `linux/ethtool.h`.
     fn ethtool(&self, interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread>;
+    /// Whether `interface` has `own` for good, set by hand; false if it was lent for a time, as by
+    /// DHCP.
+    fn is_lasting(&self, interface: &str, own: Ipv4Addr) -> Result<bool, Unread>;
+    /// Free bytes for files in the current directory.
+    fn free_disk(&self) -> Result<u64, Unread>;
+    /// The frequency of a processor, in kHz, at the end of a second in which a thread under the
+    /// normal scheduler computes on it.
+    fn busy_frequency(&self, cpu: usize) -> Result<u64, Unread>;
     /// How late a thread under `SCHED_FIFO`, where allowed, wakes up each millisecond for that
     /// long. `progress` is called with the part done, about ten times a second.
     fn wake_ups(
@@ -55,8 +64,14 @@ pub enum Ethtool {
     Driver,
     /// `ETHTOOL_GCOALESCE`: `struct ethtool_coalesce`.
     Coalescing,
+    /// `ETHTOOL_GRINGPARAM`: `struct ethtool_ringparam`.
+    Rings,
+    /// `ETHTOOL_GPAUSEPARAM`: `struct ethtool_pauseparam`.
+    Pause,
     /// `ETHTOOL_GFLAGS`: `struct ethtool_value`.
     Flags,
+    /// `ETHTOOL_GGRO`: `struct ethtool_value`.
+    Gro,
     /// `ETHTOOL_GEEE`: `struct ethtool_eee`.
     Eee,
 }
@@ -67,7 +82,10 @@ impl Ethtool {
         match self {
             Self::Driver => 0x03,
             Self::Coalescing => 0x0e,
+            Self::Rings => 0x10,
+            Self::Pause => 0x12,
             Self::Flags => 0x25,
+            Self::Gro => 0x2b,
             Self::Eee => 0x44,
         }
     }
@@ -77,7 +95,9 @@ impl Ethtool {
         match self {
             Self::Driver => 196,
             Self::Coalescing => 92,
-            Self::Flags => 8,
+            Self::Rings => 36,
+            Self::Pause => 16,
+            Self::Flags | Self::Gro => 8,
             Self::Eee => 40,
         }
     }
@@ -122,6 +142,9 @@ impl fmt::Display for Unread {
 /// | `calls/fifo` | a priority, or why there is none |
 /// | `calls/own_address` | an IPv4 address |
 /// | `calls/ethtool/INTERFACE/COMMAND` | the answer's bytes in hexadecimal; `COMMAND` as `0x0e` |
+/// | `calls/is_lasting` | whether the host has its own address for good: `true` or `false` |
+/// | `calls/free_disk` | free bytes |
+/// | `calls/busy_frequency` | the frequency of any processor under load, in kHz |
 /// | `calls/wake_ups` | lines of a latency in microseconds and how often |
 /// | `calls/round_trips` | a line of how many were sent and how many of these were answered, then as above |
 #[derive(Clone, Debug)]
@@ -141,6 +164,18 @@ impl Tree {
 
     fn call(&self, name: &str) -> Result<String, Unread> {
         self.read(&format!("calls/{name}"))
+    }
+
+    /// A file that holds one value.
+    fn value<T: FromStr>(&self, name: &str, what: &str) -> Result<T, Unread> {
+        let text = self.call(name)?;
+        let text = text.trim();
+        text.parse().map_err(|_| {
+            Unread::Failed(
+                format!("calls/{name}"),
+                format!("`{text}`, expected {what}"),
+            )
+        })
     }
 
     /// The lines of a file of two numbers each.
@@ -185,10 +220,19 @@ impl Host for Tree {
     }
 
     fn own_address(&self, _: Ipv4Addr) -> Result<Ipv4Addr, Unread> {
-        let text = self.call("own_address")?;
-        text.trim()
-            .parse()
-            .map_err(|_| Unread::Failed("calls/own_address".into(), "not an address".into()))
+        self.value("own_address", "an address")
+    }
+
+    fn is_lasting(&self, _: &str, _: Ipv4Addr) -> Result<bool, Unread> {
+        self.value("is_lasting", "true or false")
+    }
+
+    fn free_disk(&self) -> Result<u64, Unread> {
+        self.value("free_disk", "a number")
+    }
+
+    fn busy_frequency(&self, _: usize) -> Result<u64, Unread> {
+        self.value("busy_frequency", "a number")
     }
 
     fn ethtool(&self, interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread> {

@@ -11,8 +11,9 @@
 //! * [`Finding`]: what was read, what is wanted, why, by which source, and a command that fixes it.
 //!   What cannot be read is [`Verdict::Unknown`], which is neither good nor bad.
 //! * [`likely_causes`]: for a motion that ended for want of packets.
-//! * [`arrivals`]: what states of a connected robot show. [`ports`]: what answers at its address.
-//!   [`answers`] and [`handshake`]: which version it speaks, and whether it is free.
+//! * [`firewall`], [`arrivals`] and [`at_rest`]: what states of a connected robot show. [`ports`]:
+//!   what answers at its address. [`answers`] and [`handshake`]: which version it speaks, and
+//!   whether it is free.
 //! * [`dry_run`]: what the control loop shows that ran against a simulated robot.
 //!
 //! ```
@@ -24,17 +25,22 @@
 //! assert!(report.count(Verdict::Good) > 0);
 //! ```
 //!
-//! Not here: Desk.
+//! With the feature `desk`, [`ask_desk`] and [`web`]: what the robot's web interface says without a
+//! login. It brings an HTTPS client, and so is no part of what diagnoses a motion.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+mod at_rest;
 mod card_errors;
 mod causes;
 mod checks;
+#[cfg(feature = "desk")]
+mod desk;
 mod dry_run;
 mod finding;
 mod handshake;
 mod host;
+mod lease;
 mod ping;
 mod ports;
 mod readings;
@@ -42,6 +48,7 @@ mod redaction;
 mod report;
 mod round_trip;
 mod route;
+mod selection;
 mod system;
 mod timing;
 mod wake_up;
@@ -51,7 +58,10 @@ use std::net::Ipv4Addr;
 
 use card_errors::CardErrors;
 
+pub use at_rest::at_rest;
 pub use causes::{Evidence, likely_causes};
+#[cfg(feature = "desk")]
+pub use desk::{DeskState, SelfTest, ask_desk, web};
 pub use dry_run::{DryRun, dry_run};
 pub use finding::{Finding, Fix, Group, Needs, Purpose, Verdict};
 pub use handshake::{Answer, answers, handshake};
@@ -60,8 +70,9 @@ pub use ports::ports;
 pub use readings::Readings;
 pub use report::{Report, SCHEMA};
 pub use round_trip::RoundTrips;
+pub use selection::Selection;
 pub use system::System;
-pub use timing::{Received, arrivals};
+pub use timing::{Received, arrivals, firewall};
 pub use wake_up::WakeUps;
 
 /// Runs the checks.
@@ -74,6 +85,7 @@ pub struct Doctor {
     timing: bool,
     ping: bool,
     redact: bool,
+    selection: Selection,
 }
 
 impl Doctor {
@@ -88,6 +100,7 @@ impl Doctor {
             timing: purpose != Purpose::Sim,
             ping: false,
             redact: true,
+            selection: Selection::default(),
         }
     }
 
@@ -111,8 +124,8 @@ impl Doctor {
         self
     }
 
-    /// Whether wake-ups are measured, and round trips if [`Self::ping`] says so. No other check
-    /// takes time.
+    /// Whether wake-ups are measured, a processor is kept busy for a second, and round trips are
+    /// measured if [`Self::ping`] says so. No other check takes time.
     pub fn timing(mut self, timing: bool) -> Self {
         self.timing = timing;
         self
@@ -131,36 +144,24 @@ impl Doctor {
         self
     }
 
+    /// Which checks are run: all by default. Others are not, nor is measured what only they need.
+    pub fn select(mut self, selection: Selection) -> Self {
+        self.selection = selection;
+        self
+    }
+
     /// Checks `host`. `progress` is called with the name of what takes time and the part done of it
     /// in `[0, 1]`.
     pub fn run(&self, host: &dyn Host, progress: &mut dyn FnMut(&str, f64)) -> Report {
-        let readings = Readings::new(host, self.robot).pinned(self.cpu);
+        let readings = Readings::new(host, self.robot)
+            .pinned(self.cpu)
+            .loading(self.timing);
         let mut findings: Vec<Finding> = checks::all()
+            .filter(|check| self.selection.takes(check.id))
             .map(|check| check.run(&readings, self.purpose))
             .collect();
         if self.timing {
-            let before = CardErrors::read(&readings);
-            let duration = Duration::from_secs(if self.long { 60 } else { 10 });
-            let measured = host.wake_ups(duration, &mut |part| progress("timing.wake_up", part));
-            if let Ok(wake_ups) = &measured {
-                let buckets: Vec<String> = wake_ups
-                    .buckets()
-                    .map(|(us, count)| format!("{us}: {count}"))
-                    .collect();
-                readings.note("wake-ups, us: count", buckets.join(", "));
-            }
-            findings.push(timing::wake_up(measured, self.purpose));
-            if let Some(robot) = self.robot.filter(|_| self.ping) {
-                let count = if self.long { 10_000 } else { 1000 };
-                let mut shown = |part| progress("robot.ping", part);
-                let measured = host.round_trips(robot, count, &mut shown);
-                findings.push(ping::ping(measured, self.purpose));
-            }
-            // Packets of this computer to itself pass no card.
-            if readings.route().is_ok_and(|route| route.interface != "lo") {
-                let after = CardErrors::read(&readings);
-                findings.push(card_errors::meanwhile(before, after, self.purpose));
-            }
+            findings.extend(self.measured(host, &readings, progress));
         }
         let mut report = Report {
             schema: SCHEMA,
@@ -174,6 +175,43 @@ impl Doctor {
         } else {
             report
         }
+    }
+
+    /// What takes time to measure.
+    fn measured(
+        &self,
+        host: &dyn Host,
+        readings: &Readings<'_>,
+        progress: &mut dyn FnMut(&str, f64),
+    ) -> Vec<Finding> {
+        let mut findings = Vec::new();
+        let before = CardErrors::read(readings);
+        if self.selection.takes("timing.wake_up") {
+            let duration = Duration::from_secs(if self.long { 60 } else { 10 });
+            let measured = host.wake_ups(duration, &mut |part| progress("timing.wake_up", part));
+            if let Ok(wake_ups) = &measured {
+                let buckets: Vec<String> = wake_ups
+                    .buckets()
+                    .map(|(us, count)| format!("{us}: {count}"))
+                    .collect();
+                readings.note("wake-ups, us: count", buckets.join(", "));
+            }
+            findings.push(timing::wake_up(measured, self.purpose));
+        }
+        let robot = self.robot.filter(|_| self.ping);
+        if let Some(robot) = robot.filter(|_| self.selection.takes("robot.ping")) {
+            let count = if self.long { 10_000 } else { 1000 };
+            let mut shown = |part| progress("robot.ping", part);
+            let measured = host.round_trips(robot, count, &mut shown);
+            findings.push(ping::ping(measured, self.purpose));
+        }
+        // Packets of this computer to itself pass no card.
+        let has_card = readings.interface().is_ok_and(|name| name != "lo");
+        if has_card && self.selection.takes("nic.errors_now") {
+            let after = CardErrors::read(readings);
+            findings.push(card_errors::meanwhile(before, after, self.purpose));
+        }
+        findings
     }
 
     /// `report` with what identifies people and devices of `host` replaced.

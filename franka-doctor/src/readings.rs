@@ -13,6 +13,8 @@ pub struct Readings<'a> {
     pub(crate) robot: Option<Ipv4Addr>,
     /// The processor that the control thread is pinned to, if it is.
     pub(crate) cpu: Option<usize>,
+    /// Whether processors may be kept busy for a second.
+    pub(crate) may_load: bool,
     raw: RefCell<BTreeMap<String, String>>,
 }
 
@@ -23,6 +25,7 @@ impl<'a> Readings<'a> {
             host,
             robot,
             cpu: None,
+            may_load: false,
             raw: RefCell::default(),
         }
     }
@@ -30,6 +33,12 @@ impl<'a> Readings<'a> {
     /// With the processor that the control thread is pinned to.
     pub fn pinned(mut self, cpu: Option<usize>) -> Self {
         self.cpu = cpu;
+        self
+    }
+
+    /// With whether processors may be kept busy for a second, which takes as long.
+    pub(crate) fn loading(mut self, may_load: bool) -> Self {
+        self.may_load = may_load;
         self
     }
 
@@ -160,14 +169,19 @@ impl<'a> Readings<'a> {
             .ok_or_else(|| Unread::Absent(format!("a way to {robot} in /proc/net/route")))
     }
 
+    /// The network interface on the way to the robot.
+    pub(crate) fn interface(&self) -> Result<String, Unread> {
+        Ok(self.route()?.interface)
+    }
+
     /// A file of the network card on the way to the robot.
     pub(crate) fn card(&self, file: &str) -> Result<String, Unread> {
-        self.text(&format!("{NET}/{}/{file}", self.route()?.interface))
+        self.text(&format!("{NET}/{}/{file}", self.interface()?))
     }
 
     /// What the driver of the network card on the way to the robot answers.
     pub(crate) fn ethtool(&self, question: Ethtool) -> Result<Answer, Unread> {
-        let interface = self.route()?.interface;
+        let interface = self.interface()?;
         let what = format!("ethtool {interface} {:#04x}", question.command());
         match self.host.ethtool(&interface, question) {
             Ok(bytes) if bytes.len() >= question.size() => {

@@ -48,6 +48,8 @@ impl Report {
 
     fn text(&self, color: bool, detailed: bool) -> String {
         let mut text = String::new();
+        // Commands that were shown, and for which check.
+        let mut named: Vec<(&str, &str)> = Vec::new();
         for group in Group::ALL {
             let of_group = || {
                 self.findings
@@ -60,17 +62,25 @@ impl Report {
             let worst = of_group().max_by_key(|finding| weight(finding.verdict));
             let verdict = worst.map_or(Verdict::Unknown, |finding| finding.verdict);
             let _ = writeln!(text, "{} {group}", mark(verdict, color));
-            for finding in of_group() {
-                if finding.verdict == Verdict::Good && !detailed {
-                    continue;
-                }
-                let (id, read) = (finding.id, &finding.read);
-                let _ = writeln!(text, "    {} {id}: {read}", mark(finding.verdict, color));
+            let shown: Vec<&Finding> = of_group()
+                .filter(|finding| finding.verdict != Verdict::Good || detailed)
+                .collect();
+            // What says the same in a row is said once.
+            let same = |a: &&Finding, b: &&Finding| {
+                let is_short = !detailed && matches!(a.verdict, Verdict::Info | Verdict::Unknown);
+                is_short && (a.verdict, &a.read) == (b.verdict, &b.read)
+            };
+            for alike in shown.chunk_by(same) {
+                let finding = alike[0];
+                let ids: Vec<&str> = alike.iter().map(|finding| finding.id).collect();
+                let mark = mark(finding.verdict, color);
+                let read = format!("{}: {}", ids.join(", "), finding.read);
+                wrapped(&mut text, &format!("    {mark} "), &read);
                 let matters = matches!(finding.verdict, Verdict::Warning | Verdict::Failure);
                 if matters || detailed {
-                    let _ = writeln!(text, "        wanted: {}", finding.wanted);
-                    let _ = writeln!(text, "        why: {}", finding.why);
-                    let _ = writeln!(text, "        source: {}", finding.source);
+                    wrapped(&mut text, "        wanted: ", finding.wanted);
+                    wrapped(&mut text, "        why: ", finding.why);
+                    wrapped(&mut text, "        source: ", finding.source);
                 }
                 if let Some(fix) = finding.fix.as_ref().filter(|_| matters || detailed) {
                     let then = match fix.needs {
@@ -78,7 +88,16 @@ impl Report {
                         Needs::Login => " (then log in again)",
                         Needs::Reboot => " (then reboot)",
                     };
-                    let _ = writeln!(text, "        fix{then}: {}", fix.command);
+                    match named.iter().find(|(command, _)| *command == fix.command) {
+                        Some((_, id)) => {
+                            let _ = writeln!(text, "        fix{then}: that of {id}");
+                        }
+                        // In one piece, to be copied.
+                        None => {
+                            named.push((&fix.command, finding.id));
+                            let _ = writeln!(text, "        fix{then}: {}", fix.command);
+                        }
+                    }
                 }
             }
         }
@@ -142,6 +161,44 @@ impl Report {
         u8::from(self.count(Verdict::Failure) > 0)
     }
 }
+
+/// Appends `words` after `lead`, in lines of at most [`COLUMNS`]; later ones begin further in. A
+/// word that is longer stays whole.
+fn wrapped(text: &mut String, lead: &str, words: &str) {
+    *text += lead;
+    let mut column = columns_of(lead);
+    for (index, word) in words.split_whitespace().enumerate() {
+        let length = word.chars().count();
+        if index > 0 && column + 1 + length > COLUMNS {
+            let _ = write!(text, "\n{:INDENT$}", "");
+            column = INDENT;
+        } else if index > 0 {
+            *text += " ";
+            column += 1;
+        }
+        *text += word;
+        column += length;
+    }
+    *text += "\n";
+}
+
+/// The columns that `lead` takes; its colours take none.
+fn columns_of(lead: &str) -> usize {
+    let mut is_colour = false;
+    let shown = lead.chars().filter(|&c| {
+        is_colour |= c == '\x1b';
+        let shown = !is_colour;
+        is_colour &= c != 'm';
+        shown
+    });
+    shown.count()
+}
+
+/// What terminals have.
+const COLUMNS: usize = 80;
+
+/// Where lines go on.
+const INDENT: usize = 12;
 
 /// `text` without line breaks, as a comment of a script has to be.
 fn one_line(text: &str) -> String {

@@ -1,5 +1,6 @@
 //! The running host: the only file of this crate with `unsafe`.
 
+use core::hint;
 use core::time::Duration;
 use std::fs::{self, File};
 use std::io::{self, Read as _};
@@ -8,12 +9,17 @@ use std::os::fd::AsRawFd as _;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
+use std::time::Instant;
 
 use franka_rt::sched::{Kernel, Realtime, Scheduling};
+use nix::sched::{CpuSet, sched_setaffinity};
+use nix::sys::statvfs::statvfs;
 use nix::sys::time::TimeSpec;
 use nix::time::{ClockId, ClockNanosleepFlags, clock_gettime, clock_nanosleep};
+use nix::unistd::Pid;
 
 use crate::host::{Ethtool, Host, Unread, names_in};
+use crate::lease;
 use crate::round_trip::{self, RoundTrips};
 use crate::wake_up::WakeUps;
 
@@ -119,6 +125,49 @@ impl Host for System {
         Ok(bytes)
     }
 
+    fn is_lasting(&self, interface: &str, own: Ipv4Addr) -> Result<bool, Unread> {
+        let what = || format!("the address {own} of {interface}");
+        match lease::is_lasting(own) {
+            Ok(Some(lasting)) => Ok(lasting),
+            Ok(None) => Err(Unread::Absent(what())),
+            Err(error) => Err(Unread::new(what(), &error)),
+        }
+    }
+
+    fn free_disk(&self) -> Result<u64, Unread> {
+        let free = statvfs(".").map(|disk| {
+            let (blocks, size) = (disk.blocks_available(), disk.fragment_size());
+            blocks.saturating_mul(size)
+        });
+        free.map_err(|error| Unread::new("the current directory", &error.into()))
+    }
+
+    fn busy_frequency(&self, cpu: usize) -> Result<u64, Unread> {
+        let path = format!("/sys/devices/system/cpu/cpu{cpu}/cpufreq/scaling_cur_freq");
+        let failed = |error: nix::Error| {
+            Unread::Failed(format!("a thread on processor {cpu}"), error.to_string())
+        };
+        let busy = || {
+            let mut only = CpuSet::new();
+            only.set(cpu).map_err(failed)?;
+            // 0: this thread.
+            sched_setaffinity(Pid::from_raw(0), &only).map_err(failed)?;
+            let begin = Instant::now();
+            while begin.elapsed() < BUSY {
+                hint::spin_loop();
+            }
+            self.read(&path)
+        };
+        let text = thread::scope(|scope| {
+            let busy = thread::Builder::new().spawn_scoped(scope, busy);
+            let busy = busy.map_err(|error| Unread::new("a thread", &error))?;
+            busy.join().expect("computing does not panic")
+        })?;
+        let text = text.trim();
+        text.parse()
+            .map_err(|_| Unread::Failed(path, format!("`{text}`, expected a number")))
+    }
+
     fn wake_ups(
         &self,
         duration: Duration,
@@ -204,6 +253,9 @@ fn wake_ups(priority: Option<i32>, cycles: u64, done: &AtomicU64) -> Result<Wake
     }
     Ok(wake_ups)
 }
+
+/// How long a thread computes before the frequency of its processor is read.
+const BUSY: Duration = Duration::from_secs(1);
 
 /// Most of a file that is read.
 const READ_MAX: u64 = 1 << 20;

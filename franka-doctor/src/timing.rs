@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use crate::finding::{About, Finding, Group, Judged, Matters, Purpose};
+use crate::finding::{About, Finding, Group, Judged, Matters, Needs, Purpose};
 use crate::host::Unread;
 use crate::wake_up::WakeUps;
 
@@ -74,9 +74,7 @@ pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
     let sent = lost + states.len() as u64;
     let few = states.len() < STATES_MIN;
     let losses = match (lost, few) {
-        _ if states.is_empty() => Judged::failure(
-            "no states: `UDP receive: Timeout` means that a firewall keeps them off",
-        ),
+        _ if states.is_empty() => Judged::unknown("unknown: no states"),
         (0, true) => Judged::info(format!("0 of {sent} lost; too few to call it good")),
         (0, false) => Judged::good(format!("0 of {sent} lost")),
         _ => {
@@ -116,6 +114,28 @@ pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
         lost.finding(Ok(losses), purpose),
         interval.finding(Ok(punctuality), purpose),
     ]
+}
+
+/// Whether states of a robot that has opened a session arrive at all; `None` without a session:
+/// `net.firewall`. A pure function.
+pub fn firewall(states_arrive: Option<bool>, purpose: Purpose) -> Finding {
+    let about = About {
+        id: "net.firewall",
+        group: Group::NetworkCard,
+        matters: Matters::Reading,
+        wanted: "states of the robot arrive (UDP)",
+        why: "The robot sends its states to a port that this computer chooses; a firewall lets them in, or not.",
+        source: "vendor: FCI documentation, troubleshooting: `UDP receive: Timeout` means a firewall",
+    };
+    let judged = match states_arrive {
+        Some(true) => Judged::good("states arrive"),
+        Some(false) => Judged::failure(
+            "the robot has opened a session, but no state of it arrives: `UDP receive: Timeout`",
+        )
+        .fix(Needs::Nothing, "sudo nft list ruleset || sudo iptables -L"),
+        None => Judged::unknown("unknown: no session with a robot"),
+    };
+    about.finding(Ok(judged), purpose)
 }
 
 /// The shortest of `sorted` that the part `part` (in `[0, 1]`) of them does not exceed.
@@ -205,6 +225,9 @@ mod tests {
         );
         let gap = |n: &u64| !(100..121).contains(n);
         assert_eq!(verdicts((0..10_000).filter(gap), 10)[0], Failure);
-        assert_eq!(verdicts(0..0, 10), [Failure, Unknown]);
+        assert_eq!(verdicts(0..0, 10), [Unknown, Unknown]);
+        for (arrive, expected) in [(Some(true), Good), (Some(false), Failure), (None, Unknown)] {
+            assert_eq!(firewall(arrive, Purpose::Read).verdict, expected);
+        }
     }
 }

@@ -7,7 +7,9 @@ use std::fs;
 use std::net::Ipv4Addr;
 use std::path::{Path, PathBuf};
 
-use franka_doctor::{Doctor, Evidence, Purpose, Readings, Report, Tree, Verdict, likely_causes};
+use franka_doctor::{
+    Doctor, Evidence, Purpose, Readings, Report, Selection, Tree, Verdict, likely_causes,
+};
 
 const HOSTS: [&str; 7] = [
     "ubuntu_pro_realtime",
@@ -111,6 +113,16 @@ fn what_each_host_is_known_for_is_found() {
         ("usb_card", "nic.errors_now", Good),
         ("laptop_on_battery", "robot.ping", Failure),
         ("usb_card", "robot.ping", Failure),
+        ("debian13_realtime", "cpu.freq_now", Good),
+        ("laptop_on_battery", "cpu.freq_now", Info),
+        ("container", "cpu.freq_now", Unknown),
+        ("ubuntu_pro_realtime", "nic.nm", Good),
+        ("laptop_on_battery", "nic.nm", Info),
+        ("ubuntu_pro_realtime", "nic.pause", Good),
+        ("debian13_realtime", "nic.pause", Info),
+        ("usb_card", "nic.ring", Unknown),
+        ("ubuntu_pro_realtime", "disk", Good),
+        ("raspberry_pi5", "disk", Info),
     ] {
         assert_eq!(
             verdict(&report(host, Purpose::Move), id),
@@ -118,6 +130,19 @@ fn what_each_host_is_known_for_is_found() {
             "{host}: {id}"
         );
     }
+}
+
+#[test]
+fn only_what_is_selected_is_checked() {
+    let selection = Selection::new(vec!["nic".into()], vec!["nic.kind".into()]);
+    let doctor = Doctor::new(Purpose::Move).robot(ROBOT).ping(true);
+    let report = doctor
+        .select(selection)
+        .run(&tree("usb_card"), &mut |_, _| ());
+    let ids: Vec<&str> = report.findings.iter().map(|finding| finding.id).collect();
+    assert!(ids.contains(&"nic.coalesce") && ids.contains(&"nic.errors_now"));
+    assert!(ids.iter().all(|id| id.starts_with("nic.")), "{ids:?}");
+    assert!(!ids.contains(&"nic.kind"), "{ids:?}");
 }
 
 #[test]

@@ -1,17 +1,18 @@
 //! `franka bench`: this computer, without a robot.
 
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand};
 use franka_async::control::{Finish, Torques};
 use franka_async::doctor::{Host as _, System};
 use franka_async::realtime::{Granted, Stats};
+use franka_async::record::{CycleFeed, CycleReader};
 use franka_async::{MotionError, MotionReport, Realtime, Robot};
 use franka_sim::Sim;
 use serde_json::json;
 
-use super::test::{quantiles, table};
+use super::test::{quantiles, table, times};
 use crate::ending::{Ending, Failure};
 use crate::motion::progress_bar;
 use crate::output::Output;
@@ -71,13 +72,11 @@ impl Wake {
             "late_us": { "p50": p50, "p99": p99, "p999": p999, "max": max },
         });
         self.output.print(&value, || {
-            let scheduling = match priority {
-                Some(priority) => format!("SCHED_FIFO {priority}"),
-                None => "without real-time scheduling".to_owned(),
-            };
             format!(
-                "{} wake-ups {scheduling}\nlate by        {p50:>6}  99 % {p99:>6}  99.9 % {p999:>6}  max {max:>6}  us",
-                late.count()
+                "{} wake-ups under {}\nlate by        {}",
+                late.count(),
+                scheduling(priority),
+                times(&value["late_us"])
             )
         })
     }
@@ -87,7 +86,12 @@ impl Loop {
     async fn run(self) -> anyhow::Result<Ending> {
         // It waits for commands that a busy computer sends late, rather than stop itself.
         let sim = Sim::fr3().wait_for_commands(PATIENCE);
-        let (outcome, stats, granted) = dry_run(sim, self.seconds).await?;
+        let DryRun {
+            outcome,
+            stats,
+            granted,
+            ..
+        } = dry_run(sim, self.seconds).await?;
         let report = outcome?;
         let value = json!({
             "robot": "simulated FR3 in this process",
@@ -99,25 +103,42 @@ impl Loop {
             "turnaround_us": quantiles(&stats.turnaround),
         });
         self.output.print(&value, || {
-            let scheduling = match granted.priority {
-                Some(priority) => format!("SCHED_FIFO {priority}"),
-                None => "without real-time scheduling".to_owned(),
-            };
-            format!("{}scheduling     {scheduling}", table(&value))
+            format!(
+                "{}scheduling     {}",
+                table(&value),
+                scheduling(granted.priority)
+            )
         })
     }
 }
 
-/// Runs the control loop for `length` against `sim` in this process: what came of it, what the loop
-/// has counted, and what the operating system granted it.
-pub(super) async fn dry_run(
-    sim: Sim,
-    length: Duration,
-) -> anyhow::Result<(Result<MotionReport, MotionError>, Arc<Stats>, Arc<Granted>)> {
+/// The scheduling of a thread, by its `SCHED_FIFO` priority.
+fn scheduling(priority: Option<i32>) -> String {
+    match priority {
+        Some(priority) => format!("SCHED_FIFO {priority}"),
+        None => "normal scheduling".to_owned(),
+    }
+}
+
+/// How the control loop ran against a simulated robot.
+pub(super) struct DryRun {
+    pub(super) outcome: Result<MotionReport, MotionError>,
+    /// What the loop has counted.
+    pub(super) stats: Arc<Stats>,
+    /// What the operating system granted it.
+    pub(super) granted: Arc<Granted>,
+    /// When each command had left, with the `message_id` of the state that it answers.
+    pub(super) left: Vec<(u64, Instant)>,
+}
+
+/// Runs the control loop for `length` against `sim` in this process.
+pub(super) async fn dry_run(sim: Sim, length: Duration) -> anyhow::Result<DryRun> {
     let failed = |error: std::io::Error| Failure::new(Ending::Host, error.to_string());
     let sim = sim.start().await.map_err(failed)?;
     let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
     let robot = builder.connect().await?;
+    let cycles = robot.cycles(CycleFeed::<()>::DEFAULT_CAPACITY)?;
+    let left = tokio::task::spawn_blocking(|| departures(cycles));
     let mut time = Duration::ZERO;
     let control = robot.control_torques(move |_, step| {
         time += step;
@@ -127,7 +148,27 @@ pub(super) async fn dry_run(
     let (stats, granted) = (robot.stats(), robot.granted());
     robot.shutdown().await;
     sim.stop().await;
-    Ok((outcome, stats, granted))
+    Ok(DryRun {
+        outcome,
+        stats,
+        granted,
+        left: left.await?,
+    })
+}
+
+/// When commands left, until the connection has ended.
+fn departures(mut cycles: CycleReader) -> Vec<(u64, Instant)> {
+    let mut left = Vec::new();
+    while !cycles.has_ended() {
+        cycles.wait(Duration::from_millis(100));
+        while let Some(cycle) = cycles.pop() {
+            let turnaround = cycle.record.turnaround;
+            if !turnaround.is_zero() {
+                left.push((cycle.state.message_id, cycle.received + turnaround));
+            }
+        }
+    }
+    left
 }
 
 /// For a command of a computer that is busy with something else.

@@ -2,22 +2,24 @@
 
 use std::net::{IpAddr, SocketAddr};
 use std::pin::pin;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use anstream::ColorChoice;
 use clap::{Args, ValueEnum};
 use franka_async::Robot;
+use franka_async::connection::Endpoint;
 use franka_async::doctor::{
-    Answer, Doctor as Checks, DryRun, Finding, Purpose, Received, Report, System, answers,
-    arrivals, dry_run, handshake, ports,
+    Answer, Doctor as Checks, DryRun, Finding, Purpose, Received, Report, Selection, System,
+    Verdict, answers, arrivals, ask_desk, at_rest, dry_run, firewall, handshake, ports, web,
 };
 use franka_async::realtime::Scheduling;
 use franka_async::record::CycleFeed;
 use franka_sim::Sim;
 
 use super::bench;
-use crate::connection::{Place, Which, resolve};
-use crate::ending::Ending;
+use crate::connection::{Place, Seen, Which, resolve};
+use crate::ending::{Ending, Failure};
 use crate::motion::progress_bar;
 use crate::output::{Output, line, say};
 use crate::robots_file::Realtime;
@@ -29,8 +31,9 @@ use crate::robots_file::Realtime;
 /// failed that the purpose needs.
 #[derive(Debug, Args)]
 pub(crate) struct Doctor {
-    #[command(flatten)]
-    which: Which,
+    /// Name of a robot, or its address; without it, only this computer is checked
+    #[arg(value_name = "ROBOT")]
+    robot: Option<String>,
     /// What this computer is to do
     #[arg(long = "for", value_enum, default_value_t = For::Move)]
     purpose: For,
@@ -46,6 +49,18 @@ pub(crate) struct Doctor {
     /// Say what is good, too, and why and by which source
     #[arg(long, conflicts_with_all = ["json", "fix"])]
     all: bool,
+    /// Run only these checks: ids, or their beginnings up to a dot, as in `nic,timing.wake_up`
+    #[arg(long, value_name = "ID,...", value_delimiter = ',')]
+    only: Vec<String>,
+    /// Leave these checks out
+    #[arg(long, value_name = "ID,...", value_delimiter = ',')]
+    skip: Vec<String>,
+    /// Show names of people, hardware addresses, UUIDs and serial numbers
+    #[arg(long)]
+    unredacted: bool,
+    /// Where Desk is, if not on the robot's address, port 443; asked without a login
+    #[arg(long, value_name = "ADDRESS", requires = "robot")]
+    desk: Option<Endpoint>,
     #[command(flatten)]
     output: Output,
 }
@@ -72,9 +87,8 @@ impl For {
 
 impl Doctor {
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
-        // No robot is needed: only one that is named is asked.
-        let place = match self.which.robot {
-            Some(_) => Some(self.which.place()?),
+        let place = match &self.robot {
+            Some(robot) => Some(Which::of(Some(robot.clone())).place()?),
             None => None,
         };
         let address = match &place {
@@ -83,17 +97,26 @@ impl Doctor {
         };
         // The robot first: with another client connected, checks that would disturb it are left
         // out.
+        let selection = Selection::new(self.only.clone(), self.skip.clone());
         let mut found = Vec::new();
         let mut taken = false;
-        if let (Some(place), Some(address)) = (&place, address) {
+        if let (Some(place), Some(address)) = (&place, address)
+            && ROBOT_CHECKS.iter().any(|id| selection.takes(id))
+        {
             (found, taken) = self.robot(place, address).await?;
         }
-        let mut report = self
-            .host(address.map(|address| address.ip()), !taken)
-            .await?;
+        if self.purpose != For::Sim && selection.takes("timing.dry_run") {
+            found.extend(self.dry_run().await);
+        }
+        found.retain(|finding| selection.takes(finding.id));
+        let robot = address.map(|address| address.ip());
+        let mut report = self.host(robot, selection, !taken).await?;
         report.add(found);
-        if self.purpose != For::Sim {
-            report.add(self.dry_run().await);
+        if report.findings.is_empty() {
+            let failure = Failure::usage("none of these checks is there, or can be made so");
+            return Err(failure
+                .advice("franka doctor --all names those that are.")
+                .into());
         }
         if self.output.json {
             line(&report.to_json())?;
@@ -124,8 +147,15 @@ impl Doctor {
 
     /// The checks of this computer, with the card on the way to `robot`, which may be sent echo
     /// requests if `ping`.
-    async fn host(&self, robot: Option<IpAddr>, ping: bool) -> anyhow::Result<Report> {
+    async fn host(
+        &self,
+        robot: Option<IpAddr>,
+        selection: Selection,
+        ping: bool,
+    ) -> anyhow::Result<Report> {
         let mut checks = Checks::new(self.purpose.purpose())
+            .select(selection)
+            .redact(!self.unredacted)
             .long(self.long)
             .ping(ping);
         if let Some(IpAddr::V4(robot)) = robot {
@@ -152,7 +182,8 @@ impl Doctor {
         let bar = progress_bar();
         bar.set_message("timing.dry_run");
         let (begin, length) = (Instant::now(), self.length());
-        let mut run = pin!(bench::dry_run(punctual(), length));
+        let sent = Arc::new(Mutex::new(Vec::with_capacity(1 << 17)));
+        let mut run = pin!(bench::dry_run(punctual(sent.clone()), length));
         let mut clock = tokio::time::interval(Duration::from_millis(100));
         let ran = loop {
             tokio::select! {
@@ -166,10 +197,17 @@ impl Doctor {
         };
         bar.finish_and_clear();
         match ran {
-            Ok((outcome, stats, granted)) => {
+            Ok(ran) => {
+                let since = |times: &[(u64, Instant)]| -> Vec<Received> {
+                    let times = times.iter();
+                    let since = times.map(|(id, at)| (*id, at.saturating_duration_since(begin)));
+                    since.collect()
+                };
+                let sent = since(&sent.lock().unwrap_or_else(PoisonError::into_inner));
                 let run = DryRun {
-                    ended: outcome.err().map(|error| error.to_string()),
-                    ..DryRun::new(&stats, granted.priority)
+                    priority: ran.granted.priority,
+                    ended: ran.outcome.err().map(|error| error.to_string()),
+                    ..DryRun::new(&sent, &since(&ran.left))
                 };
                 Some(dry_run(&run, self.purpose.purpose()))
             }
@@ -191,49 +229,75 @@ impl Doctor {
     ) -> anyhow::Result<(Vec<Finding>, bool)> {
         let mut found = Vec::new();
         let purpose = self.purpose.purpose();
+        // Before connecting: what Desk says is the reason of a refusal.
+        found.extend(self.desk(address).await?);
         let connected = place
-            .connect(Some(Realtime::Ignore), |builder| builder)
+            .attempt(Some(Realtime::Ignore), |builder| builder)
             .await;
-        let answered = match connected {
+        let (answered, states_arrive, state) = match connected {
             Ok(robot) => {
                 let answered = vec![Answer::Accepted(robot.version())];
+                let state = robot.state();
                 let states = received(&robot, self.length()).await;
                 robot.shutdown().await;
                 found.extend(arrivals(&states?, purpose));
-                answered
+                (answered, Some(true), Some(state))
             }
             // The report is about the rest all the same.
-            Err(error) => {
-                say(&format!("the robot's states were not checked: {error:#}"));
-                match Ending::of(&error) {
-                    Ending::Taken => vec![Answer::Closed],
+            Err((seen, failure)) => {
+                say(&format!("the robot's states were not checked: {failure}"));
+                let answered = match seen {
+                    Seen::Closed => vec![Answer::Closed],
                     _ => tokio::task::spawn_blocking(move || answers(address)).await?,
-                }
+                };
+                (answered, (seen == Seen::NoState).then_some(false), None)
             }
         };
+        found.push(firewall(states_arrive, purpose));
         found.extend(handshake(&answered, purpose));
         let taken = answered.last() == Some(&Answer::Closed);
+        let mut has_hand = false;
         if address.port() == ROBOT && !taken {
             let ports = tokio::task::spawn_blocking(move || ports(address.ip(), purpose)).await?;
+            let is_hand = |port: &Finding| port.id == "robot.tcp.hand";
+            let hand = ports.iter().find(|port| is_hand(port));
+            has_hand = hand.is_some_and(|hand| hand.verdict == Verdict::Good);
             found.extend(ports);
         }
+        if let Some(state) = state {
+            found.extend(at_rest(&state, has_hand, purpose));
+        }
         Ok((found, taken))
+    }
+
+    /// What Desk says, at the address that was given, or beside a robot on the usual port.
+    async fn desk(&self, robot: SocketAddr) -> anyhow::Result<Option<Finding>> {
+        let desk = match &self.desk {
+            Some(desk) => resolve(desk, DESK).await?,
+            None if robot.port() == ROBOT => SocketAddr::new(robot.ip(), DESK),
+            None => return Ok(None),
+        };
+        let asked = tokio::task::spawn_blocking(move || ask_desk(desk)).await?;
+        Ok(Some(web(&asked, self.purpose.purpose())))
     }
 }
 
 /// A simulated robot that keeps its millisecond as well as this computer can, and ends a motion if
-/// too many commands are late.
-fn punctual() -> Sim {
+/// too many commands are late. Notes when it has `sent` each state.
+fn punctual(sent: Arc<Mutex<Vec<(u64, Instant)>>>) -> Sim {
     // On the thread of the robot. What is refused leaves it as it is.
     let mut scheduling = Some(Scheduling {
         realtime: franka_async::Realtime::Ignore,
         prefault_stack: 0,
         ..Scheduling::default()
     });
-    Sim::fr3().every_millisecond(move |_| {
+    Sim::fr3().after_each_state(move |robot| {
+        let now = Instant::now();
         if let Some(scheduling) = scheduling.take() {
             let _ = scheduling.enter();
         }
+        let mut sent = sent.lock().unwrap_or_else(PoisonError::into_inner);
+        sent.push((robot.state().message_id, now));
     })
 }
 
@@ -255,5 +319,25 @@ async fn received(robot: &Robot, length: Duration) -> anyhow::Result<Vec<Receive
     Ok(tokio::task::spawn_blocking(read).await?)
 }
 
+/// The checks that ask the robot, or Desk.
+const ROBOT_CHECKS: [&str; 13] = [
+    "net.firewall",
+    "robot.busy",
+    "robot.errors",
+    "robot.interval",
+    "robot.load",
+    "robot.lost",
+    "robot.mode",
+    "robot.ping",
+    "robot.tcp",
+    "robot.tcp.hand",
+    "robot.tcp.vacuum",
+    "robot.version",
+    "robot.web",
+];
+
 /// Where robots listen.
 const ROBOT: u16 = 1337;
+
+/// Where Desk listens.
+const DESK: u16 = 443;

@@ -100,8 +100,8 @@ impl Communication {
         other: Option<&Moving>,
     ) -> anyhow::Result<(MotionReport, Option<MotionReport>)> {
         let what = format!(
-            "For {:.0} s the arm gets no torques but those of the robot against gravity, and stays where it is.\n\
-             An undeclared load pulls it down.",
+            "For {:.0} s the arm gets no torques but those of the robot against gravity,\n\
+             and stays where it is. An undeclared load pulls it down.",
             self.seconds.as_secs_f64()
         );
         one.ask("test", &what).await?;
@@ -161,14 +161,15 @@ pub(super) fn quantiles(times: &Histogram) -> Value {
     json!({ "p50": at(0.5), "p99": at(0.99), "p999": at(0.999), "max": at(1.0) })
 }
 
+/// Such times as text.
+pub(super) fn times(quantiles: &Value) -> String {
+    let at = |quantile: &str| quantiles[quantile].as_u64().unwrap_or(0);
+    let [p50, p99, p999, max] = ["p50", "p99", "p999", "max"].map(at);
+    format!("p50 {p50:>6}  p99 {p99:>6}  p99.9 {p999:>6}  max {max:>6}  us")
+}
+
 /// The figures of one robot as text.
 pub(super) fn table(figures: &Value) -> String {
-    let times = |name: &str| {
-        let quantiles = ["p50", "p99", "p999", "max"];
-        let cells = quantiles.map(|quantile| figures[name][quantile].as_u64().unwrap_or(0));
-        let [p50, p99, p999, max] = cells;
-        format!("{p50:>6}  99 % {p99:>6}  99.9 % {p999:>6}  max {max:>6}  us")
-    };
     let rate = |of: &str| figures["success_rate"][of].as_f64().unwrap_or(0.0);
     format!(
         "{BOLD}{}{BOLD:#}\n\
@@ -181,8 +182,8 @@ pub(super) fn table(figures: &Value) -> String {
         rate("min"),
         figures["lost"],
         figures["skipped"],
-        times("interval_us"),
-        times("turnaround_us"),
+        times(&figures["interval_us"]),
+        times(&figures["turnaround_us"]),
     )
 }
 

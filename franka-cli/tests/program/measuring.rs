@@ -96,14 +96,23 @@ fn this_computer_and_the_way_to_a_robot_are_checked() {
         for id in ["robot.lost", "timing.dry_run"] {
             assert!(ids.contains(&id), "{ids:?}");
         }
-        for id in ["robot.version", "robot.busy"] {
+        let good = [
+            "robot.version",
+            "robot.busy",
+            "robot.mode",
+            "robot.errors",
+            "robot.load",
+            "net.firewall",
+        ];
+        for id in good {
             assert_eq!(verdict(&json, id), "good", "{id}");
         }
     });
     let ran = home.run(&["doctor", "127.0.0.1:1", "--for", "read", "--quick"]);
     assert!(ran.err.contains("not checked"), "{ran:?}");
     assert!(
-        ran.out.contains("robot.version: unknown: no connection"),
+        ran.out
+            .contains("robot.version, robot.busy: unknown: no connection"),
         "{ran:?}"
     );
 }
@@ -114,6 +123,41 @@ fn verdict<'a>(report: &'a serde_json::Value, id: &str) -> &'a str {
     let found = findings.iter().find(|finding| finding["id"] == id);
     let found = found.unwrap_or_else(|| panic!("no {id}"));
     found["verdict"].as_str().expect("a text")
+}
+
+#[test]
+fn what_desk_says_is_the_reason_of_a_refusal() {
+    let home = Home::new();
+    let desk = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = desk.local_addr().expect("bound").to_string();
+    // Serves whoever comes until the process ends: a Desk whose system is starting.
+    std::thread::spawn(move || {
+        for client in desk.incoming() {
+            let mut client = client.expect("a client");
+            // Not TLS: the client then asks plainly.
+            let mut request = [0; 512];
+            let length = client.read(&mut request).expect("a request");
+            let json = match &request[..length] {
+                [b'G', ..] if request.starts_with(b"GET /api/system ") => {
+                    r#"{"status": "Starting", "operatingMode": {"status": "Execution"}}"#
+                }
+                _ => "{}",
+            };
+            let head = "HTTP/1.1 200 OK\r\nConnection: close\r\nContent-Length:";
+            let answer = format!("{head} {}\r\n\r\n{json}", json.len());
+            // A client that wants TLS goes away.
+            let _ = client.write_all(answer.as_bytes());
+        }
+    });
+    let doctor = ["doctor", "127.0.0.1:1", "--for", "read", "--quick"];
+    let only = ["--only", "robot", "--desk", &address];
+    let ran = home.run(&[&doctor[..], &only].concat());
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    let expected = "robot.web: the system is not started: Starting";
+    assert!(ran.out.contains(expected), "{ran:?}");
+    assert!(!ran.out.contains("kernel.rt"), "{ran:?}");
+    let none = ["doctor", "--only", "nothing", "--skip", "nic"];
+    home.run(&none).failed(2, &["none of these checks"]);
 }
 
 #[test]

@@ -13,6 +13,7 @@ const HOST: Check = Check {
     why: "",
     source: "",
     reads_only: true,
+    of_card: false,
     judge: kernel_rt,
 };
 
@@ -127,6 +128,14 @@ pub(super) const CHECKS: &[Check] = &[
         why: "Each robot takes about ten, recordings and dashboards more.",
         source: "this driver",
         judge: open_files,
+        ..HOST
+    },
+    Check {
+        id: "disk",
+        wanted: "2 GB free in the current directory for each hour that is recorded",
+        why: "A recording that finds no room ends there.",
+        source: "this driver: 1.94 GB an hour, measured over ten minutes of all cycles",
+        judge: disk,
         ..HOST
     },
 ];
@@ -348,3 +357,20 @@ fn open_files(readings: &Readings<'_>) -> Result<Judged, Unread> {
         _ => Judged::good(read),
     })
 }
+
+fn disk(readings: &Readings<'_>) -> Result<Judged, Unread> {
+    let bytes = readings.host.free_disk()?;
+    readings.note("free disk, bytes", bytes.to_string());
+    let gigabytes = bytes as f64 / 1e9;
+    let read = format!(
+        "{gigabytes:.1} GB free: {:.1} h of recordings",
+        gigabytes / GIGABYTES_PER_HOUR
+    );
+    Ok(match gigabytes >= GIGABYTES_PER_HOUR {
+        true => Judged::good(read),
+        false => Judged::info(read),
+    })
+}
+
+/// What a recording of all cycles takes.
+const GIGABYTES_PER_HOUR: f64 = 2.0;

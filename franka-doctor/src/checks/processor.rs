@@ -13,6 +13,7 @@ const PROCESSOR: Check = Check {
     why: "",
     source: "",
     reads_only: true,
+    of_card: false,
     judge: governor,
 };
 
@@ -83,9 +84,10 @@ pub(super) const CHECKS: &[Check] = &[
     },
     Check {
         id: "cpu.freq_now",
-        wanted: "within 10 % of the highest",
+        wanted: "within 10 % of the highest, after a second of load",
         why: "Shows what governor and power settings come to.",
         source: "threshold: this project's",
+        reads_only: false,
         judge: frequency,
         ..PROCESSOR
     },
@@ -94,6 +96,7 @@ pub(super) const CHECKS: &[Check] = &[
         wanted: "interrupts of the robot's network card off the control thread's processor, unless chosen so",
         why: "A control thread at priority 99 keeps the card's interrupt thread, at 50, waiting on the same processor.",
         source: "general knowledge of PREEMPT_RT; threads of interrupts have SCHED_FIFO 50",
+        of_card: true,
         judge: interrupts,
         ..PROCESSOR
     },
@@ -301,34 +304,32 @@ fn load(readings: &Readings<'_>) -> Result<Judged, Unread> {
     })
 }
 
+/// The control thread's processor, or the first one, after a second of load where that may be.
 fn frequency(readings: &Readings<'_>) -> Result<Judged, Unread> {
-    let mut slowest: Option<(u64, u64)> = None;
-    for cpu in readings.processors()? {
-        let highest = readings.number(&format!("{cpu}/cpufreq/cpuinfo_max_freq"));
-        let now = readings.number(&format!("{cpu}/cpufreq/scaling_cur_freq"));
-        if let (Ok(now), Ok(highest)) = (now, highest)
-            && slowest.is_none_or(|(before, _)| now < before)
-        {
-            slowest = Some((now, highest));
-        }
-    }
-    let Some((now, highest)) = slowest else {
-        return Err(Unread::Absent(format!(
-            "{CPUS}/cpu*/cpufreq/scaling_cur_freq"
+    let cpu = readings.cpu.unwrap_or(0);
+    let file = |name: &str| format!("{CPUS}/cpu{cpu}/cpufreq/{name}");
+    let highest: u64 = readings.number(&file("cpuinfo_max_freq"))?;
+    let before: u64 = readings.number(&file("scaling_cur_freq"))?;
+    let (mhz, of) = (before / 1000, highest / 1000);
+    if !readings.may_load {
+        return Ok(Judged::info(format!(
+            "processor {cpu} at {mhz} of {of} MHz, without load"
         )));
-    };
-    let read = format!("the slowest at {} of {} MHz", now / 1000, highest / 1000);
-    Ok(match now as f64 >= 0.9 * highest as f64 {
+    }
+    let after = readings.host.busy_frequency(cpu)?;
+    readings.note("frequency after a second of load, kHz", after.to_string());
+    let read = format!(
+        "processor {cpu} at {mhz} of {of} MHz, and at {} after a second of load",
+        after / 1000
+    );
+    Ok(match after as f64 >= 0.9 * highest as f64 {
         true => Judged::good(read),
         false => Judged::info(read),
     })
 }
 
 fn interrupts(readings: &Readings<'_>) -> Result<Judged, Unread> {
-    let interface = readings.route()?.interface;
-    if interface == "lo" {
-        return Ok(Judged::info("the robot is on this computer: no card"));
-    }
+    let interface = readings.interface()?;
     let directory = format!("{}/{interface}/device/msi_irqs", crate::readings::NET);
     let vectors = readings.host.list(&directory)?;
     let mut processors = Vec::new();

@@ -13,6 +13,7 @@ const SCHEDULING: Check = Check {
     why: "",
     source: "",
     reads_only: true,
+    of_card: false,
     judge: priority_limit,
 };
 
