@@ -10,6 +10,9 @@
 //! }
 //! # }
 //! ```
+//!
+//! With this feature, such an end is also told by a warning of `tracing`, with the causes in its
+//! field `causes`.
 
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr};
@@ -87,6 +90,28 @@ pub async fn diagnose(error: &MotionError, robot: IpAddr) -> Option<HostDiagnosi
         causes: causes(&System::default(), robot, evidence),
     });
     looked.await.ok()
+}
+
+/// Warns of the two likeliest causes on this host by an event of `tracing`, some milliseconds
+/// later, if a motion of the robot at this address ended for want of packets, and warnings are
+/// listened to.
+pub(crate) fn warn(error: &MotionError, robot: IpAddr) {
+    let Some(evidence) = evidence(error).filter(|_| tracing::enabled!(tracing::Level::WARN)) else {
+        return;
+    };
+    let span = tracing::Span::current();
+    let look = move || {
+        let found = HostDiagnosis {
+            evidence,
+            diagnosis: None,
+            causes: causes(&System::default(), robot, evidence),
+        };
+        span.in_scope(|| tracing::warn!(causes = %found, "the motion ended for want of packets"));
+    };
+    // Outside of a runtime there are no threads for it.
+    if let Ok(runtime) = tokio::runtime::Handle::try_current() {
+        runtime.spawn_blocking(look);
+    }
 }
 
 /// The two likeliest causes on `host`.

@@ -12,7 +12,8 @@ use franka_async::settings::CollisionBehavior;
 use franka_async::state::RobotError;
 use franka_async::supervision::{Condition, Policy};
 use franka_async::{Engage, MotionReport, Pose, Realtime, Robot};
-use franka_sim::{Sim, Tool};
+use franka_sim::network::{BurstLoss, Conditions, Loss};
+use franka_sim::{Network, Sim, Tool};
 use tracing::field::{Field, Visit};
 use tracing::{Event, Level, Subscriber};
 use tracing_subscriber::layer::{Context, Layer, SubscriberExt};
@@ -165,6 +166,45 @@ async fn a_function_that_dawdles_is_told_of_from_outside_the_control_thread() {
         of(Level::WARN).count() <= seconds + 2,
         "once a second at most"
     );
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_motion_that_ends_for_want_of_packets_names_causes_from_outside_the_control_thread() {
+    let _alone = alone();
+    listen();
+    // After some 200 commands no more get through.
+    let lost = Conditions {
+        loss: Loss::Bursts(BurstLoss {
+            begin: 0.005,
+            end: 0.0,
+            good: 0.0,
+            bad: 1.0,
+        }),
+        ..Conditions::default()
+    };
+    let network = Network::new(1, Conditions::default(), lost);
+    let sim = Sim::fr3().ideal().tool(Tool::hand()).network(network);
+    let sim = sim.start().await.expect("a robot");
+    let robot = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+    let robot = robot.connect().await.expect("connected");
+    let away = Pose::translation(0.0, 0.2, 0.0) * robot.pose();
+    let error = robot.move_to(away).await.expect_err("commands are lost");
+    assert!(error.control().is_some(), "{error}");
+    let begun = Instant::now();
+    let mut events = Vec::new();
+    while events.is_empty() {
+        assert!(begun.elapsed() < SOON, "nothing is told");
+        tokio::time::sleep(Duration::from_millis(10)).await;
+        events.extend(told("causes"));
+    }
+    robot.shutdown().await;
+    let [event] = &events[..] else {
+        panic!("{} events", events.len())
+    };
+    assert_eq!(event.level, Level::WARN);
+    assert_ne!(event.thread, "franka-rt");
+    let causes = &event.fields["causes"];
+    assert!(causes.contains("on this computer:"), "{causes}");
 }
 
 /// Shows that the test above could fail: the control thread has the name that it looks for.

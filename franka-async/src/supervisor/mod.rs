@@ -198,6 +198,13 @@ impl Supervisor {
     }
 
     pub(crate) fn on_ended(&self, goal: GoalId, outcome: &Outcome) {
+        #[cfg(feature = "doctor")]
+        if let Err(error) = outcome {
+            let link = self.lock().link.upgrade();
+            if let Some(link) = link {
+                crate::doctor::warn(error, link.address.ip());
+            }
+        }
         self.with(|inner, now| {
             #[cfg(feature = "record")]
             inner.journal.ended(goal, outcome);
