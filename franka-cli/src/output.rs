@@ -23,13 +23,39 @@ impl Output {
         text: impl FnOnce() -> String,
     ) -> anyhow::Result<Ending> {
         if self.json {
-            line(&serde_json::to_string_pretty(value)?)?;
+            line(&serde_json::to_string_pretty(&Versioned::new(value))?)?;
         } else {
             line(text().trim_end_matches('\n'))?;
         }
         Ok(Ending::Done)
     }
 }
+
+/// Prints a value as JSON in one line.
+pub(crate) fn json_line(value: &impl Serialize) -> anyhow::Result<()> {
+    line(&serde_json::to_string(&Versioned::new(value))?)
+}
+
+/// Facts, an object, with the version of their format.
+#[derive(Serialize)]
+struct Versioned<'a, T> {
+    schema: u32,
+    #[serde(flatten)]
+    facts: &'a T,
+}
+
+impl<'a, T> Versioned<'a, T> {
+    fn new(facts: &'a T) -> Self {
+        Self {
+            schema: SCHEMA,
+            facts,
+        }
+    }
+}
+
+/// Version of what commands print as JSON; `franka doctor` has its own. Raised when a field goes or
+/// changes its meaning, and not for new ones.
+const SCHEMA: u32 = 1;
 
 /// Prints a line on standard output, without its colours where they are not wanted.
 pub(crate) fn line(text: &str) -> anyhow::Result<()> {

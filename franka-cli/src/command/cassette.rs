@@ -118,6 +118,7 @@ fn open(file: &Path) -> anyhow::Result<Tape> {
     let tape = tape.map_err(|error| {
         let message = format!("{}: {error}", file.display());
         Failure::new(Ending::Host, message)
+            .advice("franka tap makes cassettes; recordings are for franka explain.")
     })?;
     if let Some(damage) = &tape.damage {
         say(&format!("{} ends early: {damage}", file.display()));

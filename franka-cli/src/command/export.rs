@@ -94,7 +94,12 @@ impl Export {
                 let part = robot.from(episode.begin).to(episode.end);
                 let samples = Samples::new(part.cycles(), robot.to(episode.end).gripper_states());
                 let samples: Vec<Sample> = samples.collect::<Result<_, _>>()?;
-                count += dataset.add_episode(&episode.task, episode.success, samples)?;
+                let added = dataset.add_episode(&episode.task, episode.success, samples);
+                count += added.map_err(|error| {
+                    Failure::new(Ending::Failed, error.to_string()).advice(
+                        "--measured takes where the arm was; --no-gripper leaves the gripper out.",
+                    )
+                })?;
             }
             dataset.finish()?;
             episodes = Some(found.len());

@@ -226,7 +226,7 @@ impl Fingers {
         let done = done.map_err(|error| Failure::new(Ending::Failed, error.to_string()))?;
         let state = hand.state();
         if !done {
-            let message = format!("{not}; they are {:.1} mm apart", state.width * 1e3);
+            let message = format!("{not}; the fingers are {:.1} mm apart", state.width * 1e3);
             return Err(Failure::new(Ending::Failed, message).into());
         }
         print(&state, self.output)
@@ -260,12 +260,13 @@ fn print(state: &State, output: Output) -> anyhow::Result<Ending> {
             true => "holding something",
             false => "holding nothing",
         };
-        format!(
-            "fingers {:.1} mm apart of {:.1} mm, {held}, {} deg C",
-            state.width * 1e3,
-            state.max_width * 1e3,
-            state.temperature
-        )
+        let width = state.width * 1e3;
+        let most = match state.max_width > 0.0 {
+            true => format!(" of {:.1} mm", state.max_width * 1e3),
+            false => " (not homed)".into(),
+        };
+        let temperature = state.temperature;
+        format!("fingers {width:.1} mm apart{most}, {held}, {temperature} deg C")
     })
 }
 

@@ -1,12 +1,12 @@
 //! `franka read`: fields of the state by their names.
 
 use clap::Args;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 use crate::connection::Which;
 use crate::ending::{Ending, Failure};
 use crate::fields::{fields, values};
-use crate::output::{Output, line};
+use crate::output::Output;
 
 /// Print fields of the robot's state
 ///
@@ -18,7 +18,7 @@ pub(crate) struct Read {
     #[arg(value_name = "[ROBOT] FIELD", required_unless_present = "list")]
     words: Vec<String>,
     /// List the fields instead
-    #[arg(long, exclusive = true)]
+    #[arg(long, conflicts_with = "words")]
     list: bool,
     #[command(flatten)]
     output: Output,
@@ -28,8 +28,9 @@ impl Read {
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
         if self.list {
             let names: Vec<String> = fields().keys().cloned().collect();
-            line(&names.join("\n"))?;
-            return Ok(Ending::Done);
+            return self
+                .output
+                .print(&json!({ "fields": names }), || names.join("\n"));
         }
         let known = fields();
         let (robot, names) = match self.words.split_first() {

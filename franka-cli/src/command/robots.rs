@@ -3,6 +3,7 @@
 use anyhow::Context as _;
 use clap::Subcommand;
 use franka_async::connection::Endpoint;
+use serde_json::json;
 
 use crate::ending::{Ending, Failure};
 use crate::output::{Output, line};
@@ -37,7 +38,7 @@ impl Robots {
     pub(super) fn run(self) -> anyhow::Result<Ending> {
         let mut file = RobotsFile::read()?;
         match self {
-            Self::List(output) => output.print(&file.robots, || {
+            Self::List(output) => output.print(&json!({ "robots": file.robots }), || {
                 if file.robots.is_empty() {
                     let path = file.path.display();
                     return format!("{path} has no robots yet: franka robots add NAME ADDRESS");

@@ -14,7 +14,7 @@ use super::view;
 use crate::connection::{Place, Which};
 use crate::ending::{Ending, Failure};
 use crate::interrupt::interrupted;
-use crate::output::{Output, line};
+use crate::output::{Output, json_line};
 use crate::values::rate;
 
 /// Show what the robot says: mode, errors, joints, forces, link
@@ -82,7 +82,7 @@ impl State {
             }
             match &screen {
                 Some(screen) => screen.draw(&view::text(robot, place))?,
-                None => line(&serde_json::to_string(&view::value(robot, place))?)?,
+                None => json_line(&view::value(robot, place))?,
             }
         }
     }

@@ -112,7 +112,7 @@ impl Set {
             let [x, y, z] = state.F_x_Cload.map(|metres| metres * 1e3);
             let [ex, ey, ez] = [12, 13, 14].map(|index| state.F_T_EE[index] * 1e3);
             format!(
-                "declared load {:.3} kg at {x:.1}, {y:.1}, {z:.1} mm; end effector at {ex:.1}, {ey:.1}, {ez:.1} mm from the flange",
+                "declared load {:.3} kg at {x:.1}, {y:.1}, {z:.1} mm\nend effector at {ex:.1}, {ey:.1}, {ez:.1} mm from the flange",
                 state.m_load
             )
         })

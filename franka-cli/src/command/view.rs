@@ -147,7 +147,7 @@ fn link(text: &mut String, state: &RobotState, stats: &Stats) {
     let style = if lost > 0 { WARN } else { GOOD };
     let _ = write!(
         text,
-        "{BOLD}link{BOLD:#}    {received} states, {style}{lost} lost{style:#}, {skipped} skipped;  every {:.2} ms, 99 % {:.2}, at most {:.2}",
+        "{BOLD}link{BOLD:#}    {received} states, {style}{lost} lost{style:#}, {skipped} skipped\n        between them p50 {:.2}, p99 {:.2}, max {:.2} ms",
         milliseconds(0.5),
         milliseconds(0.99),
         milliseconds(1.0),

@@ -5,9 +5,10 @@
 //! | module | what |
 //! |---|---|
 //! | `facts` | commands that print facts, wrong arguments, names of robots |
-//! | `links` | no robot, one that is taken, one that goes away |
+//! | `links` | a robot that takes no motion, one that goes away |
 //! | `watching` | `--watch` |
 //! | `asking` | questions before motions |
+//! | `every` | tables of all commands: no robot, one that is taken, Ctrl-C, reflexes, a terminal |
 //! | `moving` | motions, and what ends them early |
 //! | `fingers` | the Hand |
 //! | `settings` | tool, collision, recovery, stop |
@@ -17,6 +18,7 @@
 //! | `papers` | help, completions, man pages, the book |
 
 mod asking;
+mod every;
 mod facts;
 mod fingers;
 mod links;

@@ -29,26 +29,28 @@ fn get(address: &str, path: &str) -> String {
 
 #[test]
 fn the_dashboard_is_served_until_ctrl_c() {
-    let (home, sim) = (Home::new(), Simulated::fr3());
-    let robot = sim.address();
-    let free = ["--listen", "127.0.0.1:0"];
-    let moving = ["dash", &robot, "--allow-motion", "--realtime", "ignore"];
-    let moving = [&moving[..], &free].concat();
-    let watching = [&["dash", &robot][..], &free].concat();
-    for arguments in [
-        &watching[..],
-        &moving,
-        &["sim", "--port", "0", "--dash", "127.0.0.1:0"],
-    ] {
-        let mut program = home.start(arguments);
-        let address = page(&mut program);
-        let answer = get(&address, "/");
-        assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
-        assert!(answer.contains("<title>"), "{answer}");
-        assert!(get(&address, "/dash.js").starts_with("HTTP/1.1 200"));
-        program.signal(Signal::SIGINT);
-        program.ended().done();
-    }
+    Simulated::each(|sim| {
+        let home = Home::new();
+        let robot = sim.address();
+        let free = ["--listen", "127.0.0.1:0"];
+        let moving = ["dash", &robot, "--allow-motion", "--realtime", "ignore"];
+        let moving = [&moving[..], &free].concat();
+        let watching = [&["dash", &robot][..], &free].concat();
+        for arguments in [
+            &watching[..],
+            &moving,
+            &["sim", "--port", "0", "--dash", "127.0.0.1:0"],
+        ] {
+            let mut program = home.start(arguments);
+            let address = page(&mut program);
+            let answer = get(&address, "/");
+            assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
+            assert!(answer.contains("<title>"), "{answer}");
+            assert!(get(&address, "/dash.js").starts_with("HTTP/1.1 200"));
+            program.signal(Signal::SIGINT);
+            program.ended().done();
+        }
+    });
 }
 
 #[test]

@@ -107,7 +107,10 @@ impl Ran {
     #[track_caller]
     pub(crate) fn json(self) -> serde_json::Value {
         let out = self.done();
-        serde_json::from_str(&out).unwrap_or_else(|error| panic!("{error}: {out}"))
+        let json: serde_json::Value =
+            serde_json::from_str(&out).unwrap_or_else(|error| panic!("{error}: {out}"));
+        assert_eq!(json["schema"], 1, "{json}");
+        json
     }
 }
 

@@ -19,10 +19,14 @@ impl Simulated {
         Self::of(Sim::fr3())
     }
 
+    pub(crate) fn fer() -> Self {
+        Self::of(Sim::fer())
+    }
+
     /// Both robots, one after the other.
     pub(crate) fn each(test: impl Fn(&Self)) {
         test(&Self::fr3());
-        test(&Self::of(Sim::fer()));
+        test(&Self::fer());
     }
 
     /// Its clock goes as fast as the program answers: for motions that nothing interrupts.

@@ -27,7 +27,7 @@ impl Terminal {
     pub(crate) fn run(home: &Home, arguments: &[&str]) -> Self {
         let size = Winsize {
             ws_row: 30,
-            ws_col: 100,
+            ws_col: 80,
             ws_xpixel: 0,
             ws_ypixel: 0,
         };

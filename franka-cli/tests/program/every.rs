@@ -1,0 +1,248 @@
+//! What holds for every command: tables of commands, each in the same situation.
+
+use std::net::TcpListener;
+use std::path::Path;
+
+use franka_async::gripper::Gripper;
+use franka_async::model::Wrench;
+use franka_async::state::RobotMode;
+use franka_async::{Realtime, Robot};
+use franka_sim::Sim;
+use nix::sys::signal::Signal;
+
+use crate::program::{Home, until};
+use crate::simulated::Simulated;
+use crate::terminal::Terminal;
+
+/// Commands that only look, or set something. `run.mcap` is a recording.
+const STILL: [&str; 16] = [
+    "state ROBOT",
+    "read ROBOT robot_mode",
+    "model pose ROBOT",
+    "model ik ROBOT --pose 0.4,0,0.4",
+    "model jacobian ROBOT",
+    "model mass ROBOT",
+    "limits ROBOT",
+    "stop ROBOT",
+    "recover ROBOT --yes",
+    "tool set ROBOT --mass 0",
+    "collision careful ROBOT",
+    "record new.mcap ROBOT --seconds 0.2",
+    "gripper state HAND",
+    "gripper home HAND --yes",
+    "gripper open HAND --yes",
+    "gripper stop HAND",
+];
+
+/// Commands that move the arm for some seconds, or could.
+const MOVING: [&str; 5] = [
+    "move ROBOT --by 0,0.2,0 --speed 0.3 --yes --realtime ignore",
+    "replay run.mcap ROBOT --speed 0.3 --yes --realtime ignore",
+    "guide ROBOT --yes --realtime ignore",
+    "tool identify ROBOT --yes --realtime ignore",
+    "test communication ROBOT --seconds 60 --yes --realtime ignore",
+];
+
+/// Others that connect.
+const OTHER: [&str; 4] = [
+    "state ROBOT --watch --json",
+    "dash ROBOT --listen 127.0.0.1:0",
+    "gripper close HAND --yes",
+    "gripper grasp HAND --width 0.03 --yes",
+];
+
+/// Motions that are soon over, and the checks that ask the robot.
+const SHORT: [&str; 3] = [
+    "guide ROBOT --seconds 0.1 --yes --realtime ignore",
+    "test communication ROBOT --seconds 0.2 --yes --realtime ignore",
+    "doctor ROBOT --only robot,disk --for read --quick",
+];
+
+/// Commands that need no robot.
+const ALONE: [&str; 7] = [
+    "robots list",
+    "model pose --kind fr3",
+    "limits --kind fer",
+    "explain run.mcap",
+    "export run.mcap --csv table.csv",
+    "bench wake --seconds 0.1",
+    "bench loop --seconds 0.1",
+];
+
+/// The words of a command, with these addresses.
+fn words<'a>(command: &'a str, robot: &'a str, hand: &'a str) -> Vec<&'a str> {
+    let word = |word| match word {
+        "ROBOT" => robot,
+        "HAND" => hand,
+        word => word,
+    };
+    command.split(' ').map(word).collect()
+}
+
+/// Records a motion of a robot like this to `run.mcap`.
+fn record(home: &Home, sim: Sim) {
+    let sim = Simulated::fast(sim);
+    let robot = sim.address();
+    let way = "move ROBOT --by 0,0.1,0 --record run.mcap --yes --realtime ignore";
+    home.run(&words(way, &robot, "")).done();
+}
+
+#[test]
+fn without_a_robot_every_command_says_so() {
+    let home = Home::new();
+    record(&home, Sim::fr3());
+    let free = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = free.local_addr().expect("bound").to_string();
+    drop(free);
+    let texts = ["the connection was refused", "FCI"];
+    for command in STILL.iter().chain(&MOVING).chain(&OTHER) {
+        let ran = home.run(&words(command, &address, &address));
+        assert_eq!(ran.code, Some(3), "{command}: {ran:?}");
+        ran.failed(3, &texts);
+    }
+    assert!(!home.path("new.mcap").exists());
+    let silent = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = silent.local_addr().expect("bound").to_string();
+    home.run(&["state", &address]).failed(3, &["answers at"]);
+    home.run(&["state", "nobody"]).failed(3, &["`nobody`"]);
+}
+
+#[test]
+fn a_robot_that_is_taken_is_left_alone_by_every_command() {
+    for (kind, sim) in [
+        (Sim::fr3(), Simulated::fr3()),
+        (Sim::fer(), Simulated::fer()),
+    ] {
+        let (home, robot, hand) = (Home::new(), sim.address(), sim.hand());
+        record(&home, kind);
+        let runtime = tokio::runtime::Runtime::new().expect("a runtime");
+        let builder = Robot::builder(robot.as_str()).realtime(Realtime::Ignore);
+        let first = runtime.block_on(builder.connect()).expect("connected");
+        let fingers = runtime.block_on(Gripper::connect(hand.as_str()));
+        let fingers = fingers.expect("connected");
+        let texts = ["somebody else is connected", "one client at a time"];
+        for command in STILL.iter().chain(&MOVING).chain(&OTHER) {
+            let ran = home.run(&words(command, &robot, &hand));
+            assert_eq!(ran.code, Some(4), "{command}: {ran:?}");
+            ran.failed(4, &texts);
+        }
+        assert!(sim.with(|robot| robot.is_connected()));
+        sim.rests(RobotMode::Idle);
+        drop(fingers);
+        runtime.block_on(first.shutdown());
+    }
+}
+
+#[test]
+fn every_motion_is_braked_by_ctrl_c() {
+    for (kind, sim) in [
+        (Sim::fr3(), Simulated::fr3()),
+        (Sim::fer(), Simulated::fer()),
+    ] {
+        let (home, robot) = (Home::new(), sim.address());
+        record(&home, kind);
+        for command in MOVING
+            .iter()
+            .filter(|command| !command.starts_with("guide"))
+        {
+            let mut program = home.start(&words(command, &robot, ""));
+            begins(&sim, command);
+            program.signal(Signal::SIGINT);
+            program
+                .ended()
+                .failed(130, &["braking", "braked, and rests"]);
+            sim.rests(RobotMode::Idle);
+        }
+    }
+}
+
+#[test]
+fn a_reflex_ends_every_motion_and_is_explained() {
+    for (kind, sim) in [
+        (Sim::fr3(), Simulated::fr3()),
+        (Sim::fer(), Simulated::fer()),
+    ] {
+        let (home, robot) = (Home::new(), sim.address());
+        record(&home, kind);
+        for command in MOVING {
+            let program = home.start(&words(command, &robot, ""));
+            begins(&sim, command);
+            sim.with(|robot| {
+                robot.push_end_effector(Wrench::new(0.0, -150.0, 0.0, 0.0, 0.0, 0.0), 500)
+            });
+            program.ended().failed(1, &["reflex", "franka recover"]);
+            sim.rests(RobotMode::Reflex);
+            home.run(&["recover", &robot, "--yes"]).done();
+            sim.rests(RobotMode::Idle);
+        }
+    }
+}
+
+/// Waits until a command has begun to move the arm, or to hold it.
+fn begins(sim: &Simulated, command: &str) {
+    match command.split(' ').next() {
+        Some("guide" | "test") => until("a motion", || sim.state().motion_running()),
+        _ => sim.moves(),
+    }
+}
+
+#[test]
+fn facts_fit_into_a_terminal_of_80_columns() {
+    for (kind, sim) in [
+        (Sim::fr3(), Simulated::fr3()),
+        (Sim::fer(), Simulated::fer()),
+    ] {
+        let (home, robot, hand) = (Home::new(), sim.address(), sim.hand());
+        record(&home, kind);
+        for command in STILL.iter().chain(&ALONE).chain(&SHORT) {
+            let (code, shown) = Terminal::run(&home, &words(command, &robot, &hand)).ended();
+            // The doctor has found something that fails, on a busy host.
+            let is_doctor = command.starts_with("doctor");
+            assert!(
+                code == Some(0) || is_doctor && code == Some(1),
+                "{command}: {shown}"
+            );
+            let shown = anstream::adapter::strip_str(&shown).to_string();
+            // A progress bar begins its line again.
+            let lines = shown.split(['\n', '\r']).map(|line| line.chars().count());
+            let longest = lines.max().unwrap_or(0);
+            // Names of files are as long as they are.
+            let has_path = shown.contains(&*home.as_ref().to_string_lossy());
+            assert!(longest <= 80 || has_path, "{command}: {shown}");
+            assert!(longest > 0, "{command}");
+            remove(&home.path("new.mcap"));
+            remove(&home.path("table.csv"));
+        }
+    }
+}
+
+/// Deletes a file, if it is there.
+fn remove(file: &Path) {
+    if file.exists() {
+        std::fs::remove_file(file).expect("deleted");
+    }
+}
+
+#[test]
+fn every_command_refuses_arguments_that_it_does_not_know() {
+    let home = Home::new();
+    for command in STILL.iter().chain(&MOVING).chain(&OTHER).chain(&ALONE) {
+        let words = [words(command, "x", "x"), vec!["--nonsense"]].concat();
+        home.run(&words).failed(2, &["--nonsense"]);
+    }
+    for command in [
+        "doctor",
+        "sim",
+        "tap",
+        "cassette info x",
+        "cassette play x",
+        "cassette convert x y",
+        "robots add a b",
+        "robots remove a",
+        "completions bash",
+        "man pages",
+    ] {
+        let words: Vec<&str> = command.split(' ').chain(["--nonsense"]).collect();
+        home.run(&words).failed(2, &["--nonsense"]);
+    }
+}
