@@ -153,6 +153,8 @@ enum Task {
         #[arg(long, conflicts_with = "port")]
         build_only: bool,
     },
+    /// Draw the pictures of the book anew, from this code and simulated motions.
+    Pictures,
     /// Fetch the native library that the simulator's feature `mujoco` links to.
     Mujoco,
     /// Check what a release takes: what the crates say of themselves, their packages, one version
@@ -243,6 +245,7 @@ fn run(task: Task) -> anyhow::Result<()> {
         Task::Assets => dashboard::assets(&workspace),
         Task::Dist { only } => dist::run(&workspace, &only),
         Task::Book { port, build_only } => book::serve(&workspace, (!build_only).then_some(port)),
+        Task::Pictures => workspace.run(&mut workspace.cargo_release_binary("pictures")),
         Task::Mujoco => mujoco::provide(&workspace),
         Task::ReleaseCheck { verify, last } => {
             let outcome = release::check(&workspace, release::Depth { verify, last })?;

@@ -1,0 +1,55 @@
+//! The arm as it is seen from beside it and a little from above, without perspective.
+
+use franka_model::JointVector;
+use franka_model::RobotKind;
+use franka_model::collision::Shape;
+use nalgebra::Vector3;
+
+/// Where a point of the base frame, in metres, is in a picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct View {
+    /// Where the origin of the base is.
+    pub origin: (f64, f64),
+    /// Pixels per metre.
+    pub scale: f64,
+    /// From the x axis of the base to the picture's plane, `[rad]`.
+    pub azimuth: f64,
+}
+
+impl View {
+    pub(crate) fn at(&self, point: &Vector3<f64>) -> (f64, f64) {
+        let (sin, cos) = self.azimuth.sin_cos();
+        let (up, level) = ELEVATION.sin_cos();
+        // The base's x axis goes right and towards the viewer, y right and away.
+        let right = cos * point.x + sin * point.y;
+        let depth = sin * point.x - cos * point.y;
+        let height = level * point.z - up * depth;
+        (
+            self.origin.0 + self.scale * right,
+            self.origin.1 - self.scale * height,
+        )
+    }
+
+    /// The capsules of the arm with its Hand.
+    pub(crate) fn capsules(&self, q: &JointVector) -> Vec<Stroke> {
+        let shape = Shape::covering(RobotKind::Fr3).with_hand();
+        let placed = shape.at(q);
+        let strokes = placed.capsules().map(|(_, capsule)| Stroke {
+            from: self.at(&capsule.start),
+            to: self.at(&capsule.end),
+            width: 2.0 * capsule.radius * self.scale,
+        });
+        strokes.collect()
+    }
+}
+
+/// A capsule as a line with round ends.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stroke {
+    pub from: (f64, f64),
+    pub to: (f64, f64),
+    pub width: f64,
+}
+
+/// From which the arm is seen, `[rad]`.
+const ELEVATION: f64 = 0.3;
