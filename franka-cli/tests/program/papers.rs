@@ -63,3 +63,39 @@ fn the_book_has_the_exit_codes_of_the_help() {
     }
     assert_eq!(count, 9);
 }
+
+/// The script of the action that other repositories use in their CI.
+#[test]
+fn the_action_starts_a_simulator_and_says_why_not() {
+    let home = Home::new();
+    let start = |options: &str| {
+        let script = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../.github/actions/simulator/start.sh"
+        );
+        let mut command = std::process::Command::new("bash");
+        command
+            .arg(script)
+            .env("FRANKA", env!("CARGO_BIN_EXE_franka"));
+        command.env("ROBOT", "fer").env("OPTIONS", options);
+        command.env("WAIT", "60").env("RUNNER_TEMP", home.path(""));
+        command.env("GITHUB_OUTPUT", home.path("outputs"));
+        command.output().expect("bash")
+    };
+    let said = start("--port 0 --virtual-time");
+    let outputs = std::fs::read_to_string(home.path("outputs")).expect("it has outputs");
+    let pid = outputs.lines().find_map(|line| line.strip_prefix("pid="));
+    let pid = pid.and_then(|pid| pid.parse().ok()).expect("a process");
+    let killed = nix::sys::signal::kill(nix::unistd::Pid::from_raw(pid), nix::sys::signal::SIGKILL);
+    assert!(said.status.success(), "{said:?}");
+    assert!(said.stdout.starts_with(b"listening on "), "{said:?}");
+    killed.expect("it runs");
+
+    let said = start("--port 99999");
+    assert!(!said.status.success(), "{said:?}");
+    let text = String::from_utf8_lossy(&said.stdout);
+    assert!(
+        text.contains("the simulator has ended:") && text.contains("99999"),
+        "{text}"
+    );
+}

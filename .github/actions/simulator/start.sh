@@ -1,0 +1,29 @@
+# Starts a simulated robot in the background and waits until it listens. Its environment has
+# FRANKA, the program; ROBOT, fr3 or fer; OPTIONS of `franka sim`; WAIT, seconds.
+set -euo pipefail
+
+log="$RUNNER_TEMP/franka-sim.log"
+read -ra options <<< "$OPTIONS"
+"$FRANKA" sim --robot "$ROBOT" "${options[@]}" > "$log" 2>&1 &
+simulator=$!
+{
+  echo "log=$log"
+  echo "pid=$simulator"
+} >> "$GITHUB_OUTPUT"
+
+for ((tenth = 0; tenth < 10 * WAIT; tenth++)); do
+  if grep --quiet "^listening on" "$log"; then
+    cat "$log"
+    exit 0
+  fi
+  if ! kill -0 "$simulator" 2> /dev/null; then
+    echo "the simulator has ended:"
+    cat "$log"
+    exit 1
+  fi
+  sleep 0.1
+done
+echo "the simulator does not listen after $WAIT s:"
+cat "$log"
+kill "$simulator"
+exit 1
