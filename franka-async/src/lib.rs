@@ -4,8 +4,8 @@
 //! A program sets goals at its own rate. A thread of its own, one per robot, answers the robot
 //! every millisecond; no task of the runtime is on that path, so a busy or blocked program delays
 //! new goals and nothing else. This page is all that a first program needs. The book (`docs/src` of
-//! the repository) has whole programs in its first chapter: a service with a queue of jobs, a
-//! policy at 10 Hz, a guarded move, a script.
+//! the repository) says where to start, and has whole programs among its first chapters: a service
+//! with a queue of jobs, a policy at 10 Hz, a guarded move, a script.
 //!
 //! # Connect
 //!

@@ -69,11 +69,50 @@ fn main() -> ExitCode {
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+    use std::path::Path;
+
     use super::*;
 
     #[test]
     fn the_command_line_is_consistent() {
         use clap::CommandFactory;
         Program::command().debug_assert();
+    }
+
+    /// Lines of shell blocks that begin with `franka`, up to a comment.
+    #[test]
+    fn the_commands_of_the_book_are_understood() {
+        let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src");
+        let mut folders = vec![book];
+        let mut count = 0;
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(&folder).expect("a folder") {
+                let path = entry.expect("an entry").path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else if path.extension().is_some_and(|extension| extension == "md") {
+                    let page = fs::read_to_string(&path).expect("a page");
+                    for command in commands(&page) {
+                        count += 1;
+                        if let Err(error) = Program::try_parse_from(command.split_whitespace()) {
+                            panic!("{}: {command}\n{error}", path.display());
+                        }
+                    }
+                }
+            }
+        }
+        assert!(count > 25, "{count} commands");
+    }
+
+    fn commands(page: &str) -> impl Iterator<Item = &str> {
+        let mut in_shell = false;
+        page.lines().filter_map(move |line| {
+            if line.starts_with("```") {
+                in_shell = line == "```sh";
+            }
+            let command = line.split(" #").next()?.trim_end_matches([' ', '&']);
+            (in_shell && command.starts_with("franka ")).then_some(command)
+        })
     }
 }

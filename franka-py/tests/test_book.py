@@ -1,4 +1,4 @@
-"""The programs of the book's chapter on Python, run as a reader would run them."""
+"""The programs of the book's pages on Python, run as a reader would run them."""
 
 from __future__ import annotations
 
@@ -13,19 +13,29 @@ from conftest import begun, connection
 
 from franka_async import Robot, Sim
 
-CHAPTER = Path(__file__).parents[2] / "docs" / "src" / "python.md"
+BOOK = Path(__file__).parents[2] / "docs" / "src"
 
 
-@pytest.fixture(scope="module")
-def chapter() -> dict[str, Any]:
-    """What the programs of the chapter define, after all of them have run."""
-    programs = re.findall(r"^```python\n(.*?)^```", CHAPTER.read_text(), re.MULTILINE | re.DOTALL)
+def run(page: str) -> dict[str, Any]:
+    """What the programs of a page define, after all of them have run."""
+    programs = re.findall(r"^```python\n(.*?)^```", (BOOK / page).read_text(), re.MULTILINE | re.DOTALL)
+    assert programs
     names: dict[str, Any] = {}
     for program in programs:
         # On a machine that is busy commands and targets come late: they are waited for.
         program = program.replace("Sim.fr3()", "Sim.fr3(patience=0.25)")
         exec(program.replace("watchdog=(0.5, ", "watchdog=(60.0, "), names)
     return names
+
+
+@pytest.fixture(scope="module")
+def chapter() -> dict[str, Any]:
+    return run("python.md")
+
+
+def test_the_program_of_the_how_to_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    run("how-to/python.md")
+    assert "arrived after " in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", ["careful", "touch", "follow_policy"])

@@ -41,6 +41,33 @@ mod programs {
     #[doc = include_str!("../../README.md")]
     struct Readme;
 
+    #[doc = include_str!("../../docs/src/how-to/chunks.md")]
+    struct HowToChunks;
+
+    #[doc = include_str!("../../docs/src/how-to/grip.md")]
+    struct HowToGrip;
+
+    #[doc = include_str!("../../docs/src/how-to/policy.md")]
+    struct HowToPolicy;
+
+    #[doc = include_str!("../../docs/src/how-to/recover.md")]
+    struct HowToRecover;
+
+    #[doc = include_str!("../../docs/src/how-to/teach.md")]
+    struct HowToTeach;
+
+    #[doc = include_str!("../../docs/src/how-to/tune.md")]
+    struct HowToTune;
+
+    #[doc = include_str!("../../docs/src/how-to/two-arms.md")]
+    struct HowToTwoArms;
+
+    #[doc = include_str!("../../docs/src/start/first-motion.md")]
+    struct FirstMotion;
+
+    #[doc = include_str!("../../docs/src/start/three-ways.md")]
+    struct ThreeWays;
+
     #[doc = include_str!("../../docs/src/control.md")]
     struct Control;
 

@@ -256,3 +256,38 @@ fn link_test_shows_two_robots_side_by_side() {
         assert_eq!(arm.stop().last().robot_mode, RobotMode::Idle);
     }
 }
+
+#[test]
+fn rules_says_what_the_book_quotes() {
+    let said = run("rules", &[], "");
+    assert_eq!(said.code, Some(0), "{said:?}");
+    let page = include_str!("../../../docs/src/start/rules.md");
+    let (mut is_quote, mut count) = (false, 0);
+    for line in page.lines() {
+        if line.starts_with("```") {
+            is_quote = line == "```text";
+        } else if is_quote {
+            let is_said = said
+                .stdout
+                .lines()
+                .any(|said| without_numbers(said.trim()) == without_numbers(line));
+            assert!(is_said, "not said: {line}\n{}", said.stdout);
+            count += 1;
+        }
+    }
+    assert_eq!(count, 17);
+}
+
+/// The text with each number replaced by one sign.
+fn without_numbers(text: &str) -> String {
+    let mut masked = String::new();
+    for part in text.chars() {
+        let is_number = part.is_ascii_digit() || (masked.ends_with('#') && part == '.');
+        match (is_number, masked.ends_with('#')) {
+            (true, true) => {}
+            (true, false) => masked.push('#'),
+            (false, _) => masked.push(part),
+        }
+    }
+    masked
+}
