@@ -1,7 +1,11 @@
 //! Where a motion is to lead: a target, or what is said relative to the target or the arm of now.
 
+use franka_model::Model;
+use franka_proto::RobotState;
 use franka_rt::session::Target;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+
+use crate::end_effector_pose::{pose_at, pose_of};
 
 /// Where a motion is to lead. Made from a [`Pose`](crate::Pose) or joint positions `[rad]`, both
 /// with their velocities for a target that moves, from an [`Offset`], or by the functions here.
@@ -76,6 +80,28 @@ pub(crate) struct Now {
     pub(crate) target: Isometry3<f64>,
     /// Measured.
     pub(crate) arm: Isometry3<f64>,
+}
+
+impl Now {
+    /// Of an arm in `state` that heads for a target, and is to be at the joint positions
+    /// `reference`, `[rad]`; none if nothing moves it.
+    pub(crate) fn of(
+        model: &Model,
+        state: &RobotState,
+        heading: Option<Target>,
+        reference: Option<[f64; 7]>,
+    ) -> Self {
+        let pose_at = |q| pose_at(model, state, q);
+        let arm = pose_of(state).unwrap_or_else(|| pose_at(state.q));
+        let target = match heading {
+            Some(Target::Pose(pose)) => pose,
+            Some(Target::Joints(q)) => pose_at(q),
+            // What is held or followed has no pose of its own.
+            Some(_) => reference.map_or(arm, pose_at),
+            None => arm,
+        };
+        Self { target, arm }
+    }
 }
 
 /// A way from the present target of the arm, or from the arm itself, in the axes of the base or of

@@ -390,6 +390,7 @@ pub mod diagnosis;
 mod dial;
 #[cfg(feature = "doctor")]
 pub mod doctor;
+mod end_effector_pose;
 mod endpoint;
 pub mod error;
 #[cfg(feature = "record")]

@@ -6,4 +6,5 @@ pub use crate::follow::Follow;
 pub use crate::move_to::{MotionHandle, Moving};
 pub use crate::progress::{Progress, Reference};
 pub use franka_rt::lifecycle::Outcome;
+pub use franka_rt::session::{Blocked, Preview};
 pub use franka_rt::together::{StartBarrier, StartTicket};

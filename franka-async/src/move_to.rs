@@ -7,14 +7,14 @@ use std::sync::Arc;
 use std::task::{Context, Poll};
 
 use franka_rt::lifecycle::{MotionError, NewMotion, Outcome};
-use franka_rt::session::{Goal, GoalError, GoalId, OnArrival, Target, Waypoint};
+use franka_rt::session::{Goal, GoalError, GoalId, OnArrival, Preview, Target, Waypoint};
 use franka_rt::team::Round;
 use franka_rt::together::StartTicket;
 use nalgebra::Isometry3;
 use tokio::sync::oneshot;
 
 use crate::cancel::Canceller;
-use crate::destination::{Destination, Offset};
+use crate::destination::{Destination, Now, Offset};
 use crate::input::Beginning;
 use crate::input::unserved;
 use crate::options::{GoalOptions, goal_options};
@@ -163,6 +163,32 @@ impl Motion {
     /// Returns a handle that says from elsewhere how far the motion is, and pauses or brakes it.
     pub fn handle(&self) -> MotionHandle {
         MotionHandle(self.canceller.clone())
+    }
+
+    /// What the arm would do if the motion began now, or why the motion would be refused; nothing
+    /// moves, and nothing is sent. A motion to one target is taken for a path of one waypoint,
+    /// which it is if it begins at rest. Whether the arm would come too near itself or a region to
+    /// keep out of, [`Preview::blocked`] says. Takes milliseconds.
+    ///
+    /// # Errors
+    /// [`MotionError::Path`] and [`MotionError::Goal`].
+    pub fn preview(&self) -> Result<Preview, MotionError> {
+        let (robot, model) = (self.canceller.robot(), self.canceller.robot().model());
+        let (state, course) = (robot.state(), &robot.link().course);
+        let reference = course.reference().map(|reference| reference.q);
+        let now = Now::of(model, &state, course.target(), reference);
+        let target = self.destination.seen_from(&now);
+        let goal = Goal::new(
+            self.canceller.id(),
+            target,
+            self.on_arrival,
+            model.joint_limits(),
+        );
+        let goal = self.options.apply(goal, model)?;
+        let one = [Waypoint::new(target)];
+        let path = self.path.as_deref().unwrap_or(&one);
+        let q = reference.unwrap_or(state.q);
+        Ok(Preview::of(path, &q, &goal, model, &state)?)
     }
 
     fn begin(&mut self) -> Result<Beginning, GoalError> {

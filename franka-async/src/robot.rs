@@ -5,7 +5,7 @@ use std::net::SocketAddr;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, PoisonError, RwLock, Weak};
 
-use franka_model::{EndEffector, Frame, Model, transform};
+use franka_model::Model;
 use franka_proto::{RobotState, Version};
 use franka_rt::driver::Record;
 use franka_rt::law::Gains;
@@ -19,6 +19,7 @@ use tokio::sync::{broadcast, mpsc, oneshot};
 use tokio_util::sync::DropGuard;
 
 use crate::command_channel::Channel;
+use crate::end_effector_pose::{pose_at, pose_of};
 use crate::input::{Beginning, EndReply, Input, Replies};
 use crate::link::Link;
 use crate::progress::Reference;
@@ -348,22 +349,6 @@ impl WeakRobot {
     pub(crate) fn upgrade(&self) -> Option<Robot> {
         self.0.upgrade().map(|shared| Robot { shared })
     }
-}
-
-/// `O_T_EE` of a state, if it is a rigid transformation.
-pub(crate) fn pose_of(state: &RobotState) -> Option<Pose> {
-    transform::isometry_from_array(&state.O_T_EE)
-}
-
-/// See [`Robot::pose_at`].
-pub(crate) fn pose_at(model: &Model, state: &RobotState, q: [f64; 7]) -> Pose {
-    let ee = transform::isometry_from_array(&state.F_T_EE).unwrap_or_default();
-    let ee = EndEffector {
-        f_t_ee: transform::matrix(&ee),
-        ..EndEffector::default()
-    };
-    let pose = model.pose(Frame::EndEffector, &q.into(), &ee);
-    transform::isometry(&pose).unwrap_or_default()
 }
 
 impl fmt::Debug for Robot {

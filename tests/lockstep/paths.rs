@@ -2,10 +2,12 @@
 
 use std::time::Duration;
 
-use franka_model::{READY, RobotKind, Wrench, rotation};
+use franka_model::{Model, READY, RobotKind, Wrench, rotation};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{Chunk, GoalError, GoalId, Lapse, PathError, Target, Waypoint};
+use franka_rt::session::{
+    Chunk, GoalError, GoalId, Lapse, OnArrival, PathError, Preview, Target, Waypoint,
+};
 use franka_sim::{Arm, Config};
 use franka_tests::bench::follow::realistic;
 use franka_tests::lockstep::Lockstep;
@@ -135,6 +137,45 @@ fn corners_are_stopped_at_or_rounded_within_their_distance() {
     }
     assert_eq!(rounding.rests, 0, "{rounding:?}");
     assert!(durations[1] < durations[0] - 0.3, "{durations:?}");
+}
+
+/// A preview is what the reference then does: along a path, and on the way of a plain goal.
+#[test]
+fn a_motion_does_what_its_preview_says() {
+    for along in [true, false] {
+        let mut lockstep = realistic();
+        let there = corners(&lockstep.arm_pose())[2];
+        let (model, state) = (Model::fr3(), *lockstep.robot.state());
+        let goal = lockstep.goal(Target::Pose(there), OnArrival::ReportAndFinish);
+        let way = [Waypoint::new(there)];
+        let preview = Preview::of(&way, &state.q, &goal, model, &state).expect("within reach");
+        let id = match along {
+            true => lockstep.through(None, &way),
+            false => lockstep.submit(goal),
+        };
+        let id = id.expect("within reach");
+        let (mut farthest, mut took) = (0.0_f64, Duration::ZERO);
+        while lockstep.client.outcome(id).is_none() {
+            lockstep.tick();
+            let record = &lockstep.client.record;
+            if record.goal != id.0 || record.remaining.is_zero() {
+                continue;
+            }
+            took = record.elapsed;
+            let next = preview.postures.iter().find(|(time, _)| *time >= took);
+            let next = next.map_or(preview.end(), |(_, q)| *q);
+            let off = (0..7).map(|i| (record.q_ref[i] - next[i]).abs());
+            farthest = farthest.max(off.fold(0.0, f64::max));
+        }
+        let said = preview.duration();
+        println!("along a path: {along}; {said:?} said, {took:?} taken, {farthest:.4} rad off");
+        assert!(
+            said.abs_diff(took) < Duration::from_millis(50),
+            "{said:?}, {took:?}"
+        );
+        // Up to 5 mm of the way lie between two postures.
+        assert!(farthest < 0.02, "{farthest} rad off");
+    }
 }
 
 #[test]

@@ -1,13 +1,11 @@
 //! What handles and motions ask of the bridge: goals to begin, to change and to end.
 
-use franka_proto::RobotState;
 use franka_rt::lifecycle::{MotionError, NewMotion};
-use franka_rt::session::{Chunk, GoalId, Target};
+use franka_rt::session::{Chunk, GoalId};
 
 use super::{Bridge, log};
 use crate::destination::Now;
 use crate::input::{Beginning, EndReply, Input, Replies};
-use crate::robot::{pose_at, pose_of};
 
 impl Bridge {
     pub(super) fn on_input(&mut self, input: Input) {
@@ -107,31 +105,18 @@ impl Bridge {
         let NewMotion::Goal { goal, .. } = &mut motion else {
             return self.lifecycle.begin(motion, state, now);
         };
+        let reference = self.course.reference().map(|reference| reference.q);
         if let Some(destination) = destination {
-            goal.target = destination.seen_from(&self.poses(state));
+            let heading = self.lifecycle.heading().map(|(_, target)| target);
+            let now = Now::of(self.lifecycle.model(), state, heading, reference);
+            goal.target = destination.seen_from(&now);
         }
         let Some(path) = path else {
             return self.lifecycle.begin(motion, state, now);
         };
-        let reference = self.course.reference();
-        let q = reference.map_or(state.q, |reference| reference.q);
+        let q = reference.unwrap_or(state.q);
         let path = Chunk::through(&path, &q, goal, self.lifecycle.model(), state)?;
         self.lifecycle.begin_along(path, motion, state, now)
-    }
-
-    /// The poses that a destination may be relative to.
-    fn poses(&self, state: &RobotState) -> Now {
-        let pose_at = |q| pose_at(self.lifecycle.model(), state, q);
-        let arm = pose_of(state).unwrap_or_else(|| pose_at(state.q));
-        // What is held or followed has no pose of its own.
-        let reference = || self.course.reference().map(|newest| pose_at(newest.q));
-        let target = match self.lifecycle.heading() {
-            Some((_, Target::Pose(pose))) => pose,
-            Some((_, Target::Joints(q))) => pose_at(q),
-            Some(_) => reference().unwrap_or(arm),
-            None => arm,
-        };
-        Now { target, arm }
     }
 
     pub(super) fn refuse(&self, goal: GoalId, replies: Replies, error: MotionError) {

@@ -64,8 +64,8 @@ pub use backend::{Backend, Controller, Setpoints};
 pub use budget::Budget;
 pub use check::{GoalError, TooManyChunks};
 pub use chunk::{
-    Chunk, ChunkError, ChunkReader, ChunkWriter, Fate, Full, PathError, Returned, Waypoint,
-    chunk_ring,
+    Blocked, Chunk, ChunkError, ChunkReader, ChunkWriter, Fate, Full, PathError, Preview, Returned,
+    Waypoint, chunk_ring,
 };
 pub use goal::{Free, Goal, GoalId, OnArrival, Target};
 pub use guard::clearance::{KEEP_OUT_MAX, KEEP_OUT_STOP, KeepOut, SELF_STOP, SLOW_ZONE};

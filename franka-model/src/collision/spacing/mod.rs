@@ -75,6 +75,17 @@ enum Kind {
     Region(usize, usize),
 }
 
+impl Item {
+    /// The index of the region, as it was given, whose distance it is; `None` for a distance within
+    /// the arm.
+    pub fn region(self) -> Option<usize> {
+        match self.0 {
+            Kind::Pair(_) => None,
+            Kind::Region(region, _) => Some(region),
+        }
+    }
+}
+
 /// Two capsules with a minimum distance.
 #[derive(Debug, Clone, Copy)]
 struct CapsulePair {

@@ -33,6 +33,6 @@ mod value;
 
 pub(super) use course::{ChunkCourse, ChunkStart};
 pub use error::ChunkError;
-pub use path::{PathError, Waypoint};
+pub use path::{Blocked, PathError, Preview, Waypoint};
 pub use ring::{ChunkReader, ChunkWriter, Fate, Full, Returned, chunk_ring};
 pub use value::Chunk;

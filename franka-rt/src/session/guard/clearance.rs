@@ -13,7 +13,7 @@
 //! inside.
 
 use franka_model::collision::{
-    Arrangement, CandidateMask, MotionBound, Obstacle, REGIONS_MAX, Shape, Spacing,
+    Arrangement, CandidateMask, Item, MotionBound, Obstacle, REGIONS_MAX, Shape, Spacing,
 };
 use franka_model::{JointVector, RobotKind};
 
@@ -119,6 +119,15 @@ impl Clearance {
             return Ahead::Clear;
         }
         self.on_the_way(now, (&middle, there), (end, candidates))
+    }
+
+    /// The first distance that is too small at `next` and smaller than at `now`.
+    pub(crate) fn too_near(&self, now: &JointVector, next: &JointVector) -> Option<Item> {
+        let (here, there) = (self.spacing.at(now), self.spacing.at(next));
+        self.spacing.items(CandidateMask::ALL).find(|&item| {
+            let then = there.margin_below(item, 0.0);
+            then.is_some_and(|then| judge(here.margin(item), then) == Ahead::TooNear)
+        })
     }
 
     /// Checks the way from `now` to `half` and to `end`, where only distances of the candidates may

@@ -99,6 +99,16 @@ impl<M: CurveState> Timed<M> {
         M::between(&self.states[k], &self.states[k + 1], duration, u * duration)
     }
 
+    /// Calls `pass` with times and states of the motion, `count` for each of its parts.
+    pub(super) fn each(&self, count: usize, mut pass: impl FnMut(f64, &M)) {
+        for (k, ends) in self.times.windows(2).enumerate() {
+            for i in 1..=count {
+                let u = i as f64 / count as f64;
+                pass(ends[0] + u * (ends[1] - ends[0]), &self.between(k, u));
+            }
+        }
+    }
+
     /// A stretch from rest to rest over this many legs in the least time.
     pub(super) fn retimed<const W: usize, const G: usize>(
         self,

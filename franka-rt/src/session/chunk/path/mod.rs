@@ -16,6 +16,7 @@ mod legs;
 #[cfg(test)]
 mod oracle;
 mod poses;
+mod preview;
 mod reach;
 mod spline;
 #[cfg(test)]
@@ -26,6 +27,7 @@ use franka_model::{Frame, JointVector, Model};
 use franka_proto::RobotState;
 
 pub use self::error::PathError;
+pub use self::preview::{Blocked, Preview};
 use super::value::{Chunk, Origin, Points};
 use crate::session::kinematics::Posture;
 use crate::session::{Goal, Target, check, end_effector_of, rigid};
@@ -91,6 +93,19 @@ impl Chunk {
         model: &Model,
         state: &RobotState,
     ) -> Result<Self, PathError> {
+        Self::planned(waypoints, q, goal, model, state, |_, _| {})
+    }
+
+    /// As [`Self::through`]; `pass` is called with the time, `[s]`, and the joint positions of
+    /// places all along the path, in their order, which are near each other.
+    fn planned(
+        waypoints: &[Waypoint],
+        q: &[f64; 7],
+        goal: &Goal,
+        model: &Model,
+        state: &RobotState,
+        mut pass: impl FnMut(f64, &JointVector),
+    ) -> Result<Self, PathError> {
         let first = waypoints.first().ok_or(PathError::Empty)?;
         if waypoints.len() > Waypoint::COUNT_MAX {
             return Err(PathError::TooMany);
@@ -114,6 +129,7 @@ impl Chunk {
         let (q, budget) = (JointVector::from(*q), &goal.budget);
         let (points, pace) = if let Target::Joints(_) = first.target {
             let way = joints::through_joints(waypoints, q, budget, model.joint_limits());
+            way.each(SAMPLES, |time, state| pass(time, &state.q));
             let pace = joints::pace(&way.states, budget);
             (Points::Joints(way.into_curve()), pace)
         } else {
@@ -123,7 +139,7 @@ impl Chunk {
             let posture = goal
                 .posture
                 .map_or(Posture::kept(q), |q| Posture::asked(q.into()));
-            reach::check(&way, q, &posture, budget, model, &ee)?;
+            reach::check(&way, q, &posture, budget, model, &ee, &mut pass)?;
             let pace = poses::pace(&way.states, budget);
             (Points::Poses(way.into_curve()), pace)
         };
@@ -135,3 +151,6 @@ impl Chunk {
         })
     }
 }
+
+/// Places to pass between two states of a path over joint positions.
+const SAMPLES: usize = 8;

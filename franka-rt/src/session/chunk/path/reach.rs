@@ -46,7 +46,8 @@ const STEPS_MAX: f64 = 1e4;
 /// The most that a joint turns in one attempt, `[rad]`.
 const TURN: f64 = 0.1;
 
-/// Checks that the arm follows `way` from the joint positions `q` on.
+/// Checks that the arm follows `way` from the joint positions `q` on. `pass` is called with the
+/// time and the joint positions of each step.
 pub(super) fn check(
     way: &Timed<PoseState>,
     q: JointVector,
@@ -54,6 +55,7 @@ pub(super) fn check(
     budget: &Budget,
     model: &Model,
     ee: &EndEffector,
+    pass: &mut impl FnMut(f64, &JointVector),
 ) -> Result<(), PathError> {
     let arm = Arm {
         posture,
@@ -80,6 +82,7 @@ pub(super) fn check(
             let at = way.between(k, step as f64 / steps);
             let (reached, off) = arm.step(q, &at, duration / steps);
             q = reached;
+            pass(times[0] + duration * step as f64 / steps, &q);
             if off.size() > 1.0 {
                 let from = way.legs[k];
                 let p = at.pose.translation.vector;

@@ -1,5 +1,6 @@
 //! Tests of paths: limits, corners, how near they are to the least time, and where arms can go.
 
+use franka_model::collision::Obstacle;
 use franka_model::{EndEffector, READY, rotation};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
@@ -395,7 +396,15 @@ fn ways_are_accepted_where_the_control_cycle_gets_along_them() {
             let Ok(way) = poses::through_poses(&over_poses(&places), start, &budget) else {
                 continue;
             };
-            let verdict = reach::check(&way, q, &Posture::kept(q), &budget, model, &ee);
+            let verdict = reach::check(
+                &way,
+                q,
+                &Posture::kept(q),
+                &budget,
+                model,
+                &ee,
+                &mut |_, _| {},
+            );
             let gone = go(way, q, &budget, model);
             let case = (model.kind(), seed, accepted + refused);
             match verdict {
@@ -420,4 +429,83 @@ fn ways_are_accepted_where_the_control_cycle_gets_along_them() {
             "{accepted} accepted, {refused} refused"
         );
     }
+}
+
+#[test]
+fn a_preview_goes_all_along_the_path_in_its_time_and_refuses_what_is_refused() {
+    let (model, ee) = (Model::fr3(), EndEffector::default());
+    let goal = goal(model, 1.0);
+    let q: [f64; 7] = READY.into();
+    let pose_of = |q: &[f64; 7]| rigid(&model.pose(Frame::EndEffector, &(*q).into(), &ee));
+    let here = pose_of(&q);
+    let there = Translation3::new(0.1, -0.2, 0.05) * here;
+    let joints = q.map(|q| q + 0.2);
+    for waypoint in [Waypoint::new(there), Waypoint::new(joints)] {
+        let way = [waypoint];
+        let preview = Preview::of(&way, &q, &goal, model, &state()).expect("a path");
+        let chunk = Chunk::through(&way, &q, &goal, model, &state()).expect("the same");
+        assert!((preview.duration().as_secs_f64() - chunk.end()).abs() < 1e-6);
+        assert_eq!(preview.postures[0].1, q);
+        for ends in preview.postures.windows(2) {
+            assert!(ends[1].0 > ends[0].0);
+            for i in 0..7 {
+                let turn = (ends[1].1[i] - ends[0].1[i]).abs();
+                assert!(turn < 0.05, "{turn} rad between two postures");
+            }
+        }
+    }
+    let preview = Preview::of(&[there.into()], &q, &goal, model, &state()).expect("a path");
+    let off = reach::Off::between(&there, &pose_of(&preview.end()));
+    assert!(off.size() < 1.0, "{off:?}");
+    let line = there.translation.vector - here.translation.vector;
+    for (_, q) in &preview.postures {
+        let way = pose_of(q).translation.vector - here.translation.vector;
+        assert!(way.cross(&line.normalize()).norm() < 1e-3);
+    }
+    let far = [Waypoint::new(Translation3::new(0.5, 0.0, 0.0) * here)];
+    let refused = Preview::of(&far, &q, &goal, model, &state());
+    let error = Chunk::through(&far, &q, &goal, model, &state()).unwrap_err();
+    assert_eq!(refused, Err(error));
+    // Where it is already there is nothing to do.
+    let stays = Preview::of(&[here.into()], &q, &goal, model, &state()).expect("a path");
+    assert_eq!(
+        (stays.duration(), stays.end()),
+        (core::time::Duration::ZERO, q)
+    );
+}
+
+#[test]
+fn a_preview_says_where_the_guards_stop_the_arm() {
+    let (model, ee) = (Model::fr3(), EndEffector::default());
+    let q: [f64; 7] = READY.into();
+    let here = rigid(&model.pose(Frame::EndEffector, &READY, &ee));
+    // A block whose top is so far below the flange.
+    let blocked = |z: f64, below: f64| {
+        let there = [Waypoint::new(Translation3::new(0.0, 0.0, z) * here)];
+        let preview = Preview::of(&there, &q, &goal(model, 1.0), model, &state()).expect("a path");
+        let block = Obstacle::Box {
+            pose: Translation3::new(here.translation.x, 0.0, here.translation.z - below - 0.05)
+                .into(),
+            half: Vector3::repeat(0.05),
+        };
+        let regions = [Obstacle::floor(-1.0), block];
+        let blocked = preview.blocked(model, &state(), &regions).expect("regions");
+        (blocked, preview)
+    };
+    assert_eq!(blocked(-0.05, 0.2).0, None);
+    let (Some(found), preview) = blocked(-0.2, 0.2) else {
+        panic!("it comes too near");
+    };
+    assert_eq!(found.region, Some(1));
+    let height = rigid(&model.pose(Frame::EndEffector, &found.q.into(), &ee))
+        .translation
+        .z;
+    let sunk = here.translation.z - height;
+    assert!((0.05..0.2).contains(&sunk), "{sunk}");
+    assert!(found.time < preview.duration());
+    // From too near the block the way out is free, and no other.
+    assert_eq!(blocked(0.1, 0.01).0, None);
+    assert!(blocked(-0.01, 0.01).0.is_some());
+    let too_many = vec![Obstacle::floor(0.0); 5];
+    assert!(preview.blocked(model, &state(), &too_many).is_err());
 }
