@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use franka_rt::driver::{ReferenceReader, ReferenceState};
-use franka_rt::session::{GoalId, Target};
+use franka_rt::session::{Bindings, GoalId, Target};
 use nalgebra::Isometry3;
 
 /// Where target control has the arm go, in the newest cycle.
@@ -21,6 +21,8 @@ pub struct Reference {
     pub ddq: [f64; 7],
     /// The end effector at those positions, base frame.
     pub pose: Isometry3<f64>,
+    /// Which guards have held the arm back within the last 0.1 s, and at most 0.2 s.
+    pub guards: Bindings,
 }
 
 /// How far a motion has come.

@@ -155,6 +155,7 @@ impl Robot {
             dq: newest.dq,
             ddq: newest.ddq,
             pose: self.pose_at(newest.q),
+            guards: newest.guards,
         })
     }
 

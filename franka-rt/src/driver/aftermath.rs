@@ -3,7 +3,7 @@
 use franka_proto::RobotState;
 
 use super::motion::{Execution, Phase};
-use super::{Driver, Event, ReferenceState};
+use super::{Driver, Event};
 use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 
 impl Driver {
@@ -11,7 +11,7 @@ impl Driver {
     /// due), what need not be done before. `sent` has the times of the command, if one left, as far
     /// as they are known.
     pub fn after_send(&mut self, state: &RobotState, arrival: &Arrival, sent: Option<&CycleTimes>) {
-        self.references.write(&ReferenceState::of(&self.record));
+        self.references.write(&self.record);
         self.record.late = arrival.late;
         if let Some(sent) = sent {
             self.record.turnaround = sent.turnaround;

@@ -50,7 +50,6 @@ use core::time::Duration;
 use franka_proto::{RobotCommand, RobotState, Version};
 
 use crate::control::{Command, Failure, WriteError};
-use crate::slot::{SlotWriter, slot};
 use crate::stats::MotionStatistics;
 use crate::team::MemberFault;
 use crate::together::Gate;
@@ -60,6 +59,7 @@ pub use commander::Commander;
 pub use event::{Ended, Ending, Event};
 pub use link_timeout::{LINK_TIMEOUT, LinkTimeout, LinkTimeoutError};
 pub use log::{ControlLog, LogEntry};
+use newest_reference::ReferenceWriter;
 pub use newest_reference::{ReferenceReader, ReferenceState};
 pub use observer::Observer;
 pub use order::{MotionId, Order};
@@ -86,7 +86,7 @@ pub struct Driver {
     /// Counts of the present motion, from arming on.
     statistics: MotionStatistics,
     record: Record,
-    references: SlotWriter<ReferenceState>,
+    references: ReferenceWriter,
     reference_reader: ReferenceReader,
     events: EventQueue,
 }
@@ -94,7 +94,7 @@ pub struct Driver {
 impl Driver {
     /// A driver that watches the states of a robot speaking `version`.
     pub fn new(version: Version) -> Self {
-        let (references, reader) = slot();
+        let (references, reference_reader) = ReferenceWriter::new();
         Self {
             version,
             motion: None,
@@ -105,7 +105,7 @@ impl Driver {
             statistics: MotionStatistics::default(),
             record: Record::default(),
             references,
-            reference_reader: ReferenceReader(reader),
+            reference_reader,
             events: EventQueue::default(),
         }
     }

@@ -3,8 +3,8 @@
 use core::time::Duration;
 
 use super::Record;
-use crate::session::GoalId;
-use crate::slot::{Read, SlotReader, Words};
+use crate::session::{Bindings, GoalId};
+use crate::slot::{Read, SlotReader, SlotWriter, Words, slot};
 
 /// Where target control has the joints go, and how far its goal has come, in one cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,10 +23,17 @@ pub struct ReferenceState {
     pub elapsed: Duration,
     /// See [`Record::remaining`].
     pub remaining: Duration,
+    /// The guards that bound the command of this cycle, or another one since at least
+    /// [`Self::GUARDS_MS`] and at most twice that.
+    pub guards: Bindings,
 }
 
 impl ReferenceState {
-    pub(super) fn of(record: &Record) -> Self {
+    /// How long a guard that has bound counts, `[ms]` of the robot's clock: readers look a few
+    /// dozen times per second.
+    pub const GUARDS_MS: u64 = 100;
+
+    fn of(record: &Record, guards: Bindings) -> Self {
         Self {
             time: record.time,
             goal: GoalId(record.goal),
@@ -35,12 +42,48 @@ impl ReferenceState {
             ddq: record.ddq_ref,
             elapsed: record.elapsed,
             remaining: record.remaining,
+            guards,
         }
     }
 }
 
+/// Writes the newest reference.
+#[derive(Debug)]
+pub(super) struct ReferenceWriter {
+    newest: SlotWriter<ReferenceState>,
+    /// The guards that have bound since `begin`, and those of the time before it.
+    guards: [Bindings; 2],
+    begin: u64,
+}
+
+impl ReferenceWriter {
+    pub(super) fn new() -> (Self, ReferenceReader) {
+        let (newest, reader) = slot();
+        let writer = Self {
+            newest,
+            guards: Default::default(),
+            begin: 0,
+        };
+        (writer, ReferenceReader(reader))
+    }
+
+    pub(super) fn write(&mut self, record: &Record) {
+        let [now, before] = &mut self.guards;
+        let age = record.time.saturating_sub(self.begin);
+        if age >= ReferenceState::GUARDS_MS {
+            let gap = age >= 2 * ReferenceState::GUARDS_MS;
+            *before = if gap { Bindings::default() } else { *now };
+            *now = Bindings::default();
+            self.begin = record.time;
+        }
+        *now = now.union(record.bindings);
+        let guards = now.union(*before);
+        self.newest.write(&ReferenceState::of(record, guards));
+    }
+}
+
 impl Words for ReferenceState {
-    const WORDS: usize = 2 + 3 * 7 + 2;
+    const WORDS: usize = 2 + 3 * 7 + 2 + 1;
 
     fn store(&self, words: &mut [u64]) {
         let micros = |time: Duration| u64::try_from(time.as_micros()).unwrap_or(u64::MAX);
@@ -48,7 +91,8 @@ impl Words for ReferenceState {
         let all = [self.time, self.goal.0]
             .into_iter()
             .chain(joints.map(f64::to_bits))
-            .chain([self.elapsed, self.remaining].map(micros));
+            .chain([self.elapsed, self.remaining].map(micros))
+            .chain([u64::from(self.guards.to_bits())]);
         for (word, value) in words.iter_mut().zip(all) {
             *word = value;
         }
@@ -68,6 +112,7 @@ impl Words for ReferenceState {
             ddq,
             elapsed: Duration::from_micros(next()),
             remaining: Duration::from_micros(next()),
+            guards: Bindings::from_bits(next() as u32),
         }
     }
 }
@@ -77,7 +122,7 @@ const ATTEMPTS: usize = 16;
 
 /// Reads the newest reference. Clones read independently of each other.
 #[derive(Clone, Debug)]
-pub struct ReferenceReader(pub(super) SlotReader<ReferenceState>);
+pub struct ReferenceReader(SlotReader<ReferenceState>);
 
 impl ReferenceReader {
     /// The reference of the newest cycle; `None` where target control did not answer it.
@@ -93,12 +138,11 @@ impl ReferenceReader {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::slot::slot;
+    use crate::session::Guard;
 
     #[test]
     fn every_field_survives_its_words_and_no_goal_is_no_reference() {
-        let (mut writer, reader) = slot();
-        let reader = ReferenceReader(reader);
+        let (mut writer, reader) = ReferenceWriter::new();
         assert_eq!(reader.newest(), None, "before the first cycle");
         let state = ReferenceState {
             time: 17,
@@ -108,11 +152,39 @@ mod tests {
             ddq: [0.3; 7],
             elapsed: Duration::from_millis(40),
             remaining: Duration::from_micros(1_234_567),
+            guards: Bindings::of(&[Guard::Leash, Guard::Team]),
         };
-        writer.write(&state);
+        writer.newest.write(&state);
         assert_eq!(reader.newest(), Some(state));
         assert_eq!(reader.newest(), Some(state), "it may be read again");
-        writer.write(&ReferenceState::of(&Record::default()));
+        writer.write(&Record::default());
         assert_eq!(reader.newest(), None);
+    }
+
+    #[test]
+    fn a_guard_that_bound_in_one_cycle_counts_for_a_tenth_of_a_second() {
+        let (mut writer, reader) = ReferenceWriter::new();
+        let mut at = |time: u64, bindings: &[Guard]| {
+            writer.write(&Record {
+                time,
+                goal: 1,
+                bindings: Bindings::of(bindings),
+                ..Record::default()
+            });
+            reader.newest().expect("a reference").guards
+        };
+        let begin = 5_000;
+        assert!(at(begin, &[]).is_empty());
+        let both = Bindings::of(&[Guard::ForceCap, Guard::Clearance]);
+        let one = Bindings::of(&[Guard::ForceCap]);
+        assert_eq!(at(begin + 99, &[Guard::ForceCap]), one);
+        assert_eq!(at(begin + 100, &[]), one);
+        assert_eq!(at(begin + 150, &[Guard::Clearance]), both);
+        assert_eq!(at(begin + 199, &[]), both);
+        assert_eq!(at(begin + 200, &[]), Bindings::of(&[Guard::Clearance]));
+        assert!(at(begin + 300, &[]).is_empty());
+        // What bound before a gap in the states is long over.
+        at(begin + 399, &[Guard::Leash]);
+        assert!(at(begin + 700, &[]).is_empty());
     }
 }

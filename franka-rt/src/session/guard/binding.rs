@@ -80,6 +80,27 @@ impl Bindings {
         self.0 |= u32::from(binds) << guard as u32;
     }
 
+    /// The set of these guards.
+    pub fn of(guards: &[Guard]) -> Self {
+        let mut bindings = Self::default();
+        guards.iter().for_each(|guard| bindings.insert(*guard));
+        bindings
+    }
+
+    /// The guards of either.
+    pub fn union(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// A bit for each guard, in the order of [`Guard::ALL`] from the lowest on.
+    pub fn to_bits(self) -> u32 {
+        self.0
+    }
+
+    pub(crate) fn from_bits(bits: u32) -> Self {
+        Self(bits)
+    }
+
     /// Adds `guard`.
     pub fn insert(&mut self, guard: Guard) {
         self.set(guard, true);
