@@ -25,7 +25,7 @@ pub use franka_model::model_library::ModelLibrary;
 pub use franka_model::{
     AsBuilt, CYCLE, Dynamics, EndEffector, Frame, GRAVITY_EARTH, Jacobian, JointMargins,
     JointVector, Load, MassMatrix, Model, OperationalSpace, RigidBody, RobotKind, Symmetric3,
-    Twist, Wrench, analytic_ik, collision, differential_ik, elbow, geometry,
+    Twist, Wrench, analytic_ik, collision, contact as contacts, differential_ik, elbow, geometry,
     inverse_kinematics, joint_vector, layout, limits, manipulability,
 };
 pub use franka_proto::{Architecture, System};
