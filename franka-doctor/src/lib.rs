@@ -40,6 +40,7 @@ mod dry_run;
 mod finding;
 mod handshake;
 mod host;
+#[cfg(all(target_os = "linux", not(franka_portable)))]
 mod lease;
 mod ping;
 mod ports;

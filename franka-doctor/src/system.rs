@@ -1,27 +1,33 @@
-//! The running host: the only file of this crate with `unsafe`.
+//! The running host. What only Linux answers is in `linux`; elsewhere, and with
+//! `--cfg franka_portable`, `portable` takes its place.
+
+#[cfg(all(target_os = "linux", not(franka_portable)))]
+mod linux;
+// Its test runs on Linux, too.
+#[cfg(any(test, not(target_os = "linux"), franka_portable))]
+#[cfg_attr(all(target_os = "linux", not(franka_portable)), allow(dead_code))]
+mod portable;
 
 use core::hint;
 use core::time::Duration;
 use std::fs::{self, File};
 use std::io::{self, Read as _};
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
-use std::os::fd::AsRawFd as _;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 use std::time::Instant;
 
 use franka_rt::sched::{Kernel, Realtime, Scheduling};
-use nix::sched::{CpuSet, sched_setaffinity};
 use nix::sys::statvfs::statvfs;
-use nix::sys::time::TimeSpec;
-use nix::time::{ClockId, ClockNanosleepFlags, clock_gettime, clock_nanosleep};
-use nix::unistd::Pid;
 
 use crate::host::{Ethtool, Host, Unread, names_in};
-use crate::lease;
 use crate::round_trip::{self, RoundTrips};
 use crate::wake_up::WakeUps;
+#[cfg(all(target_os = "linux", not(franka_portable)))]
+use linux as host;
+#[cfg(any(not(target_os = "linux"), franka_portable))]
+use portable as host;
 
 /// The host that this runs on.
 #[derive(Clone, Debug, Default)]
@@ -91,43 +97,12 @@ impl Host for System {
     }
 
     fn ethtool(&self, interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread> {
-        let what = format!("ethtool {interface} {:#04x}", question.command());
-        let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))
-            .map_err(|error| Unread::new(what.as_str(), &error))?;
-        // SAFETY: `ifreq` is a C struct of integers, a pointer and arrays, for which all zeros is
-        // a valid value.
-        let mut ifreq: libc::ifreq = unsafe { core::mem::zeroed() };
-        if interface.len() >= ifreq.ifr_name.len() {
-            return Err(Unread::Absent(what));
-        }
-        for (to, from) in ifreq.ifr_name.iter_mut().zip(interface.bytes()) {
-            *to = from as libc::c_char;
-        }
-        let mut answer = [0_u32; ANSWER_WORDS];
-        answer[0] = question.command();
-        ifreq.ifr_ifru.ifru_data = (&raw mut answer).cast();
-        // SAFETY: the descriptor is open during the call. The kernel reads the name, which ends
-        // with a zero, and behind the pointer it reads and writes the structure of the command: at
-        // most 196 bytes, of members of four bytes at most (`linux/ethtool.h`). `answer` is
-        // initialised, aligned for these and larger.
-        let done = unsafe { libc::ioctl(socket.as_raw_fd(), SIOCETHTOOL, &raw mut ifreq) };
-        if done == -1 {
-            let error = io::Error::last_os_error();
-            return Err(match error.raw_os_error() {
-                Some(libc::EOPNOTSUPP) => {
-                    Unread::Failed(what, "the driver of the card does not say".into())
-                }
-                _ => Unread::new(what, &error),
-            });
-        }
-        let mut bytes: Vec<u8> = answer.iter().flat_map(|word| word.to_ne_bytes()).collect();
-        bytes.truncate(question.size());
-        Ok(bytes)
+        host::ethtool(interface, question)
     }
 
     fn is_lasting(&self, interface: &str, own: Ipv4Addr) -> Result<bool, Unread> {
         let what = || format!("the address {own} of {interface}");
-        match lease::is_lasting(own) {
+        match host::is_lasting(own) {
             Ok(Some(lasting)) => Ok(lasting),
             Ok(None) => Err(Unread::Absent(what())),
             Err(error) => Err(Unread::new(what(), &error)),
@@ -144,14 +119,11 @@ impl Host for System {
 
     fn busy_frequency(&self, cpu: usize) -> Result<u64, Unread> {
         let path = format!("/sys/devices/system/cpu/cpu{cpu}/cpufreq/scaling_cur_freq");
-        let failed = |error: nix::Error| {
+        let failed = |error: io::Error| {
             Unread::Failed(format!("a thread on processor {cpu}"), error.to_string())
         };
         let busy = || {
-            let mut only = CpuSet::new();
-            only.set(cpu).map_err(failed)?;
-            // 0: this thread.
-            sched_setaffinity(Pid::from_raw(0), &only).map_err(failed)?;
+            host::pin_to(cpu).map_err(failed)?;
             let begin = Instant::now();
             while begin.elapsed() < BUSY {
                 hint::spin_loop();
@@ -177,7 +149,7 @@ impl Host for System {
             .unwrap_or(u64::MAX)
             .max(1);
         let measured = self.measured(cycles, progress, |priority, done| {
-            wake_ups(priority, cycles, done)
+            host::wake_ups(priority, cycles, done)
         });
         measured.map_err(|why| Unread::Failed("the wake-up of a thread".into(), why))
     }
@@ -228,40 +200,8 @@ impl System {
     }
 }
 
-/// Sleeps until each of `cycles` milliseconds, and notes how late it was each time.
-fn wake_ups(priority: Option<i32>, cycles: u64, done: &AtomicU64) -> Result<WakeUps, String> {
-    let mut wake_ups = WakeUps::new(priority);
-    let clock = ClockId::CLOCK_MONOTONIC;
-    let now = || {
-        clock_gettime(clock)
-            .map(Duration::from)
-            .map_err(|error| error.to_string())
-    };
-    let mut due = now()?;
-    for cycle in 0..cycles {
-        due += Duration::from_millis(1);
-        let until = TimeSpec::from_duration(due);
-        clock_nanosleep(clock, ClockNanosleepFlags::TIMER_ABSTIME, &until)
-            .map_err(|error| error.to_string())?;
-        let woken = now()?;
-        wake_ups.note(woken.saturating_sub(due));
-        // A wake-up that is later than the next one is due is counted once.
-        while due + Duration::from_millis(1) <= woken {
-            due += Duration::from_millis(1);
-        }
-        done.store(cycle + 1, Ordering::Relaxed);
-    }
-    Ok(wake_ups)
-}
-
 /// How long a thread computes before the frequency of its processor is read.
 const BUSY: Duration = Duration::from_secs(1);
 
 /// Most of a file that is read.
 const READ_MAX: u64 = 1 << 20;
-
-/// Room for the answer to an ethtool question, in words of four bytes.
-const ANSWER_WORDS: usize = 64;
-
-/// `linux/sockios.h`; libc types requests as the platform's `ioctl` does.
-const SIOCETHTOOL: libc::Ioctl = 0x8946;

@@ -1,0 +1,89 @@
+//! Where nothing is known to be granted: every request is refused, which `Realtime::Enforce` makes
+//! an error and `Realtime::Ignore` notes.
+
+use core::time::Duration;
+use std::io::{self, Read as _, Write as _};
+use std::os::fd::{AsFd, BorrowedFd};
+use std::os::unix::net::UnixStream;
+
+/// There is no priority that a control thread could rely on.
+pub(crate) fn max_fifo_priority() -> Result<i32, i32> {
+    Err(libc::ENOTSUP)
+}
+
+/// See there.
+pub(crate) fn set_fifo(_: i32) -> Result<(), i32> {
+    Err(libc::ENOTSUP)
+}
+
+/// A thread is not bound to a processor.
+pub(crate) fn pin_to(_: usize) -> Result<(), i32> {
+    Err(libc::ENOTSUP)
+}
+
+/// Memory is not locked.
+pub(crate) fn lock_memory() -> Result<(), i32> {
+    Err(libc::ENOTSUP)
+}
+
+/// Receives do not poll.
+pub(crate) fn busy_poll(_: &impl AsFd, _: Duration) -> Result<(), i32> {
+    Err(libc::ENOPROTOOPT)
+}
+
+/// A pair of sockets that stands for an eventfd: a notification is a byte in the buffer of one.
+#[derive(Debug)]
+pub(crate) struct Wake {
+    listener: UnixStream,
+    notifier: UnixStream,
+}
+
+impl Wake {
+    pub(crate) fn new() -> io::Result<Self> {
+        let (listener, notifier) = UnixStream::pair()?;
+        listener.set_nonblocking(true)?;
+        notifier.set_nonblocking(true)?;
+        Ok(Self { listener, notifier })
+    }
+
+    /// Makes the descriptor readable. Never blocks: with a full buffer the write is refused, and
+    /// the descriptor is readable anyway.
+    pub(crate) fn notify(&self) {
+        let _ = (&self.notifier).write(&[1]);
+    }
+
+    /// Returns how many notifications were in the buffer, and takes them out. Never blocks.
+    pub(crate) fn drain(&self) -> u64 {
+        let mut notifications = 0;
+        let mut bytes = [0; 4096];
+        loop {
+            match (&self.listener).read(&mut bytes) {
+                Ok(length) if length > 0 => notifications += length as u64,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                // Nothing is left. The other end is open for as long as this one.
+                _ => return notifications,
+            }
+        }
+    }
+
+    pub(crate) fn as_fd(&self) -> BorrowedFd<'_> {
+        self.listener.as_fd()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_buffer_neither_blocks_nor_stays_unreadable() {
+        let wake = Wake::new().expect("two descriptors are free");
+        for _ in 0..100_000 {
+            wake.notify();
+        }
+        assert!(wake.drain() > 0);
+        assert_eq!(wake.drain(), 0);
+        wake.notify();
+        assert_eq!(wake.drain(), 1);
+    }
+}
