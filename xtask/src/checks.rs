@@ -10,8 +10,8 @@ use clap::ValueEnum;
 use crate::step::{Outcome, Steps};
 use crate::workspace::Workspace;
 use crate::{
-    book, circles, dashboard, mujoco, names, package, peers, realtime, recordings, release, texts,
-    tidy,
+    book, circles, cross, dashboard, mujoco, names, package, peers, realtime, recordings, release,
+    texts, tidy,
 };
 
 /// A step that can be chosen with `--only`.
@@ -51,6 +51,8 @@ pub(crate) enum Check {
     Recordings,
     /// The dashboard's page in a real browser.
     Dashboard,
+    /// What is portable, for other systems and machines.
+    Targets,
 }
 
 /// Runs the chosen steps, or all if none is chosen, up to the first failure.
@@ -82,6 +84,10 @@ impl Check {
             Self::Test => ("test", "all tests and documentation examples"),
             Self::Builds => ("builds", "what the next three steps need, side by side"),
             Self::Bare => ("bare", "without features, and without the standard library"),
+            Self::Targets => (
+                "targets",
+                "what is portable, for other systems and machines",
+            ),
             Self::Peers => ("peers", "other clients against the simulator"),
             Self::Python => ("python", "the Python package: its tests and types"),
             Self::Recordings => ("recordings", "recordings read by the standard reader"),
@@ -131,6 +137,7 @@ impl Check {
                 without_features(workspace)?;
                 return no_std(workspace);
             }
+            Self::Targets => return cross::check(workspace),
             Self::Peers => return peers::run(workspace),
             Self::Python => return package::run(workspace),
             Self::Recordings => return recordings::run(workspace),

@@ -8,6 +8,9 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, ensure};
 
+use crate::step::Outcome;
+use crate::workspace::Workspace;
+
 /// The directory that the compiler's libraries are in.
 pub(crate) fn sysroot() -> anyhow::Result<PathBuf> {
     let output = Command::new("rustc")
@@ -30,6 +33,36 @@ pub(crate) fn lacks(target: &str, sysroot: &Path) -> Option<String> {
         format!("its standard library is not installed; `rustup target add {target}` installs it")
     })
 }
+
+/// Of the step `targets`: checks driver, simulator, dashboard and doctor for other systems and
+/// machines, as far as the toolchain has their standard library.
+pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let sysroot = sysroot()?;
+    let (there, missing): (Vec<_>, Vec<_>) = TARGETS
+        .into_iter()
+        .partition(|target| lacks(target, &sysroot).is_none());
+    for target in &there {
+        let mut check = workspace.cargo();
+        check.args(["check", "--locked", "--target", target]);
+        // None of them needs a compiler for C.
+        check.args(["franka-dash", "franka-doctor"].map(|name| format!("--package={name}")));
+        workspace.run(&mut check)?;
+    }
+    let missing = missing.join(" ");
+    Ok(match (there.is_empty(), missing.is_empty()) {
+        (_, true) => Outcome::Passed,
+        (true, _) => Outcome::Skipped(format!("not installed: `rustup target add {missing}`")),
+        (false, _) => Outcome::Partly(format!("not installed: `rustup target add {missing}`")),
+    })
+}
+
+/// Other systems that programs are developed on, and other machines that they run on. The driver
+/// needs a Unix.
+const TARGETS: [&str; 3] = [
+    "aarch64-apple-darwin",
+    "aarch64-unknown-linux-gnu",
+    "aarch64-unknown-linux-musl",
+];
 
 /// The architecture of a target.
 pub(crate) fn architecture(target: &str) -> &str {

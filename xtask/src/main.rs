@@ -10,7 +10,7 @@
 //! | [`circles`] | the step that finds imports in a circle between modules |
 //! | [`cross`] | building for other machines, and running that |
 //! | [`dashboard`] | the files of the dashboard's page, and the page in a browser |
-//! | [`dist`] | the program `franka` for other machines |
+//! | [`dist`] | the program `franka` for other machines, packed |
 //! | [`fuzz`] | the fuzz targets |
 //! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
 //! | [`mujoco`] | the native library of the simulator's MuJoCo plant |
@@ -137,12 +137,16 @@ enum Task {
     /// Make the files of the dashboard's page anew, from npm packages that are pinned by hash.
     Assets,
     /// Build the program `franka` for machines that have nothing else: static for x86-64 and 64-bit
-    /// Arm, and for C libraries from 2.17 on. Measures what was built, and moves a simulated robot
-    /// with it, under qemu if need be.
+    /// Arm, and for C libraries from 2.17 on. Measures what was built, moves a simulated robot with
+    /// it, under qemu if need be, and packs it in `target/artefacts`: archives, packages for
+    /// Debian, a container image, bills of materials, checksums.
     Dist {
         /// Build for these targets only (may be repeated or separated by commas).
         #[arg(long, value_delimiter = ',')]
         only: Vec<String>,
+        /// Build everything twice, and compare.
+        #[arg(long)]
+        twice: bool,
     },
     /// Build the book with the references of Rust and Python beside it, and serve it.
     Book {
@@ -243,7 +247,7 @@ fn run(task: Task) -> anyhow::Result<()> {
         }
         Task::Wheels { only } => package::wheels::run(&workspace, &only),
         Task::Assets => dashboard::assets(&workspace),
-        Task::Dist { only } => dist::run(&workspace, &only),
+        Task::Dist { only, twice } => dist::run(&workspace, &only, twice),
         Task::Book { port, build_only } => book::serve(&workspace, (!build_only).then_some(port)),
         Task::Pictures => workspace.run(&mut workspace.cargo_release_binary("pictures")),
         Task::Mujoco => mujoco::provide(&workspace),

@@ -69,6 +69,9 @@ fn last_faults(
     if published.iter().any(|it| !it.repository.contains("://")) {
         found.push("Cargo.toml: `repository` is not set".to_owned());
     }
+    if version::maintainer(workspace)?.is_empty() {
+        found.push("Cargo.toml: `maintainer` of the package for Debian is not set".to_owned());
+    }
     let date = version::citation_date(workspace)?;
     match changelog.date_of(version) {
         None => found.push(format!(

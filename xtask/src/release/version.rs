@@ -3,7 +3,8 @@
 
 use std::fs;
 
-use anyhow::{Context as _, bail, ensure};
+use anyhow::{Context as _, ensure};
+use jiff::Timestamp;
 use semver::Version;
 use toml_edit::{DocumentMut, Item, value};
 
@@ -20,6 +21,15 @@ pub(crate) fn of(workspace: &Workspace) -> anyhow::Result<String> {
     let manifest = read(workspace, MANIFEST)?.parse::<DocumentMut>()?;
     let version = manifest["workspace"]["package"]["version"].as_str();
     Ok(version.context("the workspace has no version")?.to_owned())
+}
+
+/// Who answers for the package for Debian; empty until somebody does.
+pub(crate) fn maintainer(workspace: &Workspace) -> anyhow::Result<String> {
+    let manifest = read(workspace, MANIFEST)?.parse::<DocumentMut>()?;
+    let maintainer = manifest["workspace"]["metadata"]["maintainer"].as_str();
+    Ok(maintainer
+        .context("no maintainer, not even an empty one")?
+        .to_owned())
 }
 
 /// Where another version stands than in the workspace.
@@ -65,7 +75,7 @@ pub(crate) fn set(
         Version::parse(version).with_context(|| format!("got {version:?}, expected X.Y.Z"))?;
     let old = Version::parse(&of(workspace)?)?;
     ensure!(new >= old, "got {new}, expected {old} or newer");
-    let date = date.map_or_else(|| today(workspace), Ok)?;
+    let date = date.unwrap_or_else(|| Timestamp::now().strftime("%F").to_string());
     ensure!(
         changelog::is_date(&date),
         "got {date:?}, expected YYYY-MM-DD"
@@ -148,15 +158,6 @@ fn with_field(text: &str, name: &str, value: &str) -> String {
         None => lines.push(&new),
     }
     lines.join("\n") + "\n"
-}
-
-/// The day in Greenwich.
-fn today(workspace: &Workspace) -> anyhow::Result<String> {
-    let output = workspace.program("date").args(["-u", "+%F"]).output()?;
-    if !output.status.success() {
-        bail!("`date` failed: {}", output.status);
-    }
-    Ok(String::from_utf8(output.stdout)?.trim().to_owned())
 }
 
 fn read(workspace: &Workspace, name: &str) -> anyhow::Result<String> {

@@ -1,0 +1,145 @@
+//! Checking a program that was built: what it needs, how large and how fast it is, and that it
+//! moves a simulated robot.
+
+use std::env;
+use std::fs;
+use std::io::{BufRead as _, BufReader};
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, ensure};
+
+use crate::cross::{emulator, is_installed};
+
+/// A program that can run here.
+#[derive(Debug)]
+pub(super) struct Program {
+    pub(super) path: PathBuf,
+    /// What runs it, if this machine does not.
+    emulator: Option<String>,
+}
+
+impl Program {
+    /// The program, or what this machine lacks to run one of `architecture`.
+    pub(super) fn new(path: PathBuf, architecture: &str) -> Result<Self, String> {
+        let emulator = match architecture == env::consts::ARCH {
+            true => None,
+            false => Some(emulator(architecture, is_installed)?),
+        };
+        Ok(Self { path, emulator })
+    }
+
+    /// Begins a call of it.
+    pub(super) fn command(&self) -> Command {
+        match &self.emulator {
+            None => Command::new(&self.path),
+            Some(emulator) => {
+                let mut command = Command::new(emulator);
+                command.arg(&self.path);
+                command
+            }
+        }
+    }
+
+    /// Checks that it is static or not, as expected, and runs it; returns a line about it.
+    pub(super) fn check(&self, is_static: bool) -> anyhow::Result<String> {
+        let bytes = fs::read(&self.path)?;
+        let needs = needs_a_loader(&bytes);
+        ensure!(
+            needs != is_static,
+            "{}: a loader of shared libraries: got {needs}, expected {}",
+            self.path.display(),
+            !is_static
+        );
+        let size = bytes.len() as f64 / 1e6;
+        let kind = match is_static {
+            true => "static",
+            false => "dynamic",
+        };
+        let help = time_of_help(|| self.command())?;
+        moves_a_simulated_robot(|| self.command())?;
+        let by = self.emulator.as_deref().unwrap_or("this machine");
+        Ok(format!(
+            "{kind}, {size:.1} MB, --help in {:.1} ms, moved a simulated robot; by {by}",
+            help.as_secs_f64() * 1e3
+        ))
+    }
+}
+
+/// Whether a program (64-bit ELF, little-endian) asks for a loader of shared libraries: it then has
+/// a program header of the type `PT_INTERP`.
+fn needs_a_loader(program: &[u8]) -> bool {
+    let at = |from: usize, bytes: usize| {
+        let field = program.get(from..from + bytes).unwrap_or_default();
+        let bytes = field.iter().rev();
+        bytes.fold(0, |sum, byte| sum << 8 | usize::from(*byte))
+    };
+    let (headers, size, count) = (at(32, 8), at(54, 2), at(56, 2));
+    (0..count).any(|header| at(headers + header * size, 4) == PT_INTERP)
+}
+
+/// Names the loader; ELF-64, program headers.
+const PT_INTERP: usize = 3;
+
+/// The median of 21 starts.
+fn time_of_help(run: impl Fn() -> Command) -> anyhow::Result<Duration> {
+    let mut times = Vec::new();
+    for _ in 0..21 {
+        let begin = Instant::now();
+        let status = run().arg("--help").stdout(Stdio::null()).status()?;
+        times.push(begin.elapsed());
+        ensure!(status.success(), "--help failed");
+    }
+    times.sort_unstable();
+    Ok(times[times.len() / 2])
+}
+
+/// Starts a simulated robot in virtual time and moves its hand by 5 cm.
+fn moves_a_simulated_robot(run: impl Fn() -> Command) -> anyhow::Result<()> {
+    let mut sim = run();
+    sim.args(["sim", "--port", "0", "--virtual-time=5"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null());
+    let mut sim = Running(sim.spawn()?);
+    let mut line = String::new();
+    let out = sim.0.stdout.as_mut().context("piped")?;
+    BufReader::new(out).read_line(&mut line)?;
+    let address = line.trim().rsplit(' ').next().unwrap_or_default();
+    let mut motion = run();
+    motion.args(["move", address, "--by", "0,0,0.05", "--yes"]);
+    let status = motion.args(["--realtime", "ignore"]).status()?;
+    ensure!(
+        status.success(),
+        "the simulated robot at {address} was not moved"
+    );
+    Ok(())
+}
+
+/// Killed at the end.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_of_this_machine_needs_a_loader_of_shared_libraries() {
+        let this = fs::read(env::current_exe().unwrap()).unwrap();
+        let is_dynamic = cfg!(target_env = "gnu");
+        assert_eq!(needs_a_loader(&this), is_dynamic);
+        // As many program headers as before, without their types.
+        let mut without = this;
+        let headers = usize::from(without[32]);
+        without[headers..headers + 56 * 16].fill(0);
+        assert!(!needs_a_loader(&without));
+    }
+}
