@@ -1,5 +1,5 @@
-//! Whatever viewers send: read or refused, and never the cause of what they may not do. The check of
-//! a test, and of the fuzz target `dashboard`.
+//! Whatever viewers send: read or refused, and never the cause of what they may not do. The check
+//! of a test, and of the fuzz target `dashboard`.
 
 use core::time::Duration;
 
@@ -8,8 +8,8 @@ use crate::request::Request;
 
 /// Has an authority take messages, and panics if one of them gets what it must not.
 ///
-/// Each line of `bytes` is a message: a byte for the viewer, one for the milliseconds since the last
-/// message, and the text. The first byte of all is what the server permits.
+/// Each line of `bytes` is a message: a byte for the viewer, one for the milliseconds since the
+/// last message, and the text. The first byte of all is what the server permits.
 pub(crate) fn check(bytes: &[u8]) {
     let Some((permitted, bytes)) = bytes.split_first() else {
         return;

@@ -52,7 +52,8 @@ impl Simulated {
     }
 }
 
-/// Does what was [checked](crate::request::Request::check). `pushing` is the push that may still go on.
+/// Does what was [checked](crate::request::Request::check). `pushing` is the push that may still go
+/// on.
 fn apply(disturbance: Disturbance, robot: &mut Robot, pushing: &mut Option<TouchId>) {
     match disturbance {
         Disturbance::Push {

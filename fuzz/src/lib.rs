@@ -1,8 +1,8 @@
 //! Fuzz targets of the protocol, of recordings and of the dashboard: what they check, and what they
 //! start from.
 //!
-//! Both are the sources of tests of `franka-proto`, `franka-record` and `franka-dash`, which run them
-//! on fewer inputs. Of the dashboard, only what takes messages is built.
+//! Both are the sources of tests of `franka-proto`, `franka-record` and `franka-dash`, which run
+//! them on fewer inputs. Of the dashboard, only what takes messages is built.
 
 #[path = "../../franka-proto/tests/protocol/any_bytes/checks.rs"]
 pub mod checks;

@@ -67,8 +67,8 @@ impl Request {
     }
 }
 
-/// Whether `got` is in a range; otherwise a text that says so. `what` is the name of the number, and
-/// `unit` follows it: empty, or with a space before it.
+/// Whether `got` is in a range; otherwise a text that says so. `what` is the name of the number,
+/// and `unit` follows it: empty, or with a space before it.
 fn within<T: PartialOrd + Display>(
     what: &str,
     unit: &str,
