@@ -1,11 +1,8 @@
-//! Cycles and tools as messages, and back.
-
-use core::time::Duration;
+//! Cycles as messages, and back.
 
 use franka_model::transform;
-use franka_proto::{ControllerMode, Errors, MotionGeneratorMode, RobotMode, RobotState};
+use franka_proto::{ControllerMode, Errors, RobotState};
 use franka_rt::driver::Activity;
-use franka_rt::session::{Bindings, Guard};
 use franka_rt::stats::Slack;
 
 use super::arrays::{
@@ -13,6 +10,7 @@ use super::arrays::{
     put_unless_zero,
 };
 use super::franka;
+use super::numbers::{bindings, generator, generator_number, guard_number, robot_mode, seconds};
 use crate::{Cycle, HostTime};
 
 impl franka::Cycle {
@@ -115,13 +113,13 @@ impl franka::Cycle {
         record.ddq_ref = get(&self.ddq_ref);
         record.q_target = (!self.q_target.is_empty()).then(|| get(&self.q_target));
         record.pose_target = self.target.as_ref().and_then(isometry);
-        record.elapsed = seconds(self.elapsed);
-        record.remaining = seconds(self.remaining);
+        record.elapsed = seconds(self.elapsed.into());
+        record.remaining = seconds(self.remaining.into());
         record.tau_c = get(&self.tau_c);
         record.compensation = get(&self.compensation);
         record.bindings = bindings(&self.guards);
-        record.late = seconds(self.late);
-        record.turnaround = seconds(self.turnaround);
+        record.late = seconds(self.late.into());
+        record.turnaround = seconds(self.turnaround.into());
         record.slack = self
             .slack
             .map(|slack| Slack::from_nanos((f64::from(slack) * 1e9).round() as i64));
@@ -156,53 +154,6 @@ impl franka::Cycle {
     }
 }
 
-impl franka::Tool {
-    /// The tool that `state` names.
-    pub fn of(state: &RobotState) -> Self {
-        Self {
-            robot_time: state.message_id,
-            f_t_ee: state.F_T_EE.into(),
-            ee_t_k: state.EE_T_K.into(),
-            f_t_ne: state.F_T_NE.into(),
-            ne_t_ee: state.NE_T_EE.into(),
-            m_ee: state.m_ee,
-            i_ee: state.I_ee.into(),
-            f_x_cee: state.F_x_Cee.into(),
-            m_load: state.m_load,
-            i_load: state.I_load.into(),
-            f_x_cload: state.F_x_Cload.into(),
-        }
-    }
-
-    /// Whether `state` names the same tool.
-    pub fn is_of(&self, state: &RobotState) -> bool {
-        self.f_t_ee == state.F_T_EE
-            && self.ee_t_k == state.EE_T_K
-            && self.f_t_ne == state.F_T_NE
-            && self.ne_t_ee == state.NE_T_EE
-            && self.m_ee == state.m_ee
-            && self.i_ee == state.I_ee
-            && self.f_x_cee == state.F_x_Cee
-            && self.m_load == state.m_load
-            && self.i_load == state.I_load
-            && self.f_x_cload == state.F_x_Cload
-    }
-
-    /// Writes the tool into `state`.
-    pub fn apply(&self, state: &mut RobotState) {
-        state.F_T_EE = get_exact(&self.f_t_ee);
-        state.EE_T_K = get_exact(&self.ee_t_k);
-        state.F_T_NE = get_exact(&self.f_t_ne);
-        state.NE_T_EE = get_exact(&self.ne_t_ee);
-        state.m_ee = self.m_ee;
-        state.I_ee = get_exact(&self.i_ee);
-        state.F_x_Cee = get_exact(&self.f_x_cee);
-        state.m_load = self.m_load;
-        state.I_load = get_exact(&self.i_load);
-        state.F_x_Cload = get_exact(&self.f_x_cload);
-    }
-}
-
 /// Fills in what follows from the rest.
 fn derive(state: &mut RobotState) {
     let pose = |matrix| transform::isometry_from_array(matrix).unwrap_or_default();
@@ -226,95 +177,15 @@ fn activity(activity: Activity) -> franka::Activity {
     }
 }
 
-/// The mode of a number; one without a meaning reads as `Other`.
-pub(super) fn robot_mode(number: i32) -> RobotMode {
-    u8::try_from(number).map_or(RobotMode::Other, RobotMode::from_byte)
-}
-
-fn generator_number(mode: MotionGeneratorMode) -> u32 {
-    match mode {
-        MotionGeneratorMode::Idle => 0,
-        MotionGeneratorMode::JointPosition => 1,
-        MotionGeneratorMode::JointVelocity => 2,
-        MotionGeneratorMode::CartesianPosition => 3,
-        MotionGeneratorMode::CartesianVelocity => 4,
-        MotionGeneratorMode::None => 5,
-        MotionGeneratorMode::Unknown(byte) => 256 + u32::from(byte),
-    }
-}
-
-fn generator(number: u32) -> MotionGeneratorMode {
-    match number {
-        0 => MotionGeneratorMode::Idle,
-        1 => MotionGeneratorMode::JointPosition,
-        2 => MotionGeneratorMode::JointVelocity,
-        3 => MotionGeneratorMode::CartesianPosition,
-        4 => MotionGeneratorMode::CartesianVelocity,
-        5 => MotionGeneratorMode::None,
-        unknown => MotionGeneratorMode::Unknown((unknown & 0xff) as u8),
-    }
-}
-
-/// The number of a guard in messages: one more than its own, as 0 is for a guard without a name.
-pub(super) fn guard_number(guard: Guard) -> i32 {
-    guard as i32 + 1
-}
-
-/// The guard of a number.
-pub(super) fn guard(number: i32) -> Option<Guard> {
-    let index = usize::try_from(number).ok()?.checked_sub(1)?;
-    Guard::ALL.get(index).copied()
-}
-
-/// The guards of their numbers; those without a meaning are left out.
-fn bindings(numbers: &[i32]) -> Bindings {
-    let mut bindings = Bindings::default();
-    for guard in numbers.iter().filter_map(|&number| guard(number)) {
-        bindings.insert(guard);
-    }
-    bindings
-}
-
-/// A time of a message; zero for one that is none.
-fn seconds(seconds: f32) -> Duration {
-    let seconds = Duration::try_from_secs_f64(f64::from(seconds)).unwrap_or_default();
-    // What an f32 resolves of a time: no more digits than there were.
-    Duration::from_nanos(u64::try_from(seconds.as_nanos()).unwrap_or(u64::MAX))
-}
-
 #[cfg(test)]
 mod tests {
+    use core::time::Duration;
+
     use super::*;
+    use franka_proto::{MotionGeneratorMode, RobotMode};
+    use franka_rt::session::Guard;
     use nalgebra::{Isometry3, Vector3};
     use prost::Message as _;
-
-    #[test]
-    fn guards_have_the_numbers_of_their_names() {
-        for named in Guard::ALL {
-            let number = guard_number(named);
-            let message = franka::Guard::try_from(number).unwrap();
-            assert_eq!(format!("{message:?}"), format!("{named:?}"));
-            assert_eq!(guard(number), Some(named));
-        }
-        assert_eq!(guard(Guard::ALL.len() as i32 + 1), None);
-        assert_eq!((guard(0), guard(-1)), (None, None));
-    }
-
-    #[test]
-    fn modes_keep_their_numbers() {
-        for mode in RobotMode::ALL {
-            let name = franka::RobotMode::try_from(i32::from(mode.byte())).unwrap();
-            assert_eq!(format!("{name:?}"), format!("{mode:?}"));
-            assert_eq!(robot_mode(name.into()), mode);
-        }
-        for byte in 0..=u8::MAX {
-            let mode = MotionGeneratorMode::Unknown(byte);
-            assert_eq!(generator(generator_number(mode)), mode);
-        }
-        for number in 0..6 {
-            assert_eq!(generator_number(generator(number)), number);
-        }
-    }
 
     /// A cycle whose numbers all differ, and have few digits.
     fn cycle() -> Cycle {

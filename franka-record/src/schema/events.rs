@@ -1,17 +1,17 @@
-//! Events and gripper states as messages, and back.
+//! Events as messages, and back.
 
 use core::time::Duration;
 
-use franka_proto::{Errors, gripper, vacuum};
+use franka_proto::Errors;
 
 use super::arrays::{from_numbers, numbers};
-use super::cycles::{guard, guard_number, robot_mode};
 use super::franka;
 use super::franka::event::outcome::Ending as EndingNumber;
 use super::franka::event::{self, Kind, note};
+use super::numbers::{guard, guard_number, robot_mode, seconds};
 use crate::HostTime;
 use crate::event::{
-    Diagnosis, Ending, Event, EventKind, Goal, GripperState, Level, Note, Outcome, Request, Target,
+    Diagnosis, Ending, Event, EventKind, Goal, Level, Note, Outcome, Request, Target,
 };
 
 impl From<&Event> for franka::Event {
@@ -209,69 +209,6 @@ fn ending(outcome: &event::Outcome) -> Ending {
     }
 }
 
-/// A time of a message; zero for one that is none.
-fn seconds(seconds: f64) -> Duration {
-    Duration::try_from_secs_f64(seconds).unwrap_or_default()
-}
-
-impl From<&GripperState> for franka::Gripper {
-    fn from(state: &GripperState) -> Self {
-        let (time, kind) = match *state {
-            GripperState::Hand(hand) => {
-                let kind = franka::gripper::Kind::Hand(franka::gripper::Hand {
-                    width: hand.width,
-                    max_width: hand.max_width,
-                    is_grasped: hand.is_grasped,
-                    temperature: u32::from(hand.temperature),
-                });
-                (hand.message_id, kind)
-            }
-            GripperState::Vacuum(vacuum) => {
-                let kind = franka::gripper::Kind::Vacuum(franka::gripper::Vacuum {
-                    vacuum: vacuum.vacuum,
-                    actual_power: vacuum.actual_power,
-                    part_present: vacuum.part_present,
-                    part_detached: vacuum.part_detached,
-                    in_control_range: vacuum.in_control_range,
-                    device_status: u32::from(vacuum.device_status.byte()),
-                });
-                (vacuum.message_id, kind)
-            }
-        };
-        Self {
-            time,
-            kind: Some(kind),
-        }
-    }
-}
-
-impl franka::Gripper {
-    /// The state of this message; `None` if it is of a kind that this version does not know.
-    pub fn to_state(&self) -> Option<GripperState> {
-        Some(match self.kind.as_ref()? {
-            franka::gripper::Kind::Hand(hand) => GripperState::Hand(gripper::State {
-                message_id: self.time,
-                width: hand.width,
-                max_width: hand.max_width,
-                is_grasped: hand.is_grasped,
-                temperature: u16::try_from(hand.temperature).unwrap_or(u16::MAX),
-            }),
-            franka::gripper::Kind::Vacuum(vacuum) => {
-                let status = u8::try_from(vacuum.device_status).unwrap_or(u8::MAX);
-                GripperState::Vacuum(vacuum::State {
-                    message_id: self.time,
-                    in_control_range: vacuum.in_control_range,
-                    part_detached: vacuum.part_detached,
-                    part_present: vacuum.part_present,
-                    device_status: vacuum::DeviceStatus::from_byte(status),
-                    actual_power: vacuum.actual_power,
-                    vacuum: vacuum.vacuum,
-                })
-            }
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -400,32 +337,5 @@ mod tests {
                 "guard-deviation: as it is said"
             ]
         );
-    }
-
-    #[test]
-    fn gripper_states_survive_their_messages() {
-        for state in [
-            GripperState::Hand(gripper::State {
-                message_id: 9,
-                width: 0.05,
-                max_width: 0.08,
-                is_grasped: true,
-                temperature: 31,
-            }),
-            GripperState::Vacuum(vacuum::State {
-                message_id: 9,
-                in_control_range: true,
-                part_detached: false,
-                part_present: true,
-                device_status: vacuum::DeviceStatus::Unknown(17),
-                actual_power: 80,
-                vacuum: -5,
-            }),
-        ] {
-            let bytes = franka::Gripper::from(&state).encode_to_vec();
-            let message = franka::Gripper::decode(&*bytes).unwrap();
-            assert_eq!(message.to_state(), Some(state));
-        }
-        assert_eq!(franka::Gripper::default().to_state(), None);
     }
 }

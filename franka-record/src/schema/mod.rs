@@ -3,6 +3,9 @@
 mod arrays;
 mod cycles;
 mod events;
+mod grippers;
+mod numbers;
+mod tool;
 mod topic;
 
 pub use prost::Message;
