@@ -3,7 +3,9 @@
 use std::fmt;
 
 use franka_proto::framing::{FrameError, Message, next_message};
+use franka_proto::wire::service::ConnectRequest;
 use franka_proto::{Protocol as _, Version, gripper, vacuum};
+use zerocopy::FromBytes as _;
 
 /// A device with a TCP service of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -42,6 +44,14 @@ impl Device {
             Self::Robot => next_message(stream),
             Self::Hand | Self::VacuumGripper => gripper::next_message(stream),
         }
+    }
+
+    /// The `Connect` with which a client's stream begins; `None` while it is incomplete, or if the
+    /// stream begins otherwise.
+    pub(crate) fn connect(self, stream: &[u8]) -> Option<ConnectRequest> {
+        let message = self.next_message(stream).ok()??;
+        let (request, _) = ConnectRequest::read_from_prefix(message.payload).ok()?;
+        (message.header.command == 0).then_some(request)
     }
 
     /// Where a message's id stands: behind the command, which is shorter for the end effectors.

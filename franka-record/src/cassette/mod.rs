@@ -27,6 +27,7 @@ mod options;
 #[cfg(feature = "pcap")]
 pub mod pcap;
 mod player;
+mod polling;
 mod script;
 mod server;
 mod tap;

@@ -3,9 +3,7 @@
 use std::time::Duration;
 
 use franka_proto::framing::{FrameError, Message};
-use franka_proto::wire::service::ConnectRequest;
 use franka_proto::{RobotCommand, Version};
-use zerocopy::FromBytes as _;
 
 use super::{Connection, Device, Payload, Side};
 
@@ -166,19 +164,16 @@ fn next(device: Device, stream: &mut Vec<u8>) -> Result<Option<Vec<u8>>, FrameEr
 
 /// The version that a client's first message announces.
 fn announced(device: Device, message: &[u8]) -> Result<u16, Unplayable> {
-    let parsed = device.next_message(message).ok().flatten();
-    let connect = parsed.filter(|message| message.header.command == 0);
-    let request =
-        connect.and_then(|message| ConnectRequest::read_from_prefix(message.payload).ok());
-    request
-        .map(|(request, _)| request.version.get())
-        .ok_or_else(|| Unplayable::NoConnect {
+    let request = device.connect(message);
+    let version = request.map(|request| request.version.get());
+    version.ok_or_else(|| {
+        let message = device.next_message(message).ok().flatten();
+        let got = message.map(|message| format!("command {}", message.header.command));
+        Unplayable::NoConnect {
             device,
-            got: parsed.map_or_else(
-                || "none".to_owned(),
-                |message| format!("command {}", message.header.command),
-            ),
-        })
+            got: got.unwrap_or_else(|| "none".to_owned()),
+        }
+    })
 }
 
 /// The counter of milliseconds with which a datagram begins.

@@ -9,7 +9,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::tap::TICK;
+use super::polling::{TICK, is_timeout};
 use super::{
     Cassette, Connection, Device, Mismatch, Output, PlayOptions, Player, Tally, Unplayable,
 };
@@ -379,13 +379,6 @@ fn read_datagrams(
             return;
         }
     }
-}
-
-fn is_timeout(error: &io::Error) -> bool {
-    matches!(
-        error.kind(),
-        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
-    )
 }
 
 /// A client connects rarely, and waits a second for it.

@@ -4,9 +4,6 @@ use std::collections::{BTreeMap, HashMap};
 use std::net::{IpAddr, SocketAddr};
 use std::time::Duration;
 
-use franka_proto::wire::service::ConnectRequest;
-use zerocopy::FromBytes as _;
-
 use super::packets::{Body, Packet, Segment};
 use crate::cassette::{Cassette, Connection, Device, Event, Payload, Side};
 
@@ -111,8 +108,9 @@ impl Sessions {
                 (from, &what, &mut session.hello)
             {
                 hello.extend_from_slice(bytes);
-                if let Some(port) = announced(device, hello) {
+                if let Some(request) = device.connect(hello) {
                     session.hello = None;
+                    let port = request.udp_port.get();
                     let client = SocketAddr::new(session.client.ip(), port);
                     self.announced.insert((client, session.robot.ip()), index);
                 }
@@ -188,13 +186,6 @@ impl Stream {
 /// How far `one` is ahead of `other` in a stream's numbers, which wrap.
 fn ahead(one: u32, other: u32) -> i32 {
     one.wrapping_sub(other).cast_signed()
-}
-
-/// The port that a client's first message announces, once it is complete.
-fn announced(device: Device, stream: &[u8]) -> Option<u16> {
-    let message = device.next_message(stream).ok()??;
-    let (request, _) = ConnectRequest::read_from_prefix(message.payload).ok()?;
-    (message.header.command == 0).then(|| request.udp_port.get())
 }
 
 /// Segments that may wait for one that was not captured: a stream with a hole is lost anyway.

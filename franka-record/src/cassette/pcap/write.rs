@@ -3,8 +3,6 @@
 use std::time::Duration;
 
 use etherparse::PacketBuilder;
-use franka_proto::wire::service::ConnectRequest;
-use zerocopy::FromBytes as _;
 
 use crate::cassette::{Cassette, Connection, Payload, Side};
 
@@ -44,10 +42,8 @@ struct Conversation {
 impl Conversation {
     fn new(connection: &Connection, number: u16) -> Self {
         let stream = connection.stream(Side::Client);
-        let message = connection.device.next_message(&stream).ok().flatten();
-        let request =
-            message.and_then(|message| ConnectRequest::read_from_prefix(message.payload).ok());
-        let announced = request.map(|(request, _)| request.udp_port.get());
+        let request = connection.device.connect(&stream);
+        let announced = request.map(|request| request.udp_port.get());
         Self {
             client_tcp: CLIENT_PORTS + number,
             client_udp: announced.unwrap_or(CLIENT_PORTS + number),

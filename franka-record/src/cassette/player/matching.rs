@@ -1,8 +1,5 @@
 //! What a client sends beside what was recorded.
 
-use franka_proto::wire::service::ConnectRequest;
-use zerocopy::FromBytes as _;
-
 use super::{Matching, Mismatch, Player, Step, counter};
 
 impl Player {
@@ -26,9 +23,8 @@ impl Player {
         to.copy_from_slice(&message[range]);
         self.ids.insert(from, to);
         if connect {
-            let payload = &message[device.id_range().end + 4..];
-            let request = ConnectRequest::read_from_prefix(payload);
-            self.udp_port = request.ok().map(|(request, _)| request.udp_port.get());
+            let request = device.connect(message);
+            self.udp_port = request.map(|request| request.udp_port.get());
         }
         self.requested = step + 1;
         self.tally.requests += 1;

@@ -9,8 +9,9 @@ use std::time::{Duration, Instant};
 use franka_proto::wire::service::ConnectRequest;
 use zerocopy::FromBytes as _;
 
+use super::Route;
 use super::journal::{Lane, Recorder, Source};
-use super::{Route, TICK};
+use crate::cassette::polling::{TICK, is_timeout};
 use crate::cassette::{Device, Payload, Side};
 
 /// What the threads of a link share.
@@ -209,13 +210,6 @@ fn received(socket: &UdpSocket, buffer: &mut [u8]) -> Option<(usize, SocketAddr)
             None
         }
     }
-}
-
-fn is_timeout(error: &io::Error) -> bool {
-    matches!(
-        error.kind(),
-        io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted
-    )
 }
 
 /// The client's stream up to `Connect`, in which the port is replaced.

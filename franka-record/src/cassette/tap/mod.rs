@@ -9,9 +9,10 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread::JoinHandle;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use self::journal::Journal;
+use super::polling::TICK;
 use super::{CassetteError, CassetteWriter, Device};
 
 /// A tap on the connections to a robot and its end effectors, on threads of its own.
@@ -184,6 +185,3 @@ fn start(
     let thread = std::thread::Builder::new().name(name).spawn(serve);
     thread.ok()
 }
-
-/// How often threads look whether to stop.
-pub(super) const TICK: Duration = Duration::from_millis(20);

@@ -1,0 +1,129 @@
+//! When the robot of a player goes on, and what it then sends.
+
+use std::time::Duration;
+
+use super::{Matching, Mismatch, Output, Pace, Player, Step, counter};
+
+impl Player {
+    /// Whether the step of a command that has not come may be passed.
+    pub(super) fn command_gate(&mut self, now: Duration) -> Result<Gate, Mismatch> {
+        if self.position < self.commanded {
+            return Ok(Gate::Open);
+        }
+        if self.is_unfinished_motion(self.position) {
+            return Ok(Gate::Hold);
+        }
+        // A client that is ahead with its next request may command no more before it is answered.
+        let ahead = self.requested > self.position;
+        if self.options.pace == Pace::Recorded || self.silent || ahead {
+            return Ok(Gate::Open);
+        }
+        let since = *self.blocked.get_or_insert(now);
+        if self.options.pace == Pace::Lockstep || now < since + self.options.patience {
+            return Ok(Gate::Wait);
+        }
+        match self.options.matching {
+            Matching::Lenient => self.silent = true,
+            Matching::Strict => {
+                let expected = self.expected(self.position);
+                self.fail(format!("none within {:?}", self.options.patience), expected)?;
+            }
+        }
+        Ok(Gate::Open)
+    }
+
+    /// Whether a step is the last command of a motion and a lenient play waits for it as for a
+    /// request.
+    pub(super) fn is_unfinished_motion(&self, step: usize) -> bool {
+        let waits = self.options.matching == Matching::Lenient && step >= self.commanded;
+        waits
+            && matches!(&self.script.steps[step].1, Step::Command(bytes) if self.script.finishes(bytes))
+    }
+
+    /// Goes on to the next step, which is due as long after this one as in the recording. What the
+    /// client kept waiting moves everything after it.
+    pub(super) fn pass(&mut self, now: Duration) {
+        let steps = &self.script.steps;
+        let (at, step) = &steps[self.position];
+        let next = steps.get(self.position + 1).map_or(*at, |(next, _)| *next);
+        let waited = self.blocked.take().is_some();
+        let answered = matches!(step, Step::Command(_)) && self.position < self.commanded;
+        if answered && self.options.pace == Pace::Answered {
+            self.due = now;
+        } else {
+            let base = if waited { now } else { self.due };
+            self.due = base + next.saturating_sub(*at);
+        }
+        self.position += 1;
+    }
+
+    /// Does what the robot did in this step.
+    pub(super) fn perform(&mut self, now: Duration) -> Output {
+        match self.script.steps[self.position].1.clone() {
+            Step::Reply(mut bytes) => {
+                let range = self.script.device.id_range();
+                if let Some(id) = bytes.get_mut(range)
+                    && let Some(actual) = self.ids.get(&*id)
+                {
+                    id.copy_from_slice(actual);
+                }
+                Output::Stream(bytes)
+            }
+            Step::State(bytes) => {
+                let recorded = counter(self.script.device, &bytes);
+                self.send_state(now, bytes, recorded, self.shift)
+            }
+            _ => Output::End,
+        }
+    }
+
+    /// Repeats the last state if it is time, as the client is awaited.
+    pub(super) fn hold(&mut self, now: Duration) -> Option<Output> {
+        self.blocked.get_or_insert(now);
+        if self.options.pace == Pace::Lockstep {
+            return None;
+        }
+        let (at, state) = self.last_state.take()?;
+        if now < at + self.script.interval {
+            self.last_state = Some((at, state));
+            return None;
+        }
+        self.shift = self.shift.wrapping_add(1);
+        self.tally.held += 1;
+        Some(self.send_state(now, state, None, 1))
+    }
+
+    /// A state with its id moved by `ahead`.
+    fn send_state(
+        &mut self,
+        now: Duration,
+        mut state: Vec<u8>,
+        recorded: Option<u64>,
+        ahead: u64,
+    ) -> Output {
+        let size = self.script.device.counter_size();
+        if let Some(id) = counter(self.script.device, &state) {
+            let id = id.wrapping_add(ahead);
+            state[..size].copy_from_slice(&id.to_le_bytes()[..size]);
+            if self.sent.len() == REMEMBERED {
+                self.sent.pop_front();
+            }
+            self.sent.push_back((id, recorded));
+        }
+        self.tally.states += 1;
+        self.last_state = Some((now, state.clone()));
+        Output::Datagram(state)
+    }
+}
+
+/// Whether a step of the client may be passed.
+pub(super) enum Gate {
+    Open,
+    /// Wait, and send states meanwhile.
+    Hold,
+    /// Wait, and send nothing.
+    Wait,
+}
+
+/// Ids of states that are remembered, in states: four seconds. No client answers older ones.
+const REMEMBERED: usize = 4096;
