@@ -10,6 +10,7 @@
 //!
 //! | module | holds |
 //! |---|---|
+//! | `explainer` | cycles and events, one after the other |
 //! | `timeline` | what changed, and when |
 //! | `margins` | the nearest approach to each limit, and peaks |
 //! | `place` | the contact when the motion ended |
@@ -17,7 +18,8 @@
 //! | `figure`, `polyline`, `sketch` | the figure: curves with few points, and the arm with the contact |
 //!
 //! What ended is the last motion that the robot stopped; without such a stop, it is the newest
-//! cycle. Memory is bounded, however many cycles there are.
+//! cycle. A robot that is started again counts its time anew: what is explained is then the newest
+//! run with such a stop, or else the newest. Memory is bounded, however many cycles there are.
 //!
 //! # Example
 //!
@@ -36,6 +38,7 @@
 //! println!("{explanation}");
 //! ```
 
+mod explainer;
 mod figure;
 mod margins;
 mod place;
@@ -46,18 +49,15 @@ mod sketch;
 mod tests;
 mod timeline;
 
-use std::collections::VecDeque;
-
 use franka_diagnosis::{Case, Diagnosis};
-use franka_model::contact::Tare;
-use franka_model::{JointVector, Model, RobotKind};
-use franka_proto::{Errors, RobotState};
-use franka_rt::driver::Record;
+use franka_model::{Model, RobotKind};
+use franka_proto::Errors;
 use franka_rt::lifecycle::ControlError;
 
-use crate::recording::{RecordingError, RobotRecording};
-use crate::{Cycle, Event, EventKind};
+use crate::recording::RobotRecording;
+use crate::{Cycle, Event};
 
+pub use explainer::Explainer;
 pub use margins::{Approach, Margins, Peak, Peaks};
 pub use place::{Place, Placed};
 pub use timeline::{Moment, MomentKind};
@@ -147,228 +147,6 @@ pub struct Trace {
     pub force: f64,
 }
 
-/// Makes an [`Explanation`] of cycles, one after the other.
-#[derive(Clone, Debug)]
-pub struct Explainer<'a> {
-    model: &'a Model,
-    tare: Tare,
-    timeline: timeline::Timeline,
-    margins: Margins,
-    peaks: Peaks,
-    lost: Lost,
-    /// Of the newest cycles, until the end.
-    window: VecDeque<Trace>,
-    ended: Option<Ended>,
-    first: Option<u64>,
-    last: u64,
-    cycles: u64,
-    has_hand: bool,
-    diagnosis: Option<Told>,
-}
-
-/// A diagnosis, and when it was made.
-#[derive(Clone, Debug)]
-struct Told {
-    time: u64,
-    diagnosis: Option<Diagnosis>,
-    text: String,
-}
-
-/// The newest end of a motion.
-#[derive(Clone, Debug)]
-struct Ended {
-    time: u64,
-    errors: Errors,
-    window: VecDeque<Trace>,
-    tared: f64,
-    /// Whether the robot still shows it.
-    holds: bool,
-}
-
-impl<'a> Explainer<'a> {
-    /// For cycles of a robot of this model.
-    pub fn new(model: &'a Model) -> Self {
-        Self {
-            model,
-            tare: Tare::new(),
-            timeline: timeline::Timeline::default(),
-            margins: Margins::default(),
-            peaks: Peaks::default(),
-            lost: Lost::default(),
-            window: VecDeque::new(),
-            ended: None,
-            first: None,
-            last: 0,
-            cycles: 0,
-            has_hand: false,
-            diagnosis: None,
-        }
-    }
-
-    /// Takes in the next cycle. One that is not newer than the last is left out.
-    pub fn push(&mut self, cycle: &Cycle) {
-        self.take(&cycle.state, Some(&cycle.record));
-    }
-
-    /// Takes in a state of which nothing else is known.
-    pub fn push_state(&mut self, state: &RobotState) {
-        self.take(state, None);
-    }
-
-    /// Takes in an event: goals, outcomes, notes and the diagnosis of an error. Changes of mode and
-    /// errors are found in the cycles.
-    pub fn push_event(&mut self, event: &Event) {
-        if let EventKind::Diagnosis(diagnosis) = &event.kind {
-            self.diagnosis = Some(Told {
-                time: event.robot_time,
-                diagnosis: read(&diagnosis.json),
-                text: diagnosis.text.clone(),
-            });
-        }
-        self.timeline.event(event);
-    }
-
-    fn note_unread(&mut self, error: &RecordingError) {
-        let text = format!("part of the recording cannot be read: {error}");
-        self.timeline.add(self.last, MomentKind::Note, text);
-    }
-
-    fn take(&mut self, state: &RobotState, record: Option<&Record>) {
-        let time = state.message_id;
-        if self.first.is_some() && time <= self.last {
-            return;
-        }
-        let lost = match self.first {
-            Some(_) => time - self.last - 1,
-            None => 0,
-        };
-        self.first.get_or_insert(time);
-        self.cycles += 1;
-        if lost > 0 {
-            self.lost.states += lost;
-            if lost > self.lost.most_in_a_row {
-                self.lost.most_in_a_row = lost;
-                self.lost.most_at = self.last;
-            }
-        }
-        self.has_hand = state.m_ee > BARE;
-        let dq = JointVector::from(state.dq);
-        let torque = -JointVector::from(state.tau_ext_hat_filtered);
-        let passed = if self.cycles > 1 {
-            (1 + lost) as f64 * 1e-3
-        } else {
-            0.0
-        };
-        let external = self.tare.update(&torque, &dq, passed);
-        self.timeline.cycle(state, record, lost);
-        self.margins.cycle(self.model, state);
-        self.peaks.cycle(state, record, &external);
-        self.last = time;
-
-        let trace = self.trace(state, lost, &external);
-        self.window.push_back(trace);
-        while self.window.front().is_some_and(|t| time - t.time >= SPAN) {
-            self.window.pop_front();
-        }
-        self.note_end(state);
-    }
-
-    fn trace(&self, state: &RobotState, lost: u64, external: &JointVector) -> Trace {
-        let limits = self.model.joint_limits();
-        let (least, greatest) = limits.velocity_envelope(&state.q.into(), 0.0);
-        let share = |value: f64, limit: f64| {
-            if limit.abs() > 0.0 {
-                value / limit.abs()
-            } else {
-                0.0
-            }
-        };
-        let [x, y, z, ..] = state.O_F_ext_hat_K;
-        Trace {
-            time: state.message_id,
-            lost,
-            q: state.q,
-            speed: std::array::from_fn(|i| {
-                let v = state.dq[i];
-                share(v, if v < 0.0 { least[i] } else { greatest[i] })
-            }),
-            external: (*external).into(),
-            torque: std::array::from_fn(|i| share(state.tau_J[i], limits.torque[i])),
-            fastest: state.dq.iter().fold(0.0, |most: f64, v| most.max(v.abs())),
-            force: nalgebra::Vector3::new(x, y, z).norm(),
-        }
-    }
-
-    /// Keeps the window of the first state that shows why the last motion was ended.
-    fn note_end(&mut self, state: &RobotState) {
-        let errors = state.reflex_reason;
-        match &mut self.ended {
-            Some(ended) if ended.holds && ended.errors == errors => {}
-            Some(ended) if errors.is_empty() => ended.holds = false,
-            // A recording that begins after a reflex shows no end.
-            _ if self.cycles == 1 && !errors.is_empty() => {
-                self.ended = None;
-            }
-            _ if errors.is_empty() => {}
-            _ => {
-                self.ended = Some(Ended {
-                    time: state.message_id,
-                    errors,
-                    window: self.window.clone(),
-                    tared: self.tare.learned(),
-                    holds: true,
-                });
-            }
-        }
-    }
-
-    /// The explanation of all that was taken in.
-    pub fn finish(self) -> Explanation {
-        let stopped = self.ended.is_some();
-        let ended = self.ended.unwrap_or(Ended {
-            time: self.last,
-            errors: Errors::NONE,
-            window: self.window,
-            tared: self.tare.learned(),
-            holds: false,
-        });
-        let traces: Vec<_> = ended.window.into();
-        let contact = place::of(self.model, self.has_hand, &traces, ended.tared);
-        let (timeline, moments_left_out) = self.timeline.finish();
-        let cause = stopped.then(|| {
-            // One that is older is of another motion.
-            let told = self.diagnosis.filter(|told| told.time >= ended.time);
-            let (diagnosis, text) = match told {
-                Some(told) => (told.diagnosis, told.text),
-                None => (None, format!("the robot stopped: {}", ended.errors)),
-            };
-            Cause {
-                errors: ended.errors,
-                diagnosis,
-                text,
-            }
-        });
-        Explanation {
-            robot: self.model.kind(),
-            first: self.first.unwrap_or_default(),
-            last: self.last,
-            cycles: self.cycles,
-            end: ended.time,
-            cause,
-            timeline,
-            moments_left_out,
-            margins: self.margins,
-            peaks: self.peaks,
-            contact,
-            lost: Lost {
-                in_last_second: traces.iter().skip(1).map(|trace| trace.lost).sum(),
-                ..self.lost
-            },
-            last_second: traces,
-        }
-    }
-}
-
 impl Explanation {
     /// Of cycles, oldest first, and events.
     pub fn of(cycles: impl IntoIterator<Item = Cycle>, events: &[Event], model: &Model) -> Self {
@@ -406,29 +184,24 @@ impl Explanation {
         Self::of_case(&Case::from(error), &error.model)
     }
 
-    /// Of a log that was saved.
+    /// Of a log that was saved. The cause is there whether or not the log shows it.
     pub fn of_case(case: &Case, model: &Model) -> Self {
         let mut explainer = Explainer::new(model);
         for entry in case.log.iter() {
             explainer.push_state(&entry.state);
         }
-        let diagnosis = Diagnosis::of(case, model);
-        let text = diagnosis.to_string();
-        explainer.diagnosis = Some(Told {
-            time: explainer.last,
-            diagnosis: Some(diagnosis),
-            text: text.clone(),
-        });
-        let mut explanation = explainer.finish();
-        // A motion may be ended without a reason in the states: preempted, or the user stop.
-        if explanation.cause.is_none() && !case.errors.is_empty() {
-            explanation.cause = Some(Cause {
+        let cause = || {
+            let diagnosis = Diagnosis::of(case, model);
+            Cause {
                 errors: case.errors,
-                diagnosis: None,
-                text,
-            });
+                text: diagnosis.to_string(),
+                diagnosis: Some(diagnosis),
+            }
+        };
+        Self {
+            cause: (!case.errors.is_empty()).then(cause),
+            ..explainer.finish()
         }
-        explanation
     }
 
     /// The last second before the end as an SVG image: what touched the arm, velocities and torques
@@ -439,24 +212,6 @@ impl Explanation {
         figure::draw(self)
     }
 }
-
-/// A diagnosis that was recorded.
-#[cfg(feature = "serde")]
-fn read(json: &str) -> Option<Diagnosis> {
-    serde_json::from_str(json).ok()
-}
-
-/// Recorded diagnoses are read with the feature `serde`; the text is there without.
-#[cfg(not(feature = "serde"))]
-fn read(_: &str) -> Option<Diagnosis> {
-    None
-}
-
-/// How much of the time before the end is kept, `[ms]`.
-const SPAN: u64 = 1000;
-
-/// Below this mass, `[kg]`, nothing is taken to be on the flange; above it is taken for a Hand.
-const BARE: f64 = 0.05;
 
 /// Moments that a timeline holds.
 pub const MOMENTS_MAX: usize = 500;

@@ -8,7 +8,10 @@ use super::{Approach, Explanation, Peak, Place};
 impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.cycles == 0 {
-            return write!(f, "no cycle: there is nothing to explain");
+            return match &self.cause {
+                Some(cause) => write!(f, "no cycle of the motion is known\n{}", cause.text),
+                None => write!(f, "no cycle: there is nothing to explain"),
+            };
         }
         let seconds = (self.last - self.first) as f64 * 1e-3;
         writeln!(

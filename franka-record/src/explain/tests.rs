@@ -1,9 +1,10 @@
-//! Explanations of states made up. Of a simulated arm that is hit: `tests/lockstep/explain.rs`.
+//! Explanations of states made up. Of a simulated arm that is hit: `tests/lockstep/explaining.rs`.
 
 use super::*;
-use crate::HostTime;
 use crate::event::{Ending, Goal, Note, Outcome};
-use franka_proto::{RobotError, RobotMode};
+use crate::{EventKind, HostTime};
+use franka_proto::{RobotError, RobotMode, RobotState};
+use franka_rt::driver::Record;
 
 fn state(message_id: u64) -> RobotState {
     RobotState {
@@ -75,6 +76,60 @@ fn first_edges_come_in_their_order_and_once() {
     let window = &explanation.last_second;
     assert_eq!(window.first().map(|t| t.time), Some(1501));
     assert_eq!(window.last().map(|t| t.time), Some(2500));
+}
+
+#[test]
+fn a_stop_before_the_first_cycle_is_none_of_these() {
+    let explanation = explained(hit().into_iter().skip(2600));
+    assert_eq!((&explanation.cause, explanation.end), (&None, 3000));
+    let text = explanation.to_string();
+    assert!(
+        text.contains("has ended a motion before: [\"joint_reflex"),
+        "{text}"
+    );
+}
+
+/// The robot stops, is started again and stops no more; its clock begins anew.
+#[test]
+fn a_robot_that_was_started_again_does_not_hide_the_stop_before() {
+    let received = |number: usize| HostTime::from_nanos(number as u64 * 1_000_000);
+    let states = hit().into_iter().chain((5..=400).map(state));
+    let mut explainer = Explainer::new(Model::fr3());
+    for (number, state) in states.enumerate() {
+        explainer.push(&Cycle {
+            time: received(number),
+            state,
+            ..Cycle::default()
+        });
+    }
+    for (number, text) in [(1200, "before"), (3100, "after")] {
+        explainer.push_event(&Event {
+            time: received(number),
+            robot_time: 1,
+            kind: EventKind::Note(Note {
+                text: text.into(),
+                ..Note::default()
+            }),
+        });
+    }
+    let explained = |explainer: Explainer<'_>| {
+        let explanation = explainer.finish();
+        let notes = explanation.timeline.iter();
+        let notes = notes.filter(|moment| moment.kind == MomentKind::Note);
+        let notes: Vec<_> = notes.map(|moment| moment.text.clone()).collect();
+        (explanation.end, explanation.cycles, notes)
+    };
+    let again = "the robot was started again: its clock goes back to 5 ms";
+    let notes = vec!["before".to_owned(), again.to_owned()];
+    assert_eq!(explained(explainer.clone()), (2500, 3000, notes));
+    // Until it stops again.
+    for message_id in 401..=402 {
+        explainer.push_state(&RobotState {
+            reflex_reason: RobotError::JointReflex.into(),
+            ..state(message_id)
+        });
+    }
+    assert_eq!(explained(explainer), (401, 398, vec!["after".to_owned()]));
 }
 
 #[test]

@@ -68,6 +68,7 @@ impl Timeline {
             let text = format!("{lost} states lost before this one");
             self.add(time, MomentKind::Loss, text);
         }
+        let is_first = self.mode.is_none();
         if self.mode != Some(state.robot_mode) {
             let text = match self.mode {
                 Some(mode) => format!("mode {mode} -> {}", state.robot_mode),
@@ -80,7 +81,12 @@ impl Timeline {
         if self.reflex_reason != state.reflex_reason {
             self.reflex_reason = state.reflex_reason;
             if !state.reflex_reason.is_empty() {
-                let text = format!("the robot ends the motion: {}", state.reflex_reason);
+                let what = if is_first {
+                    "the robot has ended a motion before"
+                } else {
+                    "the robot ends the motion"
+                };
+                let text = format!("{what}: {}", state.reflex_reason);
                 self.add(time, MomentKind::Error, text);
             }
         }

@@ -2,6 +2,7 @@
 
 mod any_bytes;
 mod damaged;
+mod explaining;
 mod exporting;
 mod feed;
 mod files;

@@ -1,0 +1,288 @@
+//! Takes in cycles and events, one after the other.
+
+use core::mem;
+use std::collections::VecDeque;
+
+use franka_diagnosis::Diagnosis;
+use franka_model::contact::Tare;
+use franka_model::{JointVector, Model};
+use franka_proto::{Errors, RobotState};
+use franka_rt::driver::Record;
+
+use super::timeline::Timeline;
+use super::{Cause, Explanation, Lost, Margins, MomentKind, Peaks, Trace, place};
+use crate::recording::RecordingError;
+use crate::{Cycle, Event, EventKind, HostTime};
+
+/// Makes an [`Explanation`] of cycles, one after the other.
+#[derive(Clone, Debug)]
+pub struct Explainer<'a> {
+    model: &'a Model,
+    /// The newest run.
+    run: Run,
+    /// The newest run before that in which the robot stopped.
+    stopped: Option<Run>,
+}
+
+/// What there is since the robot was started: its clock goes on.
+#[derive(Clone, Debug, Default)]
+struct Run {
+    /// When its first cycle came, and when that of the next run did.
+    begin: HostTime,
+    end: Option<HostTime>,
+    tare: Tare,
+    timeline: Timeline,
+    margins: Margins,
+    peaks: Peaks,
+    lost: Lost,
+    /// Of the newest cycles, until the end.
+    window: VecDeque<Trace>,
+    /// Of the newest cycle: why the last motion was ended.
+    reflex_reason: Option<Errors>,
+    ended: Option<Ended>,
+    first: Option<u64>,
+    last: u64,
+    cycles: u64,
+    has_hand: bool,
+    diagnosis: Option<Told>,
+}
+
+/// A diagnosis, and when it was made.
+#[derive(Clone, Debug)]
+struct Told {
+    time: u64,
+    diagnosis: Option<Diagnosis>,
+    text: String,
+}
+
+/// The newest end of a motion.
+#[derive(Clone, Debug)]
+struct Ended {
+    time: u64,
+    errors: Errors,
+    window: VecDeque<Trace>,
+    tared: f64,
+}
+
+impl<'a> Explainer<'a> {
+    /// For cycles of a robot of this model.
+    pub fn new(model: &'a Model) -> Self {
+        Self {
+            model,
+            run: Run::default(),
+            stopped: None,
+        }
+    }
+
+    /// Takes in the next cycle. One that is as old as the last is left out; an older one is the
+    /// first since the robot was started again.
+    pub fn push(&mut self, cycle: &Cycle) {
+        self.take(cycle.time, &cycle.state, Some(&cycle.record));
+    }
+
+    /// Takes in a state of which nothing else is known; as [`Self::push`].
+    pub fn push_state(&mut self, state: &RobotState) {
+        self.take(HostTime::default(), state, None);
+    }
+
+    /// Takes in an event: goals, outcomes, notes and the diagnosis of an error. Changes of mode and
+    /// errors are found in the cycles, which have to be there before.
+    pub fn push_event(&mut self, event: &Event) {
+        if event.time >= self.run.begin {
+            self.run.event(event);
+        } else if let Some(stopped) = &mut self.stopped
+            && event.time >= stopped.begin
+            && stopped.end.is_none_or(|end| event.time < end)
+        {
+            stopped.event(event);
+        }
+    }
+
+    pub(super) fn note_unread(&mut self, error: &RecordingError) {
+        let text = format!("part of the recording cannot be read: {error}");
+        self.run.note(text);
+    }
+
+    fn take(&mut self, received: HostTime, state: &RobotState, record: Option<&Record>) {
+        let time = state.message_id;
+        if self.run.first.is_some() && time < self.run.last {
+            let text = format!("the robot was started again: its clock goes back to {time} ms");
+            self.run.note(text);
+            self.run.end = Some(received);
+            let run = mem::take(&mut self.run);
+            if run.ended.is_some() {
+                self.stopped = Some(run);
+            }
+        }
+        if self.run.first.is_none() {
+            self.run.begin = received;
+        } else if time == self.run.last {
+            return;
+        }
+        self.run.take(self.model, state, record);
+    }
+
+    /// The explanation of all that was taken in.
+    pub fn finish(self) -> Explanation {
+        match self.stopped {
+            Some(stopped) if self.run.ended.is_none() => stopped.explained(self.model),
+            _ => self.run.explained(self.model),
+        }
+    }
+}
+
+impl Run {
+    fn note(&mut self, text: String) {
+        self.timeline.add(self.last, MomentKind::Note, text);
+    }
+
+    fn event(&mut self, event: &Event) {
+        if let EventKind::Diagnosis(diagnosis) = &event.kind {
+            self.diagnosis = Some(Told {
+                time: event.robot_time,
+                diagnosis: read(&diagnosis.json),
+                text: diagnosis.text.clone(),
+            });
+        }
+        self.timeline.event(event);
+    }
+
+    /// Takes in a state that is newer than the last.
+    fn take(&mut self, model: &Model, state: &RobotState, record: Option<&Record>) {
+        let time = state.message_id;
+        let lost = match self.first {
+            Some(_) => time - self.last - 1,
+            None => 0,
+        };
+        self.first.get_or_insert(time);
+        self.cycles += 1;
+        if lost > 0 {
+            self.lost.states += lost;
+            if lost > self.lost.most_in_a_row {
+                self.lost.most_in_a_row = lost;
+                self.lost.most_at = self.last;
+            }
+        }
+        self.has_hand = state.m_ee > BARE;
+        let dq = JointVector::from(state.dq);
+        let torque = -JointVector::from(state.tau_ext_hat_filtered);
+        let passed = if self.cycles > 1 {
+            (1 + lost) as f64 * 1e-3
+        } else {
+            0.0
+        };
+        let external = self.tare.update(&torque, &dq, passed);
+        self.timeline.cycle(state, record, lost);
+        self.margins.cycle(model, state);
+        self.peaks.cycle(state, record, &external);
+        self.last = time;
+        self.window.push_back(trace(model, state, lost, &external));
+        while self.window.front().is_some_and(|t| time - t.time >= SPAN) {
+            self.window.pop_front();
+        }
+        self.note_end(state);
+    }
+
+    /// Keeps the window of the first state that shows why the last motion was ended.
+    fn note_end(&mut self, state: &RobotState) {
+        let errors = state.reflex_reason;
+        // What the first cycle shows ended a motion before it.
+        let before = self.reflex_reason.replace(errors).unwrap_or(errors);
+        if errors != before && !errors.is_empty() {
+            self.ended = Some(Ended {
+                time: state.message_id,
+                errors,
+                window: self.window.clone(),
+                tared: self.tare.learned(),
+            });
+        }
+    }
+
+    fn explained(self, model: &Model) -> Explanation {
+        let stopped = self.ended.is_some();
+        let ended = self.ended.unwrap_or(Ended {
+            time: self.last,
+            errors: Errors::NONE,
+            window: self.window,
+            tared: self.tare.learned(),
+        });
+        let traces: Vec<_> = ended.window.into();
+        let contact = place::of(model, self.has_hand, &traces, ended.tared);
+        let (timeline, moments_left_out) = self.timeline.finish();
+        let cause = stopped.then(|| {
+            // One that is older is of another motion.
+            let told = self.diagnosis.filter(|told| told.time >= ended.time);
+            let (diagnosis, text) = match told {
+                Some(told) => (told.diagnosis, told.text),
+                None => (None, format!("the robot stopped: {}", ended.errors)),
+            };
+            Cause {
+                errors: ended.errors,
+                diagnosis,
+                text,
+            }
+        });
+        Explanation {
+            robot: model.kind(),
+            first: self.first.unwrap_or_default(),
+            last: self.last,
+            cycles: self.cycles,
+            end: ended.time,
+            cause,
+            timeline,
+            moments_left_out,
+            margins: self.margins,
+            peaks: self.peaks,
+            contact,
+            lost: Lost {
+                in_last_second: traces.iter().skip(1).map(|trace| trace.lost).sum(),
+                ..self.lost
+            },
+            last_second: traces,
+        }
+    }
+}
+
+fn trace(model: &Model, state: &RobotState, lost: u64, external: &JointVector) -> Trace {
+    let limits = model.joint_limits();
+    let (least, greatest) = limits.velocity_envelope(&state.q.into(), 0.0);
+    let share = |value: f64, limit: f64| {
+        if limit.abs() > 0.0 {
+            value / limit.abs()
+        } else {
+            0.0
+        }
+    };
+    let [x, y, z, ..] = state.O_F_ext_hat_K;
+    Trace {
+        time: state.message_id,
+        lost,
+        q: state.q,
+        speed: std::array::from_fn(|i| {
+            let v = state.dq[i];
+            share(v, if v < 0.0 { least[i] } else { greatest[i] })
+        }),
+        external: (*external).into(),
+        torque: std::array::from_fn(|i| share(state.tau_J[i], limits.torque[i])),
+        fastest: state.dq.iter().fold(0.0, |most: f64, v| most.max(v.abs())),
+        force: nalgebra::Vector3::new(x, y, z).norm(),
+    }
+}
+
+/// A diagnosis that was recorded.
+#[cfg(feature = "serde")]
+fn read(json: &str) -> Option<Diagnosis> {
+    serde_json::from_str(json).ok()
+}
+
+/// Recorded diagnoses are read with the feature `serde`; the text is there without.
+#[cfg(not(feature = "serde"))]
+fn read(_: &str) -> Option<Diagnosis> {
+    None
+}
+
+/// How much of the time before the end is kept, `[ms]`.
+const SPAN: u64 = 1000;
+
+/// Below this mass, `[kg]`, nothing is taken to be on the flange; above it is taken for a Hand.
+const BARE: f64 = 0.05;
