@@ -1,6 +1,7 @@
 //! The thread that takes cycles out of the rings and puts files together.
 
 use core::time::Duration;
+use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
 use std::sync::{Arc, Mutex};
@@ -60,8 +61,8 @@ pub(super) struct Drain {
 struct Source {
     label: String,
     cycles: CycleReader,
-    /// Those that come after them, from another control thread.
-    next: Option<CycleReader>,
+    /// Those that come after them, from other control threads.
+    next: VecDeque<CycleReader>,
     /// Cycles that `cycles` has lost, as far as that was told.
     lost: u64,
     encoder: Encoder,
@@ -135,7 +136,7 @@ impl Drain {
                 Order::Attach(attached) => self.attach(*attached),
                 Order::Resume(robot, cycles) => {
                     if let Some(source) = self.sources.get_mut(robot) {
-                        source.next = Some(*cycles);
+                        source.next.push_back(*cycles);
                     }
                 }
                 Order::Event(robot, event) => self.wait(robot, Waiting::Event(*event)),
@@ -159,7 +160,7 @@ impl Drain {
         self.sources.push(Source {
             label: robot.label().to_owned(),
             cycles,
-            next: None,
+            next: VecDeque::new(),
             lost: 0,
             encoder: Encoder::new(self.sources.len(), &robot),
             waiting: Vec::new(),
@@ -175,42 +176,53 @@ impl Drain {
     }
 
     fn take_cycles(&mut self) {
-        let (mut taken, mut dropped) = (0, 0);
-        for (index, source) in self.sources.iter_mut().enumerate() {
-            source.waiting.sort_by_key(Waiting::time);
-            // No more than there are now, so that the other robots have their turn.
-            for _ in 0..source.cycles.waiting() {
-                let Some(captured) = source.cycles.pop() else {
-                    break;
-                };
-                let cycle = Cycle {
-                    time: self.clock.at(captured.received),
-                    record: captured.record,
-                    state: captured.state,
-                    reference: None,
-                };
-                source.pass(cycle.time, &mut self.files);
-                taken += 1;
-                source.lost += captured.lost;
-                let missing = self.files.take_missing(index);
-                dropped += missing + captured.lost;
-                if missing + captured.lost > 0 {
-                    let cycles = missing + captured.lost;
-                    source.event(cycle.time, EventKind::Dropped { cycles }, &mut self.files);
-                }
-                self.files.flush_if_due(cycle.time);
-                if self.files.begins_chunk(index) {
-                    source.encoder.repeat_tool(cycle.time, &mut source.messages);
-                }
-                source.encoder.cycle(cycle, &mut source.messages);
-                self.files.pass(&mut source.messages);
-            }
-            if let Some(next) = source.next.take_if(|_| source.cycles.waiting() == 0) {
-                dropped += source.note_end(self.clock.now(), &mut self.files);
+        for index in 0..self.sources.len() {
+            self.sources[index].waiting.sort_by_key(Waiting::time);
+            self.take_waiting_cycles(index);
+            // After the last cycle of a control thread those of the next one.
+            while self.sources[index].cycles.waiting() == 0
+                && let Some(next) = self.sources[index].next.pop_front()
+            {
+                let source = &mut self.sources[index];
+                let lost = source.note_end(self.clock.now(), &mut self.files);
                 (source.cycles, source.lost) = (next, 0);
+                lock(&self.status).dropped += lost;
+                self.take_waiting_cycles(index);
             }
             // What is newer than a cycle that is still on its way is close to it.
-            source.pass(self.clock.now(), &mut self.files);
+            self.sources[index].pass(self.clock.now(), &mut self.files);
+        }
+    }
+
+    /// Takes the cycles of a robot that there are now, and no more, so that the others have their
+    /// turn.
+    fn take_waiting_cycles(&mut self, index: usize) {
+        let (mut taken, mut dropped) = (0, 0);
+        let source = &mut self.sources[index];
+        for _ in 0..source.cycles.waiting() {
+            let Some(captured) = source.cycles.pop() else {
+                break;
+            };
+            let cycle = Cycle {
+                time: self.clock.at(captured.received),
+                record: captured.record,
+                state: captured.state,
+                reference: None,
+            };
+            source.pass(cycle.time, &mut self.files);
+            taken += 1;
+            source.lost += captured.lost;
+            let cycles = self.files.take_missing(index) + captured.lost;
+            if cycles > 0 {
+                dropped += cycles;
+                source.event(cycle.time, EventKind::Dropped { cycles }, &mut self.files);
+            }
+            self.files.flush_if_due(cycle.time);
+            if self.files.begins_chunk(index) {
+                source.encoder.repeat_tool(cycle.time, &mut source.messages);
+            }
+            source.encoder.cycle(cycle, &mut source.messages);
+            self.files.pass(&mut source.messages);
         }
         let mut status = lock(&self.status);
         status.cycles += taken;

@@ -8,7 +8,7 @@ use franka_model::RobotKind;
 use franka_proto::{RobotMode, RobotState, Version};
 use franka_record::recorder::{RecordHandle, RecordOptions, Recorder, Robot};
 use franka_rt::driver::{Activity, Record};
-use franka_rt::thread::{CycleFeed, CyclePublisher, cycle_feed};
+use franka_rt::thread::{CycleFeed, CyclePublisher, CycleReader, cycle_feed};
 use nalgebra::Isometry3;
 
 /// A robot that moves in a circle and feeds a recorder.
@@ -25,14 +25,20 @@ pub(crate) struct Arm {
 impl Arm {
     /// Attaches an arm of this kind to a recorder.
     pub(crate) fn attach(recorder: &Recorder, robot: Robot) -> (Self, RecordHandle) {
-        let version = match robot.kind {
+        let (arm, cycles) = Self::new(robot.kind);
+        let handle = recorder.attach(robot, cycles).unwrap();
+        (arm, handle)
+    }
+
+    /// An arm of this kind, and a reader of its cycles.
+    pub(crate) fn new(kind: RobotKind) -> (Self, CycleReader) {
+        let version = match kind {
             RobotKind::Fer => Version::V5,
             _ => Version::V10,
         };
         let (feed, mut publisher) = cycle_feed(version);
         let reader = feed.attach(RING).unwrap();
         publisher.take_attached();
-        let handle = recorder.attach(robot, reader).unwrap();
         let arm = Self {
             version,
             publisher,
@@ -45,7 +51,7 @@ impl Arm {
                 ..RobotState::default()
             },
         };
-        (arm, handle)
+        (arm, reader)
     }
 
     /// Feeds `count` cycles of a millisecond each, as fast as `recorder` takes them.

@@ -30,6 +30,30 @@ fn every_cycle_is_in_the_file() {
     assert_eq!(cycles, 5000);
 }
 
+/// Also where the recording ends before the recorder has looked at the newest connection.
+#[test]
+fn cycles_of_other_connections_follow_those_of_the_first() {
+    let scratch = Scratch::new();
+    let path = scratch.path("run.mcap");
+    let recorder = Recorder::to_file(&path, quick()).unwrap();
+    let (mut first, handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
+    first.run(&recorder, 1000);
+    let others = [300, 200].map(|count| {
+        let (mut arm, cycles) = Arm::new(RobotKind::Fr3);
+        handle.resume(cycles);
+        (0..count).for_each(|_| arm.step());
+        arm
+    });
+    let status = recorder.finish().unwrap();
+    let count = first.cycles() + others.iter().map(Arm::cycles).sum::<u64>();
+    assert_eq!((status.cycles, status.dropped), (count, 0));
+    let recording = Recording::open(&path).unwrap();
+    let cycles = recording.robot("").unwrap().cycles();
+    let times: Vec<_> = cycles.map(|cycle| cycle.unwrap().record.time).collect();
+    let expected: Vec<_> = (1..=1000).chain(1..=300).chain(1..=200).collect();
+    assert_eq!(times, expected);
+}
+
 #[test]
 fn a_file_is_never_overwritten() {
     let scratch = Scratch::new();
