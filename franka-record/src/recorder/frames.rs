@@ -1,7 +1,7 @@
 //! What viewers show of a cycle beside its numbers: poses, joints and the external force.
 
 use franka_model::geometry::{FLANGE, JOINT_ORIGINS};
-use franka_model::{RobotKind, transform};
+use franka_model::transform;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use super::options::Robot;
@@ -20,10 +20,7 @@ pub(super) struct Frames {
 
 impl Frames {
     pub(super) fn of(robot: &Robot) -> Self {
-        let arm = match robot.kind {
-            RobotKind::Fer => "fer",
-            _ => "fr3",
-        };
+        let arm = robot.arm();
         let prefix = match robot.name.as_str() {
             "" => arm.to_owned(),
             name => format!("{name}_{arm}"),
@@ -190,7 +187,7 @@ fn pose(isometry: &Isometry3<f64>) -> Pose {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use franka_model::{EndEffector, Frame, Model};
+    use franka_model::{EndEffector, Frame, Model, RobotKind};
 
     fn isometry(transform: &FrameTransform) -> Isometry3<f64> {
         let (t, r) = (transform.translation.unwrap(), transform.rotation.unwrap());

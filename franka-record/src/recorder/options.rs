@@ -91,6 +91,39 @@ impl RecordOptions {
         }
         Ok(())
     }
+
+    /// The options by their names, but for metadata and files.
+    pub(super) fn described(&self) -> BTreeMap<String, String> {
+        let Self {
+            thinned,
+            flush,
+            sync,
+            rotation,
+            black_box,
+            ..
+        } = self;
+        let black_box = black_box.as_ref().map(|black_box| {
+            let BlackBox {
+                before,
+                after,
+                keep,
+                ..
+            } = black_box;
+            format!("{before:?} before, {after:?} after, {keep} files")
+        });
+        let options = [
+            ("thinned", Some(thinned.to_string())),
+            ("flush", Some(format!("{flush:?}"))),
+            ("sync", Some(sync.to_string())),
+            ("rotation_bytes", rotation.bytes.map(|it| it.to_string())),
+            ("rotation_time", rotation.time.map(|it| format!("{it:?}"))),
+            ("black_box", black_box),
+        ];
+        let given = options
+            .into_iter()
+            .filter_map(|(name, value)| Some((name.to_owned(), value?)));
+        given.collect()
+    }
 }
 
 const FLUSH_MIN: Duration = Duration::from_millis(10);
@@ -200,10 +233,17 @@ impl Robot {
 
     /// What it is called in metadata and names of files.
     pub(super) fn label(&self) -> &str {
-        match (self.name.as_str(), self.kind) {
-            ("", RobotKind::Fer) => "fer",
-            ("", _) => "fr3",
-            (name, _) => name,
+        match self.name.as_str() {
+            "" => self.arm(),
+            name => name,
+        }
+    }
+
+    /// What `franka_description` calls an arm of its kind.
+    pub(super) fn arm(&self) -> &'static str {
+        match self.kind {
+            RobotKind::Fer => "fer",
+            _ => "fr3",
         }
     }
 }

@@ -54,8 +54,8 @@ impl Session {
             ("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
             ("system".to_owned(), std::env::consts::OS.to_owned()),
             ("machine".to_owned(), std::env::consts::ARCH.to_owned()),
-            ("thinned".to_owned(), options.thinned.to_string()),
         ]);
+        metadata.extend(options.described());
         for (name, path) in [
             ("host", "/proc/sys/kernel/hostname"),
             ("kernel", "/proc/sys/kernel/osrelease"),
