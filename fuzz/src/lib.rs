@@ -1,9 +1,10 @@
 //! Fuzz targets of the protocol, of recordings and of the dashboard: what they check, and what they
 //! start from.
 //!
-//! Both are the sources of tests of `franka-proto`, `franka-record` and `franka-dash`, which run
+//! Most are the sources of tests of `franka-proto`, `franka-record` and `franka-dash`, which run
 //! them on fewer inputs. Of the dashboard, only what takes messages is built.
 
+pub mod cassettes;
 #[path = "../../franka-proto/tests/protocol/any_bytes/checks.rs"]
 pub mod checks;
 #[path = "../../franka-record/tests/recording/any_bytes.rs"]

@@ -42,7 +42,13 @@ pub fn seeds() -> Vec<(&'static str, Vec<u8>)> {
 
 fn seed(compression: Option<Compression>) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
-    let options = WriteOptions::new().compression(compression);
+    // Where nothing is compressed, there are no sums either: a changed byte is met by what reads it.
+    let sums = compression.is_some();
+    let options = WriteOptions::new()
+        .compression(compression)
+        .calculate_chunk_crcs(sums)
+        .calculate_data_section_crc(sums)
+        .calculate_summary_section_crc(sums);
     let mut writer = options.create(&mut bytes).expect("memory takes bytes");
     let metadata = BTreeMap::from([("kind".to_owned(), "Fr3".to_owned())]);
     let name = "robot:".to_owned();

@@ -1,5 +1,6 @@
-//! Writes the golden messages, the cassettes of the tests, short recordings and sessions of the
-//! dashboard as seeds of the targets: `seeds DIRECTORY` makes `DIRECTORY/<target>/<seed>`.
+//! Writes the golden messages, the cassettes of the tests, short sessions and recordings, and
+//! sessions of the dashboard as seeds of the targets: `seeds DIRECTORY` makes
+//! `DIRECTORY/<target>/<seed>`.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
@@ -10,40 +11,33 @@ fn main() -> io::Result<()> {
         return Err(io::Error::other("one argument is needed: the directory"));
     };
     let directory = PathBuf::from(directory);
-    let vectors = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/vectors");
-    let seeds = franka_fuzz::seeds::read(&vectors.join("wire_golden.json"));
-    for seed in &seeds {
-        let target = directory.join(seed.target);
+    let mut count = 0;
+    let mut put = |target: &str, name: &str, bytes: &[u8]| {
+        count += 1;
+        let target = directory.join(target);
         fs::create_dir_all(&target)?;
-        fs::write(target.join(&seed.name), &seed.bytes)?;
+        fs::write(target.join(name), bytes)
+    };
+    let vectors = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/vectors");
+    for seed in franka_fuzz::seeds::read(&vectors.join("wire_golden.json")) {
+        put(seed.target, &seed.name, &seed.bytes)?;
     }
-    let target = directory.join("cassette");
-    fs::create_dir_all(&target)?;
-    let mut cassettes = 0;
     for entry in fs::read_dir(vectors.join("../cassettes"))? {
         let path = entry?.path();
-        if path
-            .extension()
-            .is_some_and(|extension| extension == "mcap")
-        {
+        if path.extension().is_some_and(|it| it == "mcap") {
             let name = path.file_name().expect("an entry has a name");
-            fs::copy(&path, target.join(name))?;
-            cassettes += 1;
+            put("cassette", &name.to_string_lossy(), &fs::read(&path)?)?;
         }
     }
-    let recordings = franka_fuzz::recordings::seeds();
-    for (name, bytes) in &recordings {
-        let target = directory.join("recording");
-        fs::create_dir_all(&target)?;
-        fs::write(target.join(name), bytes)?;
+    for (name, bytes) in franka_fuzz::cassettes::seeds() {
+        put("cassette", name, &bytes)?;
     }
-    let sessions = franka_fuzz::dashboard_sessions();
-    let target = directory.join("dashboard");
-    fs::create_dir_all(&target)?;
-    for (number, session) in sessions.iter().enumerate() {
-        fs::write(target.join(number.to_string()), session)?;
+    for (name, bytes) in franka_fuzz::recordings::seeds() {
+        put("recording", name, &bytes)?;
     }
-    let count = seeds.len() + cassettes + recordings.len() + sessions.len();
+    for (number, bytes) in franka_fuzz::dashboard_sessions().iter().enumerate() {
+        put("dashboard", &number.to_string(), bytes)?;
+    }
     println!("{count} seeds in {}", directory.display());
     Ok(())
 }
