@@ -11,6 +11,12 @@ libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
         let file = cassette.to_bytes().expect("few channels");
         let again = Cassette::read(&file).expect("just written");
         assert_eq!(again.connections.len(), cassette.connections.len());
+        for (again, connection) in again.connections.iter().zip(&cassette.connections) {
+            assert_eq!(again.device, connection.device);
+            assert_eq!(again.events.len(), connection.events.len());
+            assert_eq!(again.missing_stream, connection.missing_stream);
+            assert_eq!(again.missing_datagrams, connection.missing_datagrams);
+        }
         for connection in &cassette.connections {
             let mut options = PlayOptions::default();
             options.pace = Pace::Lockstep;

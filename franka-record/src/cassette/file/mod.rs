@@ -73,9 +73,10 @@ mod tests {
         hand.events = vec![event(4, Side::Client, Payload::Stream(vec![7; 14]))];
         let mut again = Connection::new(Device::Robot);
         again.events = vec![event(10, Side::Robot, Payload::End)];
+        let silent = Connection::new(Device::Robot);
         Cassette {
             started: 1_700_000_000_000_000_000,
-            connections: vec![robot, hand, again],
+            connections: vec![robot, silent, hand, again],
             dropped: 0,
             damage: None,
         }
@@ -101,15 +102,19 @@ mod tests {
             .unwrap();
         writer.write(0, Device::Robot, first).unwrap();
         writer.write(0, Device::Robot, second).unwrap();
-        // Nothing follows on this channel, so that only the end of the file counts it.
-        writer
-            .note_dropped(0, Device::Robot, Side::Robot, true, 1)
-            .unwrap();
+        // Nothing follows on these channels, one of which has nothing else.
+        for (from, stream) in [(Side::Robot, true), (Side::Client, false)] {
+            writer
+                .note_dropped(0, Device::Robot, from, stream, 1)
+                .unwrap();
+        }
         let file = writer.finish().unwrap().into_inner();
         let read = Cassette::read(&file).unwrap();
-        assert_eq!(read.connections[0].missing_stream, 2);
-        assert_eq!(read.connections[0].missing_datagrams, 0);
-        assert_eq!(read.dropped, 3);
+        assert_eq!(read.connections[0].missing_stream, 3);
+        assert_eq!(read.connections[0].missing_datagrams, 1);
+        assert_eq!(read.dropped, 4);
+        let again = read.to_bytes().unwrap();
+        assert_eq!(Cassette::read(&again).unwrap(), read);
     }
 
     /// A file in memory of which the length can be seen while it is written.

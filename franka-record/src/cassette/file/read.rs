@@ -39,7 +39,10 @@ struct Reading {
     channels: BTreeMap<u16, ReadChannel>,
     /// By device and number; the first is when it was met, for the order.
     connections: BTreeMap<(Device, usize), (usize, Connection)>,
-    missing_at_end: u64,
+    /// Events that are missing in all, as the end of the file says.
+    dropped: u64,
+    /// And those after the last event of a connection: whether of its stream, and how many.
+    missing_at_end: Vec<((Device, usize), bool, u64)>,
 }
 
 struct ReadChannel {
@@ -81,7 +84,14 @@ impl Reading {
             }
             END => {
                 let dropped = field("dropped").and_then(|text| text.parse().ok());
-                self.missing_at_end = dropped.unwrap_or_default();
+                self.dropped = dropped.unwrap_or_default();
+                self.missing_at_end = entries
+                    .iter()
+                    .filter_map(|(topic, missing)| {
+                        let (stream, connection, _) = parse_topic(topic)?;
+                        Some((connection, stream, missing.parse().ok()?))
+                    })
+                    .collect();
             }
             _ => {}
         }
@@ -123,11 +133,7 @@ impl Reading {
         };
         let missing = u64::from(sequence.wrapping_sub(channel.next));
         channel.next = sequence.wrapping_add(1);
-        let counter = match channel.stream {
-            true => &mut connection.missing_stream,
-            false => &mut connection.missing_datagrams,
-        };
-        *counter = counter.saturating_add(missing);
+        connection.note_missing(channel.stream, missing);
         connection.events.push(Event {
             at: Duration::from_nanos(log_time.saturating_sub(started)),
             from: channel.from,
@@ -140,7 +146,12 @@ impl Reading {
         Ok(())
     }
 
-    fn cassette(self, started: u64, damage: Option<String>) -> Cassette {
+    fn cassette(mut self, started: u64, damage: Option<String>) -> Cassette {
+        for (key, stream, missing) in self.missing_at_end {
+            if let Some((_, connection)) = self.connections.get_mut(&key) {
+                connection.note_missing(stream, missing);
+            }
+        }
         let mut connections: Vec<_> = self.connections.into_values().collect();
         connections.sort_by_key(|(order, _)| *order);
         let connections = connections.into_iter().map(|(_, mut connection)| {
@@ -156,9 +167,19 @@ impl Reading {
         Cassette {
             started,
             connections,
-            dropped: self.missing_at_end.max(counted),
+            dropped: self.dropped.max(counted),
             damage,
         }
+    }
+}
+
+impl Connection {
+    fn note_missing(&mut self, stream: bool, count: u64) {
+        let counter = match stream {
+            true => &mut self.missing_stream,
+            false => &mut self.missing_datagrams,
+        };
+        *counter = counter.saturating_add(count);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Writes the file of a cassette.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::io::{Cursor, Seek, Write};
 use std::time::Duration;
 
@@ -19,7 +20,7 @@ use crate::cassette::{Cassette, Device, Event, Payload, Side};
 /// | channel `/tcp/1337/1/in` | the stream of the first connection to port 1337, client to robot, as it arrived; an empty message is its end |
 /// | channel `/tcp/1337/1/out` | robot to client |
 /// | channels `/udp/1337/1/in`, `/udp/1337/1/out` | the datagrams that belong to the connection |
-/// | metadata `franka cassette end` | `dropped`: events that are missing |
+/// | metadata `franka cassette end` | `dropped`: events that are missing; by the name of a channel, those missing after its last one |
 ///
 /// Channels have no schema, and the message encoding `franka`. `log_time` is `started` plus a
 /// monotonic clock, so it does not step when the wall clock is set. `sequence` counts the events of
@@ -28,7 +29,7 @@ use crate::cassette::{Cassette, Device, Event, Payload, Side};
 pub struct CassetteWriter<W: Write + Seek> {
     mcap: Mcap<W>,
     started: u64,
-    channels: BTreeMap<(usize, bool, bool), Channel>,
+    channels: BTreeMap<Key, Channel>,
     devices: BTreeMap<usize, (Device, usize)>,
     dropped: u64,
 }
@@ -41,11 +42,17 @@ impl<W: Write + Seek> std::fmt::Debug for Mcap<W> {
     }
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Channel {
     id: u16,
+    topic: String,
     sequence: u32,
+    /// Events that are missing since the last one.
+    missing: u64,
 }
+
+/// A connection, whether it is of its stream, and whether of its client.
+type Key = (usize, bool, bool);
 
 impl<W: Write + Seek> CassetteWriter<W> {
     /// A writer of a cassette that begins at `started`, in nanoseconds since the Unix epoch.
@@ -92,30 +99,22 @@ impl<W: Write + Seek> CassetteWriter<W> {
             Payload::End => (true, &[][..]),
             Payload::Datagram(bytes) => (false, bytes.as_slice()),
         };
-        let key = (connection, stream, event.from == Side::Client);
-        let channel = match self.channels.get(&key) {
-            Some(&channel) => channel,
-            None => self.open(key, device)?,
-        };
-        self.channels.insert(
-            key,
-            Channel {
-                sequence: channel.sequence.wrapping_add(1),
-                ..channel
-            },
-        );
-        let time = self.started.saturating_add(nanoseconds(event.at));
+        let started = self.started;
+        let channel = self.channel((connection, stream, event.from == Side::Client), device)?;
+        let time = started.saturating_add(nanoseconds(event.at));
         let header = MessageHeader {
             channel_id: channel.id,
             sequence: channel.sequence,
             log_time: time,
             publish_time: time,
         };
+        channel.sequence = channel.sequence.wrapping_add(1);
+        channel.missing = 0;
         self.mcap.0.write_to_known_channel(&header, bytes)?;
         Ok(())
     }
 
-    /// Notes that an event of a connection is missing.
+    /// Notes that so many events of a connection are missing.
     ///
     /// # Errors
     /// [`CassetteError`] if the file cannot be written.
@@ -127,14 +126,18 @@ impl<W: Write + Seek> CassetteWriter<W> {
         stream: bool,
         count: u32,
     ) -> Result<(), CassetteError> {
-        let key = (connection, stream, from == Side::Client);
-        if !self.channels.contains_key(&key) {
-            self.open(key, device)?;
-        }
-        if let Some(channel) = self.channels.get_mut(&key) {
-            channel.sequence = channel.sequence.wrapping_add(count);
-        }
-        self.dropped += u64::from(count);
+        self.note_missing(
+            (connection, stream, from == Side::Client),
+            device,
+            count.into(),
+        )
+    }
+
+    fn note_missing(&mut self, key: Key, device: Device, count: u64) -> Result<(), CassetteError> {
+        let channel = self.channel(key, device)?;
+        channel.sequence = channel.sequence.wrapping_add(count as u32);
+        channel.missing = channel.missing.saturating_add(count);
+        self.dropped = self.dropped.saturating_add(count);
         Ok(())
     }
 
@@ -151,27 +154,40 @@ impl<W: Write + Seek> CassetteWriter<W> {
     /// # Errors
     /// [`CassetteError`] if the file cannot be written.
     pub fn finish(mut self) -> Result<W, CassetteError> {
-        let end = metadata(END, [("dropped", self.dropped.to_string())]);
+        let mut end = metadata(END, [("dropped", self.dropped.to_string())]);
+        let missing = self.channels.into_values();
+        let missing = missing.filter(|channel| channel.missing > 0);
+        end.metadata
+            .extend(missing.map(|channel| (channel.topic, channel.missing.to_string())));
         self.mcap.0.write_metadata(&end)?;
         self.mcap.0.finish()?;
         Ok(self.mcap.0.into_inner())
     }
 
-    fn open(&mut self, key: (usize, bool, bool), device: Device) -> Result<Channel, CassetteError> {
+    /// The channel of this key, which is made if there is none.
+    fn channel(&mut self, key: Key, device: Device) -> Result<&mut Channel, CassetteError> {
         let (connection, stream, client) = key;
+        let channel = match self.channels.entry(key) {
+            Entry::Occupied(known) => return Ok(known.into_mut()),
+            Entry::Vacant(channel) => channel,
+        };
         let same = self.devices.values().filter(|(other, _)| *other == device);
         let number = same.count() + 1;
         let (device, number) = *self.devices.entry(connection).or_insert((device, number));
         let transport = if stream { "tcp" } else { "udp" };
         let direction = if client { "in" } else { "out" };
         let topic = format!("/{transport}/{}/{number}/{direction}", device.port());
-        let id = self
+        let nothing = BTreeMap::new();
+        let added = self
             .mcap
             .0
-            .add_channel(0, &topic, MESSAGE_ENCODING, &BTreeMap::new())?;
-        let channel = Channel { id, sequence: 0 };
-        self.channels.insert(key, channel);
-        Ok(channel)
+            .add_channel(0, &topic, MESSAGE_ENCODING, &nothing);
+        Ok(channel.insert(Channel {
+            id: added?,
+            topic,
+            sequence: 0,
+            missing: 0,
+        }))
     }
 }
 
@@ -184,12 +200,24 @@ impl Cassette {
         let mut writer = CassetteWriter::new(Cursor::new(Vec::new()), self.started)?;
         let mut order: Vec<_> = Vec::new();
         for (number, connection) in self.connections.iter().enumerate() {
+            // One without events is in the file, too.
+            writer.channel((number, true, true), connection.device)?;
             order.extend(connection.events.iter().map(|event| (number, event)));
         }
         // A stable sort: events of one time keep their order.
         order.sort_by_key(|(_, event)| event.at);
         for (number, event) in order {
             writer.write(number, self.connections[number].device, event)?;
+        }
+        for (number, connection) in self.connections.iter().enumerate() {
+            for (stream, missing) in [
+                (true, connection.missing_stream),
+                (false, connection.missing_datagrams),
+            ] {
+                if missing > 0 {
+                    writer.note_missing((number, stream, true), connection.device, missing)?;
+                }
+            }
         }
         writer.dropped = self.dropped;
         Ok(writer.finish()?.into_inner())

@@ -69,7 +69,9 @@ mod tests {
     use franka_proto::{Version, gripper};
 
     use super::*;
-    use crate::cassette::{Connection, Device, Event, Payload, Side};
+    use crate::cassette::{
+        Connection, Device, Event, Payload, PlayOptions, Player, Side, Unplayable,
+    };
 
     fn event(at: u64, from: Side, what: Payload) -> Event {
         let at = Duration::from_nanos(at);
@@ -111,6 +113,30 @@ mod tests {
         let cassette = sample();
         let capture = to_capture(&cassette);
         assert_eq!(from_capture(&capture).unwrap(), cassette);
+    }
+
+    /// It cannot be played, neither before nor after it was written.
+    #[test]
+    fn a_segment_that_was_not_captured_is_missing_in_the_file_too() {
+        let mut cassette = sample();
+        cassette.connections.pop();
+        let events = &mut cassette.connections[0].events;
+        events.insert(2, event(1500, Side::Robot, Payload::Stream(vec![5; 9])));
+        events.insert(3, event(1600, Side::Robot, Payload::Stream(vec![6; 9])));
+        let whole = to_capture(&cassette);
+        let packet = whole.windows(9).position(|bytes| bytes == [5; 9]).unwrap() - 40;
+        let captured = [&whole[..packet - 16], &whole[packet + 49..]].concat();
+        let cassette = from_capture(&captured).unwrap();
+        assert_eq!(cassette.connections[0].missing_stream, 1);
+        let file = cassette.to_bytes().unwrap();
+        let read = Cassette::read(&file).unwrap();
+        assert_eq!((read.dropped, read.connections[0].missing_stream), (1, 1));
+        let player = Player::new(&read.connections[0], PlayOptions::default(), Duration::ZERO);
+        let error = player.unwrap_err();
+        assert!(
+            matches!(error, Unplayable::Missing { missing: 1, .. }),
+            "{error}"
+        );
     }
 
     #[test]
