@@ -1,10 +1,31 @@
-//! The layout for Foxglove names what a recording has.
+//! The layout for Foxglove and the blueprint for Rerun name what a recording has.
 
+use std::collections::BTreeSet;
+
+use franka_model::RobotKind;
+use franka_record::recorder::{Recorder, Robot};
 use franka_record::schema::{Message as _, franka};
 use prost_types::FileDescriptorSet;
 use serde_json::Value;
 
+use crate::feed::{Arm, Scratch, quick};
+
 const LAYOUT: &str = include_str!("../../viewers/foxglove.json");
+const BLUEPRINT: &str = include_str!("../../viewers/rerun_blueprint.py");
+
+/// The channels of an only robot.
+fn channels() -> BTreeSet<String> {
+    let scratch = Scratch::new();
+    let path = scratch.path("run.mcap");
+    let recorder = Recorder::to_file(&path, quick()).unwrap();
+    let (mut arm, _) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
+    arm.run(&recorder, 1);
+    recorder.finish().unwrap();
+    let bytes = std::fs::read(path).unwrap();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    let channels = summary.channels.values();
+    channels.map(|channel| channel.topic.clone()).collect()
+}
 
 /// Every text in a JSON value.
 fn texts(value: &Value, found: &mut Vec<String>) {
@@ -31,11 +52,11 @@ fn the_layout_names_only_channels_and_fields_that_exist() {
         .find(|message| message.name() == "Cycle")
         .unwrap();
     assert!(franka::Cycle::default().q.is_empty());
+    let known = channels();
     let (mut paths, mut topics) = (0, 0);
     for text in all.iter().filter(|text| text.starts_with('/')) {
         let (topic, path) = text.split_once('.').unwrap_or((text, ""));
-        let known = ["/cycle", "/target", "/scene", "/log"];
-        assert!(known.contains(&topic), "{text}");
+        assert!(known.contains(topic), "{text}");
         topics += 1;
         if !path.is_empty() {
             let field = path.split('[').next().unwrap();
@@ -53,5 +74,16 @@ fn the_layout_names_only_channels_and_fields_that_exist() {
     texts(&layout["layout"], &mut shown);
     for panel in panels.keys() {
         assert!(shown.contains(panel), "{panel}");
+    }
+}
+
+#[test]
+fn the_blueprint_names_only_channels_that_exist() {
+    let known = channels();
+    let texts = BLUEPRINT.split('"').skip(1).step_by(2);
+    let named: Vec<_> = texts.filter(|text| text.starts_with('/')).collect();
+    assert_eq!(named.len(), 4, "{named:?}");
+    for channel in named {
+        assert!(known.contains(channel), "{channel}");
     }
 }
