@@ -230,7 +230,7 @@ where
         #[cfg(feature = "record")]
         self.journal.write(|| {
             let ended = ended.as_ref().map(|done| *done);
-            Some(D::ended(asked, ended.map_err(ToString::to_string)))
+            Some(D::ended(asked.clone(), ended.map_err(ToString::to_string)))
         });
         ended
     }

@@ -20,7 +20,7 @@ use franka_rt::driver::Program;
 use franka_rt::lifecycle::{NewMotion, Outcome};
 use franka_rt::session::{Goal, GoalId, OnArrival};
 use franka_rt::supervision::Event;
-use franka_rt::thread::CycleFeed;
+use franka_rt::thread::{AttachError, CycleFeed, CycleReader};
 
 use crate::destination::Destination;
 use crate::input::{Beginning, Input};
@@ -37,16 +37,18 @@ pub(crate) struct Reader {
     pub(crate) entries: SyncSender<(usize, Entry)>,
     /// Counts the entries for which there was no room.
     pub(crate) lost: Arc<AtomicU64>,
+    /// How many cycles of a connection may wait for it; `None` if it takes none.
+    pub(crate) cycles: Option<usize>,
 }
 
 /// Something that was asked for or happened.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Entry {
     pub(crate) at: Instant,
     pub(crate) what: What,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) enum What {
     /// A goal, a session or a program was asked for.
     Goal(Given),
@@ -58,7 +60,7 @@ pub(crate) enum What {
     /// Something happened to the robot.
     Event(Event),
     /// There is a new connection, whose cycles these are.
-    Connected(CycleFeed),
+    Connected(Result<CycleReader, AttachError>),
     /// The robot has answered a request, or did not.
     Answered {
         request: Box<Request>,
@@ -114,24 +116,21 @@ impl Journal {
     }
 
     /// Writes what `what` returns, if anybody reads it.
-    pub(crate) fn write(&self, what: impl FnOnce() -> Option<What>) {
-        self.with(|readers| {
-            if readers.is_empty() {
-                return;
+    pub(crate) fn write(&self, what: impl Fn() -> Option<What>) {
+        let tell = |reader: &Reader| what().is_none_or(|what| reader.tell(Entry::now(what)));
+        self.with(|readers| readers.retain(tell));
+    }
+
+    /// Writes that there is a new connection, and gives its readers the cycles from now on: they may
+    /// come to read of it much later.
+    pub(crate) fn connected(&self, cycles: &CycleFeed) {
+        // Attaching takes memory, for which nobody is to wait at the lock.
+        for reader in self.with(|readers| readers.clone()) {
+            if let Some(capacity) = reader.cycles {
+                let attached = cycles.attach(capacity);
+                reader.tell(Entry::now(What::Connected(attached)));
             }
-            let Some(what) = what() else { return };
-            let entry = Entry::now(what);
-            readers.retain(
-                |reader| match reader.entries.try_send((reader.track, entry.clone())) {
-                    Ok(()) => true,
-                    Err(TrySendError::Full(_)) => {
-                        reader.lost.fetch_add(1, Ordering::Relaxed);
-                        true
-                    }
-                    Err(TrySendError::Disconnected(_)) => false,
-                },
-            );
-        });
+        }
     }
 
     /// Writes down how something ended.
@@ -172,9 +171,23 @@ impl Journal {
         });
     }
 
-    fn with(&self, act: impl FnOnce(&mut Vec<Reader>)) {
+    fn with<T>(&self, act: impl FnOnce(&mut Vec<Reader>) -> T) -> T {
         // Nothing can be half done in there.
-        act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner));
+        act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Reader {
+    /// Passes an entry on, if there is room. Returns whether the reader is still there.
+    fn tell(&self, entry: Entry) -> bool {
+        match self.entries.try_send((self.track, entry)) {
+            Ok(()) => true,
+            Err(TrySendError::Full(_)) => {
+                self.lost.fetch_add(1, Ordering::Relaxed);
+                true
+            }
+            Err(TrySendError::Disconnected(_)) => false,
+        }
     }
 }
 
@@ -235,6 +248,7 @@ mod tests {
                 track,
                 entries,
                 lost,
+                cycles: None,
             });
             queue
         };

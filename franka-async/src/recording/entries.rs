@@ -62,12 +62,14 @@ impl EntryQueue {
         })
     }
 
-    /// Has everything that is written to `journal` from now on go to the track `id`.
-    pub(super) fn read(&self, journal: &Journal, id: usize) {
+    /// Has everything that is written to `journal` from now on go to the track `id`, and the cycles
+    /// of new connections, so many of which may wait.
+    pub(super) fn read(&self, journal: &Journal, id: usize, cycles: Option<usize>) {
         journal.read(Reader {
             track: id,
             entries: self.entries.clone(),
             lost: self.lost.clone(),
+            cycles,
         });
     }
 
@@ -160,13 +162,11 @@ impl Recorded {
                 Some(event) => event,
                 None => return,
             },
-            What::Connected(feed) => match feed.attach(self.track.capacity) {
-                Ok(cycles) => return self.handle.resume(cycles),
-                Err(error) => {
-                    let text = format!("cycles of the new connection are not recorded: {error}");
-                    words::note(Level::Error, "recorder", text)
-                }
-            },
+            What::Connected(Ok(cycles)) => return self.handle.resume(cycles),
+            What::Connected(Err(error)) => {
+                let text = format!("cycles of the new connection are not recorded: {error}");
+                words::note(Level::Error, "recorder", text)
+            }
             What::Answered { request, error } => words::request(&request, error),
             What::Hand { request, ended } => words::hand(&request, ended),
             What::Vacuum { request, ended } => words::vacuum(&request, ended),

@@ -196,7 +196,9 @@ impl Recorder {
         self.entries.with(|tracks| {
             // Entries of this id wait until the lock is free. A connection that is made after this
             // line is told by one.
-            self.entries.read(&robot.supervisor().journal(), id);
+            let capacity = Some(track.capacity);
+            self.entries
+                .read(&robot.supervisor().journal(), id, capacity);
             let cycles = robot.cycles(track.capacity)?;
             let handle = self.inner.attach(described, cycles)?;
             if let Some(refused) = refused {
@@ -259,7 +261,7 @@ impl Recorder {
             found.map(|(id, _)| *id)
         });
         let id = id.ok_or_else(|| TrackError::Unknown { name: robot.into() })?;
-        self.entries.read(journal, id);
+        self.entries.read(journal, id, None);
         Ok(())
     }
 

@@ -162,12 +162,11 @@ impl Supervisor {
         state: &RobotState,
         refusals: &[SchedError],
     ) -> bool {
+        // Before anything is begun there.
+        #[cfg(feature = "record")]
+        self.journal().connected(&link.cycles);
         self.with(|inner, now| {
             inner.link = Arc::downgrade(link);
-            #[cfg(feature = "record")]
-            inner
-                .journal
-                .write(|| Some(What::Connected(link.cycles.clone())));
             inner.core.on_connected(state, refusals, now)
         })
     }
