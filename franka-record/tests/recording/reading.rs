@@ -120,7 +120,10 @@ fn events_come_back_in_order_and_changes_are_found() {
     let recording = Recording::open(&path).unwrap();
     let metadata = recording.metadata();
     assert_eq!(metadata["operator"], "none");
-    assert_eq!((&*metadata["thinned"], &*metadata["flush"]), ("false", "1s"));
+    assert_eq!(
+        (&*metadata["thinned"], &*metadata["flush"]),
+        ("false", "1s")
+    );
     assert_eq!(recording.attachments().unwrap(), ["notes.txt", "left.urdf"]);
     let notes = recording.attachment("notes.txt").unwrap();
     assert_eq!(notes.as_deref(), Some(&b"as agreed"[..]));
