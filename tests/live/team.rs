@@ -16,14 +16,14 @@ use tokio::sync::watch;
 
 use crate::{SOON, alone, at_the_clients_pace, robot_time, until};
 
-struct Two {
-    team: Team<2>,
-    robots: [Robot; 2],
+pub(crate) struct Two {
+    pub(crate) team: Team<2>,
+    pub(crate) robots: [Robot; 2],
     sims: [Running; 2],
 }
 
 /// An FR3 and an FER that stick and lag as real arms do, at the pace of their client.
-async fn two() -> Two {
+pub(crate) async fn two() -> Two {
     two_with([Engage::default(), Engage::default()]).await
 }
 
@@ -39,7 +39,7 @@ async fn two_with([for_left, for_right]: [Engage; 2]) -> Two {
     }
 }
 
-fn up(by: f64) -> Pose {
+pub(crate) fn up(by: f64) -> Pose {
     Pose::translation(0.0, 0.0, by)
 }
 

@@ -1,23 +1,25 @@
 //! What a recording holds of robots over real sockets, read back from its file.
 
+mod connections;
+mod hands;
+mod team;
+
 use std::fs;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
+use franka_async::Pose;
 use franka_async::control::JointVelocities;
 use franka_async::diagnosis::Diagnose;
-use franka_async::gripper::{Grasp, Gripper};
 use franka_async::recording::{BlackBox, RecordOptions, RecordStatus, Recorder, Track, TrackError};
 use franka_async::settings::CollisionBehavior;
-use franka_async::state::{RobotMode, RobotState};
-use franka_async::{MotionError, Pose};
+use franka_async::state::RobotState;
 use franka_record::event::{Ending, Target};
-use franka_record::{Cycle, Event, EventKind, GripperState, Recording};
-use franka_sim::{Fingers, Sim, Tool};
-use franka_tests::PATIENCE;
+use franka_record::{Cycle, Event, EventKind, Recording};
+use franka_sim::{Sim, Tool};
 
-use crate::{alone, at_the_clients_pace, connect, long_way, simulated, under_way, until};
+use crate::{alone, at_the_clients_pace, long_way, simulated, under_way};
 
 /// A folder that is removed in the end.
 struct Folder(PathBuf);
@@ -70,13 +72,20 @@ fn finish(recorder: Recorder) -> RecordStatus {
     status
 }
 
-/// A robot at rest waits for nobody: states that came too fast for the control thread are no
-/// cycles.
+/// The cycles, divided where one does not follow the one before it. A robot at rest waits for
+/// nobody: states that came too fast for the control thread are no cycles.
+fn divided(cycles: &[Cycle]) -> Vec<&[Cycle]> {
+    let follows = |before: &Cycle, after: &Cycle| {
+        let [before, after] = [before, after].map(|cycle| cycle.record);
+        before.time + after.skipped + 1 == after.time
+    };
+    cycles.chunk_by(follows).collect()
+}
+
 fn assert_no_gap(cycles: &[Cycle]) {
-    for pair in cycles.windows(2) {
-        let [before, after] = [0, 1].map(|i| pair[i].record);
-        assert_eq!(before.time + after.skipped + 1, after.time, "{after:?}");
-    }
+    let parts = divided(cycles);
+    let begins: Vec<_> = parts.iter().map(|part| part[0].record.time).collect();
+    assert_eq!(parts.len(), 1, "they begin anew at {begins:?}");
 }
 
 /// Number and ending of each goal that ended.
@@ -221,54 +230,6 @@ async fn a_reflex_is_recorded_with_its_diagnosis_and_fills_a_black_box() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_link_that_is_lost_is_told_and_cycles_are_recorded_again_after_it() {
-    let _alone = alone();
-    let (robot, sim) = simulated().await;
-    let folder = Folder::new();
-    let recorder = folder.recorder();
-    recorder.attach(&robot, roomy()).await.unwrap();
-    let moving = tokio::spawn(long_way(&robot).into_future());
-    under_way(&robot).await;
-    // The cycle of the simulator stands still until the motion has ended.
-    let (release, held) = std::sync::mpsc::channel::<()>();
-    let silence = sim.with(move |_| held.recv().is_err());
-    let (silent, outcome) = tokio::join!(silence, async {
-        let outcome = moving.await.unwrap();
-        drop(release);
-        outcome
-    });
-    silent.unwrap();
-    let error = outcome.unwrap_err();
-    assert!(matches!(error, MotionError::LinkLost { .. }), "{error}");
-    until(&robot, |state| state.robot_mode != RobotMode::Move).await;
-    robot.recover().await.unwrap();
-    finish(recorder);
-    robot.shutdown().await;
-
-    let (cycles, events) = folder.read("");
-    assert_no_gap(&cycles);
-    let ended = endings(&events);
-    assert!(matches!(ended[..], [(_, Ending::LinkLost)]), "{ended:?}");
-    let of_link: Vec<_> = events
-        .iter()
-        .filter_map(|event| match event.kind {
-            EventKind::LinkLost { .. } => Some((true, event.time)),
-            EventKind::LinkRestored { .. } => Some((false, event.time)),
-            _ => None,
-        })
-        .collect();
-    let [(true, lost), (false, restored)] = of_link[..] else {
-        panic!("{of_link:?}");
-    };
-    assert!(lost < restored);
-    let gap = cycles
-        .windows(2)
-        .map(|pair| pair[1].time.since(pair[0].time));
-    assert!(gap.max() >= Some(Duration::from_millis(900)));
-    assert!(cycles.iter().any(|cycle| cycle.time > lost));
-}
-
-#[tokio::test(flavor = "multi_thread")]
 async fn a_recorder_that_ends_in_the_middle_of_a_motion_leaves_a_file_and_the_motion() {
     let _alone = alone();
     let (robot, _sim) = simulated().await;
@@ -333,76 +294,4 @@ async fn every_cycle_that_is_missing_is_told() {
         status.dropped
     );
     assert!(missing > 0, "{status:?}");
-}
-
-#[tokio::test(flavor = "multi_thread")]
-async fn actions_and_states_of_a_hand_are_recorded() {
-    let _alone = alone();
-    let sim = Sim::fr3().ideal().hand(Fingers::new().with_object(0.05), 0);
-    let sim = sim.wait_for_commands(PATIENCE).start().await.unwrap();
-    let robot = connect(&sim).await;
-    let gripper = Gripper::connect(sim.hand().expect("a hand").addr())
-        .await
-        .unwrap();
-    let folder = Folder::new();
-    let recorder = folder.recorder();
-    recorder.attach(&robot, roomy()).await.unwrap();
-    let unknown = recorder.attach_gripper(&gripper, "left").unwrap_err();
-    assert_eq!(
-        unknown.to_string(),
-        "no robot called \"left\" is attached to the recorder"
-    );
-    recorder.attach_gripper(&gripper, "").unwrap();
-    let refused = recorder.begin_episode("one/two", "grasp the object");
-    let expected =
-        "got the episode name \"one/two\", expected 1 to 128 letters, digits, '-' and '_'";
-    assert_eq!(refused.unwrap_err().to_string(), expected);
-    recorder.begin_episode("one", "grasp the object").unwrap();
-    assert!(gripper.homing().await.unwrap());
-    assert!(gripper.grasp(Grasp::new(0.05, 0.1, 40.0)).await.unwrap());
-    assert!(!gripper.grasp(Grasp::new(0.01, 0.1, 40.0)).await.unwrap());
-    recorder.end_episode(Some(true));
-    finish(recorder);
-    robot.shutdown().await;
-
-    let (_, events) = folder.read("");
-    let told: Vec<_> = events
-        .iter()
-        .filter_map(|event| match &event.kind {
-            EventKind::Request(request) if request.name.starts_with("gripper") => {
-                Some((request.name.clone(), request.error.is_none()))
-            }
-            EventKind::EpisodeStart { task, .. } => Some((task.clone(), true)),
-            EventKind::EpisodeEnd { success } => Some(("end".into(), *success == Some(true))),
-            _ => None,
-        })
-        .collect();
-    let expected = [
-        ("grasp the object", true),
-        ("gripper.homing", true),
-        ("gripper.grasp", true),
-        ("gripper.grasp", false),
-        ("end", true),
-    ];
-    assert_eq!(told, expected.map(|(name, done)| (name.to_owned(), done)));
-    let recording = Recording::open(folder.file()).unwrap();
-    let states = recording.robot("").unwrap().gripper_states();
-    let grasped = states.map(Result::unwrap).any(|(_, state)| match state {
-        GripperState::Hand(state) => state.is_grasped,
-        GripperState::Vacuum(_) => false,
-    });
-    assert!(grasped);
-}
-
-#[tokio::test(flavor = "multi_thread")]
-async fn a_robot_without_a_connection_is_not_recorded() {
-    let _alone = alone();
-    let (robot, sim) = simulated().await;
-    let folder = Folder::new();
-    let recorder = folder.recorder();
-    sim.stop().await;
-    robot.closed().await;
-    let error = recorder.attach(&robot, Track::default()).await.unwrap_err();
-    assert!(matches!(error, TrackError::Cycles(_)), "{error}");
-    assert_eq!(finish(recorder).cycles, 0);
 }

@@ -22,7 +22,7 @@ use tokio::time::{sleep, timeout};
 use crate::SOON;
 
 /// Soon again, and for ever.
-fn policy() -> Policy {
+pub(crate) fn policy() -> Policy {
     Policy::default()
         .reconnect(Backoff {
             first: Duration::from_millis(10),
@@ -32,13 +32,13 @@ fn policy() -> Policy {
         .recover(1000, Duration::from_secs(1))
 }
 
-async fn start(sim: Sim) -> Running {
+pub(crate) async fn start(sim: Sim) -> Running {
     let sim = sim.ideal().tool(Tool::hand()).virtual_time(PATIENCE);
     sim.start().await.expect("a simulator starts")
 }
 
 /// A simulator in the place of one that was stopped.
-async fn restart(address: SocketAddr) -> Running {
+pub(crate) async fn restart(address: SocketAddr) -> Running {
     timeout(SOON, async {
         loop {
             let sim = Sim::fr3().ideal().tool(Tool::hand());
@@ -54,14 +54,14 @@ async fn restart(address: SocketAddr) -> Running {
     .expect("the port is free again")
 }
 
-async fn supervised(sim: &Running, policy: Policy) -> Robot {
+pub(crate) async fn supervised(sim: &Running, policy: Policy) -> Robot {
     let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
     let robot = builder.supervise(policy).connect().await;
     robot.expect("a simulator takes a client")
 }
 
 /// Waits for an event of which `is` finds something, and returns that.
-async fn told<T>(events: &mut Events, mut is: impl FnMut(&EventKind) -> Option<T>) -> T {
+pub(crate) async fn told<T>(events: &mut Events, mut is: impl FnMut(&EventKind) -> Option<T>) -> T {
     let found = async {
         loop {
             let Notification { event, missed, .. } = events.next().await.expect("it goes on");
@@ -74,7 +74,7 @@ async fn told<T>(events: &mut Events, mut is: impl FnMut(&EventKind) -> Option<T
     timeout(SOON, found).await.expect("it is told")
 }
 
-async fn condition(robot: &Robot, condition: Condition) {
+pub(crate) async fn condition(robot: &Robot, condition: Condition) {
     let mut health = robot.health();
     let shown = health.wait_for(|health| health.condition == condition);
     timeout(SOON, shown)
@@ -83,14 +83,14 @@ async fn condition(robot: &Robot, condition: Condition) {
         .expect("it goes on");
 }
 
-async fn small_motion(robot: &Robot) -> Result<(), MotionError> {
+pub(crate) async fn small_motion(robot: &Robot) -> Result<(), MotionError> {
     let up = Pose::translation(0.0, 0.0, 0.005) * robot.pose();
     let moving = robot.move_to(up).into_future();
     let outcome = timeout(SOON, moving).await.expect("it resolves");
     outcome.map(drop)
 }
 
-fn connected(kind: &EventKind) -> Option<Duration> {
+pub(crate) fn connected(kind: &EventKind) -> Option<Duration> {
     match kind {
         EventKind::Connected { after, .. } => *after,
         _ => None,
