@@ -4,7 +4,7 @@ use franka_model::RobotKind;
 use franka_model::collision::Body;
 use franka_model::contact::Unknown;
 use franka_sim::Arm;
-use franka_tests::contacts::{Told, pushes};
+use franka_tests::contacts::{Errors, Told, pushes};
 
 /// Pushes per robot; more with `FRANKA_THOROUGH=1`.
 fn count() -> usize {
@@ -97,38 +97,9 @@ fn places(kind: RobotKind) {
 }
 
 /// Medians over the contacts that are told.
-struct Errors {
-    /// `[m]`
-    place: f64,
-    /// As a part of the force.
-    force: f64,
-}
-
 fn errors(of: &[&Told]) -> Errors {
-    let of = of
-        .iter()
-        .filter_map(|t| Some((&t.push, t.contact.as_ref().ok()?)));
-    let place = |(push, contact): (
-        &franka_tests::contacts::Push,
-        &franka_model::contact::Contact,
-    )| { (contact.point - push.point).norm() };
-    Errors {
-        place: median(of.clone().map(place).collect()),
-        force: median(
-            of.map(|(push, contact)| (contact.force - push.force).norm() / push.force.norm())
-                .collect(),
-        ),
-    }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
-}
-
-impl std::fmt::Display for Errors {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (place, force) = (self.place * 1e3, self.force * 1e2);
-        write!(f, "median {place:.0} mm, {force:.0} % of the force")
-    }
+    Errors::medians(of.iter().filter_map(|Told { push, contact }| {
+        let contact = contact.as_ref().ok()?;
+        Some(push.errors(&push.q, &contact.point, &contact.force))
+    }))
 }

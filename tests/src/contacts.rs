@@ -1,10 +1,12 @@
 //! Random contacts on a simulated arm, and what the external torques tell of them.
 
+use std::fmt;
+
 use franka_model::collision::{Body, Capsule, Shape};
 use franka_model::contact::{Contact, Tare, TorqueError, Unknown, locate};
 use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, transform};
 use franka_sim::{Arm, Config, Robot, Tool, Touch};
-use nalgebra::{Point3, Rotation3, UnitVector3, Vector3};
+use nalgebra::{Isometry3, Point3, Rotation3, UnitVector3, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
@@ -30,6 +32,34 @@ pub struct Told {
     pub push: Push,
     /// The estimate.
     pub contact: Result<Contact, Unknown>,
+}
+
+/// How far an estimate is from the push.
+#[derive(Debug, Clone, Copy)]
+pub struct Errors {
+    /// `[m]`
+    pub place: f64,
+    /// As a part of the force.
+    pub force: f64,
+}
+
+impl Errors {
+    /// The medians of these, not a number of none.
+    pub fn medians(of: impl IntoIterator<Item = Self>) -> Self {
+        let (places, forces) = of.into_iter().map(|it| (it.place, it.force)).unzip();
+        let [place, force] = [places, forces].map(|mut values: Vec<f64>| {
+            values.sort_by(f64::total_cmp);
+            values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+        });
+        Self { place, force }
+    }
+}
+
+impl fmt::Display for Errors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (place, force) = (self.place * 1e3, self.force * 1e2);
+        write!(f, "median {place:.0} mm, {force:.0} % of the force")
+    }
 }
 
 /// The arm with the Hand.
@@ -81,12 +111,54 @@ impl Push {
         }
     }
 
-    /// Lets an arm of its kind feel it: half a second of nothing, then the push for 0.3 s.
-    pub fn told(&self, arm: &Arm, seed: u64) -> Told {
-        let frame = match self.body {
+    /// The frame of the body that is pushed.
+    fn frame(&self) -> Frame {
+        match self.body {
             Body::Link(link) => Frame::ALL[usize::from(link) - 1],
             Body::Tool => Frame::Flange,
-        };
+        }
+    }
+
+    /// The pose of that frame.
+    fn pose(&self, q: &JointVector) -> Isometry3<f64> {
+        let model = Model::physically_consistent(self.kind);
+        let pose = model.pose(self.frame(), q, &EndEffector::default());
+        transform::isometry(&pose).expect("rigid")
+    }
+
+    /// Where it acts on the body that is pushed, in the frame of that, `[m]`.
+    fn place(&self) -> Point3<f64> {
+        self.pose(&self.q)
+            .inverse_transform_point(&self.point.into())
+    }
+
+    /// How far this place and force are from those of the push, on an arm at `q`.
+    pub fn errors(&self, q: &JointVector, point: &Vector3<f64>, force: &Vector3<f64>) -> Errors {
+        let pushed = self.pose(q) * self.place();
+        Errors {
+            place: (point - pushed.coords).norm(),
+            force: (force - self.force).norm() / self.force.norm(),
+        }
+    }
+
+    /// The push, for a simulated arm: it goes with the body that is pushed.
+    pub fn touch(&self) -> Touch {
+        let touch = Touch::force(self.force).at(self.frame());
+        touch.offset(self.place().coords)
+    }
+
+    /// What it exerts on the joints, `[N·m]`.
+    pub fn torque(&self) -> JointVector {
+        let model = Model::physically_consistent(self.kind);
+        let jacobian = model.zero_jacobian(self.frame(), &self.q, &EndEffector::default());
+        let lever = self.point - self.pose(&self.q).translation.vector;
+        let moment = lever.cross(&self.force);
+        let linear = jacobian.fixed_rows::<3>(0).tr_mul(&self.force);
+        linear + jacobian.fixed_rows::<3>(3).tr_mul(&moment)
+    }
+
+    /// Lets an arm of its kind feel it: half a second of nothing, then the push for 0.3 s.
+    pub fn told(&self, arm: &Arm, seed: u64) -> Told {
         let mut robot = Robot::new(Config {
             kind: self.kind,
             q: self.q,
@@ -96,7 +168,6 @@ impl Push {
             ..Config::default()
         });
         let mut tare = Tare::new();
-        let model = Model::physically_consistent(self.kind);
         let mut read = |robot: &mut Robot, milliseconds: u32| {
             let mut left = JointVector::zeros();
             for _ in 0..milliseconds {
@@ -108,10 +179,7 @@ impl Push {
             left
         };
         read(&mut robot, 500);
-        let frames = EndEffector::default();
-        let pose = transform::isometry(&model.pose(frame, &self.q, &frames)).expect("rigid");
-        let offset = pose.inverse_transform_point(&Point3::from(self.point));
-        robot.touch(Touch::force(self.force).at(frame).offset(offset.coords));
+        robot.touch(self.touch());
         let left = read(&mut robot, 300);
         let placed = shape(self.kind).at(&JointVector::from(robot.state().q));
         Told {

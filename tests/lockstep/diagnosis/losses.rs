@@ -109,17 +109,7 @@ fn a_jump_after_a_loss_is_attributed_to_the_loss() {
 #[test]
 fn without_a_log_the_diagnosis_says_so() {
     for_each_robot(|ready| {
-        let mut lockstep = ready();
-        let lifecycle = std::mem::replace(
-            &mut lockstep.client.lifecycle,
-            franka_rt::lifecycle::Lifecycle::new(
-                franka_model::Model::of(lockstep.robot.config().kind)
-                    .clone()
-                    .into(),
-                lockstep.robot.version(),
-            ),
-        );
-        lockstep.client.lifecycle = lifecycle.with_log_size(0);
+        let mut lockstep = ready().with_log_size(0);
         let mut torques = stepping(0, 10.0);
         let callback = Callback::torques(lockstep.client.version(), move |_, _| Torques(torques()));
         let work = begin(&mut lockstep, callback);

@@ -120,6 +120,13 @@ impl Lockstep {
         }
     }
 
+    /// Replaces the number of cycles that the log of a motion holds.
+    #[must_use]
+    pub fn with_log_size(self, cycles: usize) -> Self {
+        let client = self.client.with_log_size(cycles);
+        Self { client, ..self }
+    }
+
     /// The time since the beginning, `[ms]`.
     pub fn now(&self) -> u64 {
         self.milliseconds
