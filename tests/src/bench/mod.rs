@@ -14,6 +14,7 @@
 //! |---|---|
 //! | [`codec`] | a state read, a command written |
 //! | [`collision`] | distances of the arm to itself, with gradients |
+//! | [`contact`] | the place of a contact, from external torques |
 //! | [`cycle`] | target control, datagram in to datagram out |
 //! | [`follow`] | the lag behind a target that moves, in virtual time |
 //! | [`guarded`] | the same with every guard on, for each kind of goal |
@@ -30,6 +31,7 @@ use std::time::Instant;
 
 pub mod codec;
 pub mod collision;
+pub mod contact;
 pub mod cycle;
 pub mod follow;
 pub mod guarded;
@@ -96,6 +98,7 @@ pub fn all() -> Vec<Benchmark> {
     [
         codec::all(),
         collision::all(),
+        contact::all(),
         cycle::all(),
         guarded::all(),
         inverse::all(),

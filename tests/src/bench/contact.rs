@@ -1,0 +1,32 @@
+//! Where on the arm a contact is: a force on each body in turn, in random postures.
+
+use franka_model::collision::Shape;
+use franka_model::contact::{TorqueError, locate};
+use franka_model::{JointVector, RobotKind};
+
+use super::{Benchmark, Inputs, Statistic, timed};
+use crate::contacts::pushes;
+
+/// From joint positions and external torques to the contact.
+pub fn all() -> Vec<Benchmark> {
+    let kind = RobotKind::Fr3;
+    let pushes = pushes(kind, PUSHES, SEED).into_iter();
+    let mut inputs = Inputs::new(pushes.map(|push| (push.q, push.torque())));
+    let shape = Shape::covering(kind).with_hand();
+    let mut found = move || {
+        let (q, torque): &(JointVector, JointVector) = inputs.next();
+        locate(&shape.at(q), torque, &TorqueError::AT_REST)
+    };
+    vec![Benchmark {
+        key: "model.locate_ns",
+        statistics: &[Statistic::P50],
+        round: Box::new(move || {
+            timed(PUSHES, 1, || {
+                std::hint::black_box(found().is_ok());
+            })
+        }),
+    }]
+}
+
+const SEED: u64 = 5;
+const PUSHES: usize = 64;
