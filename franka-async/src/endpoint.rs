@@ -131,6 +131,20 @@ impl Endpoint {
     }
 }
 
+impl EndpointError {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::NoHost { .. } => "endpoint-no-host",
+            Self::Port { .. } => "endpoint-port",
+            Self::Address { .. } => "endpoint-address",
+            Self::Brackets { .. } => "endpoint-brackets",
+            Self::Name { .. } => "endpoint-name",
+            Self::Interface { .. } => "endpoint-interface",
+        }
+    }
+}
+
 impl FromStr for Endpoint {
     type Err = EndpointError;
 

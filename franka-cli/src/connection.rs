@@ -179,7 +179,7 @@ impl Place {
 
     fn no_connection(&self, device: &str, seen: Seen, error: Error) -> Failure {
         let host = self.name.as_str();
-        match seen {
+        let failure = match seen {
             Seen::Refused => Failure::new(
                 Ending::NoRobot,
                 format!("no {device} at {self}: the connection was refused"),
@@ -217,7 +217,8 @@ impl Place {
                 let message = format!("no connection to the {device} at {self}: {error}");
                 Failure::new(Ending::NoRobot, message)
             }
-        }
+        };
+        failure.entry(error.entry())
     }
 }
 

@@ -59,11 +59,16 @@ impl Ending {
         }
         let style = Style::new().fg_color(Some(AnsiColor::Red.into())).bold();
         anstream::eprintln!("{style}error:{style:#} {error:#}");
-        if let Some(advice) = error
-            .downcast_ref::<Failure>()
-            .and_then(|it| it.advice.as_ref())
-        {
+        let failure = error.downcast_ref::<Failure>();
+        if let Some(advice) = failure.and_then(|failure| failure.advice.as_ref()) {
             anstream::eprintln!("{advice}");
+        }
+        let entry = match failure {
+            Some(failure) => failure.entry,
+            None => of_driver(error).map(|(_, entry)| entry),
+        };
+        if let Some(entry) = entry {
+            anstream::eprintln!("In the book: errors.md#{entry}");
         }
         ending
     }
@@ -73,25 +78,31 @@ impl Ending {
         if let Some(failure) = error.downcast_ref::<Failure>() {
             return failure.ending;
         }
-        let party = |party| match party {
-            Party::Link => Self::NoRobot,
-            Party::Host => Self::Host,
-            _ => Self::Failed,
-        };
-        if let Some(error) = error.downcast_ref::<Error>() {
-            party(error.party())
-        } else if let Some(error) = error.downcast_ref::<MotionError>() {
-            party(error.party())
-        } else if let Some(error) = error.downcast_ref::<CommandError>() {
-            party(error.party())
-        } else if let Some(error) = error.downcast_ref::<ConnectError>() {
-            party(error.party())
+        if let Some((party, _)) = of_driver(error) {
+            match party {
+                Party::Link => Self::NoRobot,
+                Party::Host => Self::Host,
+                _ => Self::Failed,
+            }
         } else if error.is::<io::Error>() {
             Self::Host
         } else {
             Self::Failed
         }
     }
+}
+
+/// Who can act on an error of the driver, and the name of its row in the book's chapter of errors.
+fn of_driver(error: &anyhow::Error) -> Option<(Party, &'static str)> {
+    macro_rules! first_of {
+        ($($kind:ty),*) => {
+            $(if let Some(error) = error.downcast_ref::<$kind>() {
+                return Some((error.party(), error.entry()));
+            })*
+        };
+    }
+    first_of!(Error, MotionError, CommandError, ConnectError);
+    None
 }
 
 fn is_broken_pipe(error: &anyhow::Error) -> bool {
@@ -105,6 +116,8 @@ pub(crate) struct Failure {
     ending: Ending,
     message: String,
     advice: Option<String>,
+    /// Row of the book's chapter of errors.
+    entry: Option<&'static str>,
 }
 
 impl Failure {
@@ -113,6 +126,7 @@ impl Failure {
             ending,
             message: message.into(),
             advice: None,
+            entry: None,
         }
     }
 
@@ -122,6 +136,11 @@ impl Failure {
 
     pub(crate) fn advice(mut self, advice: impl Into<String>) -> Self {
         self.advice = Some(advice.into());
+        self
+    }
+
+    pub(crate) fn entry(mut self, entry: &'static str) -> Self {
+        self.entry = Some(entry);
         self
     }
 }

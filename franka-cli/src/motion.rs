@@ -172,7 +172,7 @@ impl Moving {
             MotionError::LinkLost { .. } | MotionError::ConnectionClosed { .. } => Ending::NoRobot,
             _ => Ending::Failed,
         };
-        let failure = Failure::new(ending, error.to_string());
+        let failure = Failure::new(ending, error.to_string()).entry(error.entry());
         // For want of packets, with the causes on this computer; else why the robot stopped.
         let advice = match doctor::diagnose(&error, self.robot.address().ip()).await {
             Some(diagnosis) => Some(diagnosis.to_string()),

@@ -89,6 +89,12 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     let exception = class.call1((error.to_string(),))?;
     exception.setattr("kind", kind(error))?;
     exception.setattr("party", variant(&error.party()))?;
+    exception.setattr("entry", error.entry())?;
+    // What a traceback shows below the text, from Python 3.11 on.
+    if exception.hasattr("add_note")? {
+        let note = format!("In the book: errors.md#{}", error.entry());
+        exception.call_method1("add_note", (note,))?;
+    }
     match error {
         Error::Motion(motion) => {
             exception.setattr("is_ready_for_more", motion.is_ready_for_more())?;

@@ -59,7 +59,9 @@ def test_the_environment_says_whether_real_time_is_enforced(sim: Sim, monkeypatc
 def test_a_robot_that_is_not_there_is_a_connect_error() -> None:
     with pytest.raises(ConnectError) as caught:
         Robot("127.0.0.1:9", realtime="ignore").connect().wait()
-    assert caught.value.party == "robot" or caught.value.kind
+    error = caught.value
+    assert (error.party, error.kind, error.entry) == ("robot", "refused", "connect-refused")
+    assert getattr(error, "__notes__", None) in (["In the book: errors.md#connect-refused"], None), "None before Python 3.11"
 
 
 def test_states_come_at_the_rate_that_is_asked_for(robot: Robot) -> None:

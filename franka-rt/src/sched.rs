@@ -138,6 +138,20 @@ pub enum SchedError {
 }
 
 impl SchedError {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::MaximumPriority(_) => "sched-maximum-priority",
+            Self::SetScheduling(_) => "sched-set-scheduling",
+            Self::KernelNotRealtime(_) => "sched-kernel-not-realtime",
+            Self::Pin { .. } => "sched-pin",
+            Self::LockMemory(_) => "sched-lock-memory",
+            Self::BusyPoll { .. } => "sched-busy-poll",
+            Self::BusyPollRange { .. } => "sched-busy-poll-range",
+            Self::PrefaultRange { .. } => "sched-prefault-range",
+        }
+    }
+
     /// Whether the caller asked for an option that is out of range, which no host grants.
     pub fn is_misuse(&self) -> bool {
         matches!(

@@ -177,6 +177,18 @@ pub enum StartFault {
     },
 }
 
+impl StartFault {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::Dropped { .. } => "start-dropped",
+            Self::Withdrawn { .. } => "start-withdrawn",
+            Self::Ended { .. } => "start-ended",
+            Self::TimedOut { .. } => "start-timed-out",
+        }
+    }
+}
+
 /// Why a member leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Cause {

@@ -81,6 +81,35 @@ impl From<IdentifyError> for Error {
 }
 
 impl Error {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`, which says what to
+    /// do. Every error of a call has it.
+    ///
+    /// ```
+    /// # use franka_async::{Error, MotionError};
+    /// let error = Error::from(MotionError::Superseded);
+    /// assert_eq!(
+    ///     format!("{error} (errors.md#{})", error.entry()),
+    ///     "superseded by a newer goal (errors.md#motion-superseded)",
+    /// );
+    /// ```
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::Connect(error) => error.entry(),
+            Self::Command(error) => error.entry(),
+            Self::Control(error) => error.entry(),
+            Self::Motion(error) => error.entry(),
+            Self::Active(error) => error.entry(),
+            Self::Identify(error) => error.entry(),
+            Self::Read(error) => error.entry(),
+            Self::ConnectGripper(error) => error.entry(),
+            Self::Gripper(error) => error.entry(),
+            Self::ConnectVacuumGripper(error) => error.entry(),
+            Self::VacuumGripper(error) => error.entry(),
+            #[cfg(all(feature = "model-library", target_os = "linux"))]
+            Self::ModelLibrary(error) => error.entry(),
+        }
+    }
+
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {

@@ -40,6 +40,17 @@ pub enum CommandError {
 }
 
 impl CommandError {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::Refused(refusal) => refusal.entry(),
+            Self::Request(_) => "command-request",
+            Self::Timeout { .. } => "command-timeout",
+            Self::Violation(_) => "command-violation",
+            Self::ConnectionClosed { reason } => reason.entry(),
+        }
+    }
+
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
@@ -74,6 +85,16 @@ pub enum ActionError<C: ServiceCommand> {
 }
 
 impl<C: ServiceCommand> ActionError<C> {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::Failure(_) => "action-failure",
+            Self::Request(_) => "action-request",
+            Self::Violation(_) => "action-violation",
+            Self::ConnectionClosed { reason } => reason.entry(),
+        }
+    }
+
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
@@ -104,6 +125,14 @@ pub enum ReadError {
 }
 
 impl ReadError {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::LinkLost { .. } => "read-link-lost",
+            Self::ConnectionClosed { reason } => reason.entry(),
+        }
+    }
+
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
@@ -132,6 +161,16 @@ pub enum ActiveError {
 }
 
 impl ActiveError {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::Motion(error) => error.entry(),
+            Self::Finished => "active-finished",
+            Self::Write(_) => "active-write",
+            Self::Borrow(_) => "active-borrow",
+        }
+    }
+
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
@@ -168,6 +207,15 @@ pub enum IdentifyError {
 }
 
 impl IdentifyError {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::Moved { .. } => "identify-moved",
+            Self::Motion(error) => error.entry(),
+            Self::Fit(_) => "identify-fit",
+        }
+    }
+
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
@@ -193,6 +241,14 @@ pub enum ModelLibraryError {
 
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 impl ModelLibraryError {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::Command(error) => error.entry(),
+            Self::Library(_) => "library-load",
+        }
+    }
+
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {

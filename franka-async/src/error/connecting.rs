@@ -108,6 +108,31 @@ pub enum ConnectError<P: Protocol = Version> {
 }
 
 impl<P: Protocol> ConnectError<P> {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::Realtime(error) => error.entry(),
+            Self::Endpoint(error) => error.entry(),
+            Self::LinkTimeout(_) => "connect-link-timeout",
+            Self::LogSize { .. } => "connect-log-size",
+            Self::Known(_) => "connect-known",
+            Self::System(_) => "connect-system",
+            Self::Refused => "connect-refused",
+            Self::Timeout => "connect-timeout",
+            Self::Network { .. } => "connect-network",
+            Self::NoAddress { .. } => "connect-no-address",
+            Self::IncompatibleVersion(_) => "connect-incompatible-version",
+            Self::ConnectionClosed { reason } => reason.entry(),
+            Self::Datagram { .. } => "connect-datagram",
+            Self::Violation(_) => "connect-violation",
+            Self::Frame(_) => "connect-frame",
+            Self::HandshakeTimeout => "connect-handshake-timeout",
+            Self::NoState => "connect-no-state",
+            #[cfg(feature = "urdf")]
+            Self::Model(error) => error.entry(),
+        }
+    }
+
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
@@ -185,6 +210,14 @@ pub enum ModelError {
 
 #[cfg(feature = "urdf")]
 impl ModelError {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::Command(error) => error.entry(),
+            Self::Urdf(_) => "model-urdf",
+        }
+    }
+
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {

@@ -94,7 +94,11 @@ fn without_a_robot_every_command_says_so() {
     let free = TcpListener::bind("127.0.0.1:0").expect("a port");
     let address = free.local_addr().expect("bound").to_string();
     drop(free);
-    let texts = ["the connection was refused", "FCI"];
+    let texts = [
+        "the connection was refused",
+        "FCI",
+        "errors.md#connect-refused",
+    ];
     for command in STILL.iter().chain(&MOVING).chain(&OTHER) {
         let ran = home.run(&words(command, &address, &address));
         assert_eq!(ran.code, Some(3), "{command}: {ran:?}");

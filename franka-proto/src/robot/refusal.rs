@@ -71,6 +71,49 @@ impl Refusal {
         self.mode
     }
 
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    #[must_use]
+    pub fn entry(&self) -> &'static str {
+        match self.status {
+            Status::Move(MoveStatus::Preempted) => "refused-preempted",
+            Status::Move(MoveStatus::PreemptedDueToActivatedSafetyFunctions) => {
+                "refused-preempted-safety"
+            }
+            Status::Move(MoveStatus::CommandRejectedDueToActivatedSafetyFunctions)
+            | Status::StopMove(StopStatus::CommandRejectedDueToActivatedSafetyFunctions)
+            | Status::Setter(SetterStatus::CommandRejectedDueToActivatedSafetyFunctions)
+            | Status::Recovery(RecoveryStatus::CommandRejectedDueToActivatedSafetyFunctions)
+            | Status::Model(ModelStatus::CommandRejectedDueToActivatedSafetyFunctions) => {
+                "refused-safety-function"
+            }
+            Status::Move(MoveStatus::StartAtSingularPoseRejected) => "refused-singular",
+            Status::Move(MoveStatus::InvalidArgumentRejected) => "refused-path-deviation",
+            Status::Setter(SetterStatus::InvalidArgumentRejected) => "refused-invalid-argument",
+            Status::Recovery(RecoveryStatus::ManualErrorRecoveryRequiredRejected) => {
+                "refused-manual-recovery"
+            }
+            Status::Move(MoveStatus::ReflexAborted)
+            | Status::StopMove(StopStatus::ReflexAborted)
+            | Status::Recovery(RecoveryStatus::ReflexAborted) => "refused-reflex",
+            Status::Move(MoveStatus::EmergencyAborted)
+            | Status::StopMove(StopStatus::EmergencyAborted)
+            | Status::Recovery(RecoveryStatus::EmergencyAborted) => "refused-user-stop",
+            Status::Move(MoveStatus::InputErrorAborted) => "refused-input",
+            Status::Library(LibraryStatus::Error) => "refused-library",
+            Status::Move(MoveStatus::CommandNotPossibleRejected)
+            | Status::StopMove(StopStatus::CommandNotPossibleRejected | StopStatus::Aborted)
+            | Status::Setter(SetterStatus::CommandNotPossibleRejected)
+            | Status::Recovery(RecoveryStatus::CommandNotPossibleRejected)
+            | Status::Model(ModelStatus::CommandNotPossibleRejected) => "refused-not-possible",
+            Status::Move(MoveStatus::Aborted | MoveStatus::Success | MoveStatus::MotionStarted)
+            | Status::StopMove(StopStatus::Success)
+            | Status::Setter(SetterStatus::Success)
+            | Status::Recovery(RecoveryStatus::Aborted | RecoveryStatus::Success)
+            | Status::Model(ModelStatus::Success)
+            | Status::Library(LibraryStatus::Success) => "refused-aborted",
+        }
+    }
+
     fn reason(&self) -> Reason {
         match self.status {
             Status::Move(status) => match status {

@@ -39,6 +39,9 @@ class FrankaError(Exception):
     party: str
     """Who can act on it: ``caller``, ``robot``, ``link``, ``host`` or ``peer``."""
 
+    entry: str | None = None
+    """Row of the book's chapter of errors, which says what to do: ``errors.md#`` and this name. A traceback has it as a note."""
+
 
 class ConnectError(FrankaError):
     """There is no connection."""

@@ -70,6 +70,21 @@ impl CloseReason {
         matches!(self, Self::ClosedByUs | Self::RuntimeEnded)
     }
 
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::ClosedByUs => "closed-by-us",
+            Self::ClosedByPeer => "closed-by-peer",
+            Self::Io { .. } => "closed-io",
+            Self::Protocol { .. } => "closed-protocol",
+            Self::ThreadEnded { .. } => "closed-thread-ended",
+            Self::Silent { .. } => "closed-silent",
+            Self::GivenUp { .. } => "closed-given-up",
+            Self::AnotherRobot { .. } => "closed-another-robot",
+            Self::RuntimeEnded => "closed-runtime-ended",
+        }
+    }
+
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {

@@ -273,6 +273,34 @@ impl MotionError {
         }
     }
 
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::Goal(error) => error.entry(),
+            Self::Path(_) => "motion-path",
+            Self::Superseded => "motion-superseded",
+            Self::Stopped => "motion-stopped",
+            Self::Held(lapse) | Self::Braked(lapse) => lapse.entry(),
+            Self::Disengaged => "motion-disengaged",
+            Self::Busy => "motion-busy",
+            Self::Start(fault) => fault.entry(),
+            Self::Unsupported(_) => "motion-unsupported",
+            Self::Invalid(_) => "motion-invalid",
+            Self::GivenUp { .. } => "motion-given-up",
+            Self::Panicked { .. } => "motion-panicked",
+            Self::Stalled { .. } => "motion-stalled",
+            Self::Rejected(refusal) => refusal.entry(),
+            Self::Control(error) => error.entry(),
+            Self::NotReady { why, .. } => why.entry(),
+            Self::TargetNotReached(_) => "motion-target-not-reached",
+            Self::AfterReaction { error, .. } => error.entry(),
+            Self::LinkLost { .. } => "motion-link-lost",
+            Self::ConnectionClosed { reason } => reason.entry(),
+            Self::Violation(_) => "motion-violation",
+            Self::Protocol { .. } => "motion-protocol",
+        }
+    }
+
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
@@ -369,6 +397,16 @@ impl ControlError {
     /// The robot's last word on the motion.
     pub fn refusal(&self) -> Refusal {
         self.failure.refusal
+    }
+
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`: of the first error
+    /// that stopped the robot, or of the robot's answer.
+    pub fn entry(&self) -> &'static str {
+        let first = self.failure.reflex_reason.iter().next();
+        match first.filter(|_| self.is_reflex()) {
+            Some(error) => error.name(),
+            None => self.refusal().entry(),
+        }
     }
 
     /// Whether the robot stopped itself for one of the reasons in

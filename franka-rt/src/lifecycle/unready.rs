@@ -42,6 +42,20 @@ impl Unready {
         )
     }
 
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::Disconnected => "unready-disconnected",
+            Self::Silent => "unready-silent",
+            Self::Recovering => "unready-recovering",
+            Self::AgreementAwaited => "unready-agreement-awaited",
+            Self::Reflex => "unready-reflex",
+            Self::UserStopped => "unready-user-stopped",
+            Self::Guided => "unready-guided",
+            Self::Braked => "unready-braked",
+        }
+    }
+
     /// Returns the party that can act on it.
     pub fn party(self) -> Party {
         match self {

@@ -136,6 +136,31 @@ pub enum GoalError {
     Tool,
 }
 
+impl GoalError {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::NotFinite => "goal-not-finite",
+            Self::Moves => "goal-moves",
+            Self::OutOfRange { .. } => "goal-out-of-range",
+            Self::Unreachable { .. } => "goal-unreachable",
+            Self::Budget { .. } => "goal-budget",
+            Self::Speed { .. } => "goal-speed",
+            Self::Gains(_) => "goal-gains",
+            Self::Unheld => "goal-unheld",
+            Self::Number { .. } => "goal-number",
+            Self::Late { .. } => "goal-late",
+            Self::Chunks(_) => "goal-chunks",
+            Self::Backend { .. } => "goal-backend",
+            Self::KeepOut { .. } => "goal-keep-out",
+            Self::Condition(_) => "goal-condition",
+            Self::Silence { .. } => "goal-silence",
+            Self::Grasp => "goal-grasp",
+            Self::Tool => "goal-tool",
+        }
+    }
+}
+
 impl Goal {
     /// Checks the goal for a robot in `state`.
     ///

@@ -85,6 +85,19 @@ impl Lapse {
     }
 }
 
+impl Lapse {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::Silent { .. } => "lapse-silent",
+            Self::Deadman => "lapse-deadman",
+            Self::Displaced => "lapse-displaced",
+            Self::Blocked => "lapse-blocked",
+            Self::Team(_) => "lapse-team",
+        }
+    }
+}
+
 impl core::fmt::Display for Lapse {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
