@@ -226,7 +226,8 @@ fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
 const DOCTESTS: &str = "tests/src/lib.rs";
 
 /// Pages outside the book that people read first.
-const REPOSITORY_PAGES: [&str; 3] = ["README.md", "examples/README.md", "franka-py/README.md"];
+pub(crate) const REPOSITORY_PAGES: [&str; 3] =
+    ["README.md", "examples/README.md", "franka-py/README.md"];
 
 #[cfg(test)]
 mod tests {

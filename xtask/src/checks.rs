@@ -7,11 +7,12 @@ use std::thread;
 
 use clap::ValueEnum;
 
+use crate::ours::Ours;
 use crate::step::{Outcome, Steps};
 use crate::workspace::Workspace;
 use crate::{
-    book, circles, cross, dashboard, mujoco, names, package, peers, realtime, recordings, release,
-    texts, tidy,
+    book, circles, commands, cross, dashboard, mujoco, names, package, peer_pages, peers, realtime,
+    recordings, reference_pages, release, texts, tidy,
 };
 
 /// A step that can be chosen with `--only`.
@@ -106,7 +107,17 @@ impl Check {
                 tidy::check(workspace)?;
             }
             Self::Circles => circles::check(workspace)?,
-            Self::Names => names::check(workspace)?,
+            Self::Names => {
+                names::check(workspace)?;
+                let ours = Ours::read(workspace)?;
+                peer_pages::check(workspace, &ours)?;
+                reference_pages::check(workspace, &ours)?;
+                let steps = Self::value_variants()
+                    .iter()
+                    .filter_map(Self::to_possible_value);
+                let steps: Vec<String> = steps.map(|step| step.get_name().to_owned()).collect();
+                commands::check(workspace, &crate::tasks(), &steps)?;
+            }
             Self::Texts => return texts::check(workspace),
             Self::Dependencies => return texts::dependencies(workspace),
             Self::Release => return release::check(workspace, release::Depth::default()),

@@ -8,17 +8,23 @@
 //! | [`book`] | the book, checked or served |
 //! | [`checks`] | the steps of `cargo xtask test` |
 //! | [`circles`] | the step that finds imports in a circle between modules |
+//! | [`commands`] | the commands that the book names |
 //! | [`cross`] | building for other machines, and running that |
 //! | [`dashboard`] | the files of the dashboard's page, and the page in a browser |
 //! | [`dist`] | the program `franka` for other machines, packed |
 //! | [`fuzz`] | the fuzz targets |
 //! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
+//! | [`members`] | what the types of sources have |
 //! | [`mujoco`] | the native library of the simulator's MuJoCo plant |
 //! | [`names`] | the step that counts the names of the driver's root |
+//! | [`ours`] | our public names in Rust |
 //! | [`package`] | the step that builds and tests the Python package, and its wheels |
+//! | [`page`] | tables and anchors of pages of the book |
+//! | [`peer_pages`] | the chapters for those who come from other packages |
 //! | [`peers`] | the step that drives the simulator with other clients |
 //! | [`python`] | virtual environments, for these two |
 //! | [`realtime`] | the right to real-time scheduling |
+//! | [`reference_pages`] | what the reference chapters have to name |
 //! | [`release`] | what a release takes: crates, version, change log |
 //! | [`step`] | steps with headers, times and a summary |
 //! | [`texts`] | the steps that check spelling, workflows and dependencies |
@@ -28,18 +34,24 @@
 mod book;
 mod checks;
 mod circles;
+mod commands;
 mod cross;
 mod dashboard;
 mod dist;
 mod fuzz;
 mod live;
+mod members;
 mod mujoco;
 mod names;
+mod ours;
 mod package;
+mod page;
+mod peer_pages;
 mod peers;
 mod python;
 mod realtime;
 mod recordings;
+mod reference_pages;
 mod release;
 mod step;
 mod texts;
@@ -181,6 +193,23 @@ enum Task {
         #[arg(long, requires = "version")]
         date: Option<String>,
     },
+}
+
+/// The tasks, each with the names of its options; none of a task that passes its arguments on.
+fn tasks() -> Vec<(String, Vec<String>)> {
+    let options = |task: &clap::Command| {
+        let passes_on = task.get_arguments().any(clap::Arg::is_trailing_var_arg_set);
+        let options = task.get_arguments().filter_map(clap::Arg::get_long);
+        match passes_on {
+            true => Vec::new(),
+            false => options.map(str::to_owned).collect(),
+        }
+    };
+    let arguments = <Arguments as clap::CommandFactory>::command();
+    let tasks = arguments.get_subcommands();
+    tasks
+        .map(|task| (task.get_name().to_owned(), options(task)))
+        .collect()
 }
 
 fn main() -> ExitCode {

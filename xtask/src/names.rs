@@ -74,15 +74,49 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
 
 /// What each public module offers: names, and what they stand for. The root is the module "".
 #[derive(Debug, Default)]
-struct Names {
-    modules: BTreeMap<String, BTreeMap<String, String>>,
+pub(crate) struct Names {
+    pub(crate) modules: BTreeMap<String, BTreeMap<String, String>>,
+    /// Modules that are names themselves, whatever is in them.
+    opaque: &'static [&'static str],
 }
 
 impl Names {
-    fn of(root: &Path) -> anyhow::Result<Self> {
-        let mut names = Self::default();
+    /// The public names of the crate whose root is this file.
+    pub(crate) fn of(root: &Path) -> anyhow::Result<Self> {
+        Self::with_opaque(root, &[])
+    }
+
+    /// The same, and what is in some of its modules is left out.
+    pub(crate) fn with_opaque(
+        root: &Path,
+        opaque: &'static [&'static str],
+    ) -> anyhow::Result<Self> {
+        let mut names = Self {
+            opaque,
+            ..Self::default()
+        };
         names.read(root, "", true)?;
         Ok(names)
+    }
+
+    /// Where a name of a public module is declared, as far as public modules lead there.
+    pub(crate) fn declared_at(&self, module: &str, name: &str) -> String {
+        let place = join(module, name);
+        let Some(path) = self.modules.get(module).and_then(|names| names.get(name)) else {
+            return place;
+        };
+        let relative = join(module, path);
+        for target in [&relative, path] {
+            let (outer, last) = target.rsplit_once("::").unwrap_or(("", target));
+            let is_known = self
+                .modules
+                .get(outer)
+                .is_some_and(|of| of.contains_key(last));
+            if is_known && *target != place {
+                return self.declared_at(outer, last);
+            }
+        }
+        if *path == place { place } else { relative }
     }
 
     fn read(&mut self, file: &Path, module: &str, is_root: bool) -> anyhow::Result<()> {
@@ -129,6 +163,9 @@ impl Names {
             let path = join(module, &name);
             self.insert(module, name.clone(), path.clone());
             let Item::Mod(item) = item else { continue };
+            if self.opaque.contains(&&*path) {
+                continue;
+            }
             match &item.content {
                 Some((_, items)) => self.scan(items, &path, &directory.join(&name))?,
                 None => {
@@ -253,7 +290,8 @@ impl Names {
     }
 }
 
-fn join(module: &str, name: &str) -> String {
+/// The path of a name of a module.
+pub(crate) fn join(module: &str, name: &str) -> String {
     match module {
         "" => name.to_owned(),
         module => format!("{module}::{name}"),
