@@ -6,12 +6,15 @@ use franka_proto::MoveStatus;
 use nalgebra::Isometry3;
 
 use super::boards::Boards;
+use super::interface::TorqueInterface;
 use super::touch::{Touch, TouchId};
 use super::{Activity, Measurement, Robot};
+use crate::arm::Arm;
 use crate::end_effector::Hand;
 use crate::estimate::Estimate;
 use crate::generator::{ArmModel, Desired};
 use crate::observer::MomentumObserver;
+use crate::plant::DriveTrain;
 
 impl Robot {
     /// Lets something act on the arm from outside; see [`Touch`].
@@ -68,8 +71,26 @@ impl Robot {
     /// Hangs a load on the flange, beside the tool and in place of any before, without telling the
     /// robot. [`Load::NONE`] takes it off.
     pub fn attach(&mut self, load: Load) {
+        self.load = load;
         self.plant
             .attach(self.arm.body.load(&self.config.tool.load, &load));
+    }
+
+    /// Puts another arm in place of this one, at rest where this one stands and with its load, as
+    /// [`place`](Self::place) does. Tool, settings, client and errors stay. The
+    /// [stalls](Arm::stalls) of its network interface are not its own here: see
+    /// [`Running::with_network`](crate::Running::with_network).
+    pub fn fit(&mut self, arm: Arm) {
+        let q = *self.plant.q();
+        self.plant.fit(self.config.kind, &arm);
+        self.as_built = arm.body.as_built(self.config.kind);
+        self.interface = TorqueInterface::new(&arm.drive);
+        self.arm = arm.clone();
+        self.config.arm = Some(arm);
+        self.attach(self.load);
+        let holding = self.plant.place(&q);
+        self.train = DriveTrain::new(&self.arm, &q, &holding);
+        self.place(&q);
     }
 
     /// Passes the command of `hand` to the fingers of the plant, if it has some, and their width to

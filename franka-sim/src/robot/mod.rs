@@ -72,6 +72,8 @@ pub struct Robot {
     train: DriveTrain,
     interface: TorqueInterface,
     plant: Box<dyn Plant>,
+    /// What the flange carries beside the tool, undeclared.
+    load: Load,
     /// URDF text.
     description: Option<Bytes>,
     settings: Settings,
@@ -176,6 +178,7 @@ impl Robot {
             interface: TorqueInterface::new(&arm.drive),
             arm,
             train,
+            load: config.payload,
             dynamics,
             boards: Boards::resting(model, &q),
             watch: Watch::new(&config),
@@ -249,7 +252,7 @@ impl Robot {
         &self.state
     }
 
-    /// How the robot was made.
+    /// How the robot was made, but for an arm that was [fitted](Self::fit) since.
     pub fn config(&self) -> &Config {
         &self.config
     }

@@ -14,8 +14,16 @@ use super::relay::Relay;
 use crate::network::Network;
 use crate::robot::Awaited;
 
-/// Something to do with a device between two milliseconds.
-pub(super) type Job<D> = Box<dyn FnOnce(&mut D, Pace) + Send>;
+/// Something to do between two milliseconds.
+pub(super) type Job<D> = Box<dyn FnOnce(Between<'_, D>) + Send>;
+
+/// What a job may look at and change.
+pub(super) struct Between<'a, D> {
+    pub(super) device: &'a mut D,
+    pub(super) relay: &'a mut Option<Relay>,
+    pub(super) now: Instant,
+    pub(super) pace: Pace,
+}
 
 /// What the stream asks of the thread.
 pub(super) enum Order {
@@ -124,7 +132,7 @@ impl<D: Device> DeviceServer<D> {
     pub(super) fn cycle(&mut self, now: Instant, pace: Pace) -> bool {
         self.take_commands(now);
         self.take_orders();
-        if !self.run_jobs(pace) {
+        if !self.run_jobs(now, pace) {
             return false;
         }
         self.send_replies();
@@ -176,7 +184,7 @@ impl<D: Device> DeviceServer<D> {
                 return true;
             }
             self.take_orders();
-            if !self.run_jobs(pace) {
+            if !self.run_jobs(now, pace) {
                 return false;
             }
             self.send_replies();
@@ -283,10 +291,15 @@ impl<D: Device> DeviceServer<D> {
     }
 
     /// Runs the jobs that wait. False when none can come any more: the simulation is to end.
-    fn run_jobs(&mut self, pace: Pace) -> bool {
+    fn run_jobs(&mut self, now: Instant, pace: Pace) -> bool {
         for _ in 0..ORDERS {
             match self.jobs.try_recv() {
-                Ok(job) => job(&mut self.device, pace),
+                Ok(job) => job(Between {
+                    device: &mut self.device,
+                    relay: &mut self.relay,
+                    now,
+                    pace,
+                }),
                 Err(mpsc::error::TryRecvError::Empty) => return true,
                 Err(mpsc::error::TryRecvError::Disconnected) => return false,
             }

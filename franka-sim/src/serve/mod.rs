@@ -420,6 +420,40 @@ impl Running {
         self.robot.with(job).await
     }
 
+    /// Runs `job` between two milliseconds on the network that states and commands pass: see
+    /// [`Sim::network`]. `None` is the host's own. It is also given the network's time, which begins
+    /// with the robot's start, or with a network where there was none. What is under way in a
+    /// network that is replaced is lost.
+    ///
+    /// ```
+    /// # use std::time::Duration;
+    /// # use franka_sim::{Network, Sim};
+    /// # #[tokio::main(flavor = "current_thread")]
+    /// # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+    /// # let sim = Sim::fr3().start().await?;
+    /// // No state arrives for 30 ms.
+    /// sim.with_network(|network, now| {
+    ///     let network = network.get_or_insert_with(Network::perfect);
+    ///     network.to_client.cut(now..now + Duration::from_millis(30));
+    /// })
+    /// .await?;
+    /// # sim.stop().await;
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Service::with`].
+    ///
+    /// # Cancel safety
+    /// As [`Service::with`].
+    pub async fn with_network<R: Send + 'static>(
+        &self,
+        job: impl FnOnce(&mut Option<Network>, Duration) -> R + Send + 'static,
+    ) -> Result<R, Stopped> {
+        self.robot.with_network(job).await
+    }
+
     /// The newest state, in full precision.
     ///
     /// # Errors

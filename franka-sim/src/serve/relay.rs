@@ -33,6 +33,32 @@ impl Relay {
         }
     }
 
+    /// Runs `job` on the network of a relay, if there is one, at that network's time. A relay begins
+    /// and ends with its network.
+    pub(super) fn change<R>(
+        relay: &mut Option<Self>,
+        now: Instant,
+        job: impl FnOnce(&mut Option<Network>, Duration) -> R,
+    ) -> R {
+        let Some(there) = relay else {
+            let mut network = None;
+            let result = job(&mut network, Duration::ZERO);
+            *relay = network.map(|network| Self {
+                origin: now,
+                ..Self::new(network)
+            });
+            return result;
+        };
+        let time = there.time(now);
+        let mut network = Some(std::mem::replace(&mut there.network, Network::perfect()));
+        let result = job(&mut network, time);
+        match network {
+            Some(network) => there.network = network,
+            None => *relay = None,
+        }
+        result
+    }
+
     fn time(&mut self, now: Instant) -> Duration {
         self.latest = self.latest.max(now.saturating_duration_since(self.origin));
         self.latest

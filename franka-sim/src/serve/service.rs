@@ -4,6 +4,7 @@
 use std::fmt;
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
+use std::time::Duration;
 
 use tokio::net::TcpListener;
 use tokio::sync::{mpsc, oneshot};
@@ -11,8 +12,10 @@ use tokio::task::JoinHandle;
 
 use super::clock::Pace;
 use super::device::Device;
-use super::device_server::{DeviceServer, Job};
+use super::device_server::{Between, DeviceServer, Job};
+use super::relay::Relay;
 use super::sessions;
+use crate::network::Network;
 
 /// A device that is being served. Dropping it closes its sockets.
 pub struct Service<D> {
@@ -69,22 +72,31 @@ impl<D: 'static> Service<D> {
         &self,
         job: impl FnOnce(&mut D) -> R + Send + 'static,
     ) -> Result<R, Stopped> {
-        self.ask(|device, _| job(device)).await
+        self.ask(|between| job(between.device)).await
     }
 
     /// How well the thread has kept the millisecond so far.
     pub(super) async fn pace(&self) -> Result<Pace, Stopped> {
-        self.ask(|_, pace| pace).await
+        self.ask(|between| between.pace).await
+    }
+
+    /// Runs `job` on the network between socket and device, at the network's time.
+    pub(super) async fn with_network<R: Send + 'static>(
+        &self,
+        job: impl FnOnce(&mut Option<Network>, Duration) -> R + Send + 'static,
+    ) -> Result<R, Stopped> {
+        self.ask(|between| Relay::change(between.relay, between.now, job))
+            .await
     }
 
     async fn ask<R: Send + 'static>(
         &self,
-        job: impl FnOnce(&mut D, Pace) -> R + Send + 'static,
+        job: impl FnOnce(Between<'_, D>) -> R + Send + 'static,
     ) -> Result<R, Stopped> {
         let (answer, result) = oneshot::channel();
-        let job: Job<D> = Box::new(move |device, pace| {
+        let job: Job<D> = Box::new(move |between| {
             // The future that waits for the answer may have been dropped.
-            let _ = answer.send(job(device, pace));
+            let _ = answer.send(job(between));
         });
         self.jobs.send(job).await.map_err(|_| Stopped)?;
         result.await.map_err(|_| Stopped)

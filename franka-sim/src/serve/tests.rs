@@ -377,6 +377,48 @@ fn what_the_network_cuts_reaches_no_client() {
 }
 
 #[test]
+fn a_network_comes_changes_and_goes_while_the_robot_runs() {
+    let runtime = runtime();
+    let sim = runtime.block_on(Sim::fr3().start()).expect("a robot");
+    let client = Client::connect(sim.addr());
+    client.state();
+    let delay = Duration::from_millis(30);
+    let late = Conditions {
+        delay,
+        ..Conditions::default()
+    };
+    let set = move |network: &mut Option<Network>, time| {
+        let before = network.replace(Network::new(1, late, Conditions::default()));
+        (before.is_some(), time)
+    };
+    let set = runtime.block_on(sim.with_network(set));
+    assert_eq!(set, Ok((false, Duration::ZERO)));
+    for _ in 0..20 {
+        let asked = Instant::now();
+        let published = runtime.block_on(sim.state()).expect("running").message_id;
+        while client.state().message_id <= published + 1 {}
+        assert!(asked.elapsed() >= delay, "{:?}", asked.elapsed());
+    }
+    let cut = runtime.block_on(sim.with_network(|network, time| {
+        let path = &mut network.as_mut().expect("the one above").to_client;
+        path.cut(time..Duration::MAX);
+        (time, path.conditions().delay)
+    }));
+    let (time, got) = cut.expect("running");
+    assert!(time >= 20 * delay && got == delay, "{time:?}, {got:?}");
+    runtime.block_on(robot_time(&sim, 100));
+    client.socket.set_nonblocking(true).expect("an option");
+    while client.socket.recv(&mut []).is_ok() {}
+    runtime.block_on(robot_time(&sim, 100));
+    let heard = client.socket.recv(&mut []).map_err(|error| error.kind());
+    assert_eq!(heard, Err(ErrorKind::WouldBlock));
+    client.socket.set_nonblocking(false).expect("an option");
+    let gone = sim.with_network(|network, _| network.take().is_some());
+    assert_eq!(runtime.block_on(gone), Ok(true));
+    client.state();
+}
+
+#[test]
 fn robots_are_realistic_unless_they_are_to_be_ideal() {
     for (sim, kind) in [(Sim::fr3(), RobotKind::Fr3), (Sim::fer(), RobotKind::Fer)] {
         assert_eq!(sim.config.chosen_arm(), Arm::realistic(kind));

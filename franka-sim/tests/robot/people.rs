@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::pair::*;
 use crate::plants::robots;
-use franka_sim::Touch;
+use franka_sim::{Arm, Touch};
 
 fn for_each_robot(test: impl Fn(&str, &mut Pair)) {
     for (name, mut pair) in robots(&Config::default()) {
@@ -164,6 +164,37 @@ fn a_payload_comes_and_goes_while_the_robot_stands_and_is_felt_until_it_is_decla
         expect(pair, 0.0);
         pair.robot.attach(Load::NONE);
         expect(pair, -weight);
+    });
+}
+
+#[test]
+fn another_arm_stands_where_the_one_before_stood_and_carries_its_load() {
+    for_each_robot(|name, pair| {
+        let kind = pair.robot.config().kind;
+        let load = Load {
+            mass: 0.5,
+            com: Vector3::new(0.0, 0.0, 0.05),
+            inertia: Matrix3::identity() * 1e-3,
+        };
+        pair.robot.attach(load);
+        pair.idle(1500);
+        let felt = |pair: &Pair| pair.state.O_F_ext_hat_K[2];
+        let before = felt(pair);
+        let motion = pair.start_joints();
+        let q = *pair.robot.q();
+        pair.robot.fit(Arm::bad(kind));
+        assert_eq!(*pair.robot.q(), q, "{name}");
+        assert_eq!(pair.robot.config().arm, Some(Arm::bad(kind)), "{name}");
+        pair.idle(1500);
+        assert_eq!(pair.outcome(motion), MoveStatus::Preempted, "{name}");
+        assert_eq!(pair.state.robot_mode, RobotMode::Idle, "{name}");
+        // What is not declared of a bad arm.
+        let more = felt(pair) - before;
+        assert!(more.abs() > 0.3, "{name}: {more} N");
+        pair.robot.fit(Arm::ideal(kind));
+        pair.idle(1500);
+        let off = felt(pair) - before;
+        assert!(off.abs() < 0.1, "{name}: {off} N");
     });
 }
 
