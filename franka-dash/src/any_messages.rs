@@ -17,6 +17,8 @@ pub(crate) fn check(bytes: &[u8]) {
     let permissions = Permissions {
         motion: permitted & 1 != 0,
         disturbances: permitted & 2 != 0,
+        gripper: permitted & 4 != 0,
+        recording: permitted & 8 != 0,
         patience: Duration::ZERO,
     };
     let mut authority = Authority::new(permissions);
@@ -46,6 +48,8 @@ pub(crate) fn check(bytes: &[u8]) {
                 assert!(valid && step.refusal.is_none(), "{effect:?}");
                 let permitted = match effect {
                     Effect::Disturb(_) => permissions.disturbances,
+                    Effect::Record(_) => permissions.recording,
+                    Effect::Gripper(_) => permissions.motion && permissions.gripper,
                     _ => permissions.motion,
                 };
                 assert!(permitted, "{effect:?}");
@@ -76,7 +80,7 @@ pub(crate) fn seeds() -> Vec<Vec<u8>> {
         }
         bytes
     };
-    (b'0'..=b'3').map(session).collect()
+    (b'0'..=b'?').map(session).collect()
 }
 
 /// A request of each kind.
@@ -102,6 +106,22 @@ pub(crate) const REQUESTS: &[&str] = &[
     r#"{"type":"disturb","disturbance":{"kind":"guide","pressed":true}}"#,
     r#"{"type":"disturb","disturbance":{"kind":"brakes","closed":true}}"#,
     r#"{"type":"disturb","disturbance":{"kind":"reflex"}}"#,
+    r#"{"type":"disturb","disturbance":{"kind":"network","conditions":{"loss":0.01,"burst":8,"delay_ms":0.3,"jitter_ms":0,"stalls_per_second":7,"stall_ms":3}}}"#,
+    r#"{"type":"disturb","disturbance":{"kind":"cut","milliseconds":25}}"#,
+    r#"{"type":"disturb","disturbance":{"kind":"object","width":0.04}}"#,
+    r#"{"type":"disturb","disturbance":{"kind":"object","width":null}}"#,
+    r#"{"type":"disturb","disturbance":{"kind":"load","mass":1.5}}"#,
+    r#"{"type":"disturb","disturbance":{"kind":"arm","arm":"bad"}}"#,
+    r#"{"type":"tune","tuning":{"end_effector":0.25,"joints":0.25,"damping":1,"force_cap":15,"compensation":true}}"#,
+    r#"{"type":"begin","motion":{"kind":"stay"},"speed":0.05}"#,
+    r#"{"type":"speed","speed":0.1}"#,
+    r#"{"type":"end"}"#,
+    r#"{"type":"gripper","action":{"kind":"home"}}"#,
+    r#"{"type":"gripper","action":{"kind":"move","width":0.08,"speed":0.1}}"#,
+    r#"{"type":"gripper","action":{"kind":"grasp","width":0.03,"tolerance":0.01,"speed":0.1,"force":40}}"#,
+    r#"{"type":"gripper","action":{"kind":"stop"}}"#,
+    r#"{"type":"record","on":true}"#,
+    r#"{"type":"record","on":false}"#,
     r#"{"type":"release"}"#,
 ];
 
@@ -120,7 +140,7 @@ mod tests {
         let mut random = SmallRng::seed_from_u64(seed);
         for session in seeds() {
             check(&session);
-            for _ in 0..10_000 {
+            for _ in 0..3_000 {
                 let mut bytes = session.clone();
                 for _ in 0..random.random_range(1..6) {
                     let at = random.random_range(0..bytes.len());

@@ -5,10 +5,11 @@ use franka_async::model::{EndEffector, Frame, JointVector, Model, RobotKind};
 use franka_async::{READY, pose};
 use serde::Serialize;
 
-use crate::authority::{Permissions, ViewerId};
+use crate::authority::ViewerId;
 use crate::frame;
-use crate::request::{SPEED_MAX, SPEED_MIN};
-use crate::source::Source;
+use crate::hub::Hub;
+use crate::request::{SPEED_MAX, SPEED_MIN, Tuning};
+use crate::simulated::Simulated;
 
 /// The robot and what this viewer may ask for.
 #[derive(Debug, Serialize)]
@@ -19,7 +20,13 @@ pub(crate) struct Hello {
     robot: &'static str,
     /// Whether it is simulated, and may be disturbed.
     simulated: bool,
+    /// Whether it is simulated with a Hand.
+    simulated_hand: bool,
     motion_allowed: bool,
+    /// Whether anything takes command.
+    may_command: bool,
+    gripper: bool,
+    records: bool,
     speed_min: f64,
     speed_max: f64,
     joint_lower: [f64; 7],
@@ -27,7 +34,15 @@ pub(crate) struct Hello {
     joint_velocity: [f64; 7],
     joint_torque: [f64; 7],
     ready: [f64; 7],
+    tunings: Vec<Named>,
     capsules: Vec<Capsule>,
+}
+
+/// A tuning that the page offers.
+#[derive(Debug, Serialize)]
+struct Named {
+    name: &'static str,
+    tuning: Tuning,
 }
 
 /// A guard capsule in the frame of its link: 0 is the base, 1 to 7 the links, 8 the flange, `[m]`.
@@ -40,7 +55,8 @@ struct Capsule {
 }
 
 impl Hello {
-    pub(crate) fn new(source: &Source, permissions: Permissions, viewer: ViewerId) -> Self {
+    pub(crate) fn new(hub: &Hub, viewer: ViewerId) -> Self {
+        let (source, permissions) = (&hub.source, hub.permissions);
         let model = source.model();
         let limits = model.joint_limits();
         let has_tool = {
@@ -55,7 +71,11 @@ impl Hello {
                 _ => "Franka Research 3",
             },
             simulated: permissions.disturbances,
+            simulated_hand: hub.simulated.as_ref().is_some_and(Simulated::has_hand),
             motion_allowed: permissions.motion,
+            may_command: permissions.any(),
+            gripper: permissions.gripper,
+            records: permissions.recording,
             speed_min: SPEED_MIN,
             speed_max: SPEED_MAX,
             joint_lower: limits.lower.into(),
@@ -63,6 +83,9 @@ impl Hello {
             joint_velocity: limits.velocity.into(),
             joint_torque: limits.torque.into(),
             ready: READY.into(),
+            tunings: Tuning::presets()
+                .map(|(name, tuning)| Named { name, tuning })
+                .into(),
             capsules: capsules(model, has_tool),
         }
     }

@@ -9,12 +9,15 @@ use tokio::sync::{Semaphore, broadcast, watch};
 use tokio::time::{MissedTickBehavior, interval};
 
 use crate::admission::Admission;
-use crate::authority::{Authority, Effect, Lost, Permissions, Refusal, Status, Step, ViewerId};
+use crate::authority::{Authority, Effect, Lost, Permissions, Refusal, Step, ViewerId};
 
-use crate::hold::{self, Ended, Hold};
+use crate::fingers::Fingers;
+use crate::hold::{self, Ended, Hold, Settings};
 use crate::news;
-use crate::reply::{Level, News};
-use crate::request::{Disturbance, Motion, Request};
+use crate::options::Options;
+use crate::recording::Recordings;
+use crate::reply::{Level, News, Status};
+use crate::request::{Disturbance, GripperAction, Motion, Request, Tuning};
 use crate::simulated::Simulated;
 use crate::source::Source;
 
@@ -27,7 +30,9 @@ pub(crate) struct Hub {
     pub(crate) status: watch::Sender<Status>,
     /// One permit per viewer.
     pub(crate) seats: Arc<Semaphore>,
-    simulated: Option<Simulated>,
+    pub(crate) simulated: Option<Simulated>,
+    pub(crate) fingers: Option<Fingers>,
+    pub(crate) recordings: Option<Recordings>,
     command: Mutex<Command>,
     stopping: AtomicBool,
     viewers: AtomicU64,
@@ -37,20 +42,26 @@ pub(crate) struct Hub {
 struct Command {
     authority: Authority,
     hold: Option<Hold>,
+    settings: watch::Sender<Settings>,
 }
 
 impl Hub {
     /// Starts the tasks that end with the last handle. Needs a Tokio runtime.
-    pub(crate) fn start(
-        source: Source,
-        simulated: Option<Simulated>,
-        motion: bool,
-        patience: Duration,
-        admission: Admission,
-    ) -> Arc<Self> {
+    pub(crate) fn start(source: Source, options: Options) -> Arc<Self> {
+        let Options {
+            admission,
+            motion,
+            simulated,
+            gripper,
+            recordings,
+            patience,
+        } = options;
+        let connected = source.robot().is_some();
         let permissions = Permissions {
-            motion: motion && source.robot().is_some(),
+            motion: motion && connected,
             disturbances: simulated.is_some(),
+            gripper: gripper.is_some(),
+            recording: recordings.is_some() && connected,
             patience: match simulated {
                 Some(_) => patience,
                 None => Duration::ZERO,
@@ -63,9 +74,12 @@ impl Hub {
             status: watch::Sender::default(),
             seats: Arc::new(Semaphore::new(VIEWERS_MAX)),
             simulated,
+            fingers: gripper.map(Fingers::new),
+            recordings: recordings.map(Recordings::new),
             command: Mutex::new(Command {
                 authority: Authority::new(permissions),
                 hold: None,
+                settings: watch::Sender::default(),
             }),
             stopping: AtomicBool::new(false),
             viewers: AtomicU64::new(0),
@@ -73,6 +87,13 @@ impl Hub {
             source,
         });
         tokio::spawn(watch_silence(Arc::downgrade(&hub)));
+        if let Some(simulated) = hub.simulated.clone() {
+            let hub = hub.clone();
+            tokio::spawn(async move {
+                simulated.look().await;
+                hub.tick();
+            });
+        }
         match &hub.source {
             Source::Robot(robot) => {
                 tokio::spawn(tell_events(robot.events(), Arc::downgrade(&hub)));
@@ -127,7 +148,7 @@ impl Hub {
         } = command.authority.handle(now, viewer, round_trip, request);
         self.end(&mut command, ended);
         if let Some(effect) = effect {
-            self.perform(&mut command, effect);
+            self.perform(&mut command, viewer, effect);
         }
         self.publish(&command);
         refusal
@@ -168,8 +189,21 @@ impl Hub {
         }
     }
 
+    /// Shows all viewers what has changed. What a commander has set ends with its lease.
     fn publish(&self, command: &Command) {
-        let newest = command.authority.status();
+        let authority = command.authority.status();
+        if authority.commander != self.status.borrow().authority.commander {
+            let settings = &command.settings;
+            settings.send_modify(|settings| settings.tuning = Tuning::default());
+        }
+        if let Some(fingers) = &self.fingers {
+            fingers.end_unless(authority.commander);
+        }
+        let newest = Status {
+            authority,
+            tuning: command.settings.borrow().tuning,
+            simulation: self.simulated.as_ref().map(Simulated::setting),
+        };
         self.status.send_if_modified(|status| {
             let changed = *status != newest;
             *status = newest;
@@ -177,7 +211,7 @@ impl Hub {
         });
     }
 
-    fn perform(self: &Arc<Self>, command: &mut Command, effect: Effect) {
+    fn perform(self: &Arc<Self>, command: &mut Command, viewer: ViewerId, effect: Effect) {
         match effect {
             Effect::KeepAlive => {
                 if let Some(hold) = &command.hold {
@@ -188,7 +222,14 @@ impl Hub {
                 hold,
                 motion,
                 speed,
-            } => command.hold = self.begin(hold, motion, speed),
+            } => {
+                command.settings.send_modify(|it| it.speed = speed);
+                command.hold = self.begin(hold, motion, command.settings.subscribe());
+            }
+            Effect::Tune(tuning) => command.settings.send_modify(|it| it.tuning = tuning),
+            Effect::Speed(speed) => command.settings.send_modify(|it| it.speed = speed),
+            Effect::Gripper(action) => self.move_fingers(viewer, action),
+            Effect::Record(on) => self.record(on),
             Effect::Stop => self.stop(),
             Effect::Recover => {
                 if let Source::Robot(robot) = &self.source {
@@ -199,12 +240,17 @@ impl Hub {
         }
     }
 
-    fn begin(self: &Arc<Self>, number: u64, motion: Motion, speed: f64) -> Option<Hold> {
+    fn begin(
+        self: &Arc<Self>,
+        number: u64,
+        motion: Motion,
+        settings: watch::Receiver<Settings>,
+    ) -> Option<Hold> {
         let robot = self.source.robot()?.clone();
         let (hold, deadman, end) = Hold::new(self.permissions.patience);
         let hub = self.clone();
         tokio::spawn(async move {
-            let ended = hold::run(&robot, motion, speed, deadman, end).await;
+            let ended = hold::run(&robot, motion, settings, deadman, end).await;
             if let Ended::Failed(text, detail) = ended {
                 hub.tell(Level::Error, text, detail);
             }
@@ -213,8 +259,43 @@ impl Hub {
         Some(hold)
     }
 
-    /// Brakes whatever moves. Another program's simulated robot is stopped by its user stop.
+    fn move_fingers(self: &Arc<Self>, viewer: ViewerId, action: GripperAction) {
+        let Some(fingers) = &self.fingers else { return };
+        let (acting, hub) = (fingers.begin(viewer, action), self.clone());
+        tokio::spawn(async move {
+            let (done, text) = acting.await;
+            let level = if done { Level::Info } else { Level::Warning };
+            hub.tell(level, text, None);
+        });
+    }
+
+    fn record(self: &Arc<Self>, on: bool) {
+        let (Some(recordings), Some(robot)) = (&self.recordings, self.source.robot()) else {
+            return;
+        };
+        if !on {
+            return recordings.end();
+        }
+        let (robot, hub) = (robot.clone(), self.clone());
+        tokio::spawn(async move {
+            let Some(recordings) = &hub.recordings else {
+                return;
+            };
+            let gripper = hub.fingers.as_ref().map(|fingers| &fingers.gripper);
+            match recordings.record(&robot, gripper).await {
+                Some(Ok(text)) => hub.tell(Level::Info, text, None),
+                Some(Err(why)) => hub.tell(Level::Error, format!("Recording: {why}"), None),
+                None => {}
+            }
+        });
+    }
+
+    /// Brakes whatever moves, and ends what the fingers do. Another program's simulated robot is
+    /// stopped by its user stop.
     fn stop(self: &Arc<Self>) {
+        if let Some(fingers) = &self.fingers {
+            fingers.end();
+        }
         match &self.source {
             Source::Watched(_) => self.disturb(Disturbance::UserStop { pressed: true }),
             Source::Robot(robot) => {
@@ -234,9 +315,14 @@ impl Hub {
         }
     }
 
-    fn disturb(&self, disturbance: Disturbance) {
+    fn disturb(self: &Arc<Self>, disturbance: Disturbance) {
         if let Some(simulated) = self.simulated.clone() {
-            tokio::spawn(async move { simulated.disturb(disturbance).await });
+            let hub = self.clone();
+            tokio::spawn(async move {
+                if let Err(why) = simulated.disturb(disturbance).await {
+                    hub.tell(Level::Warning, format!("Not done: {why}"), None);
+                }
+            });
         }
     }
 }

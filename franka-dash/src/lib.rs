@@ -12,12 +12,15 @@
 //! | `any_messages` | what has to hold whatever viewers send, for tests |
 //! | `authority` | lease, hold and deadman: a state machine without clock and sockets |
 //! | `describe` | what a page is told first |
+//! | `fingers` | the gripper |
 //! | `frame` | the binary state frame |
 //! | `hold` | the motion of one hold |
 //! | `hub` | what all viewers share |
 //! | `news` | events as lines for people |
+//! | `options` | who may see and do what |
 //! | `pace` | how fast the arm may go, so that none of its points exceeds a speed |
 //! | `page` | the files of the page |
+//! | `recording` | recordings, in a folder of the server |
 //! | `reply` | what viewers are told, JSON |
 //! | `request` | what viewers ask for, JSON |
 //! | `simulated` | what is done to a simulated robot |
@@ -65,12 +68,15 @@ mod admission;
 mod any_messages;
 mod authority;
 mod describe;
+mod fingers;
 mod frame;
 mod hold;
 mod hub;
 mod news;
+mod options;
 mod pace;
 mod page;
+mod recording;
 mod reply;
 mod request;
 mod simulated;
@@ -81,7 +87,6 @@ mod viewer;
 use std::io;
 use std::net::SocketAddr;
 use std::sync::Arc;
-use std::time::Duration;
 
 use axum::Router;
 use axum::extract::{Request, State, WebSocketUpgrade};
@@ -93,66 +98,9 @@ use franka_async::Robot;
 use franka_sim::{Running, Stopped};
 use tokio::net::TcpListener;
 
-use admission::Admission;
 use hub::Hub;
-use simulated::Simulated;
+pub use options::Options;
 use source::{Source, Watched};
-
-/// Who may see and do what. The default is view-only, for this computer.
-#[derive(Clone, Default)]
-#[must_use = "options do nothing until `router` takes them"]
-pub struct Options {
-    admission: Admission,
-    motion: bool,
-    simulated: Option<Simulated>,
-    patience: Duration,
-}
-
-impl Options {
-    /// Lets the viewer that has the lease move the arm and recover the robot.
-    pub fn allow_motion(mut self) -> Self {
-        self.motion = true;
-        self
-    }
-
-    /// Asks every page for this token, in the fragment of its address: `http://HOST/#TOKEN`. With
-    /// it, other computers are served as well. It should be long and random, of letters, digits
-    /// and `-`, `_`, `.`, `~`.
-    pub fn token(mut self, token: impl Into<String>) -> Self {
-        self.admission.token = Some(token.into());
-        self
-    }
-
-    /// Accepts requests under this name, besides `localhost` and addresses.
-    pub fn host(mut self, name: impl Into<String>) -> Self {
-        self.admission.hosts.push(name.into());
-        self
-    }
-
-    /// Lets the viewer that has the lease disturb this simulated robot, which has to be the one
-    /// that is shown.
-    pub fn simulated(mut self, running: &Arc<Running>) -> Self {
-        self.simulated = Some(Simulated::new(running.clone()));
-        self
-    }
-
-    /// Lets messages of a held button come this much later than they must: for tests of the page on
-    /// a busy computer. Counts with [`Self::simulated`] only: a robot has no patience.
-    pub fn patience(mut self, patience: Duration) -> Self {
-        self.patience = patience;
-        self
-    }
-}
-
-impl std::fmt::Debug for Options {
-    /// Without the token.
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Options")
-            .field("motion", &self.motion)
-            .field("simulated", &self.simulated.is_some())
-            .finish_non_exhaustive()
-    }
-}
 
 /// Why a server cannot listen.
 #[derive(Debug, thiserror::Error)]
@@ -194,19 +142,7 @@ pub async fn bind(address: SocketAddr, options: &Options) -> Result<TcpListener,
 /// The page and its socket (`/ws`) for a connected robot. Must be called within a Tokio runtime.
 /// The router keeps a handle of the robot.
 pub fn router(robot: Robot, options: Options) -> Router {
-    let Options {
-        admission,
-        motion,
-        simulated,
-        patience,
-    } = options;
-    serve(Hub::start(
-        Source::Robot(robot),
-        simulated,
-        motion,
-        patience,
-        admission,
-    ))
+    serve(Hub::start(Source::Robot(robot), options))
 }
 
 /// The page for a simulated robot that another program controls: it is shown and can be disturbed.
@@ -221,14 +157,7 @@ pub async fn simulator(running: &Arc<Running>, options: Options) -> Result<Route
     let newest = |robot: &mut franka_sim::Robot| (robot.config().kind, *robot.state());
     let (kind, state) = running.with(newest).await?;
     let watched = Source::Watched(Box::new(Watched::new(kind, state)));
-    let simulated = Some(Simulated::new(running.clone()));
-    Ok(serve(Hub::start(
-        watched,
-        simulated,
-        false,
-        options.patience,
-        options.admission,
-    )))
+    Ok(serve(Hub::start(watched, options.simulated(running))))
 }
 
 fn serve(hub: Arc<Hub>) -> Router {
@@ -274,6 +203,7 @@ async fn connect(
         .protocols([PROTOCOL])
         .max_message_size(MESSAGE_MAX)
         .max_frame_size(MESSAGE_MAX)
+        .read_buffer_size(MESSAGE_MAX)
         .write_buffer_size(0)
         .max_write_buffer_size(WRITE_MAX)
         .on_upgrade(async move |socket| {

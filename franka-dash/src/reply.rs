@@ -2,7 +2,11 @@
 
 use serde::Serialize;
 
-use crate::authority::Status;
+use crate::authority;
+use crate::fingers::FingerState;
+use crate::recording::Progress;
+use crate::request::Tuning;
+use crate::simulated::Setting;
 use crate::statistics::Statistics;
 
 /// To a viewer.
@@ -19,6 +23,21 @@ pub(crate) enum Reply {
     Missed { events: u64 },
     /// How punctual control is.
     Statistics(Statistics),
+    /// The fingers of the gripper.
+    Gripper(FingerState),
+    /// The recording that goes on.
+    Recording { recording: Option<Progress> },
+}
+
+/// What goes on, and what is set.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct Status {
+    #[serde(flatten)]
+    pub(crate) authority: authority::Status,
+    /// How stiff the arm is while it is held.
+    pub(crate) tuning: Tuning,
+    /// `None` for a robot that viewers cannot disturb.
+    pub(crate) simulation: Option<Setting>,
 }
 
 /// How much an event asks for attention.

@@ -19,6 +19,7 @@ use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 
 use crate::authority::ViewerId;
 use crate::describe::Hello;
+use crate::fingers::Fingers;
 use crate::frame;
 use crate::hub::Hub;
 use crate::reply::Reply;
@@ -129,7 +130,7 @@ async fn write(
 ) -> Option<()> {
     let mut news = hub.news.subscribe();
     let mut status = hub.status.subscribe();
-    let hello = Hello::new(&hub.source, hub.permissions, viewer);
+    let hello = Hello::new(hub, viewer);
     send(&mut sink, text(&hello)).await?;
     let first = status.borrow_and_update().clone();
     send(&mut sink, text(&Reply::Status(first))).await?;
@@ -152,15 +153,17 @@ async fn write(
                 Err(RecvError::Closed) => return None,
             },
             _ = slow.tick() => {
-                let round_trip = link.round_trip(hub.now_ms());
-                text(&Reply::Statistics(Statistics::of(hub.source.robot(), round_trip)))
+                for reply in figures(hub, link) {
+                    send(&mut sink, text(&reply)).await?;
+                }
+                continue;
             }
             _ = frames.tick() => {
                 if link.in_flight.load(Ordering::Relaxed) {
                     continue;
                 }
                 let now = hub.now_ms();
-                let holding = status.borrow().holding;
+                let holding = status.borrow().authority.holding;
                 let frame = frame::encode(&hub.source.newest(), hub.source.model(), now, holding);
                 link.sent.store(now, Ordering::Relaxed);
                 link.in_flight.store(true, Ordering::Relaxed);
@@ -169,6 +172,21 @@ async fn write(
         };
         send(&mut sink, message).await?;
     }
+}
+
+/// What changes all the time, and is told a few times per second.
+fn figures(hub: &Hub, link: &Link) -> impl Iterator<Item = Reply> + use<> {
+    let round_trip = link.round_trip(hub.now_ms());
+    let statistics = Statistics::of(hub.source.robot(), round_trip);
+    let fingers = hub.fingers.as_ref().map(Fingers::state);
+    let recordings = hub.recordings.as_ref();
+    let recording = recordings.map(|it| Reply::Recording {
+        recording: it.progress(),
+    });
+    let fingers = fingers.map(Reply::Gripper);
+    [Some(Reply::Statistics(statistics)), fingers, recording]
+        .into_iter()
+        .flatten()
 }
 
 /// Sends a message in time; `None` if that fails.

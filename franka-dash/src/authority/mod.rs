@@ -21,18 +21,22 @@ pub(crate) use refusal::Refusal;
 
 use serde::Serialize;
 
-use crate::request::{Disturbance, Motion, Request};
+use crate::request::{Disturbance, GripperAction, Motion, Request, Tuning};
 
 /// Numbers a viewer.
 pub(crate) type ViewerId = u64;
 
 /// What viewers may ask of this server.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Permissions {
     /// Motions, and recoveries.
     pub(crate) motion: bool,
     /// Disturbances of a simulated robot.
     pub(crate) disturbances: bool,
+    /// Motions of the fingers, where there are motions at all.
+    pub(crate) gripper: bool,
+    /// Recordings.
+    pub(crate) recording: bool,
     /// How much later messages may come: none but for a simulated robot.
     pub(crate) patience: Duration,
 }
@@ -46,6 +50,13 @@ pub(crate) struct Status {
     pub(crate) name: Option<String>,
     /// Whether a hold goes on.
     pub(crate) holding: bool,
+}
+
+impl Permissions {
+    /// Whether there is anything that takes command.
+    pub(crate) fn any(&self) -> bool {
+        self.motion || self.disturbances || self.recording
+    }
 }
 
 /// What the server has to do.
@@ -62,6 +73,13 @@ pub(crate) enum Effect {
     /// Brake whatever moves, ours or not.
     Stop,
     Recover,
+    /// Hold the arm so, in this hold and those to come.
+    Tune(Tuning),
+    /// Go on at this speed, `[m/s]`.
+    Speed(f64),
+    Gripper(GripperAction),
+    /// Begin or end a recording.
+    Record(bool),
     Disturb(Disturbance),
 }
 
@@ -203,9 +221,7 @@ impl Authority {
 
     fn take(&mut self, viewer: ViewerId, name: String) -> Result<Step, Refusal> {
         match &self.lease {
-            _ if !self.permissions.motion && !self.permissions.disturbances => {
-                return Err(Refusal::ViewOnly);
-            }
+            _ if !self.permissions.any() => return Err(Refusal::ViewOnly),
             Some(lease) if lease.viewer != viewer => {
                 return Err(Refusal::Taken(lease.name.clone()));
             }
@@ -230,11 +246,7 @@ impl Authority {
         request: Request,
         valid: Result<(), Refusal>,
     ) -> Result<Step, Refusal> {
-        let Permissions {
-            motion: motions,
-            disturbances,
-            patience,
-        } = self.permissions;
+        let may = self.permissions;
         let lease = self.lease.as_mut().filter(|lease| lease.viewer == viewer);
         let lease = lease.ok_or(Refusal::NoLease)?;
         if let Request::Begin { .. } = request
@@ -253,12 +265,12 @@ impl Authority {
                 ended(hold, Lost::Released)
             }
             Request::Begin { motion, speed } => {
-                if !motions {
+                if !may.motion {
                     return Err(Refusal::ViewOnly);
                 }
                 match round_trip {
                     None => return Err(Refusal::Unmeasured),
-                    Some(got) if got > ROUND_TRIP_MAX + patience => {
+                    Some(got) if got > ROUND_TRIP_MAX + may.patience => {
                         return Err(Refusal::Latency(got));
                     }
                     Some(_) => {}
@@ -288,12 +300,21 @@ impl Authority {
             }
             // Without effect if it has ended by itself in the meantime.
             Request::End {} => ended(lease.hold.take(), Lost::LetGo),
-            Request::Recover {} if motions => effect(Effect::Recover),
-            Request::Recover {} => return Err(Refusal::ViewOnly),
-            Request::Disturb { disturbance } if disturbances => {
+            Request::Speed { .. } if lease.hold.is_none() => return Err(Refusal::NoHold),
+            Request::Speed { speed } => effect(Effect::Speed(speed)),
+            Request::Disturb { disturbance } if may.disturbances => {
                 effect(Effect::Disturb(disturbance))
             }
             Request::Disturb { .. } => return Err(Refusal::NoSimulator),
+            Request::Record { on } if may.recording => effect(Effect::Record(on)),
+            Request::Record { .. } => return Err(Refusal::NoRecordings),
+            Request::Gripper { .. } if !may.gripper => return Err(Refusal::NoGripper),
+            Request::Recover {} | Request::Tune { .. } | Request::Gripper { .. } if !may.motion => {
+                return Err(Refusal::ViewOnly);
+            }
+            Request::Recover {} => effect(Effect::Recover),
+            Request::Tune { tuning } => effect(Effect::Tune(tuning)),
+            Request::Gripper { action } => effect(Effect::Gripper(action)),
             Request::Alive {} | Request::Seen { .. } | Request::Take { .. } | Request::Stop {} => {
                 Step::default()
             }

@@ -25,4 +25,8 @@ pub(crate) enum Refusal {
     NoHold,
     #[error("only a simulated robot can be disturbed")]
     NoSimulator,
+    #[error("this server has no gripper: it was started without one")]
+    NoGripper,
+    #[error("this server records nothing: it was started without a folder for recordings")]
+    NoRecordings,
 }

@@ -25,6 +25,8 @@ impl Server {
         Self::with(Permissions {
             motion: true,
             disturbances: true,
+            gripper: true,
+            recording: true,
             patience: Duration::ZERO,
         })
     }
@@ -262,8 +264,8 @@ fn a_begin_is_refused_with_the_reason() {
 fn patience_moves_the_deadman_by_as_much() {
     let mut server = Server::with(Permissions {
         motion: true,
-        disturbances: true,
         patience: Duration::from_secs(1),
+        ..Permissions::default()
     });
     server.take(COMMANDER);
     assert!(server.begin(COMMANDER).effect.is_some());
@@ -273,25 +275,81 @@ fn patience_moves_the_deadman_by_as_much() {
 
 #[test]
 fn a_view_only_server_takes_stops_and_nothing_else() {
-    let mut server = Server::with(Permissions {
-        motion: false,
-        disturbances: false,
-        patience: Duration::ZERO,
-    });
+    let mut server = Server::with(Permissions::default());
     assert_eq!(server.take(COMMANDER).refusal, Some(Refusal::ViewOnly));
     assert_eq!(server.begin(COMMANDER).refusal, Some(Refusal::NoLease));
     let stopped = server.ask(OTHER, Request::Stop {});
     assert_eq!(stopped, effect(Effect::Stop));
     // A simulated robot that another program moves: it can be disturbed, but not moved.
     let mut server = Server::with(Permissions {
-        motion: false,
         disturbances: true,
-        patience: Duration::ZERO,
+        ..Permissions::default()
     });
     assert_eq!(server.take(COMMANDER).refusal, None);
     assert_eq!(server.begin(COMMANDER).refusal, Some(Refusal::ViewOnly));
-    let recovered = server.ask(COMMANDER, Request::Recover {});
-    assert_eq!(recovered.refusal, Some(Refusal::ViewOnly));
+    let tuning = Tuning::default();
+    for request in [Request::Recover {}, Request::Tune { tuning }] {
+        let refusal = server.ask(COMMANDER, request).refusal;
+        assert_eq!(refusal, Some(Refusal::ViewOnly));
+    }
+}
+
+#[test]
+fn gripper_and_recorder_are_there_or_refused() {
+    let home = || Request::Gripper {
+        action: GripperAction::Home {},
+    };
+    let record = || Request::Record { on: true };
+    let mut server = Server::new();
+    for request in [home(), record()] {
+        assert_eq!(
+            server.ask(COMMANDER, request).refusal,
+            Some(Refusal::NoLease)
+        );
+    }
+    server.take(COMMANDER);
+    let acted = server.ask(COMMANDER, home());
+    assert_eq!(acted, effect(Effect::Gripper(GripperAction::Home {})));
+    assert_eq!(
+        server.ask(COMMANDER, record()),
+        effect(Effect::Record(true))
+    );
+    for (permissions, refusals) in [
+        (
+            Permissions {
+                motion: true,
+                ..Permissions::default()
+            },
+            [Some(Refusal::NoGripper), Some(Refusal::NoRecordings)],
+        ),
+        // A page that is only watched may record.
+        (
+            Permissions {
+                gripper: true,
+                recording: true,
+                ..Permissions::default()
+            },
+            [Some(Refusal::ViewOnly), None],
+        ),
+    ] {
+        let mut server = Server::with(permissions);
+        assert_eq!(server.take(COMMANDER).refusal, None);
+        let got = [home(), record()].map(|it| server.ask(COMMANDER, it).refusal);
+        assert_eq!(got, refusals);
+    }
+}
+
+#[test]
+fn the_speed_of_a_hold_changes_and_nothing_else_does() {
+    let speed = || Request::Speed { speed: 0.2 };
+    let mut server = Server::holding(3);
+    assert_eq!(server.ask(COMMANDER, speed()), effect(Effect::Speed(0.2)));
+    assert_eq!(server.pass(151), Some(Lost::Silent));
+    assert_eq!(
+        server.ask(COMMANDER, speed()).refusal,
+        Some(Refusal::NoHold)
+    );
+    server.assert_at_rest();
 }
 
 #[test]
@@ -312,8 +370,7 @@ fn only_a_simulated_robot_is_disturbed_and_within_bounds() {
     }
     let mut robot = Server::with(Permissions {
         motion: true,
-        disturbances: false,
-        patience: Duration::ZERO,
+        ..Permissions::default()
     });
     robot.take(COMMANDER);
     let refusal = robot.ask(COMMANDER, push(20.0)).refusal;

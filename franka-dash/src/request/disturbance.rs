@@ -1,6 +1,6 @@
 //! What a viewer can do to a simulated robot.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::within;
 
@@ -24,6 +24,57 @@ pub(crate) enum Disturbance {
     Brakes { closed: bool },
     /// Causes a reflex, as by a collision.
     Reflex {},
+    /// Sets the conditions of the network, both ways.
+    Network { conditions: Conditions },
+    /// Loses every state and command for so long, `[ms]`.
+    Cut { milliseconds: u32 },
+    /// Puts an object of this width between the fingers, `[m]`, in place of any before; takes it
+    /// away for `null`.
+    Object { width: Option<f64> },
+    /// Hangs so much on the flange, `[kg]`, 5 cm from it, in place of any before, undeclared.
+    Load { mass: f64 },
+    /// Puts another arm in place of the present one, at rest where that is.
+    Arm { arm: ArmKind },
+}
+
+/// Families of simulated arms, by how they differ from their model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum ArmKind {
+    Ideal,
+    Nominal,
+    Realistic,
+    Bad,
+}
+
+/// Conditions of a network.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Conditions {
+    /// Share of the datagrams that is lost.
+    pub(crate) loss: f64,
+    /// How many are lost in a row, in the mean.
+    pub(crate) burst: f64,
+    /// What each way takes, `[ms]`.
+    pub(crate) delay_ms: f64,
+    /// Up to so much more, `[ms]`.
+    pub(crate) jitter_ms: f64,
+    /// How often the robot's interface sends nothing for a while, `[1/s]`.
+    pub(crate) stalls_per_second: f64,
+    /// How long, `[ms]`.
+    pub(crate) stall_ms: f64,
+}
+
+impl Conditions {
+    fn check(&self) -> Result<(), String> {
+        within("a share of lost datagrams", "", self.loss, 0.0..=0.5)?;
+        within("a length of bursts", "", self.burst, 1.0..=100.0)?;
+        within("a delay", " ms", self.delay_ms, 0.0..=20.0)?;
+        within("a jitter", " ms", self.jitter_ms, 0.0..=20.0)?;
+        let often = self.stalls_per_second;
+        within("a number of stalls per second", "", often, 0.0..=50.0)?;
+        within("a length of stalls", " ms", self.stall_ms, 0.0..=50.0)
+    }
 }
 
 impl Disturbance {
@@ -40,17 +91,20 @@ impl Disturbance {
                     let mut numbers = numbers.iter();
                     numbers.try_for_each(|x| within(what, unit, *x, -most..=most))
                 };
-                each(
-                    "a push's offset from the link's frame",
-                    " m",
-                    offset,
-                    OFFSET_MAX,
-                )?;
+                let what = "a push's offset from the link's frame";
+                each(what, " m", offset, OFFSET_MAX)?;
                 each("a component of a push", " N", force, FORCE_MAX)
             }
-            Self::UserStop { .. } | Self::Guide { .. } | Self::Brakes { .. } | Self::Reflex {} => {
-                Ok(())
-            }
+            Self::Network { conditions } => conditions.check(),
+            Self::Cut { milliseconds } => within("a cut", " ms", *milliseconds, 1..=10_000),
+            Self::Object { width: Some(width) } => within("a width", " m", *width, 0.001..=0.08),
+            Self::Load { mass } => within("a load", " kg", *mass, 0.0..=5.0),
+            Self::UserStop { .. }
+            | Self::Guide { .. }
+            | Self::Brakes { .. }
+            | Self::Reflex {}
+            | Self::Object { width: None }
+            | Self::Arm { .. } => Ok(()),
         }
     }
 }

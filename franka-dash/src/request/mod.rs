@@ -1,15 +1,19 @@
 //! What viewers ask for, as JSON: plain data, and whether its numbers make sense.
 
 mod disturbance;
+mod gripper;
 mod motion;
+mod tuning;
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
 use serde::Deserialize;
 
-pub(crate) use disturbance::{Disturbance, PUSH_MS};
+pub(crate) use disturbance::{ArmKind, Conditions, Disturbance, PUSH_MS};
+pub(crate) use gripper::GripperAction;
 pub(crate) use motion::{Axes, Motion, SPEED_MAX, SPEED_MIN};
+pub(crate) use tuning::Tuning;
 
 /// From a viewer.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -37,6 +41,14 @@ pub(crate) enum Request {
     Stop {},
     /// Recovers the robot from a reflex; moves nothing.
     Recover {},
+    /// Sets how stiff the arm is, in the hold that goes on and in those to come.
+    Tune { tuning: Tuning },
+    /// Sets the greatest speed of any point of the arm in the hold that goes on, `[m/s]`.
+    Speed { speed: f64 },
+    /// Has the fingers do something.
+    Gripper { action: GripperAction },
+    /// Begins or ends a recording.
+    Record { on: bool },
     /// Disturbs a simulated robot.
     Disturb { disturbance: Disturbance },
 }
@@ -45,10 +57,10 @@ impl Request {
     /// Whether its numbers make sense; otherwise what was got, and what they have to be.
     pub(crate) fn check(&self) -> Result<(), String> {
         match self {
-            Self::Begin { motion, speed } => {
-                motion.check()?;
-                within("a speed", " m/s", *speed, SPEED_MIN..=SPEED_MAX)
-            }
+            Self::Begin { motion, speed } => motion.check().and(check_speed(*speed)),
+            Self::Speed { speed } => check_speed(*speed),
+            Self::Tune { tuning } => tuning.check(),
+            Self::Gripper { action } => action.check(),
             Self::Disturb { disturbance } => disturbance.check(),
             Self::Take { name } => match name.chars().count() {
                 1..=NAME_MAX if !name.trim().is_empty() => Ok(()),
@@ -62,13 +74,18 @@ impl Request {
             | Self::Hold { .. }
             | Self::End {}
             | Self::Stop {}
-            | Self::Recover {} => Ok(()),
+            | Self::Recover {}
+            | Self::Record { .. } => Ok(()),
         }
     }
 }
 
-/// Whether `got` is in a range; otherwise a text that says so. `what` is the name of the number,
-/// and `unit` follows it: empty, or with a space before it.
+fn check_speed(speed: f64) -> Result<(), String> {
+    within("a speed", " m/s", speed, SPEED_MIN..=SPEED_MAX)
+}
+
+/// Whether `got` is in a range; otherwise a text that says so. `what` is the name of the number, and
+/// `unit` follows it: empty, or with a space before it.
 fn within<T: PartialOrd + Display>(
     what: &str,
     unit: &str,
@@ -121,6 +138,13 @@ mod tests {
             r#"{"type":"begin","motion":{"kind":"joints","q":[1,2]},"speed":0.1}"#,
             r#"{"type":"begin","motion":{"kind":"ready"},"speed":"fast"}"#,
             r#"{"type":"fly"}"#,
+            r#"{"type":"record"}"#,
+            r#"{"type":"record","on":true,"file":"/etc/passwd"}"#,
+            r#"{"type":"gripper","action":{"kind":"home","width":0.1}}"#,
+            r#"{"type":"gripper","action":{"kind":"crush"}}"#,
+            r#"{"type":"tune","tuning":{"end_effector":1}}"#,
+            r#"{"type":"disturb","disturbance":{"kind":"arm","arm":"perfect"}}"#,
+            r#"{"type":"disturb","disturbance":{"kind":"load","mass":null}}"#,
         ] {
             assert!(serde_json::from_str::<Request>(text).is_err(), "{text}");
         }
@@ -149,6 +173,43 @@ mod tests {
             (
                 r#"{"type":"disturb","disturbance":{"kind":"push","link":1,"offset":[0,0,0],"force":[0,0,-201]}}"#,
                 "got -201",
+            ),
+            (
+                r#"{"type":"disturb","disturbance":{"kind":"network","conditions":{"loss":0.6,"burst":1,"delay_ms":0,"jitter_ms":0,"stalls_per_second":0,"stall_ms":0}}}"#,
+                "a share of lost datagrams is 0 to 0.5, got 0.6",
+            ),
+            (
+                r#"{"type":"disturb","disturbance":{"kind":"cut","milliseconds":0}}"#,
+                "a cut is 1 to 10000 ms, got 0",
+            ),
+            (
+                r#"{"type":"disturb","disturbance":{"kind":"object","width":0.081}}"#,
+                "0.08 m, got 0.081",
+            ),
+            (
+                r#"{"type":"disturb","disturbance":{"kind":"load","mass":-1}}"#,
+                "a load is 0 to 5 kg, got -1",
+            ),
+            (
+                r#"{"type":"tune","tuning":{"end_effector":4.1,"joints":1,"damping":1,"force_cap":30,"compensation":true}}"#,
+                "0.1 to 4, got 4.1",
+            ),
+            (
+                r#"{"type":"tune","tuning":{"end_effector":1,"joints":1,"damping":2,"force_cap":30,"compensation":true}}"#,
+                "0.5 to 1.3, got 2",
+            ),
+            (
+                r#"{"type":"tune","tuning":{"end_effector":1,"joints":1,"damping":1,"force_cap":0,"compensation":true}}"#,
+                "5 to 60 N, got 0",
+            ),
+            (r#"{"type":"speed","speed":0}"#, "got 0"),
+            (
+                r#"{"type":"gripper","action":{"kind":"move","width":0.3,"speed":0.1}}"#,
+                "0 to 0.2 m, got 0.3",
+            ),
+            (
+                r#"{"type":"gripper","action":{"kind":"grasp","width":0.03,"tolerance":0.01,"speed":0.1,"force":1000}}"#,
+                "1 to 140 N, got 1000",
             ),
         ] {
             let why = read(text).check().expect_err(text);

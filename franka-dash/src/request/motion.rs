@@ -26,6 +26,8 @@ pub(crate) enum Motion {
     Joints { q: [f64; 7] },
     /// All joints to the ready pose.
     Ready {},
+    /// Nowhere: the arm is held where it is, as stiff as it is tuned.
+    Stay {},
 }
 
 impl Motion {
@@ -45,7 +47,7 @@ impl Motion {
             Self::Joints { q } if !q.iter().all(|x| x.is_finite()) => {
                 Err(format!("joint positions are finite numbers; got {q:?}"))
             }
-            Self::Joints { .. } | Self::Ready {} => Ok(()),
+            Self::Joints { .. } | Self::Ready {} | Self::Stay {} => Ok(()),
         }
     }
 }

@@ -1,12 +1,14 @@
 //! A server before a simulated robot, and a viewer of it that is no browser.
 
 use std::net::{SocketAddr, TcpStream};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use franka_async::gripper::Gripper;
 use franka_async::{Realtime, Robot};
 use franka_dash::Options;
-use franka_sim::{Running, Sim};
+use franka_sim::{Fingers, Running, Sim, Tool};
 use serde_json::{Value, json};
 use tokio::runtime::Runtime;
 use tungstenite::client::IntoClientRequest;
@@ -16,20 +18,37 @@ use tungstenite::{Message, WebSocket};
 pub(crate) struct Served {
     pub(crate) address: SocketAddr,
     pub(crate) robot: Robot,
+    pub(crate) running: Arc<Running>,
     runtime: Runtime,
-    _running: Arc<Running>,
 }
 
 impl Served {
     /// A server with these options, which may know the simulator.
     pub(crate) fn new(options: impl FnOnce(&Arc<Running>) -> Options) -> Self {
+        Self::start(Sim::fr3(), async |running| options(running))
+    }
+
+    /// A server of an ideal arm with a Hand that may do all there is, and records to `folder`. A
+    /// hold outlasts a busy machine.
+    pub(crate) fn equipped(folder: &Path) -> Self {
+        let sim = Sim::fr3().ideal().tool(Tool::hand());
+        Self::start(sim.hand(Fingers::new(), 0), async |running| {
+            let hand = running.hand().expect("a hand").addr();
+            let gripper = Gripper::connect(hand).await.expect("a connection");
+            let options = Options::default().allow_motion().simulated(running);
+            let options = options.gripper(gripper).record_to(folder);
+            options.patience(Duration::from_secs(30))
+        })
+    }
+
+    fn start(sim: Sim, options: impl AsyncFnOnce(&Arc<Running>) -> Options) -> Self {
         let runtime = Runtime::new().expect("a runtime");
         let (address, robot, running) = runtime.block_on(async {
-            let sim = Sim::fr3().wait_for_commands(Duration::from_millis(500));
+            let sim = sim.wait_for_commands(Duration::from_millis(500));
             let running = Arc::new(sim.start().await.expect("a simulated robot"));
             let builder = Robot::builder(running.addr()).realtime(Realtime::Ignore);
             let robot = builder.connect().await.expect("a connection");
-            let options = options(&running);
+            let options = options(&running).await;
             let here = "127.0.0.1:0".parse().expect("an address");
             let listener = franka_dash::bind(here, &options).await.expect("a port");
             let address = listener.local_addr().expect("an address");
@@ -40,9 +59,18 @@ impl Served {
         Self {
             address,
             robot,
+            running,
             runtime,
-            _running: running,
         }
+    }
+
+    /// Does something to the simulated robot.
+    pub(crate) fn with<R: Send + 'static>(
+        &self,
+        job: impl FnOnce(&mut franka_sim::Robot) -> R + Send + 'static,
+    ) -> R {
+        let done = self.runtime.block_on(self.running.with(job));
+        done.expect("it runs")
     }
 
     pub(crate) fn movable() -> Self {
@@ -79,6 +107,10 @@ pub(crate) struct Viewer {
     /// The newest frame.
     pub(crate) frame: Vec<u8>,
     pub(crate) holding: bool,
+    /// Requests that were refused.
+    pub(crate) refused: usize,
+    /// The newest status.
+    status: Value,
     pub(crate) commander: Option<u64>,
     pub(crate) number: u64,
 }
@@ -95,6 +127,8 @@ impl Viewer {
             socket,
             frame: Vec::new(),
             holding: false,
+            refused: 0,
+            status: Value::Null,
             commander: None,
             number: 0,
         };
@@ -129,7 +163,9 @@ impl Viewer {
                 if message["type"] == "status" {
                     self.holding = message["holding"] == true;
                     self.commander = message["commander"].as_u64();
+                    self.status = message.clone();
                 }
+                self.refused += usize::from(message["type"] == "refused");
                 Some(message)
             }
             Ok(_) => Some(Value::Null),
@@ -165,33 +201,74 @@ impl Viewer {
         }
     }
 
+    /// Reads on until something has happened whose line has this text.
+    pub(crate) fn event(&mut self, text: &str) {
+        loop {
+            let event = self.wait_for("event");
+            if event["text"].as_str().is_some_and(|it| it.contains(text)) {
+                return;
+            }
+        }
+    }
+
+    /// Reads messages of this type until one is as wanted.
+    pub(crate) fn wait_until(&mut self, kind: &str, wanted: impl Fn(&Value) -> bool) -> Value {
+        let begin = Instant::now();
+        loop {
+            let message = self.wait_for(kind);
+            if wanted(&message) {
+                return message;
+            }
+            assert!(begin.elapsed() < LONGEST, "{kind}: {message}");
+        }
+    }
+
+    /// Reads on until the newest status is as wanted.
+    pub(crate) fn wait_for_status(&mut self, wanted: impl Fn(&Value) -> bool) {
+        let begin = Instant::now();
+        while !wanted(&self.status) {
+            assert!(begin.elapsed() < LONGEST, "{}", self.status);
+            self.read().expect("the server has closed");
+        }
+    }
+
     /// Begins a hold, as often as the machine is too busy for it, and goes on until `reached`.
     /// Returns the number of the next message of the hold, which goes on.
     pub(crate) fn hold_until(&mut self, motion: &Value, reached: impl Fn() -> bool) -> u32 {
         let begin = Instant::now();
         loop {
             self.send(json!({"type": "begin", "motion": motion, "speed": 0.1}));
-            let mut last = Instant::now();
-            for seq in 1.. {
-                while last.elapsed() < Duration::from_millis(30) {
-                    self.wait_for("frame");
-                }
-                last = Instant::now();
-                self.send(json!({"type": "hold", "seq": seq}));
-                if reached() {
-                    self.wait_for("frame");
-                    if self.holding {
-                        return seq + 1;
-                    }
-                }
-                assert!(
-                    begin.elapsed() < Duration::from_secs(60),
-                    "it does not move"
-                );
-                if !self.holding && seq > 4 {
-                    break;
-                }
+            if let Some(next) = self.go_on_until(1, &reached) {
+                return next;
             }
+            assert!(begin.elapsed() < LONGEST, "it does not move");
         }
     }
+
+    /// Goes on with a hold from this message until `reached`; `None` if it has ended.
+    pub(crate) fn go_on_until(&mut self, next: u32, reached: impl Fn() -> bool) -> Option<u32> {
+        let begin = Instant::now();
+        let mut last = begin;
+        for seq in next.. {
+            while last.elapsed() < Duration::from_millis(30) {
+                self.wait_for("frame");
+            }
+            last = Instant::now();
+            self.send(json!({"type": "hold", "seq": seq}));
+            if reached() {
+                self.wait_for("frame");
+                if self.holding {
+                    return Some(seq + 1);
+                }
+            }
+            assert!(begin.elapsed() < LONGEST, "it does not come to that");
+            if !self.holding && seq > 4 {
+                break;
+            }
+        }
+        None
+    }
 }
+
+/// For what a busy machine takes long for.
+pub(crate) const LONGEST: Duration = Duration::from_secs(60);

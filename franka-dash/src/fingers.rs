@@ -1,0 +1,150 @@
+//! The Franka Hand that viewers move. What is under way ends with the lease of the viewer that began
+//! it, and by a stop; what is held then stays held.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use franka_async::connection::CancellationToken;
+use franka_async::error::GripperError;
+use franka_async::gripper::{Grasp, Gripper};
+use serde::Serialize;
+
+use crate::authority::ViewerId;
+use crate::request::GripperAction;
+
+/// The Franka Hand that viewers move.
+#[derive(Clone)]
+pub(crate) struct Fingers {
+    pub(crate) gripper: Gripper,
+    under_way: Arc<Mutex<Option<UnderWay>>>,
+}
+
+/// What the fingers do now. Dropping it ends that.
+struct UnderWay {
+    viewer: ViewerId,
+    end: CancellationToken,
+}
+
+impl Drop for UnderWay {
+    fn drop(&mut self) {
+        self.end.cancel();
+    }
+}
+
+/// The fingers, for the page.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct FingerState {
+    width: f64,
+    max_width: f64,
+    is_grasped: bool,
+    temperature: u16,
+    /// Whether an action is under way.
+    acting: bool,
+}
+
+impl Fingers {
+    pub(crate) fn new(gripper: Gripper) -> Self {
+        Self {
+            gripper,
+            under_way: Arc::default(),
+        }
+    }
+
+    pub(crate) fn state(&self) -> FingerState {
+        let state = self.gripper.state();
+        FingerState {
+            width: state.width,
+            max_width: state.max_width,
+            is_grasped: state.is_grasped,
+            temperature: state.temperature,
+            acting: self.lock().is_some(),
+        }
+    }
+
+    /// Begins an action of a viewer, which ends the one before. The future resolves with what came
+    /// of it: whether that was a success, and a line.
+    pub(crate) fn begin(
+        &self,
+        viewer: ViewerId,
+        action: GripperAction,
+    ) -> impl Future<Output = (bool, String)> + Send + use<> {
+        let end = CancellationToken::new();
+        let under_way = UnderWay {
+            viewer,
+            end: end.clone(),
+        };
+        *self.lock() = Some(under_way);
+        let fingers = self.clone();
+        async move {
+            let outcome = tokio::select! {
+                biased;
+                // Dropping an action stops the fingers.
+                () = end.cancelled() => return (false, "Gripper: stopped".to_owned()),
+                outcome = act(&fingers.gripper, action) => outcome,
+            };
+            // Unless another one has taken its place.
+            fingers.lock().take_if(|_| !end.is_cancelled());
+            let text = match &outcome {
+                Ok(done) => word(action, *done),
+                Err(error) => &error.to_string(),
+            };
+            (matches!(outcome, Ok(true)), format!("Gripper: {text}"))
+        }
+    }
+
+    /// Ends what is under way.
+    pub(crate) fn end(&self) {
+        self.lock().take();
+    }
+
+    /// Ends what is under way unless it is of the viewer that commands.
+    pub(crate) fn end_unless(&self, commander: Option<ViewerId>) {
+        self.lock().take_if(|it| Some(it.viewer) != commander);
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Option<UnderWay>> {
+        self.under_way
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+async fn act(gripper: &Gripper, action: GripperAction) -> Result<bool, GripperError> {
+    match action {
+        GripperAction::Home {} => gripper.homing().await,
+        GripperAction::Move { width, speed } => gripper.move_to(width, speed).await,
+        GripperAction::Grasp {
+            width,
+            tolerance,
+            speed,
+            force,
+        } => {
+            let grasp = Grasp {
+                width,
+                epsilon_inner: tolerance,
+                epsilon_outer: tolerance,
+                speed,
+                force,
+            };
+            gripper.grasp(grasp).await
+        }
+        GripperAction::Stop {} => gripper.stop().await,
+    }
+}
+
+/// What came of an action.
+fn word(action: GripperAction, done: bool) -> &'static str {
+    match (action, done) {
+        (GripperAction::Home {}, true) => "knows how wide it opens",
+        (GripperAction::Home {}, false) => "did not find how wide it opens",
+        (GripperAction::Move { .. }, true) => "at the width",
+        (GripperAction::Move { .. }, false) => {
+            "not at the width; a width above the greatest is refused before a homing"
+        }
+        (GripperAction::Grasp { .. }, true) => "holds the object",
+        (GripperAction::Grasp { .. }, false) => {
+            "closed, and not at the width of the object; the force stays until it is stopped"
+        }
+        (GripperAction::Stop {}, true) => "let go",
+        (GripperAction::Stop {}, false) => "did not stop",
+    }
+}

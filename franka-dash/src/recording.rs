@@ -1,0 +1,147 @@
+//! Recordings that viewers begin and end, in a folder of the server.
+
+use std::path::PathBuf;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use franka_async::Robot;
+use franka_async::connection::CancellationToken;
+use franka_async::gripper::Gripper;
+use franka_async::recording::{HostTime, RecordOptions, RecordStatus, Recorder, Track};
+use serde::Serialize;
+use tokio::sync::watch;
+use tokio::time::{MissedTickBehavior, interval};
+
+/// The recordings of a server, one at a time.
+pub(crate) struct Recordings {
+    folder: PathBuf,
+    end: Mutex<CancellationToken>,
+    progress: watch::Sender<Option<Progress>>,
+}
+
+/// The recording that goes on.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Progress {
+    /// Name of its file in the folder.
+    file: String,
+    cycles: u64,
+    dropped: u64,
+    bytes: u64,
+}
+
+impl Recordings {
+    pub(crate) fn new(folder: PathBuf) -> Self {
+        Self {
+            folder,
+            end: Mutex::default(),
+            progress: watch::Sender::default(),
+        }
+    }
+
+    /// The recording that goes on, if one does.
+    pub(crate) fn progress(&self) -> Option<Progress> {
+        self.progress.borrow().clone()
+    }
+
+    /// Ends the recording that goes on, if one does.
+    pub(crate) fn end(&self) {
+        self.lock().cancel();
+    }
+
+    /// Begins a recording, of the gripper as well if there is one, and resolves when it has ended:
+    /// by [`Self::end`], after [`LONGEST`], or as it fails. The result is a line about it. Without
+    /// effect, and `None`, while another goes on.
+    pub(crate) async fn record(
+        &self,
+        robot: &Robot,
+        gripper: Option<&Gripper>,
+    ) -> Option<Result<String, String>> {
+        let time = HostTime::now().to_string().replace(['-', ':'], "");
+        let progress = Progress {
+            file: format!("{time}.mcap"),
+            cycles: 0,
+            dropped: 0,
+            bytes: 0,
+        };
+        let file = progress.file.clone();
+        let end = {
+            let mut newest = self.lock();
+            if self.progress.borrow().is_some() {
+                return None;
+            }
+            *newest = CancellationToken::new();
+            self.progress.send_replace(Some(progress));
+            newest.clone()
+        };
+        let recorded = self.write(robot, gripper, &file, end).await;
+        self.progress.send_replace(None);
+        Some(recorded.map(|status| {
+            format!(
+                "Recorded {} cycles in {file}, {} dropped",
+                status.cycles, status.dropped
+            )
+        }))
+    }
+
+    async fn write(
+        &self,
+        robot: &Robot,
+        gripper: Option<&Gripper>,
+        file: &str,
+        end: CancellationToken,
+    ) -> Result<RecordStatus, String> {
+        let path = self.folder.join(file);
+        let begin = move || Recorder::to_file(path, RecordOptions::default());
+        let recorder = off_the_runtime(begin).await?;
+        let recorder = recorder.map_err(|error| error.to_string())?;
+        let attached = recorder.attach(robot, Track::default()).await;
+        attached.map_err(|error| error.to_string())?;
+        if let Some(gripper) = gripper {
+            let attached = recorder.attach_gripper(gripper, "");
+            attached.map_err(|error| error.to_string())?;
+        }
+        let watch = async {
+            let mut clock = interval(PROGRESS);
+            clock.set_missed_tick_behavior(MissedTickBehavior::Skip);
+            loop {
+                clock.tick().await;
+                let status = recorder.status();
+                self.progress.send_modify(|progress| {
+                    if let Some(progress) = progress {
+                        progress.cycles = status.cycles;
+                        progress.dropped = status.dropped;
+                        progress.bytes = status.bytes;
+                    }
+                });
+                if status.error.is_some() {
+                    break;
+                }
+            }
+        };
+        tokio::select! {
+            () = end.cancelled() => {}
+            () = tokio::time::sleep(LONGEST) => {}
+            () = watch => {}
+        }
+        let finished = off_the_runtime(move || recorder.finish()).await?;
+        finished.map_err(|error| error.to_string())
+    }
+
+    fn lock(&self) -> MutexGuard<'_, CancellationToken> {
+        self.end.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Runs what waits for a disk where it holds up no other task.
+async fn off_the_runtime<T: Send + 'static>(
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Result<T, String> {
+    let done = tokio::task::spawn_blocking(work).await;
+    done.map_err(|error| error.to_string())
+}
+
+/// Time after which a recording ends by itself: a page that was closed does not end it.
+const LONGEST: Duration = Duration::from_secs(3600);
+
+/// Time between two looks at what has been recorded.
+const PROGRESS: Duration = Duration::from_millis(200);

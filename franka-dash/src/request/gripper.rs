@@ -1,0 +1,46 @@
+//! What the fingers of a Franka Hand are to do.
+
+use serde::Deserialize;
+
+use super::within;
+
+/// What the fingers of a Franka Hand are to do.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+pub(crate) enum GripperAction {
+    /// Find how wide they open.
+    Home {},
+    /// Go to a width, `[m]`, at a speed, `[m/s]`.
+    Move { width: f64, speed: f64 },
+    /// Close on an object of a width, `[m]`, up to `tolerance` wider or narrower, at a speed,
+    /// `[m/s]`, and hold it with a force, `[N]`.
+    Grasp {
+        width: f64,
+        tolerance: f64,
+        speed: f64,
+        force: f64,
+    },
+    /// Stop, and let go of what is held.
+    Stop {},
+}
+
+impl GripperAction {
+    pub(super) fn check(&self) -> Result<(), String> {
+        let width = |width: f64| within("a width", " m", width, 0.0..=0.2);
+        let speed = |speed: f64| within("a speed of the fingers", " m/s", speed, 0.001..=0.2);
+        match *self {
+            Self::Home {} | Self::Stop {} => Ok(()),
+            Self::Move { width: w, speed: v } => width(w).and(speed(v)),
+            Self::Grasp {
+                width: w,
+                tolerance,
+                speed: v,
+                force,
+            } => {
+                width(w).and(speed(v))?;
+                within("a tolerance", " m", tolerance, 0.0..=0.2)?;
+                within("a force of the fingers", " N", force, 1.0..=140.0)
+            }
+        }
+    }
+}

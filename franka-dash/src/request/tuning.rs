@@ -1,0 +1,72 @@
+//! How stiff the arm is while a button is held.
+
+use serde::{Deserialize, Serialize};
+
+use super::within;
+
+/// How stiff the arm is while a button is held: factors on the driver's gains for the kind of
+/// motion, and what it may press with.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Tuning {
+    /// Factor on the springs at the end effector. Their damping grows with its square root.
+    pub(crate) end_effector: f64,
+    /// The same of the joints.
+    pub(crate) joints: f64,
+    /// Factor on all damping.
+    pub(crate) damping: f64,
+    /// With how much force springs and dampers may press, `[N]`.
+    pub(crate) force_cap: f64,
+    /// Whether friction and undeclared loads are compensated.
+    pub(crate) compensation: bool,
+}
+
+impl Default for Tuning {
+    /// The driver's.
+    fn default() -> Self {
+        Self {
+            end_effector: 1.0,
+            joints: 1.0,
+            damping: 1.0,
+            force_cap: 30.0,
+            compensation: true,
+        }
+    }
+}
+
+impl Tuning {
+    /// The tunings that the page offers by name. Stiffer ones have not been seen to stay quiet on
+    /// all simulated arms: the book's chapter on arms that stick has the table.
+    pub(crate) fn presets() -> [(&'static str, Self); 4] {
+        let default = Self::default();
+        let soft = Self {
+            end_effector: 0.25,
+            joints: 0.25,
+            force_cap: 15.0,
+            ..default
+        };
+        let springs = Self {
+            compensation: false,
+            ..soft
+        };
+        let stiff = Self {
+            end_effector: 2.0,
+            joints: 1.5,
+            ..default
+        };
+        [
+            ("springs alone", springs),
+            ("soft", soft),
+            ("default", default),
+            ("stiff", stiff),
+        ]
+    }
+
+    pub(super) fn check(&self) -> Result<(), String> {
+        let end_effector = self.end_effector;
+        within("a factor of the end effector", "", end_effector, 0.1..=4.0)?;
+        within("a factor of the joints", "", self.joints, 0.1..=2.0)?;
+        within("a factor of the damping", "", self.damping, 0.5..=1.3)?;
+        within("a force cap", " N", self.force_cap, 5.0..=60.0)
+    }
+}

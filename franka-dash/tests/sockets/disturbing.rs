@@ -1,0 +1,90 @@
+//! What viewers do to a simulated robot.
+
+use franka_async::state::RobotMode;
+use serde_json::{Value, json};
+
+use crate::viewer::{Served, Viewer};
+
+fn disturb(viewer: &mut Viewer, disturbance: Value) {
+    viewer.send(json!({"type": "disturb", "disturbance": disturbance}));
+}
+
+#[test]
+fn a_network_is_set_and_cut_and_the_robot_stops_itself_for_want_of_commands() {
+    let served = Served::movable();
+    let mut viewer = Viewer::connect(served.address);
+    viewer.take();
+    viewer.wait_for_status(|it| it["simulation"]["seed"] == 1);
+    let lost = || served.robot.stats().lost.get();
+    let before = lost();
+    disturb(&mut viewer, json!({"kind": "cut", "milliseconds": 100}));
+    viewer.wait_until("statistics", |_| lost() >= before + 50);
+    let start = served.height();
+    let up = json!({"kind": "translate", "direction": [0, 0, 1], "axes": "base"});
+    viewer.hold_until(&up, || served.height() > start + 0.003);
+    disturb(&mut viewer, json!({"kind": "cut", "milliseconds": 100}));
+    viewer.event("communication_constraints_violation");
+    assert_eq!(
+        served.with(|robot| robot.state().robot_mode),
+        RobotMode::Reflex
+    );
+    viewer.send(json!({"type": "recover"}));
+    viewer.event("Recovered");
+
+    let mut conditions = json!({"loss": 0.0, "burst": 1.0, "delay_ms": 4.0, "jitter_ms": 0.0,
+        "stalls_per_second": 0.0, "stall_ms": 0.0});
+    disturb(
+        &mut viewer,
+        json!({"kind": "network", "conditions": conditions}),
+    );
+    viewer.wait_for_status(|it| it["simulation"]["network"] == conditions);
+    conditions["loss"] = json!(0.3);
+    let before = lost();
+    disturb(
+        &mut viewer,
+        json!({"kind": "network", "conditions": conditions}),
+    );
+    viewer.wait_until("statistics", |_| lost() > before + 100);
+}
+
+#[test]
+fn a_load_pulls_another_arm_stands_there_and_an_object_needs_a_hand() {
+    let served = Served::movable();
+    let mut viewer = Viewer::connect(served.address);
+    viewer.take();
+    viewer.wait_for_status(|it| it["simulation"]["arm"] == "realistic");
+    let felt = || served.robot.state().O_F_ext_hat_K[2];
+    let before = felt();
+    disturb(&mut viewer, json!({"kind": "load", "mass": 2}));
+    viewer.wait_for_status(|it| it["simulation"]["load"] == 2.0);
+    viewer.wait_until("statistics", |_| felt() - before > 15.0);
+    let q = served.with(|robot| *robot.q());
+    disturb(&mut viewer, json!({"kind": "arm", "arm": "bad"}));
+    viewer.wait_for_status(|it| it["simulation"]["arm"] == "bad");
+    let (arm, now) = served.with(|robot| (robot.config().chosen_arm(), *robot.q()));
+    assert_eq!(arm, franka_sim::Arm::bad(served.robot.model().kind()));
+    assert!((now - q).amax() < 0.05, "{now}");
+    disturb(&mut viewer, json!({"kind": "object", "width": 0.04}));
+    viewer.event("no hand");
+    viewer.wait_for_status(|it| it["simulation"]["object"] == Value::Null);
+}
+
+#[test]
+fn nothing_is_done_to_a_robot_that_is_not_simulated() {
+    let served = Served::new(|_| franka_dash::Options::default().allow_motion());
+    let mut viewer = Viewer::connect(served.address);
+    viewer.take();
+    for disturbance in [
+        json!({"kind": "load", "mass": 2}),
+        json!({"kind": "cut", "milliseconds": 100}),
+        json!({"kind": "reflex"}),
+    ] {
+        disturb(&mut viewer, disturbance);
+        assert!(viewer.refusal().contains("only a simulated robot"));
+    }
+    viewer.send(json!({"type": "gripper", "action": {"kind": "home"}}));
+    assert!(viewer.refusal().contains("no gripper"));
+    viewer.send(json!({"type": "record", "on": true}));
+    assert!(viewer.refusal().contains("records nothing"));
+    assert_eq!(served.robot.state().robot_mode, RobotMode::Idle);
+}
