@@ -24,4 +24,5 @@ export function jog(hold, speed) {
     }
   }
   add("Ready pose", "move to the ready pose", () => ({ kind: "ready" }), true);
+  add("Hold here", "hold the arm where it is", () => ({ kind: "stay" }), true);
 }

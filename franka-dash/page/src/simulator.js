@@ -1,5 +1,8 @@
 // What can be done to a simulated robot: buttons, and pushes by dragging a link.
 
+import { button } from "./form.js";
+import { world } from "./world.js";
+
 const NEWTONS_PER_METRE = 150;
 const NEWTONS_MAX = 60;
 const EVERY_MS = 50;
@@ -14,14 +17,13 @@ const BUTTONS = [
 ];
 
 export function simulator(connection, scene, strip) {
+  world(connection);
   const place = document.getElementById("faults");
   const disturb = (disturbance) => connection.send({ type: "disturb", disturbance });
   for (const [text, disturbance] of BUTTONS) {
-    const button = document.createElement("button");
-    button.type = "button";
-    button.textContent = text;
-    button.addEventListener("click", () => disturb(disturbance));
-    place.append(button);
+    const it = button(text, "command", () => disturb(disturbance));
+    it.dataset.fault = text;
+    place.append(it);
   }
   let timer = null;
   let pointer = null;

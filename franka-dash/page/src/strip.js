@@ -46,16 +46,16 @@ export class Strip {
   setStatus(status) {
     this.status = status;
     const hello = this.#hello;
-    const may = hello?.motion_allowed || hello?.simulated;
+    const may = hello?.may_command;
     document.getElementById("commander").textContent = status.name ?? "nobody";
     const lease = document.getElementById("lease");
     lease.textContent = this.commands ? "Release" : "Take command";
     lease.disabled = !may || (status.commander !== null && !this.commands);
-    document.getElementById("recover").disabled = !(this.commands && hello.motion_allowed);
-    for (const button of document.querySelectorAll("#jog button, .joint button, #go")) {
-      button.disabled = !(this.commands && hello.motion_allowed);
+    const moves = this.commands && hello.motion_allowed;
+    for (const it of document.querySelectorAll("#recover, #jog button, .joint button, #go")) it.disabled = !moves;
+    for (const it of document.querySelectorAll("[data-needs]")) {
+      it.disabled = !(it.dataset.needs === "motion" ? moves : this.commands);
     }
-    for (const button of document.querySelectorAll("#faults button")) button.disabled = !this.commands;
   }
 
   show(frame) {

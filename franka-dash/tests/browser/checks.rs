@@ -24,7 +24,7 @@ pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
 }
 
 /// Opens the page, and waits until it shows a state.
-fn load(page: &Browser, served: &Served) -> anyhow::Result<()> {
+pub(crate) fn load(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let begin = Instant::now();
     page.go(&format!("http://{}/", served.address))?;
     wait("the page", || Ok(page.state()?["ready"] == true))?;
@@ -43,7 +43,7 @@ fn shows_the_robot(page: &Browser, served: &Served) -> anyhow::Result<()> {
 }
 
 /// Takes command, again where a page that was too busy has lost its connection.
-fn take(page: &Browser) -> anyhow::Result<()> {
+pub(crate) fn take(page: &Browser) -> anyhow::Result<()> {
     let commands = || Ok(page.state()?["commands"] == true);
     let begin = Instant::now();
     while !commands()? {
@@ -157,7 +157,7 @@ fn push(page: &Browser, served: &Served) -> anyhow::Result<()> {
 }
 
 fn reflex_and_recovery(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    page.run("[...document.querySelectorAll('#faults button')].at(-1).click()")?;
+    page.click("[data-fault='Reflex']")?;
     let is = |mode| Ok(served.robot.state().robot_mode == mode);
     wait("the reflex", || is(RobotMode::Reflex))?;
     wait("the reflex in the log", || {

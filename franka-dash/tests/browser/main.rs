@@ -4,6 +4,7 @@
 
 mod checks;
 mod driver;
+mod panels;
 mod served;
 
 use std::path::PathBuf;
@@ -21,15 +22,16 @@ fn the_page_shows_and_moves_simulated_robots() -> anyhow::Result<()> {
     let pictures = PathBuf::from(variable("FRANKA_PICTURES")?);
     std::fs::create_dir_all(&pictures)?;
     let driver = Driver::start(&driver)?;
-    let fr3 = Served::new(franka_sim::Sim::fr3())?;
+    let fr3 = Served::new(franka_sim::Sim::fr3(), "fr3")?;
     {
         let page = Browser::open(&driver, &browser, (900, 640))?;
-        let checked = checks::run(&page, &fr3);
+        let panels = pictures.join("panels.png");
+        let checked = checks::run(&page, &fr3).and_then(|()| panels::run(&page, &fr3, &panels));
         page.picture(&pictures.join("checked.png"))?;
         checked?;
         page.check_console()?;
     }
-    let fer = Served::new(franka_sim::Sim::fer())?;
+    let fer = Served::new(franka_sim::Sim::fer(), "fer")?;
     for (name, served, size, dark) in [
         ("fr3-light", &fr3, (1440, 900), false),
         ("fr3-dark", &fr3, (1440, 900), true),

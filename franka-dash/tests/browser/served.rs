@@ -1,42 +1,57 @@
 //! A simulated robot with its page.
 
 use std::net::SocketAddr;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use anyhow::ensure;
+use anyhow::{Context as _, ensure};
+use franka_async::gripper::Gripper;
 use franka_async::{Realtime, Robot};
 use franka_dash::Options;
-use franka_sim::{Running, Sim};
+use franka_sim::{Fingers, Running, Sim, Tool};
 use tokio::runtime::Runtime;
 
 /// A simulated robot with its page.
 pub(crate) struct Served {
     pub(crate) address: SocketAddr,
     pub(crate) robot: Robot,
+    pub(crate) gripper: Gripper,
+    /// Where recordings go.
+    pub(crate) folder: PathBuf,
     runtime: Runtime,
     _running: Arc<Running>,
 }
 
 impl Served {
-    pub(crate) fn new(sim: Sim) -> anyhow::Result<Self> {
+    /// Serves it; `name` is that of nothing else in this program.
+    pub(crate) fn new(sim: Sim, name: &str) -> anyhow::Result<Self> {
         let runtime = Runtime::new()?;
-        let (address, robot, running) = runtime.block_on(async {
+        let folder =
+            std::env::temp_dir().join(format!("franka-dash-{}-{name}", std::process::id()));
+        std::fs::create_dir(&folder)?;
+        let (address, robot, gripper, running) = runtime.block_on(async {
+            let sim = sim.tool(Tool::hand()).hand(Fingers::new(), 0);
             let sim = sim.wait_for_commands(Duration::from_millis(500));
             let running = Arc::new(sim.start().await?);
             let builder = Robot::builder(running.addr()).realtime(Realtime::Ignore);
             let robot = builder.connect().await?;
+            let hand = running.hand().context("a hand")?.addr();
+            let gripper = Gripper::connect(hand).await?;
             let options = Options::default().allow_motion().simulated(&running);
+            let options = options.gripper(gripper.clone()).record_to(&folder);
             let options = options.patience(PATIENCE);
             let listener = franka_dash::bind("127.0.0.1:0".parse()?, &options).await?;
             let address = listener.local_addr()?;
             let router = franka_dash::router(robot.clone(), options);
             tokio::spawn(async move { axum::serve(listener, router).await });
-            anyhow::Ok((address, robot, running))
+            anyhow::Ok((address, robot, gripper, running))
         })?;
         Ok(Self {
             address,
             robot,
+            gripper,
+            folder,
             runtime,
             _running: running,
         })
@@ -64,6 +79,8 @@ impl Served {
 impl Drop for Served {
     fn drop(&mut self) {
         self.runtime.block_on(self.robot.shutdown());
+        // What is left of it does no harm.
+        let _ = std::fs::remove_dir_all(&self.folder);
     }
 }
 

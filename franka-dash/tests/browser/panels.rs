@@ -1,0 +1,76 @@
+//! What a person does with the panels, and what has to come of it.
+
+use std::path::Path;
+
+use anyhow::Context as _;
+
+use crate::checks::{load, take};
+use crate::driver::Browser;
+use crate::served::{Served, wait};
+
+/// All checks, one after the other, and a picture of what is left in the panels.
+pub(crate) fn run(page: &Browser, served: &Served, picture: &Path) -> anyhow::Result<()> {
+    load(page, served)?;
+    take(page)?;
+    tune(page)?;
+    record(page, served)?;
+    grip(page, served)?;
+    cut(page, served)?;
+    page.run("document.getElementById('tuning-panel').scrollIntoView()")?;
+    page.picture(picture)
+}
+
+fn tune(page: &Browser) -> anyhow::Result<()> {
+    for (name, factor) in [("soft", 0.25), ("default", 1.0)] {
+        page.click(&format!("[data-tuning='{name}']"))?;
+        wait(name, || {
+            let set = page.state()?["status"]["tuning"]["end_effector"] == factor;
+            let held =
+                format!("return document.querySelector(\"[data-tuning='{name}']\").className");
+            Ok(set && page.run(&held)? == "held")
+        })?;
+    }
+    Ok(())
+}
+
+fn record(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    let text = || page.run("return document.getElementById('record-panel').textContent");
+    let says = |wanted: &'static str| Ok(text()?.as_str().is_some_and(|it| it.contains(wanted)));
+    page.click("#record")?;
+    wait("the recording", || says(".mcap"))?;
+    page.click("#record")?;
+    wait("the end of the recording", || Ok(!says(".mcap")?))?;
+    let files = std::fs::read_dir(&served.folder)?.count();
+    anyhow::ensure!(files == 1, "{files} files");
+    Ok(())
+}
+
+/// Homes, is given an object of 40 mm, and holds it.
+fn grip(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    page.click("[data-gripper='Home']")?;
+    wait("the homing", || Ok(served.gripper.state().max_width > 0.07))?;
+    wait("the width in the page", || {
+        let shown = page.run("return document.getElementById('gripper').textContent")?;
+        Ok(shown
+            .as_str()
+            .is_some_and(|it| it.contains("80.0 mm of 80.0")))
+    })?;
+    page.click("[data-world='put']")?;
+    wait("the object", || {
+        Ok(page.state()?["status"]["simulation"]["object"] == 0.04)
+    })?;
+    page.click("[data-gripper='Grasp width']")?;
+    wait("the grasp", || Ok(served.gripper.state().is_grasped))?;
+    page.click("[data-world='take']")?;
+    wait("the loss of the object", || {
+        Ok(!served.gripper.state().is_grasped)
+    })
+}
+
+/// Cuts the network for 25 ms, while nothing moves.
+fn cut(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    let lost = || served.robot.stats().lost.get();
+    let before = lost();
+    page.click("[data-world='cut-25']")?;
+    wait("lost states", || Ok(lost() > before + 15)).context("25 ms without a network")
+}
