@@ -1,6 +1,7 @@
 //! `franka dash`: the dashboard of a robot, in the browser.
 
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
+use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Args;
@@ -30,6 +31,13 @@ pub(crate) struct Dash {
     /// that of the robot in the file, or enforce]
     #[arg(long, value_enum)]
     realtime: Option<Realtime>,
+    /// Show the robot's Franka Hand as well and, with --allow-motion, let its fingers be moved. The
+    /// Hand serves no other program meanwhile
+    #[arg(long)]
+    gripper: bool,
+    /// Let the viewer that takes command record to new files in this folder
+    #[arg(long, value_name = "FOLDER")]
+    record: Option<PathBuf>,
     /// Ask pages for this token: http://ADDRESS:PORT/#TOKEN
     #[arg(long)]
     token: Option<String>,
@@ -44,6 +52,16 @@ impl Dash {
         if let Some(token) = &self.token {
             options = options.token(token);
         }
+        if let Some(folder) = &self.record {
+            if !folder.is_dir() {
+                let text = format!(
+                    "{}: no folder; --record takes one that is there",
+                    folder.display()
+                );
+                return Err(Failure::usage(text).into());
+            }
+            options = options.record_to(folder);
+        }
         let listener = listen(self.listen, &options).await?;
         let address = listener.local_addr().context("the address of the page")?;
         let interrupt = interrupted()?;
@@ -56,6 +74,9 @@ impl Dash {
         // Events are explained by the last second.
         let robot = place.connect(realtime, |builder| builder.log_size(1000));
         let robot = robot.await?;
+        if self.gripper {
+            options = options.gripper(place.connect_hand().await?);
+        }
         line(&format!("{place}: http://{address}/"))?;
         let page = franka_dash::router(robot.clone(), options);
         let ended = tokio::select! {

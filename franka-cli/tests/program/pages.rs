@@ -54,6 +54,14 @@ fn the_dashboard_is_served_until_ctrl_c() {
 }
 
 #[test]
+fn a_folder_for_recordings_has_to_be_there() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let nowhere = ["dash", &sim.address(), "--record", "/no/such/folder"];
+    home.run(&nowhere)
+        .failed(2, &["/no/such/folder", "one that is there"]);
+}
+
+#[test]
 fn pages_for_other_computers_take_a_token() {
     let (home, sim) = (Home::new(), Simulated::fr3());
     let open = ["dash", &sim.address(), "--listen", "0.0.0.0:0"];
