@@ -38,12 +38,16 @@ pub(crate) fn run_simulator(workspace: &Workspace, seconds: u32) -> anyhow::Resu
     workspace.run(&mut measure)
 }
 
-/// Measures what a recorder costs the control thread, for `seconds` with one and as long without.
-pub(crate) fn run_recorder(workspace: &Workspace, seconds: u32) -> anyhow::Result<()> {
+/// Measures what a recorder or a dashboard costs the control thread, for `seconds` with one and as
+/// long without.
+pub(crate) fn run_beside(workspace: &Workspace, what: &str, seconds: u32) -> anyhow::Result<()> {
     build(workspace, &[])?;
     let target = workspace.target();
     let mut measure = workspace.program(target.join("release").join("live"));
-    measure.arg("recorder").arg(target);
+    measure.arg(what);
+    if what == "recorder" {
+        measure.arg(target);
+    }
     workspace.run(measure.args(["--seconds", &seconds.to_string()]))
 }
 

@@ -125,7 +125,11 @@ enum Task {
         /// else should run meanwhile.
         #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
         recorder: bool,
-        /// How long to measure each case of --live, --sim and --recorder.
+        /// Measure what a dashboard with ten viewers, and one that never reads, costs the control
+        /// thread, in turns with and without viewers: nothing else should run meanwhile.
+        #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
+        dash: bool,
+        /// How long to measure each case of --live, --sim, --recorder and --dash.
         #[arg(long, default_value_t = 30, requires = "sockets")]
         seconds: u32,
     },
@@ -249,7 +253,12 @@ fn run(task: Task) -> anyhow::Result<()> {
             recorder: true,
             seconds,
             ..
-        } => live::run_recorder(&workspace, seconds),
+        } => live::run_beside(&workspace, "recorder", seconds),
+        Task::Bench {
+            dash: true,
+            seconds,
+            ..
+        } => live::run_beside(&workspace, "dashboard", seconds),
         Task::Bench { python: true, .. } => live::run_python(&workspace),
         Task::Bench {
             starvation: true, ..

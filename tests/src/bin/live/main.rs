@@ -22,6 +22,8 @@
 //!
 //! `live recorder DIRECTORY [--seconds N]`: see [`recorder`].
 //!
+//! `live dashboard [--seconds N]`: see [`dashboard`].
+//!
 //! | module | what it is |
 //! |---|---|
 //! | [`relay`] | between client and robot, records what passes and when |
@@ -35,9 +37,12 @@
 //! | [`package_case`] | the measurement of one package for Python |
 //! | [`package_report`] | the table of these |
 //! | [`recorder`] | what a recorder costs the control thread |
+//! | [`dashboard`], [`viewers`] | what a dashboard and its viewers cost it |
+//! | [`turn`] | cycles without and with something beside them |
 //! | [`starvation`] | what blocked runtime workers cost |
 
 mod case;
+mod dashboard;
 mod listener;
 mod package_case;
 mod package_report;
@@ -49,8 +54,11 @@ mod simulator_case;
 mod stamp;
 mod starvation;
 mod trace;
+mod turn;
+mod viewers;
 
 use std::fs;
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -115,6 +123,18 @@ enum What {
         /// How long to measure with a recorder, and as long without.
         #[arg(long, default_value_t = 60, value_parser = value_parser!(u32).range(1..))]
         seconds: u32,
+    },
+    /// What a dashboard with viewers costs the control thread, in turns with and without viewers.
+    Dashboard {
+        /// How long to measure with viewers, and as long without.
+        #[arg(long, default_value_t = 60, value_parser = value_parser!(u32).range(1..))]
+        seconds: u32,
+    },
+    /// Viewers of a dashboard, until the standard input ends.
+    #[command(hide = true)]
+    Viewers {
+        /// Where the page is.
+        address: SocketAddr,
     },
 }
 
@@ -181,6 +201,8 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
         What::Recorder { directory, seconds } => {
             recorder::print(&programs.join("franka-sim"), &directory, seconds)
         }
+        What::Dashboard { seconds } => dashboard::print(programs, seconds),
+        What::Viewers { address } => viewers::run(address),
     }
 }
 
