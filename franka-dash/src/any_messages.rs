@@ -36,7 +36,7 @@ pub(crate) fn check(bytes: &[u8]) {
             continue;
         };
         let (viewer, valid) = (u64::from(viewer % 4), request.check().is_ok());
-        let round_trip = Some(Duration::from_millis(u64::from(viewer)));
+        let round_trip = Some(Duration::from_millis(viewer));
         let is_stop = matches!(request, Request::Stop {});
         let step = authority.handle(now, viewer, round_trip, request);
         let after = authority.status();

@@ -87,17 +87,17 @@ fn fingers_stop_by_a_stop_of_any_viewer_and_with_the_lease() {
     let mut other = Viewer::connect(served.address);
     act(&mut other, json!({"kind": "home"}));
     assert!(other.refusal().contains("take the lease"));
-    let ways: [&dyn Fn(&mut Viewer, &mut Viewer); 3] = [
-        &|_, other| other.send(json!({"type": "stop"})),
-        &|viewer, _| viewer.send(json!({"type": "stop"})),
-        &|viewer, _| viewer.send(json!({"type": "release"})),
-    ];
-    for end in ways {
+    for (by_the_other, request) in [(true, "stop"), (false, "stop"), (false, "release")] {
         viewer.take();
         act(&mut viewer, json!({"kind": "home"}));
         let before = viewer.wait_until("gripper", |it| it["acting"] == true);
         viewer.wait_until("gripper", |it| it["width"] != before["width"]);
-        end(&mut viewer, &mut other);
+        let ending = if by_the_other {
+            &mut other
+        } else {
+            &mut viewer
+        };
+        ending.send(json!({"type": request}));
         viewer.event("Gripper: stopped");
         // The order has gone to the Hand; its states say when it rests.
         let (mut last, mut now) = (Value::Null, viewer.wait_for("gripper"));
