@@ -3,7 +3,7 @@
 use std::future::Future;
 use std::path::PathBuf;
 use std::pin::pin;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 use franka_async::diagnosis::Diagnose;
@@ -112,13 +112,14 @@ impl Moving {
         Ok(())
     }
 
-    /// Awaits a motion of the robot, with its progress on the terminal. Ctrl-C brakes.
+    /// Awaits a motion of the robot, with its progress on the terminal if its length is given.
+    /// Ctrl-C brakes.
     pub(crate) async fn drive<T, E: Into<Cause>>(
         &self,
         motion: impl Future<Output = Result<T, E>>,
-        handle: Option<MotionHandle>,
+        length: Option<Length>,
     ) -> anyhow::Result<T> {
-        let bar = handle.map(|handle| (progress_bar(), handle));
+        let (bar, begin) = (progress_bar(), Instant::now());
         let mut motion = pin!(motion);
         let mut interrupt = pin!(interrupted()?);
         let mut clock = tokio::time::interval(Duration::from_millis(50));
@@ -131,16 +132,15 @@ impl Moving {
                 },
                 () = &mut interrupt => break Err(self.brake().await),
                 _ = clock.tick() => {
-                    if let Some((bar, handle)) = &bar && let Some(progress) = handle.progress() {
-                        bar.set_position((progress.fraction() * 1000.0) as u64);
-                        bar.set_message(format!("{:.1} s left", progress.remaining.as_secs_f64()));
+                    let gone = length.as_ref().and_then(|length| length.gone(begin));
+                    if let Some((part, left)) = gone {
+                        bar.set_position((part * 1000.0) as u64);
+                        bar.set_message(format!("{:.1} s left", left.as_secs_f64()));
                     }
                 }
             }
         };
-        if let Some((bar, _)) = &bar {
-            bar.finish_and_clear();
-        }
+        bar.finish_and_clear();
         outcome
     }
 
@@ -206,6 +206,31 @@ impl Moving {
     }
 }
 
+/// What tells how long a motion takes.
+pub(crate) enum Length {
+    /// The motion itself.
+    Of(MotionHandle),
+    /// It was known beforehand, or about.
+    About(Duration),
+}
+
+impl Length {
+    /// The part in `[0, 1]` of a motion that is over, and the time that is left, if that is known.
+    fn gone(&self, begin: Instant) -> Option<(f64, Duration)> {
+        match self {
+            Self::Of(handle) => {
+                let progress = handle.progress()?;
+                Some((progress.fraction(), progress.remaining))
+            }
+            Self::About(length) => {
+                let elapsed = begin.elapsed();
+                let part = elapsed.as_secs_f64() / length.as_secs_f64();
+                Some((part.min(1.0), length.saturating_sub(elapsed)))
+            }
+        }
+    }
+}
+
 /// What was recorded, in a line.
 pub(crate) fn recorded(status: &RecordStatus) -> String {
     let file = status.files.first().map(|file| file.display().to_string());
@@ -251,6 +276,36 @@ impl From<ReplayFailure> for Cause {
 pub(crate) fn progress_bar() -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}");
     ProgressBar::new(1000).with_style(style.expect("a template"))
+}
+
+/// Awaits what takes about as long as `length`, with its progress on the terminal.
+pub(crate) async fn shown<T>(what: &str, length: Duration, work: impl Future<Output = T>) -> T {
+    let (bar, length, begin) = (progress_bar(), Length::About(length), Instant::now());
+    bar.set_message(what.to_owned());
+    let mut work = pin!(work);
+    let mut clock = tokio::time::interval(Duration::from_millis(100));
+    let result = loop {
+        tokio::select! {
+            biased;
+            result = &mut work => break result,
+            _ = clock.tick() => {
+                if let Some((part, _)) = length.gone(begin) {
+                    bar.set_position((part * 1000.0) as u64);
+                }
+            }
+        }
+    };
+    bar.finish_and_clear();
+    result
+}
+
+/// Does what takes a while that is not known, with a sign of life on the terminal.
+pub(crate) fn while_turning<T>(what: &str, work: impl FnOnce() -> T) -> T {
+    let bar = ProgressBar::new_spinner().with_message(what.to_owned());
+    bar.enable_steady_tick(Duration::from_millis(100));
+    let result = work();
+    bar.finish_and_clear();
+    result
 }
 
 /// How far a joint may be from where a question was asked, `[rad]`.

@@ -179,6 +179,7 @@ fn unknown_findings_say_what_is_missing_and_have_no_fix() {
 #[test]
 fn every_finding_has_its_wish_its_reason_and_its_source_and_an_id_of_its_own() {
     let report = report("usb_card", Purpose::Move);
+    let book = include_str!("../../docs/src/doctor.md");
     for (index, finding) in report.findings.iter().enumerate() {
         for text in [
             finding.wanted,
@@ -188,6 +189,8 @@ fn every_finding_has_its_wish_its_reason_and_its_source_and_an_id_of_its_own() {
         ] {
             assert!(!text.is_empty(), "{finding:?}");
         }
+        let id = format!("`{}`", finding.id);
+        assert!(book.contains(&id), "the book has no {id}");
         let others = &report.findings[index + 1..];
         assert!(
             others.iter().all(|other| other.id != finding.id),

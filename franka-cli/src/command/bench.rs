@@ -14,7 +14,7 @@ use serde_json::json;
 
 use super::test::{quantiles, table, times};
 use crate::ending::{Ending, Failure};
-use crate::motion::progress_bar;
+use crate::motion::{progress_bar, shown};
 use crate::output::Output;
 use crate::values::seconds;
 
@@ -91,7 +91,7 @@ impl Loop {
             stats,
             granted,
             ..
-        } = dry_run(sim, self.seconds).await?;
+        } = shown("measuring", self.seconds, dry_run(sim, self.seconds)).await?;
         let report = outcome?;
         let value = json!({
             "robot": "simulated FR3 in this process",

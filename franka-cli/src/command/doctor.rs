@@ -1,7 +1,6 @@
 //! `franka doctor`: this computer and the way to a robot, checked before an arm moves.
 
 use std::net::{IpAddr, SocketAddr};
-use std::pin::pin;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -20,7 +19,7 @@ use franka_sim::Sim;
 use super::bench;
 use crate::connection::{Place, Seen, Which, resolve};
 use crate::ending::{Ending, Failure};
-use crate::motion::progress_bar;
+use crate::motion::{progress_bar, shown};
 use crate::output::{Output, line, say};
 use crate::robots_file::Realtime;
 
@@ -165,11 +164,11 @@ impl Doctor {
             checks = checks.timing(false);
         }
         let bar = progress_bar();
-        let shown = bar.clone();
+        let told = bar.clone();
         let run = move || {
             checks.run(&System::default(), &mut |what, part| {
-                shown.set_position((part * 1000.0) as u64);
-                shown.set_message(what.to_owned());
+                told.set_position((part * 1000.0) as u64);
+                told.set_message(what.to_owned());
             })
         };
         let report = tokio::task::spawn_blocking(run).await?;
@@ -179,23 +178,10 @@ impl Doctor {
 
     /// The control loop of the driver against a simulated robot in this process.
     async fn dry_run(&self) -> Option<Finding> {
-        let bar = progress_bar();
-        bar.set_message("timing.dry_run");
         let (begin, length) = (Instant::now(), self.length());
         let sent = Arc::new(Mutex::new(Vec::with_capacity(1 << 17)));
-        let mut run = pin!(bench::dry_run(punctual(sent.clone()), length));
-        let mut clock = tokio::time::interval(Duration::from_millis(100));
-        let ran = loop {
-            tokio::select! {
-                biased;
-                ran = &mut run => break ran,
-                _ = clock.tick() => {
-                    let part = begin.elapsed().as_secs_f64() / length.as_secs_f64();
-                    bar.set_position((part * 1000.0) as u64);
-                }
-            }
-        };
-        bar.finish_and_clear();
+        let run = bench::dry_run(punctual(sent.clone()), length);
+        let ran = shown("timing.dry_run", length, run).await;
         match ran {
             Ok(ran) => {
                 let since = |times: &[(u64, Instant)]| -> Vec<Received> {
@@ -238,7 +224,8 @@ impl Doctor {
             Ok(robot) => {
                 let answered = vec![Answer::Accepted(robot.version())];
                 let state = robot.state();
-                let states = received(&robot, self.length()).await;
+                let states = received(&robot, self.length());
+                let states = shown("robot.lost", self.length(), states).await;
                 robot.shutdown().await;
                 found.extend(arrivals(&states?, purpose));
                 (answered, Some(true), Some(state))

@@ -10,6 +10,7 @@ use franka_async::model::Model;
 use franka_async::recording::Recording;
 
 use crate::ending::{Ending, Failure};
+use crate::motion::while_turning;
 use crate::output::{Output, say};
 
 /// Say why a recorded motion ended, and where the arm was touched
@@ -65,7 +66,9 @@ impl Recorded {
 impl Explain {
     pub(super) fn run(self) -> anyhow::Result<Ending> {
         let (recording, name, model) = self.recorded.open()?;
-        let explanation = Explanation::of_recording(&recording.robot(&name)?, model);
+        let robot = recording.robot(&name)?;
+        let explain = || Explanation::of_recording(&robot, model);
+        let explanation = while_turning("looking at every cycle", explain);
         if let Some(file) = &self.figure {
             let written = fs::write(file, explanation.figure());
             written.with_context(|| format!("writing {}", file.display()))?;

@@ -13,6 +13,7 @@ use serde_json::json;
 
 use super::explain::Recorded;
 use crate::ending::{Ending, Failure};
+use crate::motion::while_turning;
 use crate::output::Output;
 
 /// Export a recording as tables, or as a dataset for training
@@ -62,10 +63,12 @@ impl Export {
         if let Some(path) = &self.csv {
             let file = File::create_new(path);
             let file = file.with_context(|| format!("writing {}", path.display()))?;
-            rows = Some(write_csv(robot.cycles(), &columns, true, file)?);
+            let write = || write_csv(robot.cycles(), &columns, true, file);
+            rows = Some(while_turning("writing the table", write)?);
         }
         if let Some(path) = &self.parquet {
-            rows = Some(write_parquet(robot.cycles(), &columns, path)?);
+            let write = || write_parquet(robot.cycles(), &columns, path);
+            rows = Some(while_turning("writing the table", write)?);
         }
         if let Some(folder) = &self.lerobot {
             let kind = match model.kind() {
@@ -94,7 +97,8 @@ impl Export {
                 let part = robot.from(episode.begin).to(episode.end);
                 let samples = Samples::new(part.cycles(), robot.to(episode.end).gripper_states());
                 let samples: Vec<Sample> = samples.collect::<Result<_, _>>()?;
-                let added = dataset.add_episode(&episode.task, episode.success, samples);
+                let add = || dataset.add_episode(&episode.task, episode.success, samples);
+                let added = while_turning("adding an episode", add);
                 count += added.map_err(|error| {
                     Failure::new(Ending::Failed, error.to_string()).advice(
                         "--measured takes where the arm was; --no-gripper leaves the gripper out.",

@@ -7,7 +7,7 @@ use franka_async::{MotionReport, Offset, Pose, READY, Robot};
 use franka_sim::command_line::numbers;
 
 use crate::ending::Ending;
-use crate::motion::{Mover, Moving};
+use crate::motion::{Length, Mover, Moving};
 use crate::output::Output;
 use crate::question::Target;
 use crate::values::{PartialPose, partial_pose, positive};
@@ -92,7 +92,9 @@ impl Move {
         moving.ask("move", &what).await?;
         let motion = robot.move_to(destination).speed(self.speed);
         let handle = motion.handle();
-        moving.drive(motion.into_future(), Some(handle)).await
+        moving
+            .drive(motion.into_future(), Some(Length::Of(handle)))
+            .await
     }
 }
 

@@ -10,7 +10,7 @@ use serde_json::json;
 use super::explain::Recorded;
 use crate::connection::Which;
 use crate::ending::{Ending, Failure};
-use crate::motion::{MoverOptions, Moving};
+use crate::motion::{Length, MoverOptions, Moving};
 use crate::question::Target;
 use crate::values::positive;
 
@@ -116,6 +116,7 @@ impl Replay {
             plan.duration().as_secs_f64(),
         );
         moving.ask("replay", &what).await?;
-        moving.drive(robot.replay(plan), None).await
+        let length = Some(Length::About(plan.duration()));
+        moving.drive(robot.replay(plan), length).await
     }
 }

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use crate::connection::Which;
 use crate::ending::{Ending, Failure};
-use crate::motion::{Mover, Moving};
+use crate::motion::{Length, Mover, Moving};
 use crate::output::{BAD, BOLD, GOOD, WARN};
 use crate::values::seconds;
 
@@ -105,13 +105,14 @@ impl Communication {
             self.seconds.as_secs_f64()
         );
         one.ask("test", &what).await?;
+        let length = Some(Length::About(self.seconds));
         let Some(other) = other else {
-            let report = one.drive(nothing(one, self.seconds), None).await?;
+            let report = one.drive(nothing(one, self.seconds), length).await?;
             return Ok((report, None));
         };
         other.ask("test", &what).await?;
         let both = tokio::try_join!(
-            one.drive(nothing(one, self.seconds), None),
+            one.drive(nothing(one, self.seconds), length),
             other.drive(nothing(other, self.seconds), None)
         );
         // One that fails, or is interrupted, ends the other one.

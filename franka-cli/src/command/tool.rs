@@ -12,7 +12,7 @@ use serde_json::json;
 
 use crate::connection::{Which, check_ready};
 use crate::ending::{Ending, Failure};
-use crate::motion::{Mover, Moving};
+use crate::motion::{Length, Mover, Moving};
 use crate::output::{Output, say};
 use crate::values::{PartialPose, partial_pose};
 
@@ -152,6 +152,7 @@ impl Identify {
             reach.down * 1e3
         );
         moving.ask("identify", &what).await?;
-        moving.drive(identify.run(), None).await
+        let length = Some(Length::About(identify.duration()));
+        moving.drive(identify.run(), length).await
     }
 }
