@@ -43,7 +43,7 @@ async fn a_pressed_user_stop_is_reported() {
 #[tokio::test]
 async fn a_collision_is_not_hidden_and_can_be_recovered_from() {
     let (robot, sim) = simulated().await;
-    // The robot trips by itself in a motion, half a second after it began.
+    // The robot trips once its arm moves.
     let tripping = tokio::spawn({
         let mut states = robot.states();
         async move {
