@@ -200,10 +200,15 @@ fn posture(kind: RobotKind, random: &mut SmallRng) -> JointVector {
             let inset = 0.1 * (high - low);
             random.random_range(low + inset..high - inset)
         });
-        if Shape::vendor().with_hand().at(&q).nearest_pair().distance > 0.03 {
+        if is_clear(&q) {
             return q;
         }
     }
+}
+
+/// Whether the parts of an arm with the Hand are well away from each other.
+pub fn is_clear(q: &JointVector) -> bool {
+    Shape::vendor().with_hand().at(q).nearest_pair().distance > 0.03
 }
 
 /// A uniformly random place on a capsule, and the normal there.
