@@ -1,5 +1,5 @@
-//! The Franka Hand that viewers move. What is under way ends with the lease of the viewer that began
-//! it, and by a stop; what is held then stays held.
+//! The Franka Hand that viewers move. What is under way ends with the lease of the viewer that
+//! began it, and by a stop; what is held then stays held.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 

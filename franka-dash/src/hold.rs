@@ -270,8 +270,8 @@ async fn go(
     }
 }
 
-/// Linear and angular velocity in base axes for a speed of 1 m/s, `[m/s]` and `[rad/s]`; `None` for a
-/// motion that goes along nothing.
+/// Linear and angular velocity in base axes for a speed of 1 m/s, `[m/s]` and `[rad/s]`; `None` for
+/// a motion that goes along nothing.
 fn direction(start: &Pose, motion: Motion) -> Option<(Vector3<f64>, Vector3<f64>)> {
     let along = |direction: [f64; 3], axes: Axes| {
         let direction = Vector3::from(direction).normalize();

@@ -1,5 +1,5 @@
-//! The commands of Cargo that the book and the READMEs name: their tasks, steps, packages, examples,
-//! programs and tests have to be there.
+//! The commands of Cargo that the book and the READMEs name: their tasks, steps, packages,
+//! examples, programs and tests have to be there.
 //!
 //! Figures stand beside the command that printed them, so a command that is gone is a figure that
 //! cannot be had again.

@@ -1,6 +1,7 @@
-//! What the reference chapters have to name: every field of a state, every error of the robot, every
-//! variant of the errors of `franka-async`, and a place for each link of an error to lead to; and the
-//! figures that a chapter copies, which have to be those of the chapter where they were measured.
+//! What the reference chapters have to name: every field of a state, every error of the robot,
+//! every variant of the errors of `franka-async`, and a place for each link of an error to lead to;
+//! and the figures that a chapter copies, which have to be those of the chapter where they were
+//! measured.
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -84,8 +84,8 @@ fn check_speed(speed: f64) -> Result<(), String> {
     within("a speed", " m/s", speed, SPEED_MIN..=SPEED_MAX)
 }
 
-/// Whether `got` is in a range; otherwise a text that says so. `what` is the name of the number, and
-/// `unit` follows it: empty, or with a space before it.
+/// Whether `got` is in a range; otherwise a text that says so. `what` is the name of the number,
+/// and `unit` follows it: empty, or with a space before it.
 fn within<T: PartialOrd + Display>(
     what: &str,
     unit: &str,

@@ -1,5 +1,5 @@
-//! A viewer that never reads costs the server no memory, and the other viewers nothing. An allocator
-//! counts what is in use, so this is the only test of its program.
+//! A viewer that never reads costs the server no memory, and the other viewers nothing. An
+//! allocator counts what is in use, so this is the only test of its program.
 
 #[path = "../sockets/viewer.rs"]
 #[allow(dead_code, reason = "other programs use the rest")]

@@ -79,6 +79,9 @@ fn the_gripper_homes_opens_holds_an_object_and_loses_it() {
     viewer.event("Gripper: let go");
 }
 
+/// Ends what the fingers of the first viewer do; the second one is another.
+type Way = dyn Fn(&mut Viewer, &mut Viewer);
+
 #[test]
 fn fingers_stop_by_a_stop_of_any_viewer_and_with_the_lease() {
     let folder = Folder::new("stops");
@@ -87,17 +90,17 @@ fn fingers_stop_by_a_stop_of_any_viewer_and_with_the_lease() {
     let mut other = Viewer::connect(served.address);
     act(&mut other, json!({"kind": "home"}));
     assert!(other.refusal().contains("take the lease"));
-    for (by_the_other, request) in [(true, "stop"), (false, "stop"), (false, "release")] {
+    let ways: [&Way; 3] = [
+        &|_, other| other.send(json!({"type": "stop"})),
+        &|viewer, _| viewer.send(json!({"type": "stop"})),
+        &|viewer, _| viewer.send(json!({"type": "release"})),
+    ];
+    for end in ways {
         viewer.take();
         act(&mut viewer, json!({"kind": "home"}));
         let before = viewer.wait_until("gripper", |it| it["acting"] == true);
         viewer.wait_until("gripper", |it| it["width"] != before["width"]);
-        let ending = if by_the_other {
-            &mut other
-        } else {
-            &mut viewer
-        };
-        ending.send(json!({"type": request}));
+        end(&mut viewer, &mut other);
         viewer.event("Gripper: stopped");
         // The order has gone to the Hand; its states say when it rests.
         let (mut last, mut now) = (Value::Null, viewer.wait_for("gripper"));

@@ -38,7 +38,8 @@ const TEXTS: [&str; 20] = [
     "\u{0}\u{7f}",
 ];
 
-/// A frame of a WebSocket with this first byte, masked unless it is `bare`. The length may be a lie.
+/// A frame of a WebSocket with this first byte, masked unless it is `bare`. The length may be a
+/// lie.
 fn frame(first: u8, length: u64, content: &[u8], bare: bool) -> Vec<u8> {
     let mask = if bare { 0 } else { 0x80 };
     let mut frame = vec![first];

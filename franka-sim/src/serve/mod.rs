@@ -421,9 +421,9 @@ impl Running {
     }
 
     /// Runs `job` between two milliseconds on the network that states and commands pass: see
-    /// [`Sim::network`]. `None` is the host's own. It is also given the network's time, which begins
-    /// with the robot's start, or with a network where there was none. What is under way in a
-    /// network that is replaced is lost.
+    /// [`Sim::network`]. `None` is the host's own. It is also given the network's time, which
+    /// begins with the robot's start, or with a network where there was none. What is under way in
+    /// a network that is replaced is lost.
     ///
     /// ```
     /// # use std::time::Duration;

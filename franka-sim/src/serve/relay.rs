@@ -33,8 +33,8 @@ impl Relay {
         }
     }
 
-    /// Runs `job` on the network of a relay, if there is one, at that network's time. A relay begins
-    /// and ends with its network.
+    /// Runs `job` on the network of a relay, if there is one, at that network's time. A relay
+    /// begins and ends with its network.
     pub(super) fn change<R>(
         relay: &mut Option<Self>,
         now: Instant,

@@ -1,5 +1,5 @@
-//! What a dashboard with viewers costs the control thread: a robot that moves all the time, in turns
-//! without and with viewers that read and one that never does, in one run.
+//! What a dashboard with viewers costs the control thread: a robot that moves all the time, in
+//! turns without and with viewers that read and one that never does, in one run.
 
 use std::io::{BufRead as _, BufReader};
 use std::net::SocketAddr;
@@ -15,6 +15,7 @@ use tokio::runtime::Builder;
 
 use crate::process;
 use crate::turn::{self, BLOCK, Turn, keep_moving};
+use crate::viewers::{READY, VIEWERS};
 
 /// Prints the times of the cycles without and with viewers, `seconds` each, what a viewer takes of
 /// a processor, and how the memory grows.
@@ -87,7 +88,7 @@ impl Viewers {
         command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut viewers = Self(command.spawn()?);
         let ready = viewers.line()?;
-        anyhow::ensure!(ready.trim() == crate::viewers::READY, "{ready:?}");
+        anyhow::ensure!(ready.trim() == READY, "{ready:?}");
         Ok(viewers)
     }
 
@@ -126,6 +127,3 @@ fn memory_now() -> anyhow::Result<f64> {
     let kibibytes = line.and_then(|it| it.trim().strip_suffix(" kB"));
     Ok(kibibytes.context("no VmRSS")?.parse::<f64>()? / 1024.0)
 }
-
-/// Viewers that read.
-pub(crate) const VIEWERS: usize = 10;

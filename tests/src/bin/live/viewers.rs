@@ -10,7 +10,8 @@ use std::time::Duration;
 use tungstenite::client::IntoClientRequest as _;
 use tungstenite::{Message, WebSocket};
 
-use crate::dashboard::VIEWERS;
+/// Viewers that read.
+pub(crate) const VIEWERS: usize = 10;
 
 /// What is printed once all viewers have a frame.
 pub(crate) const READY: &str = "ready";
