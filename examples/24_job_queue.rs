@@ -1,7 +1,8 @@
 //! A service that takes jobs at any time and does one after the other.
 //!
-//! `cargo run --release --example job_queue [ADDRESS]`; then, with the port that it prints, for 5 cm
-//! up `curl 127.0.0.1:PORT/jobs --json '[0, 0, 0.05]'`; `curl 127.0.0.1:PORT/jobs` has the outcomes
+//! `cargo run --release --example job_queue [ADDRESS]`; then, with the port that it prints, for 5
+//! cm up `curl 127.0.0.1:PORT/jobs --json '[0, 0, 0.05]'`; `curl 127.0.0.1:PORT/jobs` has the
+//! outcomes
 
 use axum::{Json, Router, routing::post};
 use franka_async::prelude::*;

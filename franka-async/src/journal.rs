@@ -121,8 +121,8 @@ impl Journal {
         self.with(|readers| readers.retain(tell));
     }
 
-    /// Writes that there is a new connection, and gives its readers the cycles from now on: they may
-    /// come to read of it much later.
+    /// Writes that there is a new connection, and gives its readers the cycles from now on: they
+    /// may come to read of it much later.
     pub(crate) fn connected(&self, cycles: &CycleFeed) {
         // Attaching takes memory, for which nobody is to wait at the lock.
         for reader in self.with(|readers| readers.clone()) {

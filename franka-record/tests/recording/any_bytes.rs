@@ -42,7 +42,7 @@ pub fn seeds() -> Vec<(&'static str, Vec<u8>)> {
 
 fn seed(compression: Option<Compression>) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
-    // Where nothing is compressed, there are no sums either: a changed byte is met by what reads it.
+    // Where nothing is compressed, there are no sums either: what reads a changed byte meets it.
     let sums = compression.is_some();
     let options = WriteOptions::new()
         .compression(compression)
