@@ -92,6 +92,9 @@ mod programs {
     #[doc = include_str!("../../docs/src/realtime.md")]
     struct Realtime;
 
+    #[doc = include_str!("../../docs/src/recording.md")]
+    struct Recording;
+
     #[doc = include_str!("../../docs/src/replaying.md")]
     struct Replaying;
 
