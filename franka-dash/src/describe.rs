@@ -1,7 +1,8 @@
 //! What does not change while a page is open: sent once, first.
 
-use franka_async::model::collision::{Body, Shape};
+use franka_async::model::collision::{Body, Obstacle, Shape};
 use franka_async::model::{EndEffector, Frame, JointVector, Model, RobotKind};
+use franka_async::record::Guard;
 use franka_async::{READY, pose};
 use serde::Serialize;
 
@@ -36,6 +37,44 @@ pub(crate) struct Hello {
     ready: [f64; 7],
     tunings: Vec<Named>,
     capsules: Vec<Capsule>,
+    /// Name of the meshes of this arm.
+    meshes: &'static str,
+    /// Names of the guards, in the order of the bits of a state frame.
+    guards: Vec<&'static str>,
+    keep_out: Vec<Region>,
+}
+
+/// A region that the arm is kept out of, base frame, `[m]`.
+#[derive(Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+enum Region {
+    /// All points p with `normal . p < offset`.
+    Plane { normal: [f64; 3], offset: f64 },
+    /// A box by centre, orientation (x y z w) and half of its sides.
+    Box {
+        position: [f64; 3],
+        orientation: [f64; 4],
+        half: [f64; 3],
+    },
+}
+
+impl From<&Obstacle> for Region {
+    fn from(obstacle: &Obstacle) -> Self {
+        match obstacle {
+            Obstacle::Plane { normal, offset } => Self::Plane {
+                normal: normal.into_inner().into(),
+                offset: *offset,
+            },
+            Obstacle::Box { pose, half } => {
+                let (position, orientation) = pose::to_xyzw(pose);
+                Self::Box {
+                    position,
+                    orientation,
+                    half: (*half).into(),
+                }
+            }
+        }
+    }
 }
 
 /// A tuning that the page offers.
@@ -87,7 +126,37 @@ impl Hello {
                 .map(|(name, tuning)| Named { name, tuning })
                 .into(),
             capsules: capsules(model, has_tool),
+            meshes: match model.kind() {
+                RobotKind::Fer => "fer",
+                _ => "fr3",
+            },
+            guards: Guard::ALL.map(name).into(),
+            keep_out: hub.keep_out.iter().map(Region::from).collect(),
         }
+    }
+}
+
+/// What people call a guard.
+fn name(guard: Guard) -> &'static str {
+    match guard {
+        Guard::Leash => "leash",
+        Guard::InverseKinematics => "joint acceleration",
+        Guard::TorqueClamp => "torque clamp",
+        Guard::ForceCap => "force cap",
+        Guard::VelocityBarrier => "velocity limit",
+        Guard::TorqueRate => "torque rate",
+        Guard::Watchdog => "watchdog",
+        Guard::Deadman => "deadman",
+        Guard::Backstop => "setpoint limiter",
+        Guard::JointVelocity => "joint velocity",
+        Guard::PositionEnvelope => "joint range",
+        Guard::Clearance => "clearance",
+        Guard::Deviation => "deviation",
+        Guard::Lead => "lead",
+        Guard::PlanFailure => "no plan",
+        Guard::Reaction => "reaction",
+        Guard::Team => "team",
+        _ => "another guard",
     }
 }
 

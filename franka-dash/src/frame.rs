@@ -20,6 +20,7 @@
 //! | 168 | 7 f32 | reference of the joints, `[rad]` |
 //! | 196 | 9 poses | joint frames 1 to 7, flange, end effector, as measured |
 //! | 448 | 9 poses | the same at the reference |
+//! | 700 | u32 | guards that bound within the last 0.1 s, a bit for each in the order of the hello |
 //!
 //! A pose is 7 f32: position x y z `[m]` and quaternion x y z w, in the base frame.
 
@@ -29,8 +30,8 @@ use franka_async::state::RobotState;
 
 use crate::source::Sample;
 
-pub(crate) const VERSION: u8 = 1;
-pub(crate) const LENGTH: usize = 700;
+pub(crate) const VERSION: u8 = 2;
+pub(crate) const LENGTH: usize = 704;
 const MAGIC: u16 = 0x4446;
 
 /// The frames whose poses are sent.
@@ -48,7 +49,11 @@ const FRAMES: [Frame; 9] = [
 
 /// The frame of a sample at this time of the server, `[ms]`.
 pub(crate) fn encode(sample: &Sample, model: &Model, server_ms: u64, holding: bool) -> Vec<u8> {
-    let Sample { state, reference } = sample;
+    let Sample {
+        state,
+        reference,
+        guards,
+    } = sample;
     let mut frame = Vec::with_capacity(LENGTH);
     frame.extend(MAGIC.to_le_bytes());
     frame.extend([VERSION, state.robot_mode.byte()]);
@@ -78,12 +83,13 @@ pub(crate) fn encode(sample: &Sample, model: &Model, server_ms: u64, holding: bo
             put(&quaternion);
         }
     }
+    frame.extend(guards.to_bits().to_le_bytes());
     debug_assert_eq!(frame.len(), LENGTH);
     frame
 }
 
 /// Where the frames are at the joint positions `q`.
-fn poses(
+pub(crate) fn poses(
     model: &Model,
     state: &RobotState,
     q: [f64; 7],
@@ -108,6 +114,7 @@ pub(crate) fn end_effector(state: &RobotState) -> EndEffector {
 #[cfg(test)]
 mod tests {
     use franka_async::READY;
+    use franka_async::record::{Bindings, Guard};
     use franka_async::state::RobotMode;
 
     use super::*;
@@ -134,9 +141,14 @@ mod tests {
         };
         let reference = Some([0.6; 7]);
         let model = Model::fr3();
-        let frame = encode(&Sample { state, reference }, model, 9, true);
+        let sample = Sample {
+            state,
+            reference,
+            guards: Bindings::of(&[Guard::ALL[0], Guard::ALL[9]]),
+        };
+        let frame = encode(&sample, model, 9, true);
         assert_eq!(frame.len(), LENGTH);
-        assert_eq!(frame[..8], [0x46, 0x44, VERSION, 4, 0xbc, 2, 0, 0]);
+        assert_eq!(frame[..8], [0x46, 0x44, VERSION, 4, 0xc0, 2, 0, 0]);
         assert_eq!((frame[8], frame[16], frame[24]), (9, 7, 6));
         let at = |offset, wanted: f64| assert!((number(&frame, offset) - wanted).abs() < 1e-6);
         at(28, 0.75);
@@ -155,6 +167,7 @@ mod tests {
         }
         let wanted = model.pose(Frame::Flange, &[0.6; 7].into(), &EndEffector::default());
         at(448 + 7 * 28, wanted[(0, 3)]);
+        assert_eq!(frame[700..], [1, 2, 0, 0]);
     }
 
     #[test]
@@ -166,6 +179,7 @@ mod tests {
         let sample = Sample {
             state,
             reference: None,
+            guards: Bindings::default(),
         };
         let frame = encode(&sample, Model::fer(), 0, false);
         assert_eq!(frame[24], 0);

@@ -5,15 +5,18 @@ use std::time::Duration;
 
 use franka_async::connection::CancellationToken;
 use franka_async::diagnosis::Diagnose;
-use franka_async::goal::{self, Budget, Deadman, DeadmanMonitor, ForceCap, Gains, Lead, Target};
-use franka_async::model::{JointVector, Twist};
+use franka_async::goal::{self, Deadman, DeadmanMonitor, ForceCap, Lead, Target};
+use franka_async::model::Twist;
+use franka_async::model::collision::Obstacle;
 use franka_async::nalgebra::{UnitQuaternion, Vector3};
-use franka_async::{Arm, Engage, MotionError, Pose, READY, Robot, pose};
+use franka_async::{Arm, Engage, MotionError, Pose, Robot, pose};
 use tokio::sync::watch;
 use tokio::time::{MissedTickBehavior, interval};
 
 use crate::pace;
+use crate::plan::{self, Plan};
 use crate::request::{Axes, Motion, SPEED_MAX, Tuning};
+use crate::way::Way;
 
 /// A hold as the server keeps it. Dropping it brakes the arm: the control thread by the deadman,
 /// whatever becomes of this process's runtime, and the task by the token.
@@ -60,21 +63,27 @@ pub(crate) enum Ended {
     Failed(String, Option<String>),
 }
 
-/// Moves until `end` is cancelled or the target is reached. The arm is braked and let go when it
-/// returns.
-pub(crate) async fn run(
-    robot: &Robot,
-    motion: Motion,
-    settings: watch::Receiver<Settings>,
-    deadman: DeadmanMonitor,
-    end: CancellationToken,
-) -> Ended {
-    match attempt(robot, motion, settings, deadman, &end).await {
+/// What is to be done while a button is held.
+pub(crate) struct Task {
+    pub(crate) motion: Motion,
+    pub(crate) settings: watch::Receiver<Settings>,
+    pub(crate) keep_out: Vec<Obstacle>,
+    pub(crate) deadman: DeadmanMonitor,
+    pub(crate) end: CancellationToken,
+}
+
+/// Moves until the task's end is cancelled or the target is reached. The arm is braked and let go
+/// when it returns. `show` is called with what the motion does, if that is planned, before it
+/// begins.
+pub(crate) async fn run(robot: &Robot, task: Task, show: impl FnOnce(Plan)) -> Ended {
+    let end = task.end.clone();
+    match attempt(robot, task, show).await {
         Ok(()) => Ended::AsAsked,
         // What follows on the end of the hold, or on a stop by a viewer.
         Err(Fault::Motion(
             MotionError::Stopped | MotionError::Held(_) | MotionError::Disengaged,
         )) if end.is_cancelled() => Ended::AsAsked,
+        Err(Fault::Refused(why)) => Ended::Failed(format!("Not moved: {why}"), None),
         Err(Fault::Fast(speed)) => {
             let text = format!(
                 "A point of the arm moved at {speed:.2} m/s, above {SPEED_MAX} m/s: the hold has ended"
@@ -88,19 +97,25 @@ pub(crate) async fn run(
     }
 }
 
-async fn attempt(
-    robot: &Robot,
-    motion: Motion,
-    mut settings: watch::Receiver<Settings>,
-    deadman: DeadmanMonitor,
-    end: &CancellationToken,
-) -> Result<(), Fault> {
-    let way = Way::of(robot, &motion);
+async fn attempt(robot: &Robot, task: Task, show: impl FnOnce(Plan)) -> Result<(), Fault> {
+    let Task {
+        motion,
+        mut settings,
+        keep_out,
+        deadman,
+        end,
+    } = task;
     let now = *settings.borrow_and_update();
+    if plan::has_end(&motion) {
+        let planned = plan::in_background(robot, motion, now.speed, keep_out.clone()).await;
+        show(planned.map_err(Fault::Refused)?);
+    }
+    let way = Way::of(robot, &motion);
     let engage = Engage::default()
         .limits(way.budget(robot, now.speed))
         .gains(way.gains(&now.tuning))
         .force_cap(now.tuning.force_cap)
+        .keep_out(keep_out)
         .deadman(deadman);
     let arm = tokio::select! {
         biased;
@@ -121,6 +136,8 @@ async fn attempt(
 
 /// Why a hold ended before it was told to.
 enum Fault {
+    /// Before it began.
+    Refused(String),
     Motion(MotionError),
     Fast(f64),
 }
@@ -134,71 +151,6 @@ async fn too_fast(robot: &Robot) -> f64 {
         let speed = pace::fastest(robot.model(), &robot.state());
         if speed > SPEED_MAX {
             return speed;
-        }
-    }
-}
-
-/// Where a motion goes.
-#[derive(Clone, Copy)]
-enum Way {
-    /// The joints to a target, from where they were, `[rad]`.
-    Joints { target: [f64; 7], way: [f64; 7] },
-    /// The end effector, along.
-    EndEffector,
-}
-
-impl Way {
-    fn of(robot: &Robot, motion: &Motion) -> Self {
-        let limits = robot.model().joint_limits();
-        let (lower, upper) = (limits.lower, limits.upper);
-        let inside = |q: JointVector| -> [f64; 7] {
-            core::array::from_fn(|i| q[i].clamp(lower[i] + MARGIN, upper[i] - MARGIN))
-        };
-        let state = robot.state();
-        let target = match motion {
-            Motion::Joint { joint, up } => {
-                // The others stay where they are, wherever that is.
-                let mut q = state.q_d;
-                let end = if *up { upper } else { lower };
-                q[*joint] = inside(end)[*joint];
-                q
-            }
-            Motion::Joints { q } => inside(JointVector::from(*q)),
-            Motion::Ready {} => READY.into(),
-            Motion::Translate { .. } | Motion::Rotate { .. } | Motion::Stay {} => {
-                return Self::EndEffector;
-            }
-        };
-        let way = core::array::from_fn(|i| target[i] - state.q[i]);
-        Self::Joints { target, way }
-    }
-
-    fn budget(&self, robot: &Robot, speed: f64) -> Budget {
-        match self {
-            Self::Joints { way, .. } => pace::joints(robot.model(), &robot.state(), *way, speed),
-            // A moving target leaves a tenth for catching up.
-            Self::EndEffector => pace::end_effector_at(robot.model(), (speed / 0.9).min(SPEED_MAX)),
-        }
-    }
-
-    /// The driver's gains for this kind of motion, tuned.
-    fn gains(&self, tuning: &Tuning) -> Gains {
-        let preset = match self {
-            Self::Joints { .. } => Gains::joint(),
-            Self::EndEffector => Gains::cartesian(),
-        };
-        let stiffness = preset.cartesian_stiffness.map(|k| k * tuning.end_effector);
-        let gains = preset.with_cartesian_stiffness(stiffness);
-        let joint_damping = tuning.damping * tuning.joints.sqrt();
-        Gains {
-            cartesian_damping: gains.cartesian_damping.map(|d| d * tuning.damping),
-            joint_stiffness: gains.joint_stiffness.map(|k| k * tuning.joints),
-            joint_damping: gains.joint_damping.map(|d| d * joint_damping),
-            compensation: match tuning.compensation {
-                true => gains.compensation,
-                false => [0.0; 7],
-            },
-            ..gains
         }
     }
 }
@@ -229,8 +181,11 @@ async fn go(
     way: Way,
     settings: &watch::Receiver<Settings>,
 ) -> Result<(), MotionError> {
-    if let Way::Joints { target, .. } = way {
-        return arm.move_joints(target).await.map(drop);
+    match way {
+        Way::Joints { target, .. } => return arm.move_joints(target).await.map(drop),
+        // The way that was planned: straight, or refused.
+        Way::Pose(pose) => return arm.move_through([pose]).await.map(drop),
+        Way::EndEffector => {}
     }
     let start = arm.reference().map(|reference| reference.pose);
     let Some((start, (linear, angular))) =
@@ -286,7 +241,11 @@ fn direction(start: &Pose, motion: Motion) -> Option<(Vector3<f64>, Vector3<f64>
             let turn = along(direction, axes) / pace::TURNING_RADIUS;
             Some((Vector3::zeros(), turn))
         }
-        Motion::Joint { .. } | Motion::Joints { .. } | Motion::Ready {} | Motion::Stay {} => None,
+        Motion::Joint { .. }
+        | Motion::Joints { .. }
+        | Motion::Ready {}
+        | Motion::Pose { .. }
+        | Motion::Stay {} => None,
     }
 }
 
@@ -301,6 +260,3 @@ const SILENCE: Duration = Duration::from_millis(200);
 
 /// Time between two targets of a jog.
 const STEP: Duration = Duration::from_millis(20);
-
-/// Distance from the end of a joint's range that a target keeps, `[rad]`.
-const MARGIN: f64 = 0.02;

@@ -5,16 +5,19 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 use std::time::{Duration, Instant};
 
 use franka_async::Robot;
+use franka_async::model::collision::Obstacle;
 use tokio::sync::{Semaphore, broadcast, watch};
 use tokio::time::{MissedTickBehavior, interval};
 
 use crate::admission::Admission;
 use crate::authority::{Authority, Effect, Lost, Permissions, Refusal, Step, ViewerId};
 
+use crate::contact::{self, Contact};
 use crate::fingers::Fingers;
-use crate::hold::{self, Ended, Hold, Settings};
+use crate::hold::{self, Ended, Hold, Settings, Task};
 use crate::news;
 use crate::options::Options;
+use crate::plan::{Plan, Question};
 use crate::recording::Recordings;
 use crate::reply::{Level, News, Status};
 use crate::request::{Disturbance, GripperAction, Motion, Request, Tuning};
@@ -28,6 +31,12 @@ pub(crate) struct Hub {
     pub(crate) permissions: Permissions,
     pub(crate) news: broadcast::Sender<News>,
     pub(crate) status: watch::Sender<Status>,
+    /// The number of the hold that goes on, and what its motion does, if that is planned.
+    pub(crate) heading: watch::Sender<Option<(u64, Plan)>>,
+    /// Where something touches the arm.
+    pub(crate) contact: watch::Sender<Option<Contact>>,
+    /// Regions that the arm is kept out of.
+    pub(crate) keep_out: Vec<Obstacle>,
     /// One permit per viewer.
     pub(crate) seats: Arc<Semaphore>,
     pub(crate) simulated: Option<Simulated>,
@@ -55,6 +64,7 @@ impl Hub {
             gripper,
             recordings,
             patience,
+            keep_out,
         } = options;
         let connected = source.robot().is_some();
         let permissions = Permissions {
@@ -72,6 +82,9 @@ impl Hub {
             permissions,
             news: broadcast::Sender::new(NEWS),
             status: watch::Sender::default(),
+            heading: watch::Sender::default(),
+            contact: watch::Sender::default(),
+            keep_out,
             seats: Arc::new(Semaphore::new(VIEWERS_MAX)),
             simulated,
             fingers: gripper.map(Fingers::new),
@@ -87,6 +100,7 @@ impl Hub {
             source,
         });
         tokio::spawn(watch_silence(Arc::downgrade(&hub)));
+        tokio::spawn(watch_contacts(Arc::downgrade(&hub)));
         if let Some(simulated) = hub.simulated.clone() {
             let hub = hub.clone();
             tokio::spawn(async move {
@@ -132,13 +146,13 @@ impl Hub {
         let _ = self.news.send(news);
     }
 
-    /// Does what a viewer asks for, or returns why not.
+    /// Does what a viewer asks for, or returns why not; or returns what the viewer is to be told.
     pub(crate) fn handle(
         self: &Arc<Self>,
         viewer: ViewerId,
         round_trip: Option<Duration>,
         request: Request,
-    ) -> Option<Refusal> {
+    ) -> Result<Option<Question>, Refusal> {
         let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
         let now = self.now();
         let Step {
@@ -147,11 +161,9 @@ impl Hub {
             refusal,
         } = command.authority.handle(now, viewer, round_trip, request);
         self.end(&mut command, ended);
-        if let Some(effect) = effect {
-            self.perform(&mut command, viewer, effect);
-        }
+        let question = effect.and_then(|effect| self.perform(&mut command, viewer, effect));
         self.publish(&command);
-        refusal
+        refusal.map_or(Ok(question), Err)
     }
 
     /// A viewer has gone: what it held ends.
@@ -211,8 +223,24 @@ impl Hub {
         });
     }
 
-    fn perform(self: &Arc<Self>, command: &mut Command, viewer: ViewerId, effect: Effect) {
+    fn perform(
+        self: &Arc<Self>,
+        command: &mut Command,
+        viewer: ViewerId,
+        effect: Effect,
+    ) -> Option<Question> {
         match effect {
+            Effect::Preview {
+                number,
+                motion,
+                speed,
+            } => {
+                return Some(Question {
+                    number,
+                    motion,
+                    speed,
+                });
+            }
             Effect::KeepAlive => {
                 if let Some(hold) = &command.hold {
                     hold.keep_alive();
@@ -238,6 +266,7 @@ impl Hub {
             }
             Effect::Disturb(disturbance) => self.disturb(disturbance),
         }
+        None
     }
 
     fn begin(
@@ -249,8 +278,21 @@ impl Hub {
         let robot = self.source.robot()?.clone();
         let (hold, deadman, end) = Hold::new(self.permissions.patience);
         let hub = self.clone();
+        let task = Task {
+            motion,
+            settings,
+            keep_out: self.keep_out.clone(),
+            deadman,
+            end,
+        };
         tokio::spawn(async move {
-            let ended = hold::run(&robot, motion, settings, deadman, end).await;
+            let show = |plan| drop(hub.heading.send_replace(Some((number, plan))));
+            let ended = hold::run(&robot, task, show).await;
+            // A newer hold may have begun while the arm was let go.
+            hub.heading.send_if_modified(|heading| {
+                let own = |(of, _): &mut (u64, Plan)| *of == number;
+                heading.take_if(own).is_some()
+            });
             if let Ended::Failed(text, detail) = ended {
                 hub.tell(Level::Error, text, detail);
             }
@@ -341,6 +383,27 @@ async fn watch_silence(hub: Weak<Hub>) {
         clock.tick().await;
         let Some(hub) = hub.upgrade() else { return };
         hub.tick();
+    }
+}
+
+/// Estimates contacts while somebody looks.
+async fn watch_contacts(hub: Weak<Hub>) {
+    let mut clock = interval(contact::EVERY);
+    clock.set_missed_tick_behavior(MissedTickBehavior::Skip);
+    let mut watch = contact::Watch::default();
+    loop {
+        clock.tick().await;
+        let Some(hub) = hub.upgrade() else { return };
+        if hub.contact.receiver_count() == 0 {
+            watch = contact::Watch::default();
+            continue;
+        }
+        let newest = watch.update(hub.source.model(), &hub.source.newest().state);
+        hub.contact.send_if_modified(|contact| {
+            let changed = *contact != newest;
+            *contact = newest;
+            changed
+        });
     }
 }
 

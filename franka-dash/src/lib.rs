@@ -11,6 +11,7 @@
 //! | `admission` | `Host`, `Origin` and token of a request |
 //! | `any_messages` | what has to hold whatever viewers send, for tests |
 //! | `authority` | lease, hold and deadman: a state machine without clock and sockets |
+//! | `contact` | where something touches the arm, estimated |
 //! | `describe` | what a page is told first |
 //! | `fingers` | the gripper |
 //! | `frame` | the binary state frame |
@@ -20,6 +21,7 @@
 //! | `options` | who may see and do what |
 //! | `pace` | how fast the arm may go, so that none of its points exceeds a speed |
 //! | `page` | the files of the page |
+//! | `plan` | what a motion with a target does, before it does it |
 //! | `recording` | recordings, in a folder of the server |
 //! | `reply` | what viewers are told, JSON |
 //! | `request` | what viewers ask for, JSON |
@@ -27,6 +29,7 @@
 //! | `source` | where states come from |
 //! | `statistics` | how punctual control is |
 //! | `viewer` | one viewer's socket |
+//! | `way` | where a motion goes, how fast and how stiff |
 //!
 //! # Example
 //!
@@ -67,6 +70,7 @@ mod admission;
 #[cfg(test)]
 mod any_messages;
 mod authority;
+mod contact;
 mod describe;
 mod fingers;
 mod frame;
@@ -76,6 +80,7 @@ mod news;
 mod options;
 mod pace;
 mod page;
+mod plan;
 mod recording;
 mod reply;
 mod request;
@@ -83,6 +88,7 @@ mod simulated;
 mod source;
 mod statistics;
 mod viewer;
+mod way;
 
 use std::io;
 use std::net::SocketAddr;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use franka_async::gripper::Gripper;
+use franka_async::model::collision::Obstacle;
 use franka_sim::Running;
 
 use crate::admission::Admission;
@@ -20,6 +21,7 @@ pub struct Options {
     pub(crate) gripper: Option<Gripper>,
     pub(crate) recordings: Option<PathBuf>,
     pub(crate) patience: Duration,
+    pub(crate) keep_out: Vec<Obstacle>,
 }
 
 impl Options {
@@ -61,6 +63,13 @@ impl Options {
     /// folder, which has to be there. They are named by the time; one ends when it is an hour long.
     pub fn record_to(mut self, folder: impl Into<PathBuf>) -> Self {
         self.recordings = Some(folder.into());
+        self
+    }
+
+    /// Keeps the arm out of these regions, base frame, in the motions of the page, which shows them.
+    /// See [`Engage::keep_out`](franka_async::Engage::keep_out), which says how many there may be.
+    pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
+        self.keep_out = regions.into_iter().collect();
         self
     }
 

@@ -3,7 +3,9 @@
 use serde::Serialize;
 
 use crate::authority;
+use crate::contact::Contact;
 use crate::fingers::FingerState;
+use crate::plan::Plan;
 use crate::recording::Progress;
 use crate::request::Tuning;
 use crate::simulated::Setting;
@@ -27,6 +29,25 @@ pub(crate) enum Reply {
     Gripper(FingerState),
     /// The recording that goes on.
     Recording { recording: Option<Progress> },
+    /// What the motion of a question would do, or why it would be refused.
+    Preview {
+        /// Of the question.
+        number: u32,
+        way: Option<Plan>,
+        refused: Option<String>,
+    },
+    /// What the motion of the hold that goes on does; nothing if none goes on, or it has no end.
+    Heading { way: Option<Plan> },
+    /// Where something touches the arm, as far as its torques tell; nothing if nothing seems to.
+    Contact { contact: Option<Contact> },
+}
+
+impl Reply {
+    /// What the motion of a hold does, without the number of the hold.
+    pub(crate) fn heading(heading: Option<(u64, Plan)>) -> Self {
+        let way = heading.map(|(_, plan)| plan);
+        Self::Heading { way }
+    }
 }
 
 /// What goes on, and what is set.

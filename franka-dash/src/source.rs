@@ -4,6 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use franka_async::Robot;
 use franka_async::model::{Model, RobotKind};
+use franka_async::record::Bindings;
 use franka_async::state::RobotState;
 
 /// What the page shows of one moment.
@@ -12,6 +13,8 @@ pub(crate) struct Sample {
     pub(crate) state: RobotState,
     /// Joint positions that this driver has the arm at, `[rad]`; `None` while it moves nothing.
     pub(crate) reference: Option<[f64; 7]>,
+    /// What has held it back lately.
+    pub(crate) guards: Bindings,
 }
 
 /// Where states come from.
@@ -44,16 +47,21 @@ impl Watched {
 impl Source {
     pub(crate) fn newest(&self) -> Sample {
         match self {
-            Self::Robot(robot) => Sample {
-                state: robot.state(),
-                reference: robot.reference().map(|reference| reference.q),
-            },
+            Self::Robot(robot) => {
+                let reference = robot.reference();
+                Sample {
+                    state: robot.state(),
+                    reference: reference.map(|reference| reference.q),
+                    guards: reference.map_or(Bindings::default(), |reference| reference.guards),
+                }
+            }
             Self::Watched(watched) => Sample {
                 state: *watched
                     .newest
                     .lock()
                     .unwrap_or_else(PoisonError::into_inner),
                 reference: None,
+                guards: Bindings::default(),
             },
         }
     }

@@ -14,7 +14,7 @@ use futures::stream::{SplitSink, SplitStream};
 use futures::{SinkExt, StreamExt};
 use serde::Serialize;
 use tokio::sync::broadcast::error::RecvError;
-use tokio::sync::mpsc;
+use tokio::sync::{mpsc, watch};
 use tokio::time::{MissedTickBehavior, interval, sleep, timeout};
 
 use crate::authority::ViewerId;
@@ -22,6 +22,7 @@ use crate::describe::Hello;
 use crate::fingers::Fingers;
 use crate::frame;
 use crate::hub::Hub;
+use crate::plan::Question;
 use crate::reply::Reply;
 use crate::request::Request;
 use crate::statistics::Statistics;
@@ -32,9 +33,12 @@ pub(crate) async fn attend(hub: Arc<Hub>, socket: WebSocket) {
     let (sink, stream) = socket.split();
     let (replies, outbox) = mpsc::channel(REPLIES);
     let link = Arc::new(Link::default());
+    let (ask, questions) = watch::channel(None);
+    let answering = answer(&hub, questions, replies.clone());
     tokio::select! {
-        () = read(&hub, viewer, stream, &link, replies) => {}
+        () = read(&hub, viewer, stream, &link, replies, &ask) => {}
         _ = write(&hub, viewer, sink, &link, outbox) => {}
+        _ = answering => {}
     }
     hub.gone(viewer);
 }
@@ -85,6 +89,7 @@ async fn read(
     mut stream: SplitStream<WebSocket>,
     link: &Link,
     replies: mpsc::Sender<Reply>,
+    ask: &watch::Sender<Option<Question>>,
 ) {
     let mut window = (Instant::now(), 0);
     while let Ok(Some(Ok(message))) = timeout(SILENCE, stream.next()).await {
@@ -103,8 +108,15 @@ async fn read(
                 }
                 Ok(request) => {
                     let round_trip = link.round_trip(hub.now_ms());
-                    let refusal = hub.handle(viewer, round_trip, request);
-                    refusal.map(|refusal| refusal.to_string())
+                    let handled = hub.handle(viewer, round_trip, request);
+                    match handled {
+                        Ok(None) => None,
+                        Ok(question) => {
+                            ask.send_replace(question);
+                            None
+                        }
+                        Err(refusal) => Some(refusal.to_string()),
+                    }
                 }
                 Err(error) => Some(format!("not a request: {error}")),
             },
@@ -120,6 +132,22 @@ async fn read(
     }
 }
 
+/// Answers the newest question, one at a time, until the viewer goes.
+async fn answer(
+    hub: &Hub,
+    mut questions: watch::Receiver<Option<Question>>,
+    replies: mpsc::Sender<Reply>,
+) -> Option<()> {
+    loop {
+        questions.changed().await.ok()?;
+        let question = *questions.borrow_and_update();
+        if let (Some(question), Some(robot)) = (question, hub.source.robot()) {
+            let answer = question.answer(robot, hub.keep_out.clone()).await;
+            replies.send(answer).await.ok()?;
+        }
+    }
+}
+
 /// Sends what there is until the socket fails.
 async fn write(
     hub: &Hub,
@@ -130,10 +158,13 @@ async fn write(
 ) -> Option<()> {
     let mut news = hub.news.subscribe();
     let mut status = hub.status.subscribe();
-    let hello = Hello::new(hub, viewer);
-    send(&mut sink, text(&hello)).await?;
+    let mut heading = hub.heading.subscribe();
+    let mut contact = hub.contact.subscribe();
+    send(&mut sink, text(&Hello::new(hub, viewer))).await?;
     let first = status.borrow_and_update().clone();
     send(&mut sink, text(&Reply::Status(first))).await?;
+    let way = heading.borrow_and_update().clone();
+    send(&mut sink, text(&Reply::heading(way))).await?;
     let mut frames = interval(FRAME);
     let mut slow = interval(STATISTICS);
     frames.set_missed_tick_behavior(MissedTickBehavior::Skip);
@@ -146,6 +177,16 @@ async fn write(
                 changed.ok()?;
                 let status = status.borrow_and_update().clone();
                 text(&Reply::Status(status))
+            }
+            changed = heading.changed() => {
+                changed.ok()?;
+                let way = heading.borrow_and_update().clone();
+                text(&Reply::heading(way))
+            }
+            changed = contact.changed() => {
+                changed.ok()?;
+                let contact = *contact.borrow_and_update();
+                text(&Reply::Contact { contact })
             }
             news = news.recv() => match news {
                 Ok(news) => text(&Reply::Event(news)),

@@ -68,6 +68,12 @@ pub(crate) enum Effect {
         motion: Motion,
         speed: f64,
     },
+    /// Say what a motion would do.
+    Preview {
+        number: u32,
+        motion: Motion,
+        speed: f64,
+    },
     /// Feed the deadman of the hold.
     KeepAlive,
     /// Brake whatever moves, ours or not.
@@ -309,9 +315,23 @@ impl Authority {
             Request::Record { on } if may.recording => effect(Effect::Record(on)),
             Request::Record { .. } => return Err(Refusal::NoRecordings),
             Request::Gripper { .. } if !may.gripper => return Err(Refusal::NoGripper),
-            Request::Recover {} | Request::Tune { .. } | Request::Gripper { .. } if !may.motion => {
+            Request::Preview { .. }
+            | Request::Recover {}
+            | Request::Tune { .. }
+            | Request::Gripper { .. }
+                if !may.motion =>
+            {
                 return Err(Refusal::ViewOnly);
             }
+            Request::Preview {
+                number,
+                motion,
+                speed,
+            } => effect(Effect::Preview {
+                number,
+                motion,
+                speed,
+            }),
             Request::Recover {} => effect(Effect::Recover),
             Request::Tune { tuning } => effect(Effect::Tune(tuning)),
             Request::Gripper { action } => effect(Effect::Gripper(action)),

@@ -33,6 +33,14 @@ pub(crate) enum Request {
         /// Greatest speed of any point of the arm, `[m/s]`.
         speed: f64,
     },
+    /// Asks what a motion with a target would do. Nothing moves.
+    Preview {
+        /// Of the question: the answer has it.
+        number: u32,
+        motion: Motion,
+        /// As for `Begin`.
+        speed: f64,
+    },
     /// Goes on with the hold; counts from 1 without a gap.
     Hold { seq: u32 },
     /// The pointer or key was let go.
@@ -57,7 +65,9 @@ impl Request {
     /// Whether its numbers make sense; otherwise what was got, and what they have to be.
     pub(crate) fn check(&self) -> Result<(), String> {
         match self {
-            Self::Begin { motion, speed } => motion.check().and(check_speed(*speed)),
+            Self::Begin { motion, speed } | Self::Preview { motion, speed, .. } => {
+                motion.check().and(check_speed(*speed))
+            }
             Self::Speed { speed } => check_speed(*speed),
             Self::Tune { tuning } => tuning.check(),
             Self::Gripper { action } => action.check(),
@@ -161,6 +171,14 @@ mod tests {
             (
                 r#"{"type":"begin","motion":{"kind":"joint","joint":7,"up":true},"speed":0.1}"#,
                 "a joint is 0 to 6, got 7",
+            ),
+            (
+                r#"{"type":"preview","number":1,"motion":{"kind":"pose","position":[0,0,9],"orientation":[0,0,0,1]},"speed":0.1}"#,
+                "a coordinate is -2 to 2 m, got 9",
+            ),
+            (
+                r#"{"type":"begin","motion":{"kind":"pose","position":[0,0,1],"orientation":[0,0,0,0]},"speed":0.1}"#,
+                "the length of a quaternion is 0.001 to 1000, got 0",
             ),
             (
                 r#"{"type":"disturb","disturbance":{"kind":"push","link":0,"offset":[0,0,0],"force":[0,0,0]}}"#,

@@ -28,6 +28,13 @@ pub(crate) enum Motion {
     Ready {},
     /// Nowhere: the arm is held where it is, as stiff as it is tuned.
     Stay {},
+    /// The end effector on a straight line to a pose in the base frame.
+    Pose {
+        /// x y z, `[m]`.
+        position: [f64; 3],
+        /// A quaternion, x y z w; of any length but none.
+        orientation: [f64; 4],
+    },
 }
 
 impl Motion {
@@ -47,6 +54,16 @@ impl Motion {
             Self::Joints { q } if !q.iter().all(|x| x.is_finite()) => {
                 Err(format!("joint positions are finite numbers; got {q:?}"))
             }
+            Self::Pose {
+                position,
+                orientation,
+            } => {
+                for x in position {
+                    within("a coordinate", " m", *x, -FAR..=FAR)?;
+                }
+                let norm = orientation.iter().map(|x| x * x).sum::<f64>().sqrt();
+                within("the length of a quaternion", "", norm, 1e-3..=1e3)
+            }
             Self::Joints { .. } | Self::Ready {} | Self::Stay {} => Ok(()),
         }
     }
@@ -57,3 +74,6 @@ pub(crate) const SPEED_MAX: f64 = 0.25;
 
 /// Least speed, `[m/s]`.
 pub(crate) const SPEED_MIN: f64 = 0.001;
+
+/// Bound of coordinates, `[m]`: farther than any arm gets.
+const FAR: f64 = 2.0;

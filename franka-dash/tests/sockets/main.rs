@@ -6,5 +6,6 @@ mod admission;
 mod disturbing;
 mod holding;
 mod malice;
+mod previewing;
 mod viewer;
 mod watching;

@@ -1,0 +1,77 @@
+//! Where something touches the arm, estimated from its external torques.
+
+use std::time::Duration;
+
+use franka_async::model::collision::{Body, Shape};
+use franka_async::model::contacts::{Tare, TorqueError, Unknown, locate};
+use franka_async::model::{JointVector, Model};
+use franka_async::state::RobotState;
+use serde::Serialize;
+
+/// Where something touches the arm, in the base frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct Contact {
+    /// 1 to 7, or 8 for what is mounted on the flange.
+    link: u8,
+    /// `[m]`
+    point: [f64; 3],
+    /// On the arm, `[N]`.
+    force: [f64; 3],
+    /// How far from the point it may be on that link, `[m]`.
+    spread: f64,
+    /// That it is this link, 0 to 1.
+    probability: f64,
+}
+
+/// Looks at states, and knows what their torques are without a contact.
+#[derive(Debug, Default)]
+pub(crate) struct Watch {
+    tare: Tare,
+    /// `message_id` of the last state, `[ms]`.
+    last: Option<u64>,
+}
+
+impl Watch {
+    /// The contact at this state. States may come a few dozen times per second.
+    pub(crate) fn update(&mut self, model: &Model, state: &RobotState) -> Option<Contact> {
+        let last = self.last.replace(state.message_id);
+        let passed = state
+            .message_id
+            .saturating_sub(last.unwrap_or(state.message_id));
+        let (q, dq) = (JointVector::from(state.q), JointVector::from(state.dq));
+        let read = JointVector::from(state.tau_ext_hat_filtered);
+        let torque = self.tare.update(&read, &dq, passed as f64 * 1e-3);
+        if !self.tare.is_touched() {
+            return None;
+        }
+        let error = match dq.amax() > STILL {
+            true => TorqueError::IN_MOTION,
+            false => TorqueError::AT_REST,
+        };
+        let shape = Shape::covering(model.kind());
+        let shape = match state.m_ee > 0.0 {
+            true => shape.with_hand(),
+            false => shape,
+        };
+        let found = match locate(&shape.at(&q), &torque, &error) {
+            Ok(contact) | Err(Unknown::Tie { likeliest: contact }) => contact,
+            Err(_) => return None,
+        };
+        Some(Contact {
+            link: match found.body {
+                Body::Link(link) => link,
+                _ => 8,
+            },
+            point: found.point.into(),
+            force: found.force.into(),
+            spread: found.spread,
+            probability: found.probability,
+        })
+    }
+}
+
+/// Time between two looks.
+pub(crate) const EVERY: Duration = Duration::from_millis(50);
+
+/// Joint velocity below which the arm rests, `[rad/s]`.
+const STILL: f64 = 0.02;

@@ -1,0 +1,203 @@
+//! What a motion with a target does, before it does it: for the page, and for the hold, which
+//! refuses what this refuses.
+
+use franka_async::error::PathError;
+use franka_async::model::collision::Obstacle;
+use franka_async::motion::Preview;
+use franka_async::nalgebra::Vector3;
+use franka_async::state::RobotState;
+use franka_async::{MotionError, Robot};
+use serde::Serialize;
+
+use crate::frame;
+use crate::pace;
+use crate::reply::Reply;
+use crate::request::{Motion, SPEED_MAX};
+use crate::way::Way;
+
+/// A viewer asks what a motion would do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Question {
+    /// The answer has it, too.
+    pub(crate) number: u32,
+    pub(crate) motion: Motion,
+    /// Greatest speed, `[m/s]`.
+    pub(crate) speed: f64,
+}
+
+impl Question {
+    /// What the viewer is told.
+    pub(crate) async fn answer(self, robot: &Robot, keep_out: Vec<Obstacle>) -> Reply {
+        let planned = in_background(robot, self.motion, self.speed, keep_out).await;
+        let (way, refused) = match planned {
+            Ok(plan) => (Some(plan), None),
+            Err(why) => (None, Some(why)),
+        };
+        Reply::Preview {
+            number: self.number,
+            way,
+            refused,
+        }
+    }
+}
+
+/// Whether a motion has an end that its viewer has chosen, so that there is something to plan.
+pub(crate) fn has_end(motion: &Motion) -> bool {
+    matches!(
+        motion,
+        Motion::Joints { .. } | Motion::Ready {} | Motion::Pose { .. }
+    )
+}
+
+/// What a motion would do.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Plan {
+    /// Until it is there, if nothing holds it up, `[s]`.
+    duration: f64,
+    /// Of the end effector, `[m]`.
+    length: f64,
+    /// Of the fastest joint, the flange or the end effector on the way, `[m/s]`.
+    fastest: f64,
+    /// Joint positions at the end, `[rad]`.
+    q: [f64; 7],
+    /// Where the frames of a state frame are then: position and quaternion x y z w of each.
+    poses: Vec<f64>,
+    /// The end effector on the way, `[m]`.
+    line: Vec<[f64; 3]>,
+}
+
+/// What a motion that [has an end](has_end) would do if it began now, or why it must not begin. It
+/// takes milliseconds.
+pub(crate) fn plan(
+    robot: &Robot,
+    motion: &Motion,
+    speed: f64,
+    keep_out: &[Obstacle],
+) -> Result<Plan, String> {
+    let way = Way::of(robot, motion);
+    let target = way.target().filter(|_| has_end(motion));
+    let target = target.ok_or("a motion without an end has no preview")?;
+    let moving = robot.move_to(target).limits(way.budget(robot, speed));
+    let preview = moving.preview().map_err(refusal)?;
+    let state = robot.state();
+    let blocked = preview.blocked(robot.model(), &state, keep_out);
+    let place = |q| robot.pose_at(q).translation.vector;
+    if let Some(blocked) = blocked.map_err(|error| error.to_string())? {
+        let what = match blocked.region {
+            Some(region) => format!("region {} to keep out of", region + 1),
+            None => "itself".to_owned(),
+        };
+        let (after, at) = (blocked.time.as_secs_f64(), millimetres(place(blocked.q)));
+        return Err(format!(
+            "the arm would come too near {what} after {after:.1} s, with the end effector at {at}"
+        ));
+    }
+    let fastest = fastest(robot, &state, &preview);
+    if fastest > SPEED_MAX {
+        return Err(format!(
+            "a point of the arm would move at {:.0} mm/s on the way, {:.0} mm/s at most: choose a lower speed",
+            fastest * 1e3,
+            SPEED_MAX * 1e3
+        ));
+    }
+    let line: Vec<_> = preview.postures.iter().map(|(_, q)| place(*q)).collect();
+    let q = preview.end();
+    let poses = frame::poses(robot.model(), &state, q);
+    Ok(Plan {
+        duration: preview.duration().as_secs_f64(),
+        length: line.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum(),
+        fastest,
+        q,
+        poses: poses.flat_map(|(p, r)| p.into_iter().chain(r)).collect(),
+        line: thinned(&line),
+    })
+}
+
+/// As [`plan`], computed where nothing waits for it.
+pub(crate) async fn in_background(
+    robot: &Robot,
+    motion: Motion,
+    speed: f64,
+    keep_out: Vec<Obstacle>,
+) -> Result<Plan, String> {
+    let robot = robot.clone();
+    let planned = move || plan(&robot, &motion, speed, &keep_out);
+    let planned = tokio::task::spawn_blocking(planned).await;
+    planned.unwrap_or_else(|error| Err(error.to_string()))
+}
+
+/// The text of a refusal for somebody who has given one target, and no waypoints.
+fn refusal(error: MotionError) -> String {
+    match error {
+        MotionError::Path(PathError::Waypoint { error, .. }) => error.to_string(),
+        MotionError::Path(PathError::Way {
+            x,
+            y,
+            z,
+            translation,
+            joint,
+            ..
+        }) => {
+            let why = match joint {
+                Some(joint) => format!("joint {joint} is at the end of its range"),
+                None => "the arm is stretched out, or cannot turn on".to_owned(),
+            };
+            let at = millimetres(Vector3::new(x, y, z));
+            let off = translation * 1e3;
+            format!("the straight way cannot be followed beyond {at}, {off:.0} mm off: {why}")
+        }
+        MotionError::Path(PathError::Turn { degrees, .. }) => {
+            format!(
+                "a turn by {degrees} degrees has no clear direction: turn less than 170 degrees"
+            )
+        }
+        error => error.to_string(),
+    }
+}
+
+fn millimetres(at: Vector3<f64>) -> String {
+    let [x, y, z] = [at.x, at.y, at.z].map(|x| (x * 1e3).round() as i64);
+    format!("({x}, {y}, {z}) mm")
+}
+
+/// The speed of the fastest point on the way, `[m/s]`.
+fn fastest(robot: &Robot, state: &RobotState, preview: &Preview) -> f64 {
+    let mut state = *state;
+    let speeds = preview.postures.windows(2).map(|ends| {
+        let [(from, q), (to, next)] = [ends[0], ends[1]];
+        let time = (to - from).as_secs_f64();
+        state.q = q;
+        state.dq = core::array::from_fn(|i| (next[i] - q[i]) / time);
+        pace::fastest(robot.model(), &state)
+    });
+    speeds.fold(0.0, f64::max)
+}
+
+/// At most [`LINE_MAX`] points of a line, its ends among them.
+fn thinned(line: &[Vector3<f64>]) -> Vec<[f64; 3]> {
+    let last = line.len().saturating_sub(1);
+    let count = last.min(LINE_MAX - 1);
+    let points = (0..=count).map(|i| line[i * last / count.max(1)]);
+    points.map(Into::into).collect()
+}
+
+/// Points of a line that are sent.
+const LINE_MAX: usize = 100;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_keeps_its_ends_and_has_no_more_points_than_are_sent() {
+        for count in [1, 2, 3, 99, 100, 101, 1000] {
+            let line: Vec<_> = (0..count).map(|i| Vector3::repeat(i as f64)).collect();
+            let thin = thinned(&line);
+            assert_eq!(thin.len(), count.min(LINE_MAX));
+            assert_eq!(
+                (thin[0], thin[thin.len() - 1]),
+                ([0.0; 3], [count as f64 - 1.0; 3])
+            );
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Where a motion goes, how fast and how stiff.
+
+use franka_async::goal::{Budget, Gains, Target};
+use franka_async::model::JointVector;
+use franka_async::{Pose, READY, Robot, pose};
+
+use crate::pace;
+use crate::request::{Motion, SPEED_MAX, Tuning};
+
+/// Where a motion goes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Way {
+    /// The joints to a target, from where they were, `[rad]`.
+    Joints { target: [f64; 7], way: [f64; 7] },
+    /// The end effector to a pose, on a straight line.
+    Pose(Pose),
+    /// The end effector, along.
+    EndEffector,
+}
+
+impl Way {
+    pub(crate) fn of(robot: &Robot, motion: &Motion) -> Self {
+        let limits = robot.model().joint_limits();
+        let (lower, upper) = (limits.lower, limits.upper);
+        let inside = |q: JointVector| -> [f64; 7] {
+            core::array::from_fn(|i| q[i].clamp(lower[i] + MARGIN, upper[i] - MARGIN))
+        };
+        let state = robot.state();
+        let target = match motion {
+            Motion::Joint { joint, up } => {
+                // The others stay where they are, wherever that is.
+                let mut q = state.q_d;
+                let end = if *up { upper } else { lower };
+                q[*joint] = inside(end)[*joint];
+                q
+            }
+            Motion::Joints { q } => inside(JointVector::from(*q)),
+            Motion::Ready {} => READY.into(),
+            Motion::Pose {
+                position,
+                orientation,
+            } => {
+                let target = pose::from_xyzw(*position, *orientation);
+                return target.map_or(Self::EndEffector, Self::Pose);
+            }
+            Motion::Translate { .. } | Motion::Rotate { .. } | Motion::Stay {} => {
+                return Self::EndEffector;
+            }
+        };
+        let way = core::array::from_fn(|i| target[i] - state.q[i]);
+        Self::Joints { target, way }
+    }
+
+    /// Where it ends; `None` if it goes on while its button is held.
+    pub(crate) fn target(&self) -> Option<Target> {
+        match self {
+            Self::Joints { target, .. } => Some(Target::Joints(*target)),
+            Self::Pose(pose) => Some(Target::Pose(*pose)),
+            Self::EndEffector => None,
+        }
+    }
+
+    /// So that no point of the arm is faster than `speed`, `[m/s]`, where joints move, and the end
+    /// effector is not otherwise.
+    pub(crate) fn budget(&self, robot: &Robot, speed: f64) -> Budget {
+        match self {
+            Self::Joints { way, .. } => pace::joints(robot.model(), &robot.state(), *way, speed),
+            Self::Pose(_) => pace::end_effector_at(robot.model(), speed),
+            // A moving target leaves a tenth for catching up.
+            Self::EndEffector => pace::end_effector_at(robot.model(), (speed / 0.9).min(SPEED_MAX)),
+        }
+    }
+
+    /// The driver's gains for this kind of motion, tuned.
+    pub(crate) fn gains(&self, tuning: &Tuning) -> Gains {
+        let preset = match self {
+            Self::Joints { .. } => Gains::joint(),
+            Self::Pose(_) | Self::EndEffector => Gains::cartesian(),
+        };
+        let stiffness = preset.cartesian_stiffness.map(|k| k * tuning.end_effector);
+        let gains = preset.with_cartesian_stiffness(stiffness);
+        let joint_damping = tuning.damping * tuning.joints.sqrt();
+        Gains {
+            cartesian_damping: gains.cartesian_damping.map(|d| d * tuning.damping),
+            joint_stiffness: gains.joint_stiffness.map(|k| k * tuning.joints),
+            joint_damping: gains.joint_damping.map(|d| d * joint_damping),
+            compensation: match tuning.compensation {
+                true => gains.compensation,
+                false => [0.0; 7],
+            },
+            ..gains
+        }
+    }
+}
+
+/// Distance from the end of a joint's range that a target keeps, `[rad]`.
+const MARGIN: f64 = 0.02;
