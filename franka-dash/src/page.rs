@@ -7,7 +7,7 @@ use axum::routing::get;
 /// The routes of the page's files.
 pub(crate) fn routes<S: Clone + Send + Sync + 'static>() -> Router<S> {
     let mut router = Router::new();
-    for (path, kind, content) in FILES {
+    for (path, kind, content) in FILES.iter().chain(MESHES) {
         router = router.route(path, get(async || (headers(kind), *content)));
     }
     router
@@ -50,17 +50,42 @@ const FILES: &[(&str, &str, &[u8])] = &[
     ),
 ];
 
+macro_rules! meshes {
+    ($($name:literal)*) => {
+        &[$((
+            concat!("/meshes/", $name, ".glb"),
+            "model/gltf-binary",
+            include_bytes!(concat!("../page/meshes/", $name, ".glb")),
+        )),*]
+    };
+}
+
+/// What the links look like, each in the axes of its frame. Where they are from, and what was
+/// changed: `page/meshes/NOTICE`.
+const MESHES: &[(&str, &str, &[u8])] = meshes! {
+    "hand" "finger"
+    "fr3/link0" "fr3/link1" "fr3/link2" "fr3/link3" "fr3/link4" "fr3/link5" "fr3/link6" "fr3/link7"
+    "fer/link0" "fer/link1" "fer/link2" "fer/link3" "fer/link4" "fer/link5" "fer/link6" "fer/link7"
+};
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_page_is_small_and_brings_its_licences() {
-        let size: usize = FILES.iter().map(|(_, _, content)| content.len()).sum();
+        let files = FILES.iter().chain(MESHES);
+        let size: usize = files.map(|(_, _, content)| content.len()).sum();
+        println!("{size} bytes");
         assert!(size < 2_500_000, "{size} bytes");
         let (.., licences) = FILES.last().expect("files");
         let licences = std::str::from_utf8(licences).expect("text");
-        for part in ["three.js authors", "Leon Sorokin"] {
+        for part in [
+            "three.js authors",
+            "Leon Sorokin",
+            "Franka Robotics GmbH",
+            "Apache License",
+        ] {
             assert!(licences.contains(part), "{part}");
         }
     }

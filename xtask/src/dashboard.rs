@@ -41,6 +41,10 @@ pub(crate) fn assets(workspace: &Workspace) -> anyhow::Result<()> {
         let text = fs::read_to_string(package_directory.join("LICENSE"))?;
         licences += &format!("{package}\n\n{text}\n");
     }
+    for name in ["NOTICE", "LICENSE-franka_description", "LICENSE"] {
+        let text = fs::read_to_string(page.join("meshes").join(name))?;
+        licences += &format!("meshes of the links: {name}\n\n{text}\n");
+    }
     fs::write(dist.join("licenses.txt"), licences)?;
     Ok(())
 }
