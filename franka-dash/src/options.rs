@@ -66,8 +66,9 @@ impl Options {
         self
     }
 
-    /// Keeps the arm out of these regions, base frame, in the motions of the page, which shows them.
-    /// See [`Engage::keep_out`](franka_async::Engage::keep_out), which says how many there may be.
+    /// Keeps the arm out of these regions, base frame, in the motions of the page, which shows
+    /// them. See [`Engage::keep_out`](franka_async::Engage::keep_out), which says how many there
+    /// may be.
     pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
         self.keep_out = regions.into_iter().collect();
         self

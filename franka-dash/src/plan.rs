@@ -11,7 +11,6 @@ use serde::Serialize;
 
 use crate::frame;
 use crate::pace;
-use crate::reply::Reply;
 use crate::request::{Motion, SPEED_MAX};
 use crate::way::Way;
 
@@ -23,22 +22,6 @@ pub(crate) struct Question {
     pub(crate) motion: Motion,
     /// Greatest speed, `[m/s]`.
     pub(crate) speed: f64,
-}
-
-impl Question {
-    /// What the viewer is told.
-    pub(crate) async fn answer(self, robot: &Robot, keep_out: Vec<Obstacle>) -> Reply {
-        let planned = in_background(robot, self.motion, self.speed, keep_out).await;
-        let (way, refused) = match planned {
-            Ok(plan) => (Some(plan), None),
-            Err(why) => (None, Some(why)),
-        };
-        Reply::Preview {
-            number: self.number,
-            way,
-            refused,
-        }
-    }
 }
 
 /// Whether a motion has an end that its viewer has chosen, so that there is something to plan.

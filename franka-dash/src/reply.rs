@@ -43,6 +43,19 @@ pub(crate) enum Reply {
 }
 
 impl Reply {
+    /// The answer to a question of this number.
+    pub(crate) fn preview(number: u32, planned: Result<Plan, String>) -> Self {
+        let (way, refused) = match planned {
+            Ok(plan) => (Some(plan), None),
+            Err(why) => (None, Some(why)),
+        };
+        Self::Preview {
+            number,
+            way,
+            refused,
+        }
+    }
+
     /// What the motion of a hold does, without the number of the hold.
     pub(crate) fn heading(heading: Option<(u64, Plan)>) -> Self {
         let way = heading.map(|(_, plan)| plan);

@@ -22,7 +22,7 @@ use crate::describe::Hello;
 use crate::fingers::Fingers;
 use crate::frame;
 use crate::hub::Hub;
-use crate::plan::Question;
+use crate::plan::{Question, in_background};
 use crate::reply::Reply;
 use crate::request::Request;
 use crate::statistics::Statistics;
@@ -142,8 +142,13 @@ async fn answer(
         questions.changed().await.ok()?;
         let question = *questions.borrow_and_update();
         if let (Some(question), Some(robot)) = (question, hub.source.robot()) {
-            let answer = question.answer(robot, hub.keep_out.clone()).await;
-            replies.send(answer).await.ok()?;
+            let Question {
+                number,
+                motion,
+                speed,
+            } = question;
+            let planned = in_background(robot, motion, speed, hub.keep_out.clone()).await;
+            replies.send(Reply::preview(number, planned)).await.ok()?;
         }
     }
 }

@@ -9,16 +9,19 @@ const BUFFERED_MAX = 4096;
 export class Connection extends EventTarget {
   #socket = null;
 
-  constructor() {
+  /** To the server of this page; of the robot at `path`, if that is given. */
+  constructor(path = "") {
     super();
+    this.url = new URL(`${path}ws`, location.href);
+    this.url.protocol = location.protocol === "https:" ? "wss:" : "ws:";
+    this.url.hash = "";
     this.#open();
   }
 
   #open() {
-    const scheme = location.protocol === "https:" ? "wss" : "ws";
     const token = location.hash.slice(1);
     const protocols = token ? ["franka-dash", `token.${token}`] : ["franka-dash"];
-    const socket = new WebSocket(`${scheme}://${location.host}/ws`, protocols);
+    const socket = new WebSocket(this.url, protocols);
     socket.binaryType = "arraybuffer";
     socket.onopen = () => { this.#socket = socket; };
     socket.onmessage = ({ data }) => this.#take(data);

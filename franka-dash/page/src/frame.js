@@ -3,9 +3,12 @@
 export const MODES = ["Not ready", "Idle", "Moving", "Guiding", "Reflex", "User stop", "Recovering"];
 export const MODE_CLASSES = ["", "idle", "move", "guiding", "reflex", "stopped", ""];
 const MAGIC = 0x4446;
-const VERSION = 1;
-const LENGTH = 700;
+const VERSION = 2;
+const LENGTH = 704;
 export const POSES = 9;
+
+/** The end effector in the poses of a frame: position and quaternion. */
+export const endEffector = ({ poses }) => poses.subarray(7 * (POSES - 1), 7 * POSES);
 
 /** The frame in `buffer`; throws if it is none of this version. */
 export function parse(buffer) {
@@ -31,5 +34,6 @@ export function parse(buffer) {
     reference: floats(168, 7),
     poses: floats(196, 7 * POSES),
     referencePoses: floats(448, 7 * POSES),
+    guards: view.getUint32(700, true),
   };
 }

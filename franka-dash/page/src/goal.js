@@ -24,7 +24,7 @@ export class Goal {
     this.#preview = preview;
     const byId = (id) => document.getElementById(id);
     const [place, remove, go, said] = ["goal-place", "goal-remove", "goal-go", "goal-said"].map(byId);
-    this.parts = { place, remove, go, said };
+    this.parts = { place, remove };
     this.#inputs = FIELDS.map(([name, unit, step]) => {
       const label = document.createElement("label");
       label.textContent = name;
@@ -33,6 +33,7 @@ export class Goal {
       input.step = step;
       input.setAttribute("aria-label", `target ${WORDS[name]}, ${unit === "mm" ? "millimetres" : "degrees"}`);
       input.dataset.goal = name;
+      input.dataset.needs = "motion";
       input.addEventListener("input", () => this.#typed());
       const small = document.createElement("small");
       small.textContent = unit;
@@ -73,17 +74,15 @@ export class Goal {
     this.#preview.forget(this.#question);
     this.#question.said("", true);
     for (const input of this.#inputs) input.value = "";
-    this.#enable();
+    this.#arrange();
   }
 
-  #enable() {
+  #arrange() {
     const { placed } = this.#scene.gizmo;
-    const { place, remove, go } = this.parts;
-    place.textContent = placed ? "Place it at the hand" : "Place a target";
-    remove.disabled = !placed;
-    go.dataset.ready = placed;
+    const { place, remove } = this.parts;
+    place.textContent = placed ? "Back to the hand" : "Place a target";
+    remove.hidden = !placed;
     document.getElementById("goal-body").hidden = !placed;
-    this.onChange?.();
   }
 
   /** The handle has moved: numbers and preview follow. */
@@ -95,7 +94,7 @@ export class Goal {
       // What is being typed is left alone.
       if (input !== document.activeElement) input.value = numbers[i].toFixed(i < 3 ? 0 : 1);
     });
-    this.#enable();
+    this.#arrange();
     this.#preview.want(this.#question);
   }
 

@@ -40,6 +40,8 @@ export class Guards {
     const text = lit.size ? [...lit].join(", ") : "none";
     const place = document.getElementById("guards");
     // A live region speaks when it is written to.
-    if (place.textContent !== text) place.textContent = text;
+    if (place.textContent === text) return;
+    place.textContent = text;
+    place.title = text;
   }
 }

@@ -1,6 +1,11 @@
 // The last 60 seconds: what is shown is the newest frame, or one of these.
 
+import { endEffector } from "./frame.js";
+
 const KEPT_MS = 60_000;
+const BEHIND_MS = 10_000;
+/** Distance of two places of a trail at least, `[m]`. */
+const BEHIND_STEP = 0.004;
 
 export class History extends EventTarget {
   frames = [];
@@ -32,18 +37,32 @@ export class History extends EventTarget {
     this.#show(this.#chosen);
   }
 
+  /** Where the end effector was in the 10 s before a frame, and in it: `[x, y, z]` each. */
+  behind(frame) {
+    const places = [];
+    for (let i = this.frames.length - 1; i >= 0; i -= 1) {
+      const at = this.frames[i];
+      if (at.serverMs > frame.serverMs) continue;
+      if (frame.serverMs - at.serverMs > BEHIND_MS) break;
+      const [x, y, z] = endEffector(at);
+      const last = places[places.length - 1];
+      if (!last || Math.hypot(x - last[0], y - last[1], z - last[2]) > BEHIND_STEP) places.push([x, y, z]);
+    }
+    return places;
+  }
+
   #show(frame) {
     this.dispatchEvent(new CustomEvent("show", { detail: frame }));
   }
 
   /** All that is kept as comma-separated values. */
   csv() {
-    const names = ["robot_ms", "mode", "success_rate"];
+    const names = ["robot_ms", "mode", "success_rate", "guards"];
     const columns = { q: 7, dq: 7, tau: 7, tauExt: 7, force: 6, reference: 7 };
     for (const [name, count] of Object.entries(columns)) {
       for (let i = 0; i < count; i += 1) names.push(`${name}_${i}`);
     }
-    const row = (frame) => [frame.robotMs, frame.mode, frame.success,
+    const row = (frame) => [frame.robotMs, frame.mode, frame.success, frame.guards,
       ...Object.keys(columns).flatMap((name) => Array.from(frame[name]))].join(",");
     return [names.join(","), ...this.frames.map(row), ""].join("\n");
   }

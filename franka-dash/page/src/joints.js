@@ -4,13 +4,23 @@ export class Joints {
   #rows = [];
   #hello = null;
 
-  constructor(hold, speed) {
+  constructor(hold, preview, speed) {
     const place = document.getElementById("joints");
+    const motion = () => ({ kind: "joints", q: this.#rows.map(({ target }) => Number(target.value)) });
+    const said = document.getElementById("joints-said");
+    const question = {
+      motion,
+      speed,
+      said: (text, possible) => {
+        said.textContent = text;
+        said.classList.toggle("refused", !possible);
+      },
+    };
     for (let joint = 0; joint < 7; joint += 1) {
       const row = document.createElement("div");
       row.className = "joint";
       row.innerHTML = `<span>J${joint + 1}</span><button type="button" aria-label="joint ${joint + 1} down">−</button>`
-        + `<div class="track"><i></i><i class="reference"></i><input type="range" step="0.001" aria-label="target of joint ${joint + 1}"></div>`
+        + `<div class="track"><i></i><i class="reference"></i><input type="range" step="0.001" data-needs="motion" aria-label="target of joint ${joint + 1}"></div>`
         + `<button type="button" aria-label="joint ${joint + 1} up">+</button><span class="value"></span>`;
       place.append(row);
       const [down, up] = row.querySelectorAll("button");
@@ -22,16 +32,18 @@ export class Joints {
         target: row.querySelector("input"), value: row.querySelector(".value"), touched: false,
       });
       const last = this.#rows[joint];
-      last.target.addEventListener("input", () => { last.touched = true; });
+      last.target.addEventListener("input", () => {
+        last.touched = true;
+        preview.want(question);
+      });
     }
-    const go = document.createElement("button");
-    go.type = "button";
-    go.id = "go";
-    go.textContent = "Hold to go to the targets";
-    place.append(go);
-    hold.bind(go, () => ({
-      motion: { kind: "joints", q: this.#rows.map(({ target }) => Number(target.value)) }, speed: speed(),
-    }));
+    const go = document.getElementById("go");
+    hold.bind(go, () => ({ motion: motion(), speed: speed() }));
+    document.getElementById("joints-reset").addEventListener("click", () => {
+      for (const row of this.#rows) row.touched = false;
+      preview.forget(question);
+      said.textContent = "";
+    });
   }
 
   describe(hello) {

@@ -4,12 +4,16 @@ import "uplot/dist/uPlot.min.css";
 import "./style.css";
 import { Connection } from "./connection.js";
 import { events } from "./events.js";
+import { endEffector } from "./frame.js";
+import { Goal } from "./goal.js";
 import { gripper } from "./gripper.js";
+import { Guards } from "./guards.js";
 import { History } from "./history.js";
 import { Hold } from "./hold.js";
 import { jog } from "./jog.js";
 import { Joints } from "./joints.js";
 import { plots } from "./plots.js";
+import { Preview } from "./preview.js";
 import { record } from "./record.js";
 import { Scene } from "./scene.js";
 import { simulator } from "./simulator.js";
@@ -18,19 +22,25 @@ import { Strip } from "./strip.js";
 import { timeline } from "./timeline.js";
 import { tuning } from "./tuning.js";
 
+const byId = (id) => document.getElementById(id);
 const connection = new Connection();
 const history = new History();
 const hold = new Hold(connection);
 const strip = new Strip(connection);
-const scene = new Scene(document.getElementById("scene"));
-const slider = document.getElementById("speed");
+const scene = new Scene(byId("scene"));
+const preview = new Preview(connection, scene, hold);
+const guards = new Guards();
+const slider = byId("speed");
 const speed = () => Number(slider.value) / 1000;
 slider.addEventListener("input", () => {
-  document.getElementById("speed-value").textContent = `${slider.value} mm/s`;
+  byId("speed-value").textContent = `${slider.value} mm/s`;
   if (hold.active) connection.send({ type: "speed", speed: speed() });
+  preview.again();
 });
 jog(hold, speed);
-const joints = new Joints(hold, speed);
+const joints = new Joints(hold, preview, speed);
+const goal = new Goal({ scene, hold, preview, speed });
+byId("looks").addEventListener("change", ({ target }) => scene.show3d(target.value));
 tuning(connection);
 gripper(connection);
 record(connection);
@@ -41,13 +51,17 @@ timeline(history);
 plots(history);
 
 connection.addEventListener("hello", ({ detail }) => {
-  scene.describe(detail.capsules);
+  scene.describe(detail);
+  guards.describe(detail);
   joints.describe(detail);
   strip.describe(detail);
-  document.getElementById("simulator-panel").hidden = !detail.simulated;
+  byId("simulator-panel").hidden = !detail.simulated;
+  byId("legend").classList.toggle("regions", detail.keep_out.length > 0);
 });
 connection.addEventListener("status", ({ detail }) => strip.setStatus(detail));
 connection.addEventListener("statistics", ({ detail }) => strip.statistics(detail));
+connection.addEventListener("heading", ({ detail }) => scene.heading(detail.way));
+connection.addEventListener("contact", ({ detail }) => { if (history.live) scene.showContact(detail.contact); });
 connection.addEventListener("frame", ({ detail }) => history.add(detail));
 let errors = 0;
 addEventListener("error", () => { errors += 1; });
@@ -62,9 +76,13 @@ history.addEventListener("show", ({ detail }) => {
   due = true;
   requestAnimationFrame(() => {
     due = false;
-    scene.show(shown);
+    const lit = guards.lit(shown);
+    scene.show(shown, history.behind(shown), lit);
+    guards.show(lit);
     joints.show(shown);
     strip.show(shown);
+    goal.at(endEffector(history.newest));
+    preview.at(history.newest.q);
   });
 });
 strip.setStatus(strip.status);
@@ -76,12 +94,13 @@ window.__state = () => ({
   mode: shown?.mode ?? null,
   q: shown ? Array.from(shown.q) : null,
   force: shown ? Array.from(shown.force) : null,
-  endEffector: scene.endEffector(),
-  forceShown: scene.forceShown,
+  ...(shown ? scene.state() : {}),
+  guards: byId("guards").textContent,
+  said: byId("goal-said").textContent,
+  jointsSaid: byId("joints-said").textContent,
   holding: hold.active,
   commands: strip.commands,
   status: strip.status,
   frames: history.frames.length,
   live: history.live,
-  links: [1, 2, 3, 4, 5, 6, 7].map((link) => (shown ? scene.onPage(link) : null)),
 });

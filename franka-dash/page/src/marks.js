@@ -84,9 +84,12 @@ export class Regions {
 
   constructor() {
     this.group = new THREE.Group();
-    this.material = new THREE.MeshStandardMaterial({
-      color: COLOURS.region, transparent: true, opacity: 0.22, side: THREE.DoubleSide, depthWrite: false,
+    const material = () => new THREE.MeshStandardMaterial({
+      color: COLOURS.region, transparent: true, side: THREE.DoubleSide, depthWrite: false,
     });
+    // A plane fills the picture: it is fainter.
+    this.materials = { box: material(), plane: material() };
+    this.light(false);
     this.edges = new THREE.LineBasicMaterial({ color: COLOURS.region });
   }
 
@@ -101,7 +104,7 @@ export class Regions {
   }
 
   #box({ position, orientation, half }) {
-    const mesh = new THREE.Mesh(new THREE.BoxGeometry(...half.map((side) => 2 * side)), this.material);
+    const mesh = new THREE.Mesh(new THREE.BoxGeometry(...half.map((side) => 2 * side)), this.materials.box);
     mesh.position.set(...position);
     mesh.quaternion.set(...orientation);
     return mesh;
@@ -109,7 +112,7 @@ export class Regions {
 
   /** Its surface, about the place of it that is nearest to the arm. */
   #plane({ normal, offset }) {
-    const mesh = new THREE.Mesh(new THREE.PlaneGeometry(PLANE_SIZE, PLANE_SIZE), this.material);
+    const mesh = new THREE.Mesh(new THREE.PlaneGeometry(PLANE_SIZE, PLANE_SIZE), this.materials.plane);
     const out = new THREE.Vector3(...normal);
     const middle = new THREE.Vector3(0, 0, 0.4);
     mesh.position.copy(middle).addScaledVector(out, offset - middle.dot(out));
@@ -119,6 +122,7 @@ export class Regions {
 
   /** Brighter while the arm is held back from them. */
   light(bright) {
-    this.material.opacity = bright ? 0.55 : 0.22;
+    this.materials.box.opacity = bright ? 0.6 : 0.22;
+    this.materials.plane.opacity = bright ? 0.3 : 0.09;
   }
 }

@@ -1,23 +1,40 @@
-// The arm in 3D: measured, reference, external force; rendered when something has changed.
+// The arm in 3D, with what there is to know about it in its place; rendered when something has
+// changed.
 
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { ArmView } from "./arm.js";
+import { COLOURS } from "./colours.js";
+import { Gizmo } from "./gizmo.js";
+import { Arrow, Contact, Regions, Trail } from "./marks.js";
+import { load } from "./meshes.js";
 
 const METRES_PER_NEWTON = 0.01;
 const FORCE_SHOWN = 2;
+/** Joint positions that differ by less are the same place: equal arms only blur each other. */
+const APART = 0.01;
 
-export class Scene {
+const differs = (a, b) => a.some((q, i) => Math.abs(q - b[i]) > APART);
+
+export class Scene extends EventTarget {
   #renderer;
   #scene = new THREE.Scene();
   #camera = new THREE.PerspectiveCamera(38, 1, 0.05, 20);
-  #measured = null;
-  #reference = null;
-  #arrow;
+  #arms = {};
+  #looks = "meshes";
+  #force = new Arrow(COLOURS.force);
+  #contact = new Contact();
+  #regions = new Regions();
+  #behind = new Trail(COLOURS.behind, { dashed: false });
+  #ahead = new Trail(COLOURS.goal, { dashed: true });
+  #goal = null;
+  #heading = null;
+  #frame = null;
   #grid = null;
   #stale = true;
 
   constructor(canvas) {
+    super();
     this.canvas = canvas;
     this.#renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
     this.#renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
@@ -25,57 +42,111 @@ export class Scene {
     this.#camera.position.set(1.55, -1.75, 1.15);
     this.controls = new OrbitControls(this.#camera, canvas);
     this.controls.target.set(0.2, 0, 0.42);
-    this.controls.addEventListener("change", () => { this.#stale = true; });
+    this.controls.addEventListener("change", () => this.redraw());
     this.controls.update();
+    this.gizmo = new Gizmo(this.#camera, this.controls, canvas);
+    this.gizmo.addEventListener("redraw", () => this.redraw());
     this.#scene.add(new THREE.HemisphereLight(0xffffff, 0x556070, 1.9));
     const sun = new THREE.DirectionalLight(0xffffff, 1.8);
     sun.position.set(1.5, -1, 3);
-    this.#scene.add(sun);
-    this.#arrow = new THREE.ArrowHelper(new THREE.Vector3(0, 0, 1), new THREE.Vector3(), 0.1, 0xd8433f, 0.05, 0.03);
-    this.#arrow.visible = false;
-    this.#scene.add(this.#arrow);
+    this.#scene.add(sun, this.gizmo.group);
+    for (const mark of [this.#force, this.#contact, this.#regions, this.#behind, this.#ahead]) {
+      this.#scene.add(mark.group);
+    }
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.#colour());
     this.#colour();
-    new ResizeObserver(() => { this.#stale = true; }).observe(canvas);
+    new ResizeObserver(() => this.redraw()).observe(canvas);
     const draw = () => { this.#draw(); requestAnimationFrame(draw); };
     requestAnimationFrame(draw);
   }
 
+  redraw() { this.#stale = true; }
+
   #colour() {
-    const colour = getComputedStyle(document.documentElement).getPropertyValue("--scene").trim();
-    this.#scene.background = new THREE.Color(colour);
+    const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+    this.#scene.background = new THREE.Color(colour("--scene"));
     if (this.#grid) this.#scene.remove(this.#grid);
-    const line = getComputedStyle(document.documentElement).getPropertyValue("--line").trim();
-    this.#grid = new THREE.GridHelper(2.4, 24, line, line);
+    this.#grid = new THREE.GridHelper(2.4, 24, colour("--line"), colour("--line"));
     this.#grid.rotation.x = Math.PI / 2;
     this.#scene.add(this.#grid);
-    this.#stale = true;
+    this.redraw();
   }
 
-  describe(capsules) {
-    for (const arm of [this.#measured, this.#reference]) if (arm) this.#scene.remove(arm.group);
-    this.#measured = new ArmView(capsules, { color: 0x7d93b5, opacity: 1, frames: true });
-    this.#reference = new ArmView(capsules, { color: 0xe09a2c, opacity: 0.28, frames: false });
-    this.#scene.add(this.#measured.group, this.#reference.group);
+  /** Takes what does not change; resolves when the links look as they do. */
+  async describe({ capsules, meshes, keep_out: regions }) {
+    for (const arm of Object.values(this.#arms)) this.#scene.remove(arm.group);
+    this.#arms = {
+      measured: new ArmView(capsules, { color: COLOURS.measured, opacity: 1, frames: true }),
+      reference: new ArmView(capsules, { color: COLOURS.reference, opacity: 0.3, frames: false }),
+      goal: new ArmView(capsules, { color: COLOURS.goal, opacity: 0.45, frames: false }),
+    };
+    const arms = Object.values(this.#arms);
+    for (const arm of arms) this.#scene.add(arm.group);
+    this.#arms.goal.group.visible = false;
+    this.#regions.set(regions);
+    this.#frame = null;
+    try {
+      const set = await load(meshes);
+      for (const arm of arms) arm.addMeshes(set);
+    } catch (error) {
+      // The capsules do.
+      console.warn("no meshes", error);
+    }
+    this.show3d(this.#looks);
   }
 
-  show(frame) {
-    if (!this.#measured) return;
-    this.#measured.place(frame.poses);
-    this.#reference.place(frame.referencePoses);
-    // Equal arms in one place only blur each other.
-    const apart = frame.q.some((q, i) => Math.abs(q - frame.reference[i]) > 0.01);
-    this.#reference.group.visible = apart;
+  /** Shows `meshes`, `capsules` or `both`. */
+  show3d(what) {
+    this.#looks = what;
+    for (const [name, arm] of Object.entries(this.#arms)) {
+      arm.show(name === "measured" || what === "capsules" ? what : "meshes");
+    }
+    this.redraw();
+  }
+
+  /** Shows a frame, with the end effector's places before it, `[x, y, z]` each. */
+  show(frame, behind, guards) {
+    const { measured, reference } = this.#arms;
+    if (!measured) return;
+    this.#frame = frame;
+    measured.place(frame.poses);
+    reference.place(frame.referencePoses);
+    reference.group.visible = differs(frame.q, frame.reference);
     // The robot's estimate is what it exerts; shown is what is exerted on it.
     const force = new THREE.Vector3(-frame.force[0], -frame.force[1], -frame.force[2]);
     const newtons = force.length();
-    this.#arrow.visible = newtons > FORCE_SHOWN;
-    if (this.#arrow.visible) {
-      this.#arrow.position.copy(this.#measured.links[9].position);
-      this.#arrow.setDirection(force.normalize());
-      this.#arrow.setLength(Math.min(newtons * METRES_PER_NEWTON, 0.6), 0.05, 0.03);
-    }
-    this.#stale = true;
+    this.#force.set(newtons > FORCE_SHOWN ? measured.links[9].position : null, force, newtons * METRES_PER_NEWTON);
+    this.#behind.set(behind);
+    this.#regions.light(guards.has("clearance"));
+    this.#showGoal();
+    this.redraw();
+  }
+
+  showContact(contact) {
+    this.#contact.set(contact);
+    this.redraw();
+  }
+
+  /** Shows what a motion would do; nothing for null. */
+  preview(way) {
+    this.#goal = way;
+    this.#showGoal();
+  }
+
+  /** Shows what the motion that goes on does; nothing for null. */
+  heading(way) {
+    this.#heading = way;
+    this.#showGoal();
+  }
+
+  #showGoal() {
+    const { goal } = this.#arms;
+    if (!goal) return;
+    const way = this.#heading ?? this.#goal;
+    if (way) goal.place(way.poses);
+    goal.group.visible = way !== null && this.#frame !== null && differs(way.q, this.#frame.q);
+    this.#ahead.set(goal.group.visible ? way.line : []);
+    this.redraw();
   }
 
   #draw() {
@@ -90,6 +161,7 @@ export class Scene {
       this.#camera.updateProjectionMatrix();
     }
     this.#renderer.render(this.#scene, this.#camera);
+    this.dispatchEvent(new Event("drawn"));
   }
 
   #ray(event) {
@@ -103,12 +175,13 @@ export class Scene {
 
   /** The link under a pointer, 1 to 7, and where it is touched in its axes; null if none is. */
   pick(event) {
-    if (!this.#measured) return null;
-    const [hit] = this.#ray(event).intersectObject(this.#measured.group, true).filter((it) => it.object.isMesh);
-    if (!hit || hit.object.userData.link === 0) return null;
+    const { measured } = this.#arms;
+    if (!measured || this.gizmo.isUnder(event)) return null;
+    const hit = measured.hit(this.#ray(event));
+    if (!hit || hit.link === 0) return null;
     // The tool is pushed at link 7.
-    const link = Math.min(hit.object.userData.link, 7);
-    const offset = this.#measured.links[link].worldToLocal(hit.point.clone());
+    const link = Math.min(hit.link, 7);
+    const offset = measured.links[link].worldToLocal(hit.point.clone());
     return { link, offset: offset.toArray(), point: hit.point };
   }
 
@@ -120,17 +193,28 @@ export class Scene {
     return at ? at.sub(point) : new THREE.Vector3();
   }
 
-  /** Where the scene has the end effector, `[m]`. */
-  endEffector() {
-    return this.#measured ? this.#measured.links[9].getWorldPosition(new THREE.Vector3()).toArray() : null;
+  /** What is drawn, for tests. */
+  state() {
+    const { measured, goal } = this.#arms;
+    const at = (object) => object.getWorldPosition(new THREE.Vector3());
+    return {
+      endEffector: measured ? at(measured.links[9]).toArray() : null,
+      links: [1, 2, 3, 4, 5, 6, 7].map((link) => (measured ? this.onPage(at(measured.links[link])) : null)),
+      forceShown: this.#force.group.visible,
+      contactShown: this.#contact.group.visible,
+      meshes: measured?.hasMeshes ?? false,
+      ghost: goal?.group.visible ? at(goal.links[9]).toArray() : null,
+      ahead: this.#ahead.count,
+      behind: this.#behind.count,
+      regions: this.#regions.count,
+      gizmo: this.gizmo.position ? this.onPage(this.gizmo.position) : null,
+    };
   }
 
-  /** Where on the page a link's frame is, for tests. */
-  onPage(link) {
-    const at = this.#measured.links[link].getWorldPosition(new THREE.Vector3()).project(this.#camera);
+  /** Where on the page a place is. */
+  onPage(place) {
+    const at = place.clone().project(this.#camera);
     const box = this.canvas.getBoundingClientRect();
     return [box.left + ((at.x + 1) / 2) * box.width, box.top + ((1 - at.y) / 2) * box.height];
   }
-
-  get forceShown() { return this.#arrow.visible; }
 }

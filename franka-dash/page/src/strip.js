@@ -51,8 +51,8 @@ export class Strip {
     const lease = document.getElementById("lease");
     lease.textContent = this.commands ? "Release" : "Take command";
     lease.disabled = !may || (status.commander !== null && !this.commands);
-    const moves = this.commands && hello.motion_allowed;
-    for (const it of document.querySelectorAll("#recover, #jog button, .joint button, #go")) it.disabled = !moves;
+    const moves = this.commands && hello?.motion_allowed;
+    for (const it of document.querySelectorAll("#recover, #jog button, .joint button")) it.disabled = !moves;
     for (const it of document.querySelectorAll("[data-needs]")) {
       it.disabled = !(it.dataset.needs === "motion" ? moves : this.commands);
     }

@@ -16,6 +16,9 @@ pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
     shows_the_robot(page, served)?;
     take(page)?;
     jog(page, served)?;
+    preview_and_go(page, served)?;
+    keep_out(page, served)?;
+    sliders(page, served)?;
     lose_the_hold(page, served)?;
     keyboard(page, served)?;
     push(page, served)?;
@@ -55,30 +58,153 @@ pub(crate) fn take(page: &Browser) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Presses the button that moves up, again if the machine was too busy for a hold, until the arm
-/// has moved. It is held on return.
+/// Presses the button that moves up until the arm has moved. It is held on return.
 fn hold_up(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let start = served.height();
+    hold_until(page, "[data-jog='Z+']", || served.height() > start + 0.003)
+}
+
+/// Presses a button, again if the machine was too busy for a hold, until `done`. It may be held on
+/// return.
+fn hold_until(
+    page: &Browser,
+    selector: &str,
+    mut done: impl FnMut() -> bool,
+) -> anyhow::Result<()> {
     let begin = Instant::now();
     while begin.elapsed() < LONGEST {
         take(page)?;
-        let button = page.find("[data-jog='Z+']")?;
-        page.pointer(&[move_to(button), down()])?;
+        page.pointer(&[move_to(page.find(selector)?), down()])?;
         while page.state()?["holding"] == true {
-            if served.height() > start + 0.003 {
+            if done() {
                 return Ok(());
             }
         }
         page.pointer(&[up()])?;
+        if done() {
+            return Ok(());
+        }
     }
     let log = page.run("return document.getElementById('events').textContent")?;
     let state = page.state()?;
-    anyhow::bail!("the arm does not move while the button is held: {log}\n{state}")
+    anyhow::bail!("{selector} does not have the effect of being held: {log}\n{state}")
 }
 
 fn jog(page: &Browser, served: &Served) -> anyhow::Result<()> {
     hold_up(page, served)?;
     page.pointer(&[up()])?;
+    served.check_rest()
+}
+
+/// Types into the numbers of the target.
+fn aim(page: &Browser, numbers: &[(&str, f64)]) -> anyhow::Result<()> {
+    for (name, number) in numbers {
+        page.run(&format!(
+            "const it = document.querySelector('[data-goal={name}]'); \
+             it.value = {number}; it.dispatchEvent(new Event('input'))"
+        ))?;
+    }
+    Ok(())
+}
+
+/// Waits for what the page says about the target.
+fn said(page: &Browser, wanted: &str) -> anyhow::Result<()> {
+    let waited = wait(wanted, || {
+        let said = page.state()?["said"].clone();
+        Ok(said.as_str().is_some_and(|said| said.contains(wanted)))
+    });
+    waited.with_context(|| format!("{:?}", page.state().map(|state| state["said"].clone())))
+}
+
+/// Drags the handle of a target: the page shows what the motion would do, and nothing moves until
+/// a button is held. Then the arm goes where the ghost is.
+fn preview_and_go(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    take(page)?;
+    page.click("#goal-place")?;
+    page.run("scrollTo(0, 0)")?;
+    wait("the handle", || Ok(!page.state()?["gizmo"].is_null()))?;
+    let (x, y) = point(&page.state()?["gizmo"])?;
+    let before = served.robot.state().q;
+    // The middle of the handle: in the plane of the picture.
+    page.pointer(&[move_to((x, y)), down()])?;
+    page.pointer(&[
+        move_to((x + 15.0, y + 5.0)),
+        move_to((x + 30.0, y + 10.0)),
+        up(),
+    ])?;
+    let dragged = point(&page.state()?["gizmo"])?;
+    ensure!(
+        dragged.0 > x + 20.0,
+        "the handle is at {dragged:?}, was at {x}"
+    );
+    said(page, "Takes")?;
+    wait("the ghost", || Ok(!page.state()?["ghost"].is_null()))?;
+    let ghost = page.state()?["ghost"].clone();
+    ensure!(page.state()?["ahead"].as_u64() > Some(2), "no way ahead");
+    std::thread::sleep(Duration::from_millis(300));
+    let moved = (0..7).map(|i| (served.robot.state().q[i] - before[i]).abs());
+    ensure!(
+        moved.fold(0.0, f64::max) < 2e-3,
+        "it moved before a button was held"
+    );
+    let there = || {
+        let at = served.robot.pose().translation.vector;
+        let off = (0..3).map(|i| ghost[i].as_f64().map_or(1.0, |x| (x - at[i]).abs()));
+        off.fold(0.0, f64::max)
+    };
+    hold_until(page, "#goal-go", || there() < 3e-3)?;
+    page.pointer(&[up()])?;
+    served.check_rest()?;
+    ensure!(page.state()?["behind"].as_u64() > Some(2), "no way behind");
+    Ok(())
+}
+
+/// A target in a region to keep out of, and one out of reach, are refused with a reason, also by
+/// the server; a way down to the region is slowed down, and its guard lights up.
+fn keep_out(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    ensure!(page.state()?["regions"] == 1, "the region is not drawn");
+    let at = served.robot.pose().translation.vector * 1e3;
+    aim(page, &[("x", at.x), ("y", at.y), ("z", 1900.0)])?;
+    said(page, "no joint positions")?;
+    let below = served.region_top() * 1e3 - 30.0;
+    aim(page, &[("z", below)])?;
+    said(page, "region 1 to keep out of")?;
+    let start = served.robot.state().q;
+    page.pointer(&[move_to(page.find("#goal-go")?), down()])?;
+    wait("the refusal", || {
+        let text = page.run("return document.getElementById('events').textContent")?;
+        Ok(text
+            .as_str()
+            .is_some_and(|text| text.contains("Not moved: the arm would come")))
+    })?;
+    page.pointer(&[up()])?;
+    let moved = (0..7).map(|i| (served.robot.state().q[i] - start[i]).abs());
+    ensure!(moved.fold(0.0, f64::max) < 2e-3, "it moved");
+    aim(page, &[("z", served.region_top() * 1e3 + 40.0)])?;
+    said(page, "Takes")?;
+    hold_until(page, "#goal-go", || {
+        let guards = page.state().map(|state| state["guards"].clone());
+        guards.is_ok_and(|guards| guards.as_str().is_some_and(|it| it.contains("clearance")))
+    })?;
+    page.pointer(&[up()])?;
+    served.check_rest()?;
+    page.click("#goal-remove")?;
+    wait("no ghost", || Ok(page.state()?["ghost"].is_null()))
+}
+
+/// A slider shows where its joint would go.
+fn sliders(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    let wanted = served.robot.state().q[0] + 0.2;
+    page.run(&format!(
+        "const it = document.querySelector('.joint input'); \
+         it.value = {wanted}; it.dispatchEvent(new Event('input'))"
+    ))?;
+    wait("the ghost", || Ok(!page.state()?["ghost"].is_null()))?;
+    hold_until(page, "#go", || {
+        (served.robot.state().q[0] - wanted).abs() < 5e-3
+    })?;
+    page.pointer(&[up()])?;
+    page.click("#joints-reset")?;
     served.check_rest()
 }
 

@@ -7,7 +7,9 @@ use std::time::Duration;
 
 use anyhow::{Context as _, ensure};
 use franka_async::gripper::Gripper;
-use franka_async::{Realtime, Robot};
+use franka_async::model::collision::Obstacle;
+use franka_async::nalgebra::Vector3;
+use franka_async::{Pose, Realtime, Robot};
 use franka_dash::Options;
 use franka_sim::{Fingers, Running, Sim, Tool};
 use tokio::runtime::Runtime;
@@ -40,7 +42,7 @@ impl Served {
             let gripper = Gripper::connect(hand).await?;
             let options = Options::default().allow_motion().simulated(&running);
             let options = options.gripper(gripper.clone()).record_to(&folder);
-            let options = options.patience(PATIENCE);
+            let options = options.patience(PATIENCE).keep_out([block()]);
             let listener = franka_dash::bind("127.0.0.1:0".parse()?, &options).await?;
             let address = listener.local_addr()?;
             let router = franka_dash::router(robot.clone(), options);
@@ -55,6 +57,11 @@ impl Served {
             runtime,
             _running: running,
         })
+    }
+
+    /// Height of the region that the arm is kept out of, `[m]`.
+    pub(crate) fn region_top(&self) -> f64 {
+        2.0 * BLOCK
     }
 
     pub(crate) fn height(&self) -> f64 {
@@ -97,6 +104,17 @@ pub(crate) fn wait(
     }
     anyhow::bail!("waited for {what} in vain")
 }
+
+/// A region to keep out of, before the arm.
+fn block() -> Obstacle {
+    Obstacle::Box {
+        pose: Pose::translation(0.45, 0.0, BLOCK),
+        half: Vector3::new(0.2, 0.2, BLOCK),
+    }
+}
+
+/// Half of its height, `[m]`.
+const BLOCK: f64 = 0.1;
 
 /// How much later than on a robot the browser may send: pictures are drawn without a graphics card,
 /// beside whatever else the machine does.
