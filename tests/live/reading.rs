@@ -110,7 +110,6 @@ async fn a_slow_reader_is_told_how_many_states_it_missed() {
     let eager = collect(&robot);
     let mut slow = robot.state_stream();
     let first = slow.next().await.expect("states come");
-    assert_eq!(first.missed, 0);
     // More than the reader may lag behind.
     robot_time(&robot, 1800).await;
     let late = slow.next().await.expect("states come");
