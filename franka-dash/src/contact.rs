@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use franka_async::model::collision::{Body, Shape};
-use franka_async::model::contacts::{Tare, TorqueError, Unknown, locate};
+use franka_async::model::contacts::{Tare, TorqueError, locate};
 use franka_async::model::{JointVector, Model};
 use franka_async::state::RobotState;
 use serde::Serialize;
@@ -41,7 +41,7 @@ impl Watch {
         let (q, dq) = (JointVector::from(state.q), JointVector::from(state.dq));
         let read = JointVector::from(state.tau_ext_hat_filtered);
         let torque = self.tare.update(&read, &dq, passed as f64 * 1e-3);
-        if !self.tare.is_touched() {
+        if !self.tare.is_touched() || self.tare.learned() < LEARNED {
             return None;
         }
         let error = match dq.amax() > STILL {
@@ -53,10 +53,8 @@ impl Watch {
             true => shape.with_hand(),
             false => shape,
         };
-        let found = match locate(&shape.at(&q), &torque, &error) {
-            Ok(contact) | Err(Unknown::Tie { likeliest: contact }) => contact,
-            Err(_) => return None,
-        };
+        // Where several links explain the torques, none is shown.
+        let found = locate(&shape.at(&q), &torque, &error).ok()?;
         Some(Contact {
             link: match found.body {
                 Body::Link(link) => link,
@@ -75,3 +73,6 @@ pub(crate) const EVERY: Duration = Duration::from_millis(50);
 
 /// Joint velocity below which the arm rests, `[rad/s]`.
 const STILL: f64 = 0.02;
+
+/// For how long the arm has to have been without a contact before one is shown, `[s]`.
+const LEARNED: f64 = 0.5;
