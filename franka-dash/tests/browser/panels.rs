@@ -4,13 +4,14 @@ use std::path::Path;
 
 use anyhow::Context as _;
 
-use crate::checks::{load, take};
+use crate::checks::{load, looks, take};
 use crate::driver::Browser;
 use crate::served::{Served, wait};
 
 /// All checks, one after the other, and a picture of what is left in the panels.
 pub(crate) fn run(page: &Browser, served: &Served, picture: &Path) -> anyhow::Result<()> {
     load(page, served)?;
+    looks(page, served)?;
     take(page)?;
     tune(page)?;
     record(page, served)?;
