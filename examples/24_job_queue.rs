@@ -1,8 +1,7 @@
 //! A service that takes jobs at any time and does one after the other.
 //!
-//! `cargo run --release --example job_queue [ADDRESS]`; then, with the port that it prints, for 5
-//! cm up `curl 127.0.0.1:PORT/jobs --json '[0, 0, 0.05]'`; `curl 127.0.0.1:PORT/jobs` has the
-//! outcomes
+//! `cargo run --release --example job_queue [ADDRESS]`, then, with the port that it prints: 5 cm up
+//! by `curl 127.0.0.1:PORT/jobs --json '[0, 0, 0.05]'`; the outcomes by `curl 127.0.0.1:PORT/jobs`
 
 use axum::{Json, Router, routing::post};
 use franka_async::prelude::*;
