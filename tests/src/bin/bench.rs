@@ -30,14 +30,14 @@ fn main() -> ExitCode {
     }
     if RECORD.starts_with(&prefix) || prefix.starts_with(RECORD) {
         let cost = bench::record::record(1.0, false, &env::temp_dir());
-        let mut put = |name: &str, value: f64| {
-            println!("{RECORD}{name:<21} {value:>9.2}");
-            json[format!("{RECORD}{name}")] = value.into();
+        let mut put = |key: &str, value: f64| {
+            println!("{key:<28} {value:>9.2}");
+            json[key] = value.into();
         };
-        put("bytes_per_cycle", cost.bytes_per_cycle);
-        put("dropped", cost.dropped as f64);
+        put("record.bytes_per_cycle", cost.bytes_per_cycle);
+        put("record.dropped", cost.dropped as f64);
         if let Some(percent) = cost.cpu_percent {
-            put("cpu_percent", percent);
+            put("record.cpu_percent", percent);
         }
     }
     if let Err(error) = fs::write(&output, format!("{json:#}\n")) {
