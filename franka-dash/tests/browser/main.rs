@@ -26,7 +26,11 @@ fn the_page_shows_and_moves_simulated_robots() -> anyhow::Result<()> {
     {
         let page = Browser::open(&driver, &browser, (900, 640))?;
         let panels = pictures.join("panels.png");
-        let checked = checks::run(&page, &fr3).and_then(|()| panels::run(&page, &fr3, &panels));
+        let mut checked = checks::run(&page, &fr3);
+        // Without it, the panels are tested by the server's requests alone: see `sockets`.
+        if checked.is_ok() && std::env::var_os("FRANKA_THOROUGH").is_some() {
+            checked = panels::run(&page, &fr3, &panels);
+        }
         page.picture(&pictures.join("checked.png"))?;
         checked?;
         page.check_console()?;
