@@ -1,12 +1,14 @@
 //! What is not Rust: the spelling of everything, the workflows, what dependencies may be.
 
+use crate::cross::is_installed;
 use crate::package::OLDEST;
 use crate::python::{NEWEST, Python};
 use crate::realtime::succeeds;
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
-/// Of the step `texts`: spelling by typos, and workflows by zizmor.
+/// Of the step `texts`: spelling by typos, and workflows by zizmor and, where it is installed,
+/// actionlint.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let python = match Python::find(OLDEST..=NEWEST) {
         Ok(python) => python,
@@ -20,6 +22,11 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let mut workflows = tool("zizmor");
     workflows.args(["--offline", "--quiet", "--no-progress", ".github"]);
     workspace.run(&mut workflows)?;
+    if !is_installed("actionlint") {
+        let what = "the workflows by actionlint, which is not installed";
+        return Ok(Outcome::Partly(what.to_owned()));
+    }
+    workspace.run(&mut workspace.program("actionlint"))?;
     Ok(Outcome::Passed)
 }
 
