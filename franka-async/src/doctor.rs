@@ -23,9 +23,9 @@ use franka_rt::lifecycle::MotionError;
 use crate::diagnosis::{Diagnose, Diagnosis};
 
 pub use franka_doctor::{
-    Answer, Doctor, DryRun, Ethtool, Evidence, Finding, Fix, Group, Host, Needs, Purpose, Readings,
-    Received, Report, RoundTrips, Selection, System, Tree, Unread, Verdict, WakeUps, answers,
-    arrivals, at_rest, dry_run, firewall, handshake, likely_causes, ports,
+    Answer, Doctor, DryRun, Ethtool, Evidence, Finding, Fix, Group, Host, Latencies, Needs,
+    Purpose, Readings, Received, Report, RoundTrips, Selection, System, Tree, Unread, Verdict,
+    answers, arrivals, at_rest, dry_run, firewall, handshake, likely_causes, ports,
 };
 #[cfg(feature = "doctor-desk")]
 pub use franka_doctor::{DeskState, SelfTest, ask_desk, web};

@@ -10,8 +10,8 @@ use std::str::FromStr;
 
 use franka_rt::sched::Kernel;
 
+use crate::latencies::Latencies;
 use crate::round_trip::RoundTrips;
-use crate::wake_up::WakeUps;
 
 /// A host that can be asked. [`System`](crate::System) is the running one, [`Tree`] a directory.
 ///
@@ -46,7 +46,15 @@ pub trait Host {
         &self,
         duration: Duration,
         progress: &mut dyn FnMut(f64),
-    ) -> Result<WakeUps, Unread>;
+    ) -> Result<Latencies, Unread>;
+    /// Times until datagrams to another thread on this host, one each millisecond for that long, come
+    /// back from it; both threads under `SCHED_FIFO`, where allowed. `progress` is called as by
+    /// [`Self::wake_ups`].
+    fn loopback(
+        &self,
+        duration: Duration,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Latencies, Unread>;
     /// Times until `robot` answers echo requests (ICMP) of 1200 bytes, `count` of them, one each
     /// millisecond at most. `progress` is called as by [`Self::wake_ups`].
     fn round_trips(
@@ -145,7 +153,7 @@ impl fmt::Display for Unread {
 /// | `calls/is_lasting` | whether the host has its own address for good: `true` or `false` |
 /// | `calls/free_disk` | free bytes |
 /// | `calls/busy_frequency` | the frequency of any processor under load, in kHz |
-/// | `calls/wake_ups` | lines of a latency in microseconds and how often |
+/// | `calls/wake_ups`, `calls/loopback` | lines of a latency in microseconds and how often |
 /// | `calls/round_trips` | a line of how many were sent and how many of these were answered, then as above |
 #[derive(Clone, Debug)]
 pub struct Tree {
@@ -176,6 +184,18 @@ impl Tree {
                 format!("`{text}`, expected {what}"),
             )
         })
+    }
+
+    /// Latencies of a thread with the priority that the host grants.
+    fn latencies(&self, name: &str, progress: &mut dyn FnMut(f64)) -> Result<Latencies, Unread> {
+        progress(1.0);
+        let mut latencies = Latencies::new(self.fifo().ok());
+        for (us, count) in self.pairs(name)? {
+            for _ in 0..count {
+                latencies.note(Duration::from_micros(us));
+            }
+        }
+        Ok(latencies)
     }
 
     /// The lines of a file of two numbers each.
@@ -245,15 +265,12 @@ impl Host for Tree {
         bytes.map_err(|_| Unread::Failed(name, "not bytes in hexadecimal".into()))
     }
 
-    fn wake_ups(&self, _: Duration, progress: &mut dyn FnMut(f64)) -> Result<WakeUps, Unread> {
-        progress(1.0);
-        let mut wake_ups = WakeUps::new(self.fifo().ok());
-        for (us, count) in self.pairs("wake_ups")? {
-            for _ in 0..count {
-                wake_ups.note(Duration::from_micros(us));
-            }
-        }
-        Ok(wake_ups)
+    fn wake_ups(&self, _: Duration, progress: &mut dyn FnMut(f64)) -> Result<Latencies, Unread> {
+        self.latencies("wake_ups", progress)
+    }
+
+    fn loopback(&self, _: Duration, progress: &mut dyn FnMut(f64)) -> Result<Latencies, Unread> {
+        self.latencies("loopback", progress)
     }
 
     fn round_trips(

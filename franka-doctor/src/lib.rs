@@ -40,8 +40,10 @@ mod dry_run;
 mod finding;
 mod handshake;
 mod host;
+mod latencies;
 #[cfg(all(target_os = "linux", not(franka_portable)))]
 mod lease;
+mod loopback;
 mod ping;
 mod ports;
 mod readings;
@@ -52,7 +54,6 @@ mod route;
 mod selection;
 mod system;
 mod timing;
-mod wake_up;
 
 use core::time::Duration;
 use std::net::Ipv4Addr;
@@ -67,6 +68,7 @@ pub use dry_run::{DryRun, dry_run};
 pub use finding::{Finding, Fix, Group, Needs, Purpose, Verdict};
 pub use handshake::{Answer, answers, handshake};
 pub use host::{Ethtool, Host, Tree, Unread};
+pub use latencies::Latencies;
 pub use ports::ports;
 pub use readings::Readings;
 pub use report::{Report, SCHEMA};
@@ -74,7 +76,6 @@ pub use round_trip::RoundTrips;
 pub use selection::Selection;
 pub use system::System;
 pub use timing::{Received, arrivals, firewall};
-pub use wake_up::WakeUps;
 
 /// Runs the checks.
 #[derive(Clone, Debug)]
@@ -90,8 +91,8 @@ pub struct Doctor {
 }
 
 impl Doctor {
-    /// For a host that is to do this: without a robot's address, with wake-ups measured for 10 s
-    /// unless it only simulates, with names of people and devices replaced.
+    /// For a host that is to do this: without a robot's address, with wake-ups and loopback measured
+    /// for 10 s each unless it only simulates, with names of people and devices replaced.
     pub fn new(purpose: Purpose) -> Self {
         Self {
             purpose,
@@ -118,15 +119,15 @@ impl Doctor {
         self
     }
 
-    /// Whether wake-ups are measured for 60 s instead of 10, and 10 000 round trips instead of
-    /// 1000.
+    /// Whether wake-ups and loopback are measured for 60 s each instead of 10, and 10 000 round
+    /// trips instead of 1000.
     pub fn long(mut self, long: bool) -> Self {
         self.long = long;
         self
     }
 
-    /// Whether wake-ups are measured, a processor is kept busy for a second, and round trips are
-    /// measured if [`Self::ping`] says so. No other check takes time.
+    /// Whether wake-ups and loopback are measured, a processor is kept busy for a second, and round
+    /// trips are measured if [`Self::ping`] says so. No other check takes time.
     pub fn timing(mut self, timing: bool) -> Self {
         self.timing = timing;
         self
@@ -187,17 +188,16 @@ impl Doctor {
     ) -> Vec<Finding> {
         let mut findings = Vec::new();
         let before = CardErrors::read(readings);
+        let duration = Duration::from_secs(if self.long { 60 } else { 10 });
         if self.selection.takes("timing.wake_up") {
-            let duration = Duration::from_secs(if self.long { 60 } else { 10 });
             let measured = host.wake_ups(duration, &mut |part| progress("timing.wake_up", part));
-            if let Ok(wake_ups) = &measured {
-                let buckets: Vec<String> = wake_ups
-                    .buckets()
-                    .map(|(us, count)| format!("{us}: {count}"))
-                    .collect();
-                readings.note("wake-ups, us: count", buckets.join(", "));
-            }
+            note(readings, "wake-ups, us: count", &measured);
             findings.push(timing::wake_up(measured, self.purpose));
+        }
+        if self.selection.takes("timing.loopback") {
+            let measured = host.loopback(duration, &mut |part| progress("timing.loopback", part));
+            note(readings, "loopback, us: count", &measured);
+            findings.push(timing::loopback(measured, self.purpose));
         }
         let robot = self.robot.filter(|_| self.ping);
         if let Some(robot) = robot.filter(|_| self.selection.takes("robot.ping")) {
@@ -226,5 +226,14 @@ impl Doctor {
             *text = redaction.apply(text);
         }
         report
+    }
+}
+
+/// Keeps the histogram of what was measured.
+fn note(readings: &Readings<'_>, what: &str, measured: &Result<Latencies, Unread>) {
+    if let Ok(latencies) = measured {
+        let bucket = |(us, count)| format!("{us}: {count}");
+        let buckets: Vec<String> = latencies.buckets().map(bucket).collect();
+        readings.note(what, buckets.join(", "));
     }
 }

@@ -89,7 +89,8 @@ const PACKET: usize = 8 + PAYLOAD;
 const ECHO_REQUEST: u8 = 8;
 const ECHO_REPLY: u8 = 0;
 
-const PERIOD: Duration = Duration::from_millis(1);
+/// From one request to the next.
+pub(crate) const PERIOD: Duration = Duration::from_millis(1);
 
 /// An answer that takes longer counts as lost.
 const PATIENCE: Duration = Duration::from_millis(100);

@@ -22,8 +22,9 @@ use franka_rt::sched::{Kernel, Realtime, Scheduling};
 use nix::sys::statvfs::statvfs;
 
 use crate::host::{Ethtool, Host, Unread, names_in};
+use crate::latencies::Latencies;
+use crate::loopback;
 use crate::round_trip::{self, RoundTrips};
-use crate::wake_up::WakeUps;
 #[cfg(all(target_os = "linux", not(franka_portable)))]
 use linux as host;
 #[cfg(any(not(target_os = "linux"), franka_portable))]
@@ -144,14 +145,24 @@ impl Host for System {
         &self,
         duration: Duration,
         progress: &mut dyn FnMut(f64),
-    ) -> Result<WakeUps, Unread> {
-        let cycles = u64::try_from(duration.as_millis())
-            .unwrap_or(u64::MAX)
-            .max(1);
+    ) -> Result<Latencies, Unread> {
+        let cycles = milliseconds(duration);
         let measured = self.measured(cycles, progress, |priority, done| {
             host::wake_ups(priority, cycles, done)
         });
         measured.map_err(|why| Unread::Failed("the wake-up of a thread".into(), why))
+    }
+
+    fn loopback(
+        &self,
+        duration: Duration,
+        progress: &mut dyn FnMut(f64),
+    ) -> Result<Latencies, Unread> {
+        let count = milliseconds(duration);
+        let measured = self.measured(count, progress, |priority, done| {
+            loopback::measure(priority, count, done).map_err(|error| error.to_string())
+        });
+        measured.map_err(|why| Unread::Failed("datagrams of this computer to itself".into(), why))
     }
 
     fn round_trips(
@@ -198,6 +209,13 @@ impl System {
             measuring.join().expect("measuring does not panic")
         })
     }
+}
+
+/// How many milliseconds `duration` has, at least one.
+fn milliseconds(duration: Duration) -> u64 {
+    u64::try_from(duration.as_millis())
+        .unwrap_or(u64::MAX)
+        .max(1)
 }
 
 /// How long a thread computes before the frequency of its processor is read.

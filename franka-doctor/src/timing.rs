@@ -4,10 +4,10 @@ use core::time::Duration;
 
 use crate::finding::{About, Finding, Group, Judged, Matters, Needs, Purpose};
 use crate::host::Unread;
-use crate::wake_up::WakeUps;
+use crate::latencies::Latencies;
 
-/// What a measurement of wake-ups shows.
-pub(crate) fn wake_up(measured: Result<WakeUps, Unread>, purpose: Purpose) -> Finding {
+/// What a measurement of wake-ups shows: `timing.wake_up`.
+pub(crate) fn wake_up(measured: Result<Latencies, Unread>, purpose: Purpose) -> Finding {
     let about = About {
         id: "timing.wake_up",
         group: Group::Timing,
@@ -16,39 +16,63 @@ pub(crate) fn wake_up(measured: Result<WakeUps, Unread>, purpose: Purpose) -> Fi
         why: "The control thread is late by that much, of the millisecond that a cycle has.",
         source: "below 100 us: RMP asks for 125 us at 1 kHz; the rest: this project's, from the millisecond of a cycle",
     };
-    about.finding(measured.map(|wake_ups| judge(&wake_ups)), purpose)
+    let judge = |latencies| judge(&latencies, "wake-ups", [100, 300, 500]);
+    about.finding(measured.map(judge), purpose)
 }
 
-fn judge(wake_ups: &WakeUps) -> Judged {
-    let quantile = |part| wake_ups.quantile(part).unwrap_or_default();
-    let (Some(min), Some(max)) = (wake_ups.min(), wake_ups.max()) else {
+/// What datagrams to another thread of this host show, and back: `timing.loopback`.
+pub(crate) fn loopback(measured: Result<Latencies, Unread>, purpose: Purpose) -> Finding {
+    let about = About {
+        id: "timing.loopback",
+        group: Group::Timing,
+        matters: Matters::Moving,
+        wanted: "every echo within 200 us; 500 us is usable, more a warning, 1 ms a failure",
+        why: "What sockets and the waking of a thread take here, a cycle has not for its own work.",
+        source: "200 us: two wake-ups of 100 us; 500 us: vendor: FCI documentation, from a state to its command; 1 ms: that of a cycle",
+    };
+    let judge = |latencies| judge(&latencies, "echoes of datagrams", [200, 500, 1000]);
+    about.finding(measured.map(judge), purpose)
+}
+
+/// Judges `what` by the longest latency: good below the first of `limits_us`, usable below the second,
+/// and a failure above the last.
+fn judge(latencies: &Latencies, what: &str, limits_us: [u128; 3]) -> Judged {
+    let quantile = |part| latencies.quantile(part).unwrap_or_default();
+    let (Some(min), Some(max)) = (latencies.min(), latencies.max()) else {
         return Judged::unknown("unknown: nothing was measured");
     };
-    let scheduling = match wake_ups.priority {
+    let scheduling = match latencies.priority {
         Some(priority) => format!("SCHED_FIFO {priority}"),
         None => "normal scheduling".into(),
     };
     let read = format!(
-        "{} wake-ups under {scheduling}: min {}, p50 {}, p99 {}, p99.9 {}, max {} us; {} of 100 us and more, {} of 200, {} of 500",
-        wake_ups.count(),
+        "{} {what} under {scheduling}: min {}, p50 {}, p99 {}, p99.9 {}, max {} us; {} of 100 us and more, {} of 200, {} of 500",
+        latencies.count(),
         min.as_micros(),
         quantile(0.5),
         quantile(0.99),
         quantile(0.999),
         max.as_micros(),
-        wake_ups.at_least(100),
-        wake_ups.at_least(200),
-        wake_ups.at_least(500),
+        latencies.at_least(100),
+        latencies.at_least(200),
+        latencies.at_least(500),
     );
-    match max.as_micros() {
-        ..100 if wake_ups.priority.is_none() => Judged::info(format!(
+    let max = max.as_micros();
+    let [good, usable, tolerable] = limits_us;
+    if max > tolerable {
+        Judged::failure(read)
+    } else if max >= usable {
+        Judged::warning(read)
+    } else if max >= good {
+        Judged::info(read)
+    } else if latencies.priority.is_none() {
+        Judged::info(format!(
             "{read}; says little, as any other program may delay the thread"
-        )),
-        ..100 if wake_ups.count() >= 10_000 => Judged::good(read),
-        ..100 => Judged::info(format!("{read}; too few to call it good")),
-        100..300 => Judged::info(read),
-        300..=500 => Judged::warning(read),
-        _ => Judged::failure(read),
+        ))
+    } else if latencies.count() < LATENCIES_MIN {
+        Judged::info(format!("{read}; too few to call it good"))
+    } else {
+        Judged::good(read)
     }
 }
 
@@ -147,6 +171,9 @@ pub(crate) fn quantile(sorted: &[Duration], part: f64) -> Duration {
     sorted[wanted - 1]
 }
 
+/// Fewer latencies than ten seconds have milliseconds show little.
+const LATENCIES_MIN: u64 = 10_000;
+
 /// Fewer states in a row than ten seconds have, a few lost ones aside, show little.
 const STATES_MIN: usize = 9_900;
 
@@ -155,49 +182,56 @@ mod tests {
     use super::*;
     use crate::finding::Verdict;
 
-    /// Wake-ups that are late by `us`, `count` of them, and one that is late by `worst`.
-    fn measured(us: u64, count: usize, worst: u64) -> WakeUps {
-        let mut wake_ups = WakeUps::new(Some(99));
+    /// `count` latencies, all of `us` but the `worst`.
+    fn measured(us: u64, count: usize, worst: u64) -> Latencies {
+        let mut latencies = Latencies::new(Some(99));
         for _ in 1..count {
-            wake_ups.note(Duration::from_micros(us));
+            latencies.note(Duration::from_micros(us));
         }
-        wake_ups.note(Duration::from_micros(worst));
-        wake_ups
+        latencies.note(Duration::from_micros(worst));
+        latencies
     }
 
     #[test]
-    fn the_worst_wake_up_decides_and_a_short_measurement_is_never_good() {
-        for (count, worst, expected) in [
-            (10_000, 99, Verdict::Good),
-            (9_999, 99, Verdict::Info),
-            (10_000, 100, Verdict::Info),
-            (10_000, 299, Verdict::Info),
-            (10_000, 300, Verdict::Warning),
-            (10_000, 500, Verdict::Warning),
-            (10_000, 501, Verdict::Failure),
-            (10_000, 90_000, Verdict::Failure),
+    fn the_worst_latency_decides_and_a_short_measurement_is_never_good() {
+        for (count, worst, woken, echoed) in [
+            (10_000, 99, Verdict::Good, Verdict::Good),
+            (9_999, 99, Verdict::Info, Verdict::Info),
+            (10_000, 100, Verdict::Info, Verdict::Good),
+            (10_000, 299, Verdict::Info, Verdict::Info),
+            (10_000, 300, Verdict::Warning, Verdict::Info),
+            (10_000, 500, Verdict::Warning, Verdict::Warning),
+            (10_000, 501, Verdict::Failure, Verdict::Warning),
+            (10_000, 1000, Verdict::Failure, Verdict::Warning),
+            (10_000, 1001, Verdict::Failure, Verdict::Failure),
+            (10_000, 90_000, Verdict::Failure, Verdict::Failure),
         ] {
-            let finding = wake_up(Ok(measured(20, count, worst)), Purpose::Move);
-            assert_eq!(finding.verdict, expected, "{}", finding.read);
-            let sim = wake_up(Ok(measured(20, count, worst)), Purpose::Sim);
-            assert!(matches!(sim.verdict, Verdict::Good | Verdict::Info));
+            for (check, expected) in [(wake_up as Check, woken), (loopback, echoed)] {
+                let finding = check(Ok(measured(20, count, worst)), Purpose::Move);
+                assert_eq!(finding.verdict, expected, "{}", finding.read);
+                let sim = check(Ok(measured(20, count, worst)), Purpose::Sim);
+                assert!(matches!(sim.verdict, Verdict::Good | Verdict::Info));
+                let nothing = check(Ok(Latencies::new(None)), Purpose::Move);
+                assert_eq!(nothing.verdict, Verdict::Unknown);
+            }
         }
-        let nothing = wake_up(Ok(WakeUps::new(None)), Purpose::Move);
-        assert_eq!(nothing.verdict, Verdict::Unknown);
     }
+
+    /// A check of latencies.
+    type Check = fn(Result<Latencies, Unread>, Purpose) -> Finding;
 
     #[test]
     fn quantiles_are_those_of_sorted_latencies() {
-        let mut wake_ups = WakeUps::new(None);
+        let mut latencies = Latencies::new(None);
         for us in (1..=1000).rev() {
-            wake_ups.note(Duration::from_micros(us));
+            latencies.note(Duration::from_micros(us));
         }
-        wake_ups.note(Duration::from_millis(7));
-        assert_eq!(wake_ups.quantile(0.5), Some(501));
-        assert_eq!(wake_ups.quantile(0.99), Some(991));
-        assert_eq!(wake_ups.quantile(1.0), Some(2000), "stands for more");
-        assert_eq!(wake_ups.max(), Some(Duration::from_millis(7)));
-        assert_eq!((wake_ups.at_least(1000), wake_ups.count()), (2, 1001));
+        latencies.note(Duration::from_millis(7));
+        assert_eq!(latencies.quantile(0.5), Some(501));
+        assert_eq!(latencies.quantile(0.99), Some(991));
+        assert_eq!(latencies.quantile(1.0), Some(2000), "stands for more");
+        assert_eq!(latencies.max(), Some(Duration::from_millis(7)));
+        assert_eq!((latencies.at_least(1000), latencies.count()), (2, 1001));
     }
 
     /// Verdicts of states whose numbers are these, a millisecond apart each.

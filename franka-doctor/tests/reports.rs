@@ -83,6 +83,10 @@ fn what_each_host_is_known_for_is_found() {
     for (host, id, expected) in [
         ("ubuntu_pro_realtime", "kernel.rt", Good),
         ("ubuntu_pro_realtime", "timing.wake_up", Good),
+        ("ubuntu_pro_realtime", "timing.loopback", Good),
+        ("raspberry_pi5", "timing.loopback", Info),
+        ("wsl", "timing.loopback", Failure),
+        ("container", "timing.loopback", Unknown),
         ("ubuntu_pro_realtime", "smi", Unknown),
         // Without /sys/kernel/realtime.
         ("debian13_realtime", "kernel.rt", Good),

@@ -39,10 +39,10 @@ pub(crate) struct Doctor {
     /// Print a script with the commands that fix what was found, for reading before running
     #[arg(long, conflicts_with = "json")]
     fix: bool,
-    /// Measure for a minute, instead of ten seconds
+    /// Measure for a minute each, instead of ten seconds
     #[arg(long)]
     long: bool,
-    /// Measure for a second, and neither wake-ups nor round trips
+    /// Measure for a second, and neither wake-ups nor loopback nor round trips
     #[arg(long, conflicts_with = "long")]
     quick: bool,
     /// Say what is good, too, and why and by which source

@@ -1,5 +1,9 @@
 //! Tests of connections, benchmarks, and the simulator as a command. No figure is judged.
 
+#[path = "../../../franka-doctor/tests/trace/harm.rs"]
+mod harm;
+
+use std::ffi::OsStr;
 use std::io::{Read as _, Write as _};
 use std::net::TcpListener;
 
@@ -115,6 +119,26 @@ fn this_computer_and_the_way_to_a_robot_are_checked() {
             .contains("robot.version, robot.busy: unknown: no connection"),
         "{ran:?}"
     );
+}
+
+/// With the dry run of the control loop, and a robot that is connected to.
+#[test]
+fn a_doctor_changes_nothing_on_this_computer() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let robot = sim.address();
+    let doctor = ["doctor", &robot, "--for", "move", "--quick", "--json"];
+    let program = OsStr::new(env!("CARGO_BIN_EXE_franka"));
+    let variable = ("XDG_CONFIG_HOME", home.as_ref().as_os_str());
+    let traced = harm::traced(&home.path("calls"), program, &doctor, variable);
+    let Some((output, calls)) = traced else {
+        return;
+    };
+    let report = serde_json::from_slice(&output.stdout).expect("JSON");
+    for id in ["timing.dry_run", "robot.lost"] {
+        assert_ne!(verdict(&report, id), "unknown", "{report}");
+    }
+    let found = harm::harmful(&calls);
+    assert!(found.is_empty(), "{found:#?}");
 }
 
 /// What a report in JSON says of this check.

@@ -12,8 +12,8 @@ use nix::time::{ClockId, ClockNanosleepFlags, clock_gettime, clock_nanosleep};
 use nix::unistd::Pid;
 
 use crate::host::{Ethtool, Unread};
+use crate::latencies::Latencies;
 pub(super) use crate::lease::is_lasting;
-use crate::wake_up::WakeUps;
 
 /// The answer of a network card's driver, by `ioctl`.
 pub(super) fn ethtool(interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread> {
@@ -65,8 +65,8 @@ pub(super) fn wake_ups(
     priority: Option<i32>,
     cycles: u64,
     done: &AtomicU64,
-) -> Result<WakeUps, String> {
-    let mut wake_ups = WakeUps::new(priority);
+) -> Result<Latencies, String> {
+    let mut wake_ups = Latencies::new(priority);
     let clock = ClockId::CLOCK_MONOTONIC;
     let now = || {
         clock_gettime(clock)

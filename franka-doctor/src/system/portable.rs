@@ -8,7 +8,7 @@ use std::thread;
 use std::time::Instant;
 
 use crate::host::{Ethtool, Unread};
-use crate::wake_up::WakeUps;
+use crate::latencies::Latencies;
 
 /// Drivers of network cards are asked on Linux only.
 pub(super) fn ethtool(interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread> {
@@ -31,8 +31,8 @@ pub(super) fn wake_ups(
     priority: Option<i32>,
     cycles: u64,
     done: &AtomicU64,
-) -> Result<WakeUps, String> {
-    let mut wake_ups = WakeUps::new(priority);
+) -> Result<Latencies, String> {
+    let mut wake_ups = Latencies::new(priority);
     let mut due = Instant::now();
     for cycle in 0..cycles {
         due += Duration::from_millis(1);

@@ -1,10 +1,10 @@
-//! How late a thread wakes up: a histogram, like that of cyclictest.
+//! Latencies of a thread: a histogram, like that of cyclictest.
 
 use core::time::Duration;
 
-/// Latencies of wake-ups in buckets of a microsecond, up to 2 ms; and the exact maximum.
+/// Latencies of a thread in buckets of a microsecond, up to 2 ms; and the exact shortest and longest.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct WakeUps {
+pub struct Latencies {
     /// The `SCHED_FIFO` priority of the thread; `None` under the normal scheduler.
     pub priority: Option<i32>,
     buckets: Vec<u64>,
@@ -13,8 +13,8 @@ pub struct WakeUps {
     max: Duration,
 }
 
-impl WakeUps {
-    /// No wake-ups yet, of a thread with this priority.
+impl Latencies {
+    /// None yet, of a thread with this priority.
     pub fn new(priority: Option<i32>) -> Self {
         Self {
             priority,
@@ -25,7 +25,7 @@ impl WakeUps {
         }
     }
 
-    /// Counts a wake-up that was late by `latency`. Allocates nothing.
+    /// Counts one. Allocates nothing.
     pub fn note(&mut self, latency: Duration) {
         let us = usize::try_from(latency.as_micros()).unwrap_or(usize::MAX);
         self.buckets[us.min(BUCKETS - 1)] += 1;
@@ -39,18 +39,18 @@ impl WakeUps {
         self.count
     }
 
-    /// The shortest latency, exactly; `None` without wake-ups.
+    /// The shortest one, exactly; `None` if there is none.
     pub fn min(&self) -> Option<Duration> {
         (self.count > 0).then_some(self.min)
     }
 
-    /// The longest latency, exactly; `None` without wake-ups.
+    /// The longest one, exactly; `None` if there is none.
     pub fn max(&self) -> Option<Duration> {
         (self.count > 0).then_some(self.max)
     }
 
     /// The smallest whole number of microseconds that the part `part` (in `[0, 1]`) of latencies,
-    /// in whole microseconds, does not exceed; 2000 stands for more. `None` without wake-ups.
+    /// in whole microseconds, does not exceed; 2000 stands for more. `None` if there is none.
     pub fn quantile(&self, part: f64) -> Option<u64> {
         let wanted = (part.clamp(0.0, 1.0) * self.count as f64).ceil().max(1.0) as u64;
         let mut seen = 0;
@@ -63,7 +63,7 @@ impl WakeUps {
         None
     }
 
-    /// How many were late by at least `us` microseconds, at most 2000.
+    /// How many were at least `us` microseconds, which is 2000 at most.
     pub fn at_least(&self, us: usize) -> u64 {
         self.buckets[us.min(BUCKETS - 1)..].iter().sum()
     }
