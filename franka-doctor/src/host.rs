@@ -47,9 +47,9 @@ pub trait Host {
         duration: Duration,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Latencies, Unread>;
-    /// Times until datagrams to another thread on this host, one each millisecond for that long, come
-    /// back from it; both threads under `SCHED_FIFO`, where allowed. `progress` is called as by
-    /// [`Self::wake_ups`].
+    /// Times until datagrams to another thread on this host, one each millisecond for that long,
+    /// come back from it; both threads under `SCHED_FIFO`, where allowed. `progress` is called as
+    /// by [`Self::wake_ups`].
     fn loopback(
         &self,
         duration: Duration,

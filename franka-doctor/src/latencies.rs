@@ -2,7 +2,8 @@
 
 use core::time::Duration;
 
-/// Latencies of a thread in buckets of a microsecond, up to 2 ms; and the exact shortest and longest.
+/// Latencies of a thread in buckets of a microsecond, up to 2 ms; and exactly the shortest and the
+/// longest.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Latencies {
     /// The `SCHED_FIFO` priority of the thread; `None` under the normal scheduler.

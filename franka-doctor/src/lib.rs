@@ -91,8 +91,8 @@ pub struct Doctor {
 }
 
 impl Doctor {
-    /// For a host that is to do this: without a robot's address, with wake-ups and loopback measured
-    /// for 10 s each unless it only simulates, with names of people and devices replaced.
+    /// For a host that is to do this: without a robot's address, with wake-ups and loopback
+    /// measured for 10 s each unless it only simulates, with names of people and devices replaced.
     pub fn new(purpose: Purpose) -> Self {
         Self {
             purpose,

@@ -34,8 +34,8 @@ pub(crate) fn loopback(measured: Result<Latencies, Unread>, purpose: Purpose) ->
     about.finding(measured.map(judge), purpose)
 }
 
-/// Judges `what` by the longest latency: good below the first of `limits_us`, usable below the second,
-/// and a failure above the last.
+/// Judges `what` by the longest latency: good below the first of `limits_us`, usable below the
+/// second, and a failure above the last.
 fn judge(latencies: &Latencies, what: &str, limits_us: [u128; 3]) -> Judged {
     let quantile = |part| latencies.quantile(part).unwrap_or_default();
     let (Some(min), Some(max)) = (latencies.min(), latencies.max()) else {

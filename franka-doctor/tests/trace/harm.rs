@@ -5,9 +5,9 @@ use std::path::Path;
 use std::process::{Command, Output};
 use std::{env, fs};
 
-/// Runs a program, with these arguments, under `strace`. Returns what it printed, and its calls, one
-/// a line; `None` where no program can be traced, which is a failure with `CI=true`. The calls are
-/// written to `file`, which has to be new.
+/// Runs a program, with these arguments, under `strace`. Returns what it printed, and its calls,
+/// one a line; `None` where no program can be traced, which is a failure with `CI=true`. The calls
+/// are written to `file`, which has to be new.
 pub(crate) fn traced(
     file: &Path,
     program: &OsStr,
