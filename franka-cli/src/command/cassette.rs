@@ -1,6 +1,7 @@
 //! `franka cassette`: what a tap has recorded.
 
-use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::fs::File;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -11,6 +12,7 @@ use franka_async::cassette::{
 };
 use serde_json::json;
 
+use super::tap::{Listening, failed};
 use crate::ending::{Ending, Failure};
 use crate::output::{Output, say};
 use crate::values::seconds;
@@ -29,13 +31,8 @@ pub(crate) enum Cassette {
     Play {
         /// The cassette
         file: PathBuf,
-        /// Where clients connect to
-        #[arg(long, value_name = "IP", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
-        listen: IpAddr,
-        /// Port for clients of the robot; those of the Hand and the vacuum gripper follow. 0 takes
-        /// free ones
-        #[arg(long, default_value_t = 1337)]
-        port: u16,
+        #[command(flatten)]
+        listening: Listening,
         /// Accept nothing but the recorded bytes
         #[arg(long)]
         strict: bool,
@@ -60,8 +57,7 @@ impl Cassette {
             Self::Info { file, output } => info(&open(&file)?, output),
             Self::Play {
                 file,
-                listen,
-                port,
+                listening,
                 strict,
                 patience,
                 output,
@@ -70,14 +66,13 @@ impl Cassette {
                 if !strict {
                     options.matching = Matching::Lenient;
                 }
-                let at = |device: Device| {
-                    let port = match port {
-                        0 => 0,
-                        port => port + (device.port() - Device::Robot.port()),
-                    };
-                    SocketAddr::from((listen, port))
-                };
-                let server = CassetteServer::start_at(open(&file)?, at, options);
+                let tape = open(&file)?;
+                if tape.connections.is_empty() {
+                    let message = format!("{} has no connections", file.display());
+                    return Err(Failure::new(Ending::Failed, message).into());
+                }
+                let at = |device| listening.at(device);
+                let server = CassetteServer::start_at(tape, at, options);
                 let server =
                     server.map_err(|error| Failure::new(Ending::Host, error.to_string()))?;
                 for device in Device::ALL {
@@ -106,7 +101,8 @@ impl Cassette {
                     let capture = capture.with_context(|| format!("reading {}", from.display()))?;
                     pcap::from_capture(&capture)?.to_bytes()?
                 };
-                std::fs::write(&to, bytes).with_context(|| format!("writing {}", to.display()))?;
+                let written = File::create_new(&to).and_then(|mut file| file.write_all(&bytes));
+                written.with_context(|| format!("writing {}", to.display()))?;
                 Ok(Ending::Done)
             }
         }
@@ -116,8 +112,7 @@ impl Cassette {
 fn open(file: &Path) -> anyhow::Result<Tape> {
     let tape = Tape::open(file);
     let tape = tape.map_err(|error| {
-        let message = format!("{}: {error}", file.display());
-        Failure::new(Ending::Host, message)
+        failed(file, &error)
             .advice("franka tap makes cassettes; recordings are for franka explain.")
     })?;
     if let Some(damage) = &tape.damage {
@@ -156,6 +151,8 @@ fn info(tape: &Tape, output: Output) -> anyhow::Result<Ending> {
         "damage": tape.damage,
     });
     output.print(&value, || {
-        format!("{}\n{} dropped", lines.join("\n"), tape.dropped)
+        let count = lines.len();
+        lines.push(format!("{count} connections, {} dropped", tape.dropped));
+        lines.join("\n")
     })
 }

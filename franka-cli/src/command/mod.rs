@@ -71,7 +71,7 @@ pub(crate) enum Command {
 impl Command {
     /// Whether the command logs by itself.
     pub(crate) fn logs(&self) -> bool {
-        matches!(self, Self::Sim(_))
+        matches!(self, Self::Sim(_) | Self::Tap(_))
     }
 
     /// Does what the command says.

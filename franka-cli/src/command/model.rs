@@ -5,7 +5,7 @@ use clap::{Args, Subcommand};
 use franka_async::model::{
     EndEffector, Frame, JointVector, Load, Model as ArmModel, inverse_kinematics,
 };
-use franka_async::nalgebra::{Matrix3, Vector3};
+use franka_async::nalgebra::{Matrix, Matrix3, Storage, U1, U7, Vector3};
 use franka_async::{Pose, READY, pose};
 use franka_sim::command_line::numbers;
 use serde_json::json;
@@ -152,23 +152,16 @@ impl Model {
             }
             Self::Jacobian { arm, frame } => {
                 let Known { model, q, ee, .. } = arm.known().await?;
-                let jacobian = model.zero_jacobian(frame, &q, &ee);
-                let rows = jacobian.row_iter();
-                print_rows(
-                    "jacobian",
-                    rows.map(|row| row.iter().copied().collect()),
-                    arm.output,
-                )
+                let rows = model.zero_jacobian(frame, &q, &ee);
+                let names = ["x", "y", "z", "rx", "ry", "rz"];
+                let unit = |row| if row < 3 { "m/rad" } else { "rad/rad" };
+                print_rows("jacobian", &names, unit, rows.row_iter(), arm.output)
             }
             Self::Mass { arm } => {
                 let Known { model, q, load, .. } = arm.known().await?;
-                let mass = model.mass(&q, &load);
-                let rows = mass.row_iter();
-                print_rows(
-                    "mass",
-                    rows.map(|row| row.iter().copied().collect()),
-                    arm.output,
-                )
+                let rows = model.mass(&q, &load);
+                let names = ["1", "2", "3", "4", "5", "6", "7"];
+                print_rows("mass", &names, |_| "kg m2", rows.row_iter(), arm.output)
             }
         }
     }
@@ -194,14 +187,21 @@ fn print_pose(pose: &Pose, output: Output) -> anyhow::Result<Ending> {
     })
 }
 
-fn print_rows(
-    name: &str,
-    rows: impl Iterator<Item = Vec<f64>>,
+/// Prints a matrix with a column for each joint; its rows have `names`, and units by their index.
+fn print_rows<'a, S: Storage<f64, U1, U7> + 'a>(
+    what: &str,
+    names: &[&str],
+    unit: impl Fn(usize) -> &'static str,
+    rows: impl Iterator<Item = Matrix<f64, U1, U7, S>>,
     output: Output,
 ) -> anyhow::Result<Ending> {
-    let rows: Vec<Vec<f64>> = rows.collect();
-    output.print(&json!({ name: &rows }), || {
-        let lines = rows.iter().map(|row| columns(row, 4) + "\n");
-        lines.collect()
+    let rows: Vec<[f64; 7]> = rows.map(|row| std::array::from_fn(|i| row[i])).collect();
+    output.print(&json!({ what: &rows }), || {
+        let joints = (1..=7).map(|joint| format!("{joint:>10}"));
+        let mut text = format!("  {}  joint\n", joints.collect::<String>());
+        for (i, (name, row)) in names.iter().zip(&rows).enumerate() {
+            text += &format!("{name:2}{} {}\n", columns(row, 4), unit(i));
+        }
+        text
     })
 }

@@ -1,10 +1,10 @@
 //! `franka tap`: what passes between clients and a robot, byte for byte.
 
-use std::net::{IpAddr, Ipv4Addr};
-use std::path::PathBuf;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::path::{Path, PathBuf};
 
-use clap::Args;
-use franka_async::cassette::{Device, Route, Tap as Recording};
+use clap::{Args, value_parser};
+use franka_async::cassette::{CassetteError, Device, Route, Tap as Recording};
 use serde_json::json;
 
 use crate::connection::{Which, resolve};
@@ -14,8 +14,8 @@ use crate::output::{Output, say};
 
 /// Record what passes between clients and a robot, byte for byte
 ///
-/// Until Ctrl-C. Clients connect to this computer instead of the robot. For looking closely:
-/// commands reach the robot a little later.
+/// Until Ctrl-C. Clients connect to this computer instead of the robot, which is connected to when
+/// a client comes. For looking closely: commands reach the robot a little later.
 #[derive(Debug, Args)]
 pub(crate) struct Tap {
     /// The new file
@@ -23,15 +23,33 @@ pub(crate) struct Tap {
     file: PathBuf,
     #[command(flatten)]
     which: Which,
+    #[command(flatten)]
+    listening: Listening,
+    #[command(flatten)]
+    output: Output,
+}
+
+/// Where clients connect to.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct Listening {
     /// Where clients connect to
     #[arg(long, value_name = "IP", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
     listen: IpAddr,
     /// Port for clients of the robot; those of the Hand and the vacuum gripper follow. 0 takes free
     /// ones
-    #[arg(long, default_value_t = 1337)]
+    #[arg(long, default_value_t = 1337, value_parser = value_parser!(u16).range(..=65533))]
     port: u16,
-    #[command(flatten)]
-    output: Output,
+}
+
+impl Listening {
+    /// The address for clients of a device.
+    pub(super) fn at(self, device: Device) -> SocketAddr {
+        let port = match self.port {
+            0 => 0,
+            port => port + (device.port() - Device::Robot.port()),
+        };
+        (self.listen, port).into()
+    }
 }
 
 impl Tap {
@@ -48,20 +66,16 @@ impl Tap {
             (Device::Hand, hand),
             (Device::VacuumGripper, vacuum),
         ];
-        for (i, (device, endpoint)) in devices.into_iter().enumerate() {
-            let port = match self.port {
-                0 => 0,
-                port => port.checked_add(i as u16).unwrap_or(0),
-            };
+        for (device, endpoint) in devices {
             routes.push(Route {
                 device,
-                listen: (self.listen, port).into(),
+                listen: self.listening.at(device),
                 robot: resolve(&endpoint, device.port()).await?,
             });
         }
         let interrupt = interrupted()?;
         let tap = Recording::start(&routes, &self.file);
-        let tap = tap.map_err(|error| Failure::new(Ending::Host, error.to_string()))?;
+        let tap = tap.map_err(|error| failed(&self.file, &error))?;
         for route in &routes {
             if let Some(address) = tap.address(route.device) {
                 say(&format!(
@@ -73,7 +87,7 @@ impl Tap {
         say("Ctrl-C ends");
         interrupt.await;
         let report = tokio::task::spawn_blocking(|| tap.finish()).await?;
-        let report = report.map_err(|error| Failure::new(Ending::Host, error.to_string()))?;
+        let report = report.map_err(|error| failed(&self.file, &error))?;
         let value = json!({
             "connections": report.connections,
             "events": report.events,
@@ -89,4 +103,9 @@ impl Tap {
             )
         })
     }
+}
+
+/// What becomes of an error with a cassette.
+pub(super) fn failed(file: &Path, error: &CassetteError) -> Failure {
+    Failure::new(Ending::Host, format!("{}: {error}", file.display()))
 }

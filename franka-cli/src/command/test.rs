@@ -89,7 +89,7 @@ impl Communication {
                 _ => ": franka doctor says what may be the cause",
             };
             let tables: String = all.iter().map(table).collect();
-            format!("{tables}{style}{verdict}{style:#}{about}")
+            format!("{tables}verdict        {style}{verdict}{style:#}{about}")
         })?;
         Ok(ending)
     }

@@ -62,7 +62,8 @@ fn the_model_computes_with_the_robot_and_without() {
         .json();
     assert!(mass["mass"][0][0].as_f64().expect("kg m2") > 0.0);
     let jacobian = home.run(&["model", "jacobian", "--kind", "fr3"]).done();
-    assert_eq!(jacobian.lines().count(), 6);
+    assert_eq!(jacobian.lines().count(), 7);
+    assert!(jacobian.trim_end().ends_with(" rad/rad"), "{jacobian}");
     let far = home.run(&["model", "ik", "--kind", "fr3", "--pose", "2,0,0"]);
     far.failed(1, &["out of reach"]);
     Simulated::each(|sim| {

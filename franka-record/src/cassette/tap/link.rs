@@ -41,7 +41,7 @@ impl Link<'_> {
 }
 
 /// Forwards until both sides have closed, or the tap is stopped. A robot that cannot be reached
-/// shows as a connection that ends at once.
+/// shows as a connection that ends at once, and is logged.
 pub(super) fn serve(
     client: TcpStream,
     route: Route,
@@ -58,7 +58,9 @@ pub(super) fn serve(
         })
     };
     let mut refused = lane(Side::Robot, true);
-    if forward(&client, route, &lane, stop).is_err() {
+    if let Err(error) = forward(&client, route, &lane, stop) {
+        let Route { device, robot, .. } = route;
+        tracing::warn!("a client was turned away: no {device} at {robot}: {error}");
         refused.note(refused.now(), Payload::End);
     }
     // It may be closed already.
