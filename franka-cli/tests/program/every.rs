@@ -58,13 +58,26 @@ const SHORT: [&str; 3] = [
     "doctor ROBOT --only robot,disk --for read --quick",
 ];
 
+/// Commands that go on until Ctrl-C, which is their end, and what they show once they have begun.
+const LASTING: [(&str, &str); 7] = [
+    ("sim --port 0", "vacuum gripper on"),
+    ("sim --robot fer --port 0", "vacuum gripper on"),
+    ("dash ROBOT --listen 127.0.0.1:0", "http://"),
+    ("tap new.mcap ROBOT --port 0", "Ctrl-C ends"),
+    ("record new.mcap ROBOT", "Ctrl-C ends"),
+    ("state ROBOT --watch", "Ctrl-C ends"),
+    ("guide ROBOT --yes --realtime ignore", "Ctrl-C ends"),
+];
+
 /// Commands that need no robot.
-const ALONE: [&str; 7] = [
+const ALONE: [&str; 9] = [
     "robots list",
     "model pose --kind fr3",
     "limits --kind fer",
     "explain run.mcap",
     "export run.mcap --csv table.csv",
+    "cassette info tape.mcap",
+    "cassette convert tape.mcap new.pcap",
     "bench wake --seconds 0.1",
     "bench loop --seconds 0.1",
 ];
@@ -79,12 +92,13 @@ fn words<'a>(command: &'a str, robot: &'a str, hand: &'a str) -> Vec<&'a str> {
     command.split(' ').map(word).collect()
 }
 
-/// Records a motion of a robot like this to `run.mcap`.
-fn record(home: &Home, sim: Sim) {
+/// Records a motion of a robot like this to `run.mcap`; returns the robot.
+fn record(home: &Home, sim: Sim) -> Simulated {
     let sim = Simulated::fast(sim);
     let robot = sim.address();
     let way = "move ROBOT --by 0,0.1,0 --record run.mcap --yes --realtime ignore";
     home.run(&words(way, &robot, "")).done();
+    sim
 }
 
 #[test]
@@ -113,10 +127,7 @@ fn without_a_robot_every_command_says_so() {
 
 #[test]
 fn a_robot_that_is_taken_is_left_alone_by_every_command() {
-    for (kind, sim) in [
-        (Sim::fr3(), Simulated::fr3()),
-        (Sim::fer(), Simulated::fer()),
-    ] {
+    Simulated::each_kind(|kind, sim| {
         let (home, robot, hand) = (Home::new(), sim.address(), sim.hand());
         record(&home, kind);
         let runtime = tokio::runtime::Runtime::new().expect("a runtime");
@@ -134,15 +145,12 @@ fn a_robot_that_is_taken_is_left_alone_by_every_command() {
         sim.rests(RobotMode::Idle);
         drop(fingers);
         runtime.block_on(first.shutdown());
-    }
+    });
 }
 
 #[test]
 fn every_motion_is_braked_by_ctrl_c() {
-    for (kind, sim) in [
-        (Sim::fr3(), Simulated::fr3()),
-        (Sim::fer(), Simulated::fer()),
-    ] {
+    Simulated::each_kind(|kind, sim| {
         let (home, robot) = (Home::new(), sim.address());
         record(&home, kind);
         for command in MOVING
@@ -150,27 +158,24 @@ fn every_motion_is_braked_by_ctrl_c() {
             .filter(|command| !command.starts_with("guide"))
         {
             let mut program = home.start(&words(command, &robot, ""));
-            begins(&sim, command);
+            begins(sim, command);
             program.signal(Signal::SIGINT);
             program
                 .ended()
                 .failed(130, &["braking", "braked, and rests"]);
             sim.rests(RobotMode::Idle);
         }
-    }
+    });
 }
 
 #[test]
 fn a_reflex_ends_every_motion_and_is_explained() {
-    for (kind, sim) in [
-        (Sim::fr3(), Simulated::fr3()),
-        (Sim::fer(), Simulated::fer()),
-    ] {
+    Simulated::each_kind(|kind, sim| {
         let (home, robot) = (Home::new(), sim.address());
         record(&home, kind);
         for command in MOVING {
             let program = home.start(&words(command, &robot, ""));
-            begins(&sim, command);
+            begins(sim, command);
             sim.with(|robot| {
                 robot.push_end_effector(Wrench::new(0.0, -150.0, 0.0, 0.0, 0.0, 0.0), 500)
             });
@@ -179,7 +184,7 @@ fn a_reflex_ends_every_motion_and_is_explained() {
             home.run(&["recover", &robot, "--yes"]).done();
             sim.rests(RobotMode::Idle);
         }
-    }
+    });
 }
 
 /// Waits until a command has begun to move the arm, or to hold it.
@@ -191,32 +196,58 @@ fn begins(sim: &Simulated, command: &str) {
 }
 
 #[test]
-fn facts_fit_into_a_terminal_of_80_columns() {
-    for (kind, sim) in [
-        (Sim::fr3(), Simulated::fr3()),
-        (Sim::fer(), Simulated::fer()),
-    ] {
-        let (home, robot, hand) = (Home::new(), sim.address(), sim.hand());
-        record(&home, kind);
+fn everything_fits_into_a_terminal_of_80_columns() {
+    Simulated::each_kind(|kind, sim| {
+        let (home, robot) = (Home::new(), sim.address());
+        // Its Hand is fast.
+        let quick = record(&home, kind);
+        let hand = quick.hand();
+        let tape = Terminal::run(&home, &words("tap tape.mcap ROBOT --port 0", &robot, ""));
+        tape.shows("Ctrl-C ends");
+        home.run(&["state", &tape.address()]).done();
+        tape.signal(Signal::SIGINT);
+        fits("tap", &home, tape, &[0]);
         for command in STILL.iter().chain(&ALONE).chain(&SHORT) {
-            let (code, shown) = Terminal::run(&home, &words(command, &robot, &hand)).ended();
+            let terminal = Terminal::run(&home, &words(command, &robot, &hand));
             // The doctor has found something that fails, on a busy host.
-            let is_doctor = command.starts_with("doctor");
-            assert!(
-                code == Some(0) || is_doctor && code == Some(1),
-                "{command}: {shown}"
-            );
-            let shown = anstream::adapter::strip_str(&shown).to_string();
-            // A progress bar begins its line again.
-            let lines = shown.split(['\n', '\r']).map(|line| line.chars().count());
-            let longest = lines.max().unwrap_or(0);
-            // Names of files are as long as they are.
-            let has_path = shown.contains(&*home.as_ref().to_string_lossy());
-            assert!(longest <= 80 || has_path, "{command}: {shown}");
-            assert!(longest > 0, "{command}");
-            remove(&home.path("new.mcap"));
-            remove(&home.path("table.csv"));
+            let codes: &[i32] = match command.starts_with("doctor") {
+                true => &[0, 1],
+                false => &[0],
+            };
+            fits(command, &home, terminal, codes);
         }
+        for (command, begun) in LASTING {
+            let terminal = Terminal::run(&home, &words(command, &robot, &hand));
+            terminal.shows(begun);
+            terminal.signal(Signal::SIGINT);
+            fits(command, &home, terminal, &[0]);
+        }
+        let play = "cassette play tape.mcap --port 0 --patience 60";
+        let terminal = Terminal::run(&home, &words(play, "", ""));
+        terminal.shows(" at ");
+        home.run(&["state", &terminal.address()]).done();
+        fits(play, &home, terminal, &[0]);
+    });
+}
+
+/// Waits for the end of a command with one of these `codes`. Everything that it has shown fits.
+#[track_caller]
+fn fits(command: &str, home: &Home, terminal: Terminal, codes: &[i32]) {
+    let (code, shown) = terminal.ended();
+    assert!(
+        code.is_some_and(|code| codes.contains(&code)),
+        "{command}: {shown}"
+    );
+    let shown = anstream::adapter::strip_str(&shown).to_string();
+    // A progress bar begins its line again, and a page at the first line.
+    let lines = shown.split(['\n', '\r']).map(|line| line.chars().count());
+    let longest = lines.max().unwrap_or(0);
+    // Names of files are as long as they are, and a log is for other programs, too.
+    let has_path = shown.contains(&*home.as_ref().to_string_lossy()) || shown.contains(" INFO ");
+    assert!(longest <= 80 || has_path, "{command}: {shown}");
+    assert!(longest > 0 || command.contains(" convert "), "{command}");
+    for new in ["new.mcap", "new.pcap", "table.csv"] {
+        remove(&home.path(new));
     }
 }
 
@@ -237,10 +268,8 @@ fn every_command_refuses_arguments_that_it_does_not_know() {
     for command in [
         "doctor",
         "sim",
-        "tap",
-        "cassette info x",
+        "tap x y",
         "cassette play x",
-        "cassette convert x y",
         "robots add a b",
         "robots remove a",
         "completions bash",

@@ -7,7 +7,7 @@ use crate::simulated::Simulated;
 
 #[test]
 fn the_hand_opens_grasps_and_lets_go() {
-    Simulated::each(|sim| {
+    Simulated::each_fast(|sim| {
         let (home, hand) = (Home::new(), sim.hand());
         let run = |rest: &[&str]| {
             let arguments = [&["gripper"], rest, &[&hand, "--yes", "--json"]].concat();
@@ -37,21 +37,23 @@ fn the_hand_opens_grasps_and_lets_go() {
 
 #[test]
 fn ctrl_c_stops_the_fingers() {
-    let (home, sim) = (Home::new(), Simulated::fr3());
-    let hand = sim.hand();
-    let width = || {
-        let state = home.run(&["gripper", "state", &hand, "--json"]).json();
-        state["width"].as_f64().expect("metres")
-    };
-    home.run(&["gripper", "home", &hand, "--yes"]).done();
-    home.run(&["gripper", "open", &hand, "--yes", "--width", "0.08"])
-        .done();
-    let slow = ["gripper", "close", &hand, "--yes", "--speed", "0.002"];
-    let mut program = home.start(&slow);
-    until("a motion", || sim.fingers_width() < 0.0798);
-    program.signal(Signal::SIGINT);
-    program.ended().failed(130, &["the fingers were stopped"]);
-    let stopped = width();
-    assert!(stopped > 0.04, "{stopped}");
-    assert!((width() - stopped).abs() < 1e-4);
+    Simulated::each(|sim| {
+        let home = Home::new();
+        let hand = sim.hand();
+        let width = || {
+            let state = home.run(&["gripper", "state", &hand, "--json"]).json();
+            state["width"].as_f64().expect("metres")
+        };
+        home.run(&["gripper", "home", &hand, "--yes"]).done();
+        home.run(&["gripper", "open", &hand, "--yes", "--width", "0.08"])
+            .done();
+        let slow = ["gripper", "close", &hand, "--yes", "--speed", "0.002"];
+        let mut program = home.start(&slow);
+        until("a motion", || sim.fingers_width() < 0.0798);
+        program.signal(Signal::SIGINT);
+        program.ended().failed(130, &["the fingers were stopped"]);
+        let stopped = width();
+        assert!(stopped > 0.04, "{stopped}");
+        assert!((width() - stopped).abs() < 1e-4);
+    });
 }

@@ -43,7 +43,7 @@ fn a_connection_is_tested_or_two() {
 #[test]
 fn ctrl_c_ends_the_test_of_two_arms() {
     let home = Home::new();
-    let (one, other) = (Simulated::fr3(), Simulated::fr3());
+    let (one, other) = (Simulated::fr3(), Simulated::fer());
     let (robot, two) = (one.address(), other.address());
     let test = [
         "test",

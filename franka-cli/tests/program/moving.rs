@@ -20,9 +20,8 @@ const SLOW: [&str; 4] = ["--by", "0,0.2,0", "--speed", "0.3"];
 
 #[test]
 fn every_kind_of_target_is_reached() {
-    for sim in [Sim::fr3(), Sim::fer()] {
-        let (home, sim) = (Home::new(), Simulated::fast(sim));
-        let robot = sim.address();
+    Simulated::each_fast(|sim| {
+        let (home, robot) = (Home::new(), sim.address());
         let run = |rest: &[&str]| home.run(&moving(&robot, rest)).done();
         let place = || sim.with(|robot| robot.true_pose().translation.vector);
         let near = |got: f64, wanted: f64| assert!((got - wanted).abs() < 0.01, "{got}, {wanted}");
@@ -41,7 +40,7 @@ fn every_kind_of_target_is_reached() {
         let json = home.run(&moving(&robot, &["--pose", &to, "--json"])).json();
         near(place().z, start.z);
         assert!(json["duration"].is_object(), "{json}");
-    }
+    });
 }
 
 #[test]

@@ -1,20 +1,18 @@
 //! Recordings and cassettes.
 
+use std::net::TcpListener;
+
 use franka_async::gripper::Gripper;
 use franka_async::recording::{RecordOptions, Recorder, Track};
 use franka_async::{Offset, Pose, Realtime, Robot};
-use franka_sim::Sim;
 use nix::sys::signal::Signal;
 
-use crate::program::{Home, until};
+use crate::program::{Home, robot_address, until};
 use crate::simulated::Simulated;
 
 #[test]
 fn a_motion_is_recorded_exported_and_replayed() {
-    for (kind, patient) in [
-        (Sim::fr3(), Simulated::fr3()),
-        (Sim::fer(), Simulated::fer()),
-    ] {
+    Simulated::each_kind(|kind, patient| {
         let (home, sim) = (Home::new(), Simulated::fast(kind));
         let robot = sim.address();
         let moving = ["--realtime", "ignore", "--yes"];
@@ -76,13 +74,13 @@ fn a_motion_is_recorded_exported_and_replayed() {
             json["position"]["max"].as_f64().expect("metres") < 0.05,
             "{json}"
         );
-    }
+    });
 }
 
 #[test]
 fn episodes_become_a_dataset() {
-    for sim in [Sim::fr3(), Sim::fer()] {
-        let (home, sim) = (Home::new(), Simulated::fast(sim));
+    Simulated::each_fast(|sim| {
+        let home = Home::new();
         let runtime = tokio::runtime::Runtime::new().expect("a runtime");
         let file = home.path("run.mcap");
         let recorded = async {
@@ -123,7 +121,7 @@ fn episodes_become_a_dataset() {
         assert_eq!(info["total_frames"], 2 * frames, "{info}");
         let other = [&export[..4], &["--measured", "--fps", "30"]].concat();
         home.run(&other).failed(1, &["fps"]);
-    }
+    });
 }
 
 #[test]
@@ -148,6 +146,36 @@ fn states_are_recorded_until_ctrl_c() {
         home.run(&["explain", "nothing.mcap"])
             .failed(6, &["nothing.mcap"]);
     });
+}
+
+#[test]
+fn a_tap_tells_why_it_turns_clients_away_and_keeps_files() {
+    let home = Home::new();
+    let free = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let nowhere = free.local_addr().expect("bound").to_string();
+    drop(free);
+    let arguments = ["tap", "empty.mcap", &nowhere, "--port", "0"];
+    let mut tap = home.start(&arguments);
+    let at = address(&mut tap);
+    home.run(&["state", &at])
+        .failed(4, &["closed the connection"]);
+    tap.signal(Signal::SIGINT);
+    let ran = tap.ended();
+    assert!(
+        ran.err.contains(&format!("no robot at {nowhere}")),
+        "{ran:?}"
+    );
+    ran.done();
+    home.run(&arguments)
+        .failed(6, &["empty.mcap", "File exists"]);
+    let unknown = ["tap", "x.mcap", "no.such.host.invalid"];
+    home.run(&unknown).failed(3, &["no.such.host.invalid"]);
+    for command in [&["tap", "x.mcap", "y"][..], &["cassette", "play", "x.mcap"]] {
+        let last = [command, &["--port", "65534"]].concat();
+        home.run(&last).failed(2, &["0..=65533"]);
+    }
+    let convert = ["cassette", "convert", "empty.mcap", "empty.mcap"];
+    home.run(&convert).failed(6, &["writing empty.mcap"]);
 }
 
 #[test]
@@ -204,11 +232,5 @@ fn address(program: &mut crate::program::Started) -> String {
         err.read_exact(&mut byte).expect("a line");
         line.push(byte[0]);
     }
-    let line = String::from_utf8(line).expect("text");
-    let (_, rest) = line.split_once(" at ").expect("an address");
-    rest.trim()
-        .split(',')
-        .next()
-        .expect("an address")
-        .to_owned()
+    robot_address(&String::from_utf8(line).expect("text"))
 }

@@ -1,5 +1,6 @@
 //! Robots in this process.
 
+use std::thread;
 use std::time::Duration;
 
 use franka_async::state::{RobotMode, RobotState};
@@ -23,10 +24,28 @@ impl Simulated {
         Self::of(Sim::fer())
     }
 
-    /// Both robots, one after the other.
-    pub(crate) fn each(test: impl Fn(&Self)) {
-        test(&Self::fr3());
-        test(&Self::fer());
+    /// Both robots, side by side.
+    pub(crate) fn each(test: impl Fn(&Self) + Sync) {
+        Self::side_by_side(Self::of, |_, sim| test(sim));
+    }
+
+    /// Both robots, side by side, as [`Self::fast`] makes them.
+    pub(crate) fn each_fast(test: impl Fn(&Self) + Sync) {
+        Self::side_by_side(Self::fast, |_, sim| test(sim));
+    }
+
+    /// Both robots, side by side, with others like them that have not been started.
+    pub(crate) fn each_kind(test: impl Fn(Sim, &Self) + Sync) {
+        Self::side_by_side(Self::of, test);
+    }
+
+    fn side_by_side(start: fn(Sim) -> Self, test: impl Fn(Sim, &Self) + Sync) {
+        thread::scope(|scope| {
+            for kind in [Sim::fr3 as fn() -> Sim, Sim::fer] {
+                let test = &test;
+                scope.spawn(move || test(kind(), &start(kind())));
+            }
+        });
     }
 
     /// Its clock goes as fast as the program answers: for motions that nothing interrupts.
@@ -106,4 +125,4 @@ fn speed(state: &RobotState) -> f64 {
 }
 
 /// For commands of a busy computer.
-const PATIENCE: Duration = Duration::from_secs(2);
+const PATIENCE: Duration = Duration::from_secs(10);

@@ -11,7 +11,7 @@ use nix::pty::{Winsize, openpty};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
-use crate::program::{Home, until};
+use crate::program::{Home, robot_address, until};
 
 /// A program, and the terminal that it runs in. Killed when dropped.
 pub(crate) struct Terminal {
@@ -70,6 +70,11 @@ impl Terminal {
     #[track_caller]
     pub(crate) fn shows(&self, text: &str) {
         until(&format!("{text:?}"), || self.shown().contains(text));
+    }
+
+    /// The address of the robot that a tap or a player has shown.
+    pub(crate) fn address(&self) -> String {
+        robot_address(&self.shown())
     }
 
     pub(crate) fn types(&mut self, text: &str) {
