@@ -19,7 +19,7 @@ use franka_sim::{Running, Sim, Tool};
 use tokio::runtime::{Builder, Runtime};
 use tokio::sync::watch;
 
-use crate::{SOON, alone, connect, long_way, under_way};
+use crate::{SOON, alone, connect, under_way};
 
 const WORKERS: usize = 2;
 
@@ -91,12 +91,24 @@ impl Setting {
         release
     }
 
-    /// The report of a motion of some twenty seconds, with this in its middle.
+    /// The report of a motion with this in its middle, which lasts until that is over.
     fn moves_beside(&self, disturb: impl FnOnce(&Self)) -> MotionReport {
-        let moving = self.runtime.spawn(long_way(&self.robot).into_future());
+        let up = Pose::translation(0.0, 0.0, 0.1);
+        let (sender, targets) = watch::channel(up * self.robot.pose());
+        let moving = self.robot.follow(targets).speed(0.05);
+        let moving = self.runtime.spawn(moving.into_future());
         self.runtime.block_on(under_way(&self.robot));
+        let missed = || {
+            let stats = self.robot.stats();
+            (stats.lost.get(), stats.skipped.get())
+        };
+        let before = missed();
         disturb(self);
+        // Of the motion, whose first state the robot lets wait for some milliseconds only, this
+        // part: a thread without priority may come too late for that one.
+        assert_eq!(missed(), before, "lost and skipped");
         assert!(!moving.is_finished(), "it is still under way");
+        drop(sender);
         let report = self.runtime.block_on(moving).expect("no panic");
         self.runtime.block_on(self.robot.shutdown());
         report.expect("it arrives all the same")
@@ -105,7 +117,6 @@ impl Setting {
 
 fn assert_every_state_was_answered(report: &MotionReport) {
     assert_eq!(report.success_rate_min, 1.0, "{report:?}");
-    assert_eq!((report.lost_states, report.skipped_states), (0, 0));
     let error = report.final_error.expect("it has a target");
     assert!(error.translation < 1e-3, "{report:?}");
 }
@@ -132,7 +143,10 @@ fn blocking_every_worker_loses_no_cycle_of_a_reader_on_a_thread_of_its_own() {
         let release = setting.block_workers();
         let begun = setting.time();
         setting.wait(2000);
-        let taken: Vec<_> = std::iter::from_fn(|| reader.pop()).collect();
+        let cycles = std::iter::from_fn(|| reader.pop());
+        let taken: Vec<_> = cycles
+            .take_while(|cycle| cycle.record.time <= begun + 2000)
+            .collect();
         drop(release);
         let times = taken.iter().map(|cycle| cycle.record.time);
         let last = times.clone().next_back().expect("states came");
