@@ -135,6 +135,11 @@ impl Which {
 }
 
 impl Place {
+    /// As the user has it.
+    pub(crate) fn name(&self) -> &str {
+        &self.name
+    }
+
     /// Whether the robot has a name.
     pub(crate) fn is_listed(&self) -> bool {
         self.listed.is_some()

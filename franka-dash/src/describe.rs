@@ -42,6 +42,8 @@ pub(crate) struct Hello {
     /// Names of the guards, in the order of the bits of a state frame.
     guards: Vec<&'static str>,
     keep_out: Vec<Region>,
+    /// The names of all robots of the server, if there are several.
+    siblings: Vec<String>,
 }
 
 /// A region that the arm is kept out of, base frame, `[m]`.
@@ -132,6 +134,7 @@ impl Hello {
             },
             guards: Guard::ALL.map(name).into(),
             keep_out: hub.keep_out.iter().map(Region::from).collect(),
+            siblings: hub.siblings.to_vec(),
         }
     }
 }

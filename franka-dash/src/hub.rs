@@ -37,6 +37,8 @@ pub(crate) struct Hub {
     pub(crate) contact: watch::Sender<Option<Contact>>,
     /// Regions that the arm is kept out of.
     pub(crate) keep_out: Vec<Obstacle>,
+    /// The names of all robots of the server, if there are several.
+    pub(crate) siblings: Arc<[String]>,
     /// One permit per viewer.
     pub(crate) seats: Arc<Semaphore>,
     pub(crate) simulated: Option<Simulated>,
@@ -65,6 +67,7 @@ impl Hub {
             recordings,
             patience,
             keep_out,
+            siblings,
         } = options;
         let connected = source.robot().is_some();
         let permissions = Permissions {
@@ -85,6 +88,7 @@ impl Hub {
             heading: watch::Sender::default(),
             contact: watch::Sender::default(),
             keep_out,
+            siblings,
             seats: Arc::new(Semaphore::new(VIEWERS_MAX)),
             simulated,
             fingers: gripper.map(Fingers::new),

@@ -25,6 +25,7 @@
 //! | `recording` | recordings, in a folder of the server |
 //! | `reply` | what viewers are told, JSON |
 //! | `request` | what viewers ask for, JSON |
+//! | `several` | several robots on one server |
 //! | `simulated` | what is done to a simulated robot |
 //! | `source` | where states come from |
 //! | `statistics` | how punctual control is |
@@ -46,7 +47,8 @@
 //! # }
 //! ```
 //!
-//! `axum::serve(listener, page)` then serves it; any back end may nest the router instead.
+//! `axum::serve(listener, page)` then serves it; any back end may nest the router instead, under a
+//! path that ends with a slash. [`several`] serves more than one robot.
 //!
 //! # Moving the arm
 //!
@@ -84,6 +86,7 @@ mod plan;
 mod recording;
 mod reply;
 mod request;
+mod several;
 mod simulated;
 mod source;
 mod statistics;
@@ -106,6 +109,7 @@ use tokio::net::TcpListener;
 
 use hub::Hub;
 pub use options::Options;
+pub use several::{NameError, several};
 use source::{Source, Watched};
 
 /// Why a server cannot listen.
@@ -174,12 +178,16 @@ fn serve(hub: Arc<Hub>) -> Router {
         .with_state(hub)
 }
 
-/// Refuses unknown hosts, and says on every response that nothing comes from elsewhere.
+/// Refuses unknown hosts.
 async fn guard(State(hub): State<Arc<Hub>>, request: Request, next: Next) -> Response {
-    let mut response = match hub.admission.check_host(request.headers()) {
+    secured(match hub.admission.check_host(request.headers()) {
         Ok(()) => next.run(request).await,
         Err(refused) => refused.into_response(),
-    };
+    })
+}
+
+/// A response that says that nothing comes from elsewhere.
+fn secured(mut response: Response) -> Response {
     for (name, value) in [
         (header::CONTENT_SECURITY_POLICY, POLICY),
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),

@@ -22,6 +22,8 @@ pub struct Options {
     pub(crate) recordings: Option<PathBuf>,
     pub(crate) patience: Duration,
     pub(crate) keep_out: Vec<Obstacle>,
+    /// The names of all robots of the server, if there are several.
+    pub(crate) siblings: Arc<[String]>,
 }
 
 impl Options {

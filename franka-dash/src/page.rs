@@ -4,14 +4,35 @@ use axum::Router;
 use axum::http::{HeaderName, header};
 use axum::routing::get;
 
-/// The routes of the page's files.
+/// The routes of the files of a robot's page.
 pub(crate) fn routes<S: Clone + Send + Sync + 'static>() -> Router<S> {
-    let mut router = Router::new();
+    files(INDEX)
+}
+
+/// The routes of the files of the page that shows several robots.
+pub(crate) fn overview<S: Clone + Send + Sync + 'static>() -> Router<S> {
+    files(OVERVIEW)
+}
+
+/// Whether a page has a file of this name, or a folder.
+pub(crate) fn is_file(name: &str) -> bool {
+    let first = |path: &str| path.split('/').nth(1) == Some(name);
+    let mut paths = FILES.iter().chain(MESHES).map(|(path, ..)| path);
+    paths.any(|path| first(path)) || ["ws", "robots.json"].contains(&name)
+}
+
+/// The routes of all files; `page` is what comes first.
+fn files<S: Clone + Send + Sync + 'static>(page: &'static [u8]) -> Router<S> {
+    let mut router = Router::new().route("/", get(async move || (headers(HTML), page)));
     for (path, kind, content) in FILES.iter().chain(MESHES) {
         router = router.route(path, get(async || (headers(kind), *content)));
     }
     router
 }
+
+const HTML: &str = "text/html; charset=utf-8";
+const INDEX: &[u8] = include_bytes!("../page/index.html");
+const OVERVIEW: &[u8] = include_bytes!("../page/overview.html");
 
 /// Kept by no cache, so that page and server are of one version.
 fn headers(kind: &'static str) -> [(HeaderName, &'static str); 2] {
@@ -23,11 +44,6 @@ fn headers(kind: &'static str) -> [(HeaderName, &'static str); 2] {
 
 /// Path, type and content.
 const FILES: &[(&str, &str, &[u8])] = &[
-    (
-        "/",
-        "text/html; charset=utf-8",
-        include_bytes!("../page/index.html"),
-    ),
     (
         "/dash.js",
         "text/javascript; charset=utf-8",
@@ -73,9 +89,22 @@ mod tests {
     use super::*;
 
     #[test]
+    fn names_of_files_are_known() {
+        for (name, taken) in [
+            ("ws", true),
+            ("dash.js", true),
+            ("meshes", true),
+            ("left", false),
+        ] {
+            assert_eq!(is_file(name), taken, "{name}");
+        }
+    }
+
+    #[test]
     fn the_page_is_small_and_brings_its_licences() {
         let files = FILES.iter().chain(MESHES);
-        let size: usize = files.map(|(_, _, content)| content.len()).sum();
+        let files = files.map(|(_, _, content)| content.len());
+        let size = files.sum::<usize>() + INDEX.len() + OVERVIEW.len();
         println!("{size} bytes");
         assert!(size < 2_500_000, "{size} bytes");
         let (.., licences) = FILES.last().expect("files");

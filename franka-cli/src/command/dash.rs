@@ -7,6 +7,7 @@ use anyhow::Context;
 use clap::Args;
 use franka_dash::{BindError, Options};
 use tokio::net::TcpListener;
+use tokio::task::JoinSet;
 
 use crate::connection::Which;
 use crate::ending::{Ending, Failure};
@@ -14,13 +15,14 @@ use crate::interrupt::interrupted;
 use crate::output::line;
 use crate::robots_file::Realtime;
 
-/// Show the robot in the browser; with --allow-motion, move it while a button is held
+/// Show robots in the browser; with --allow-motion, move them while a button is held
 ///
-/// Until Ctrl-C. A page in a browser is neither an emergency stop nor an enabling device.
+/// Until Ctrl-C. Several robots have a page each, and one that shows all of them. A page in a browser is neither an emergency stop nor an enabling device.
 #[derive(Debug, Args)]
 pub(crate) struct Dash {
-    #[command(flatten)]
-    which: Which,
+    /// Names of robots, or their addresses [default: FRANKA_ROBOT, or the only robot in the file]
+    #[arg(value_name = "ROBOT")]
+    robots: Vec<String>,
     /// Where to listen; other addresses than this computer's own take --token
     #[arg(long, value_name = "ADDRESS:PORT", default_value_t = PAGE)]
     listen: SocketAddr,
@@ -65,31 +67,65 @@ impl Dash {
         let listener = listen(self.listen, &options).await?;
         let address = listener.local_addr().context("the address of the page")?;
         let interrupt = interrupted()?;
-        let place = self.which.place()?;
+        let named = match self.robots.is_empty() {
+            true => vec![None],
+            false => self.robots.iter().cloned().map(Some).collect(),
+        };
         // A page that moves nothing needs no real-time scheduling.
         let realtime = match self.allow_motion {
             true => self.realtime,
             false => Some(Realtime::Ignore),
         };
-        // Events are explained by the last second.
-        let robot = place.connect(realtime, |builder| builder.log_size(1000));
-        let robot = robot.await?;
-        if self.gripper {
-            options = options.gripper(place.connect_hand().await?);
+        let mut robots = Vec::new();
+        for robot in named {
+            let place = Which::of(robot).place()?;
+            // Events are explained by the last second.
+            let robot = place.connect(realtime, |builder| builder.log_size(1000));
+            let robot = robot.await?;
+            let options = match self.gripper {
+                true => options.clone().gripper(place.connect_hand().await?),
+                false => options.clone(),
+            };
+            robots.push((place, robot, options));
         }
-        line(&format!("{place}: http://{address}/"))?;
-        let page = franka_dash::router(robot.clone(), options);
+        let page = match &robots[..] {
+            [(place, robot, options)] => {
+                line(&format!("{place}: http://{address}/"))?;
+                franka_dash::router(robot.clone(), options.clone())
+            }
+            several => {
+                line(&format!("http://{address}/"))?;
+                let each = several
+                    .iter()
+                    .map(|(place, robot, options)| (place.name(), robot.clone(), options.clone()));
+                let page = franka_dash::several(each).map_err(|error| {
+                    Failure::usage(error.to_string())
+                        .advice("Give the robot a name: franka robots add NAME ADDRESS")
+                })?;
+                for (place, ..) in several {
+                    line(&format!("{place}: http://{address}/{}/", place.name()))?;
+                }
+                page
+            }
+        };
+        let mut closed = JoinSet::new();
+        for (place, robot, _) in &robots {
+            let (place, robot) = (place.to_string(), robot.clone());
+            closed.spawn(async move { (place, robot.closed().await) });
+        }
         let ended = tokio::select! {
             () = interrupt => Ok(Ending::Done),
-            reason = robot.closed() => {
-                let text = format!("the connection to the robot has ended: {reason}");
+            Some(Ok((place, reason))) = closed.join_next() => {
+                let text = format!("the connection to {place} has ended: {reason}");
                 Err(Failure::new(Ending::NoRobot, text).into())
             }
             served = async { axum::serve(listener, page).await } => {
                 served.map(|()| Ending::Done).map_err(Into::into)
             }
         };
-        robot.shutdown().await;
+        for (_, robot, _) in &robots {
+            robot.shutdown().await;
+        }
         ended
     }
 }

@@ -54,6 +54,26 @@ fn the_dashboard_is_served_until_ctrl_c() {
 }
 
 #[test]
+fn several_robots_have_a_page_each() {
+    let (home, left, right) = (Home::new(), Simulated::fr3(), Simulated::fer());
+    let robots = [left.address(), right.address()];
+    let mut program = home.start(&["dash", &robots[0], &robots[1], "--listen", "127.0.0.1:0"]);
+    let address = page(&mut program);
+    let listed = get(&address, "/robots.json");
+    for robot in &robots {
+        assert!(listed.contains(robot.as_str()), "{listed}");
+        let answer = get(&address, &format!("/{robot}/"));
+        assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
+    }
+    assert!(get(&address, "/").contains("overview"));
+    program.signal(Signal::SIGINT);
+    program.ended().done();
+    let twice = ["dash", &robots[0], &robots[0], "--listen", "127.0.0.1:0"];
+    home.run(&twice)
+        .failed(2, &["the name of something else already"]);
+}
+
+#[test]
 fn a_folder_for_recordings_has_to_be_there() {
     let (home, sim) = (Home::new(), Simulated::fr3());
     let nowhere = ["dash", &sim.address(), "--record", "/no/such/folder"];

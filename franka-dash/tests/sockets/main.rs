@@ -7,5 +7,6 @@ mod disturbing;
 mod holding;
 mod malice;
 mod previewing;
+mod several;
 mod viewer;
 mod watching;

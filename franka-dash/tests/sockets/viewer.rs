@@ -113,14 +113,21 @@ pub(crate) struct Viewer {
     status: Value,
     pub(crate) commander: Option<u64>,
     pub(crate) number: u64,
+    /// What it was told first.
+    pub(crate) hello: Value,
 }
 
 impl Viewer {
     pub(crate) fn connect(address: SocketAddr) -> Self {
+        Self::connect_to(address, "ws")
+    }
+
+    /// Connects to the socket at this path.
+    pub(crate) fn connect_to(address: SocketAddr, path: &str) -> Self {
         let stream = TcpStream::connect(address).expect("a connection");
         let timeout = Some(Duration::from_secs(10));
         stream.set_read_timeout(timeout).expect("a timeout");
-        let request = format!("ws://{address}/ws");
+        let request = format!("ws://{address}/{path}");
         let request = request.into_client_request().expect("a request");
         let (socket, _) = tungstenite::client(request, stream).expect("a socket");
         let mut viewer = Self {
@@ -131,9 +138,10 @@ impl Viewer {
             status: Value::Null,
             commander: None,
             number: 0,
+            hello: Value::Null,
         };
-        let hello = viewer.wait_for("hello");
-        viewer.number = hello["viewer"].as_u64().expect("a number");
+        viewer.hello = viewer.wait_for("hello");
+        viewer.number = viewer.hello["viewer"].as_u64().expect("a number");
         // The first frame, so that a round trip has been measured.
         viewer.wait_for("frame");
         viewer.wait_for("frame");

@@ -1,0 +1,86 @@
+// All robots of the server side by side: what they do, and one button that stops them all.
+
+import { Connection } from "./connection.js";
+import { MODES, MODE_CLASSES } from "./frame.js";
+import { Scene } from "./scene.js";
+import { tabs } from "./tabs.js";
+
+const BEHIND = 120;
+
+class Card {
+  #frames = 0;
+  #behind = [];
+  #scene;
+  #due = false;
+
+  constructor(name) {
+    this.name = name;
+    this.element = document.createElement("section");
+    this.element.className = "panel card";
+    this.element.innerHTML = `<h2><a></a><span class="badge" role="status">connecting</span></h2><canvas></canvas>
+      <div class="row"><span class="fact">Commands <b></b></span><button class="stop" type="button">Stop</button></div>`;
+    const link = this.element.querySelector("a");
+    link.textContent = name;
+    link.href = `${name}/${location.hash}`;
+    document.getElementById("cards").append(this.element);
+    const canvas = this.element.querySelector("canvas");
+    canvas.setAttribute("aria-label", `${name} in 3D`);
+    this.badge = this.element.querySelector(".badge");
+    this.commander = this.element.querySelector(".fact b");
+    this.#scene = new Scene(canvas);
+    this.connection = new Connection(`${name}/`);
+    const stop = this.element.querySelector(".stop");
+    stop.setAttribute("aria-label", `stop ${name}`);
+    stop.addEventListener("click", () => this.stop());
+    this.connection.addEventListener("hello", ({ detail }) => {
+      link.textContent = `${name}: ${detail.robot}${detail.simulated ? ", simulated" : ""}`;
+      this.#scene.describe(detail);
+    });
+    this.connection.addEventListener("status", ({ detail }) => {
+      this.commander.textContent = detail.name ?? "nobody";
+    });
+    this.connection.addEventListener("heading", ({ detail }) => this.#scene.heading(detail.way));
+    this.connection.addEventListener("contact", ({ detail }) => this.#scene.showContact(detail.contact));
+    this.connection.addEventListener("closed", () => this.#show("no connection", ""));
+    this.connection.addEventListener("frame", ({ detail }) => this.#take(detail));
+  }
+
+  stop() { this.connection.send({ type: "stop" }); }
+
+  #take(frame) {
+    this.#frames += 1;
+    this.frame = frame;
+    if (this.#due) return;
+    this.#due = true;
+    requestAnimationFrame(() => {
+      this.#due = false;
+      this.#behind = [...this.#behind, Array.from(this.frame.poses.subarray(56, 59))].slice(-BEHIND);
+      this.#scene.show(this.frame, this.#behind, new Set());
+      this.#show(MODES[this.frame.mode] ?? "unknown", MODE_CLASSES[this.frame.mode] ?? "");
+    });
+  }
+
+  #show(mode, kind) {
+    this.badge.textContent = mode;
+    this.badge.className = `badge ${kind}`;
+  }
+
+  state() {
+    return { name: this.name, frames: this.#frames, mode: this.frame?.mode ?? null, ...this.#scene.state() };
+  }
+}
+
+export async function overview() {
+  const answer = await fetch("robots.json");
+  const names = await answer.json();
+  tabs(names, "", "");
+  const cards = names.map((name) => new Card(name));
+  const stop = () => { for (const card of cards) card.stop(); };
+  document.getElementById("stop").addEventListener("click", stop);
+  addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" && event.key !== " ") return;
+    event.preventDefault();
+    stop();
+  }, { capture: true });
+  window.__state = () => ({ ready: cards.every((card) => card.frame), cards: cards.map((card) => card.state()) });
+}

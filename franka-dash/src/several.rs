@@ -1,0 +1,123 @@
+//! Several robots on one server: a page for each, and one with all of them side by side.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use axum::extract::{Request, State};
+use axum::middleware::{Next, from_fn_with_state};
+use axum::response::{IntoResponse, Json, Redirect, Response};
+use axum::routing::get;
+use axum::{Router, http::StatusCode};
+use franka_async::Robot;
+
+use crate::admission::Admission;
+use crate::hub::Hub;
+use crate::options::Options;
+use crate::source::Source;
+use crate::{page, secured, serve};
+
+/// Why names of robots are not accepted: they are parts of addresses.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NameError {
+    /// A name is empty, longer than 40 characters, or has others than letters, digits and `-_.:~`.
+    #[error("{name:?} is no part of an address: expected 1 to 40 of a-z, A-Z, 0-9 and -_.:~")]
+    Characters {
+        /// The name.
+        name: String,
+    },
+    /// Two robots have the same name, or it is that of a file of the page.
+    #[error("{name:?} is the name of something else already")]
+    Taken {
+        /// The name.
+        name: String,
+    },
+}
+
+/// The pages of several robots: that of each at `/NAME/`, as [`router`](crate::router) serves it,
+/// and at `/` all of them side by side, to be looked at and stopped. Must be called within a Tokio
+/// runtime. Each robot has a commander of its own. A token should be the same for all.
+///
+/// # Errors
+/// [`NameError`]; nothing has been started then.
+pub fn several<N: Into<String>>(
+    robots: impl IntoIterator<Item = (N, Robot, Options)>,
+) -> Result<Router, NameError> {
+    let robots: Vec<_> = robots
+        .into_iter()
+        .map(|(name, robot, options)| (name.into(), robot, options))
+        .collect();
+    let mut names = BTreeSet::new();
+    for (name, ..) in &robots {
+        let taken = page::is_file(name) || !names.insert(name);
+        let name = name.clone();
+        if !is_part_of_an_address(&name) {
+            return Err(NameError::Characters { name });
+        } else if taken {
+            return Err(NameError::Taken { name });
+        }
+    }
+    let names: Arc<[String]> = robots.iter().map(|(name, ..)| name.clone()).collect();
+    let admissions = robots.iter().map(|(.., options)| options.admission.clone());
+    let admissions: Arc<[Admission]> = admissions.collect();
+    let listed = Json(names.to_vec());
+    let mut router = Router::new()
+        .route("/robots.json", get(async move || listed))
+        .merge(page::overview())
+        .layer(from_fn_with_state(admissions, guard));
+    for (name, robot, options) in robots {
+        let options = Options {
+            siblings: names.clone(),
+            ..options
+        };
+        let there = format!("/{name}/");
+        let redirect = Redirect::permanent(&there);
+        router = router
+            .route(&format!("/{name}"), get(async || redirect))
+            .nest(&there, serve(Hub::start(Source::Robot(robot), options)));
+    }
+    Ok(router)
+}
+
+fn is_part_of_an_address(name: &str) -> bool {
+    let fits = |c: char| c.is_ascii_alphanumeric() || "-_.:~".contains(c);
+    // Dots alone are steps between folders.
+    (1..=40).contains(&name.len()) && name.chars().all(fits) && name.contains(|c| c != '.')
+}
+
+/// Refuses hosts that are unknown to every robot.
+async fn guard(
+    State(admissions): State<Arc<[Admission]>>,
+    request: Request,
+    next: Next,
+) -> Response {
+    let checks = admissions.iter().map(|it| it.check_host(request.headers()));
+    let refused = checks.reduce(|a, b| if a.is_ok() { a } else { b });
+    secured(match refused {
+        Some(Ok(())) => next.run(request).await,
+        Some(Err(refused)) => refused.into_response(),
+        None => StatusCode::NOT_FOUND.into_response(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_parts_of_addresses() {
+        for (name, fits) in [
+            ("left", true),
+            ("172.16.0.2:1337", true),
+            ("robot_2", true),
+            ("", false),
+            ("..", false),
+            ("a/b", false),
+            ("{robot}", false),
+            ("müller", false),
+            ("[fe80::1]", false),
+        ] {
+            assert_eq!(is_part_of_an_address(name), fits, "{name}");
+        }
+    }
+}

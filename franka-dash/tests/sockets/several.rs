@@ -1,0 +1,71 @@
+//! Several robots on one server.
+
+use franka_async::{Realtime, Robot};
+use franka_dash::{NameError, Options};
+use franka_sim::Sim;
+use serde_json::json;
+use tokio::runtime::Runtime;
+
+use crate::viewer::Viewer;
+
+#[test]
+fn each_robot_has_a_page_and_a_commander_of_its_own() {
+    let runtime = Runtime::new().expect("a runtime");
+    let (address, _running) = runtime.block_on(async {
+        let mut robots = Vec::new();
+        let mut running = Vec::new();
+        for (name, sim) in [("left", Sim::fr3()), ("right", Sim::fer())] {
+            let sim = sim.start().await.expect("a simulated robot");
+            let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+            let robot = builder.connect().await.expect("a connection");
+            robots.push((name, robot, Options::default().allow_motion()));
+            running.push(sim);
+        }
+        for (name, error) in [("left", "left"), ("dash.js", "dash.js")] {
+            let twice =
+                robots
+                    .iter()
+                    .cloned()
+                    .chain([(name, robots[0].1.clone(), Options::default())]);
+            let name = error.to_owned();
+            assert_eq!(
+                franka_dash::several(twice).err(),
+                Some(NameError::Taken { name })
+            );
+        }
+        let here = "127.0.0.1:0".parse().expect("an address");
+        let bound = franka_dash::bind(here, &Options::default()).await;
+        let listener = bound.expect("a port");
+        let address = listener.local_addr().expect("an address");
+        let pages = franka_dash::several(robots).expect("names");
+        tokio::spawn(async move { axum::serve(listener, pages).await });
+        (address, running)
+    });
+    let get = |path: &str| {
+        let answer = ureq::get(format!("http://{address}/{path}")).call();
+        let mut answer = answer.unwrap_or_else(|error| panic!("{path}: {error}"));
+        assert!(
+            answer.headers().contains_key("content-security-policy"),
+            "{path}"
+        );
+        answer.body_mut().read_to_string().expect("text")
+    };
+    assert_eq!(get("robots.json"), "[\"left\",\"right\"]");
+    assert!(get("").contains("id=\"overview\""));
+    // The first of these is redirected to the second, whose files are beside it.
+    for path in ["left", "left/", "right/"] {
+        assert!(get(path).contains("id=\"scene\""), "{path}");
+    }
+    assert!(!get("right/dash.js").is_empty() && !get("dash.js").is_empty());
+    let mut left = Viewer::connect_to(address, "left/ws");
+    let mut right = Viewer::connect_to(address, "right/ws");
+    left.take();
+    right.take();
+    left.send(json!({"type": "stop"}));
+    assert_eq!(right.commander, Some(right.number));
+    assert_eq!(right.hello["siblings"], json!(["left", "right"]));
+    assert_eq!(
+        (&left.hello["meshes"], &right.hello["meshes"]),
+        (&json!("fr3"), &json!("fer"))
+    );
+}
