@@ -1,11 +1,11 @@
 //! The page in a real browser, before simulated robots: what it shows is what the robot is, what a
 //! person does with it has its effect, and a hold that is lost in any way has the arm rest.
-//!
 
 mod checks;
 mod driver;
 mod panels;
 mod served;
+mod several;
 
 use std::path::PathBuf;
 
@@ -46,6 +46,9 @@ fn the_page_shows_and_moves_simulated_robots() -> anyhow::Result<()> {
         checks::picture(&page, served, dark, &pictures.join(format!("{name}.png")))?;
         page.check_console()?;
     }
+    let page = Browser::open(&driver, &browser, (1180, 820))?;
+    several::run(&page, [&fr3, &fer], &pictures.join("several.png"))?;
+    page.check_console()?;
     println!("pictures: {}", pictures.display());
     Ok(())
 }

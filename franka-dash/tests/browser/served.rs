@@ -8,11 +8,13 @@ use std::time::Duration;
 use anyhow::{Context as _, ensure};
 use franka_async::gripper::Gripper;
 use franka_async::model::collision::Obstacle;
+use franka_async::motion::Outcome;
 use franka_async::nalgebra::Vector3;
 use franka_async::{Pose, Realtime, Robot};
 use franka_dash::Options;
 use franka_sim::{Fingers, Running, Sim, Tool};
 use tokio::runtime::Runtime;
+use tokio::task::JoinHandle;
 
 /// A simulated robot with its page.
 pub(crate) struct Served {
@@ -57,6 +59,34 @@ impl Served {
             runtime,
             _running: running,
         })
+    }
+
+    /// Serves the page of this robot and of another one together.
+    pub(crate) fn beside(&self, other: &Self) -> anyhow::Result<SocketAddr> {
+        self.runtime.block_on(async {
+            let options = Options::default();
+            let listener = franka_dash::bind("127.0.0.1:0".parse()?, &options).await?;
+            let address = listener.local_addr()?;
+            let robots = [("left", &self.robot), ("right", &other.robot)];
+            let robots = robots.map(|(name, robot)| (name, robot.clone(), options.clone()));
+            let pages = franka_dash::several(robots)?;
+            tokio::spawn(async move { axum::serve(listener, pages).await });
+            Ok(address)
+        })
+    }
+
+    /// Turns joint 1 by half a radian, slowly.
+    pub(crate) fn turn(&self) -> JoinHandle<Outcome> {
+        let robot = self.robot.clone();
+        let mut there = robot.state().q;
+        there[0] -= 0.5 * there[0].signum();
+        self.runtime
+            .spawn(async move { robot.move_joints(there).speed(0.2).await })
+    }
+
+    /// What has become of a motion.
+    pub(crate) fn outcome(&self, motion: JoinHandle<Outcome>) -> anyhow::Result<Outcome> {
+        Ok(self.runtime.block_on(motion)?)
     }
 
     /// Height of the region that the arm is kept out of, `[m]`.
