@@ -50,6 +50,8 @@ pub(crate) enum Check {
     Python,
     /// Recordings, read by the standard reader in Python.
     Recordings,
+    /// The files of the dashboard's page are those that its sources make, and small enough.
+    Assets,
     /// The dashboard's page in a real browser.
     Dashboard,
     /// What is portable, for other systems and machines.
@@ -92,6 +94,7 @@ impl Check {
             Self::Peers => ("peers", "other clients against the simulator"),
             Self::Python => ("python", "the Python package: its tests and types"),
             Self::Recordings => ("recordings", "recordings read by the standard reader"),
+            Self::Assets => ("assets", "the dashboard's files are what its sources make"),
             Self::Dashboard => ("dashboard", "the dashboard's page in a real browser"),
         }
     }
@@ -152,6 +155,7 @@ impl Check {
             Self::Peers => return peers::run(workspace),
             Self::Python => return package::run(workspace),
             Self::Recordings => return recordings::run(workspace),
+            Self::Assets => return dashboard::check_assets(workspace),
             Self::Dashboard => return dashboard::run(workspace),
         }
         Ok(Outcome::Passed)

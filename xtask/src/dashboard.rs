@@ -5,17 +5,78 @@ use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
+use anyhow::{Context as _, ensure};
 
 use crate::mujoco;
 use crate::realtime::succeeds;
 use crate::step::{Outcome, is_ci};
 use crate::workspace::Workspace;
 
-/// Makes the files in `franka-dash/page/dist` anew. Needs npm, which checks the packages against
-/// the hashes of the lock file; none of their scripts runs.
+/// Makes the files in `franka-dash/page/dist` anew.
 pub(crate) fn assets(workspace: &Workspace) -> anyhow::Result<()> {
-    let page = workspace.root().join("franka-dash").join("page");
+    make(workspace, &page(workspace).join("dist"))
+}
+
+/// Fails if the files in `franka-dash/page/dist` are not those that [`assets`] makes, or if all
+/// that the page is made of takes more than [`SIZE_MAX`].
+pub(crate) fn check_assets(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let page = page(workspace);
+    let sizes = [&page, &page.join("dist"), &page.join("meshes")].map(|it| size(it));
+    let meshes = ["fer", "fr3"].map(|arm| size(&page.join("meshes").join(arm)));
+    let mut total = 0;
+    for size in sizes.into_iter().chain(meshes) {
+        total += size?;
+    }
+    ensure!(
+        total <= SIZE_MAX,
+        "the page takes {total} bytes, expected {SIZE_MAX} at most"
+    );
+    println!("the page takes {total} bytes");
+    if find(&["npm"]).is_none() {
+        return Outcome::without("no npm".to_owned());
+    }
+    let made = workspace.target().join("dashboard-page").join("dist");
+    make(workspace, &made)?;
+    for name in MADE {
+        let read = |directory: &Path| {
+            let path = directory.join(name);
+            fs::read(&path).with_context(|| path.display().to_string())
+        };
+        ensure!(
+            read(&made)? == read(&page.join("dist"))?,
+            "franka-dash/page/dist/{name} is not what the page's sources make: run cargo xtask assets"
+        );
+    }
+    Ok(Outcome::Passed)
+}
+
+fn page(workspace: &Workspace) -> PathBuf {
+    workspace.root().join("franka-dash").join("page")
+}
+
+/// Bytes of the files in a directory, without those in others below it and what npm reads.
+fn size(directory: &Path) -> anyhow::Result<u64> {
+    let mut bytes = 0;
+    for entry in fs::read_dir(directory)? {
+        let entry = entry?;
+        let served = entry.path().extension() != Some(OsStr::new("json"));
+        if entry.file_type()?.is_file() && served {
+            bytes += entry.metadata()?.len();
+        }
+    }
+    Ok(bytes)
+}
+
+/// Bytes of all files of the page together, at most.
+const SIZE_MAX: u64 = 2_500_000;
+
+/// What is made.
+const MADE: [&str; 3] = ["dash.js", "dash.css", "licenses.txt"];
+
+/// Makes the files of the page in `dist`. Needs npm, which checks the packages against the hashes
+/// of the lock file; none of their scripts runs.
+fn make(workspace: &Workspace, dist: &Path) -> anyhow::Result<()> {
+    let page = page(workspace);
     let work = workspace.target().join("dashboard-page");
     for name in ["package.json", "package-lock.json"] {
         copy(&page.join(name), &work.join(name))?;
@@ -28,11 +89,11 @@ pub(crate) fn assets(workspace: &Workspace) -> anyhow::Result<()> {
     }
     let mut npm = workspace.program("npm");
     npm.args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]);
+    npm.arg("--prefer-offline");
     workspace.run(npm.current_dir(&work))?;
     let mut esbuild = workspace.program(work.join("node_modules/.bin/esbuild"));
     esbuild.args(["src/main.js", "--bundle", "--format=esm", "--minify"]);
     esbuild.args(["--legal-comments=eof", "--log-level=warning"]);
-    let dist = page.join("dist");
     esbuild.arg(format!("--outfile={}", dist.join("dash.js").display()));
     workspace.run(esbuild.current_dir(&work))?;
     let mut licences = String::new();

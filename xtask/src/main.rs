@@ -151,7 +151,11 @@ enum Task {
         only: Vec<String>,
     },
     /// Make the files of the dashboard's page anew, from npm packages that are pinned by hash.
-    Assets,
+    Assets {
+        /// Only say whether the files are those that would be made, and small enough.
+        #[arg(long)]
+        check: bool,
+    },
     /// Build the program `franka` for machines that have nothing else: static for x86-64 and 64-bit
     /// Arm, and for C libraries from 2.17 on. Measures what was built, moves a simulated robot with
     /// it, under qemu if need be, and packs it in `target/artefacts`: archives, packages for
@@ -284,7 +288,12 @@ fn run(task: Task) -> anyhow::Result<()> {
             workspace.run(&mut command)
         }
         Task::Wheels { only } => package::wheels::run(&workspace, &only),
-        Task::Assets => dashboard::assets(&workspace),
+        Task::Assets { check: false } => dashboard::assets(&workspace),
+        Task::Assets { check: true } => {
+            let outcome = dashboard::check_assets(&workspace)?;
+            println!("{outcome:?}");
+            Ok(())
+        }
         Task::Dist { only, twice } => dist::run(&workspace, &only, twice),
         Task::Book { port, build_only } => book::serve(&workspace, (!build_only).then_some(port)),
         Task::Pictures => workspace.run(&mut workspace.cargo_release_binary("pictures")),
