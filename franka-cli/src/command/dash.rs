@@ -9,7 +9,7 @@ use franka_dash::{BindError, Options};
 use tokio::net::TcpListener;
 use tokio::task::JoinSet;
 
-use crate::connection::Which;
+use crate::connection::{Place, Which};
 use crate::ending::{Ending, Failure};
 use crate::interrupt::interrupted;
 use crate::output::line;
@@ -17,7 +17,8 @@ use crate::robots_file::Realtime;
 
 /// Show robots in the browser; with --allow-motion, move them while a button is held
 ///
-/// Until Ctrl-C. Several robots have a page each, and one that shows all of them. A page in a browser is neither an emergency stop nor an enabling device.
+/// Until Ctrl-C. Several robots have a page each, and one that shows all of them. A page in a
+/// browser is neither an emergency stop nor an enabling device.
 #[derive(Debug, Args)]
 pub(crate) struct Dash {
     /// Names of robots, or their addresses [default: FRANKA_ROBOT, or the only robot in the file]
@@ -76,9 +77,17 @@ impl Dash {
             true => self.realtime,
             false => Some(Realtime::Ignore),
         };
-        let mut robots = Vec::new();
+        let mut places = Vec::new();
         for robot in named {
             let place = Which::of(robot).place()?;
+            let is_same = |other: &Place| other.name() == place.name();
+            if places.iter().any(is_same) {
+                return Err(Failure::usage(format!("{} is named twice", place.name())).into());
+            }
+            places.push(place);
+        }
+        let mut robots = Vec::new();
+        for place in places {
             // Events are explained by the last second.
             let robot = place.connect(realtime, |builder| builder.log_size(1000));
             let robot = robot.await?;
