@@ -50,7 +50,7 @@ pub(crate) enum Check {
     Python,
     /// Recordings, read by the standard reader in Python.
     Recordings,
-    /// The files of the dashboard's page are those that its sources make, and small enough.
+    /// The files of the dashboard's page are those that its sources make.
     Assets,
     /// The dashboard's page in a real browser.
     Dashboard,

@@ -17,21 +17,9 @@ pub(crate) fn assets(workspace: &Workspace) -> anyhow::Result<()> {
     make(workspace, &page(workspace).join("dist"))
 }
 
-/// Fails if the files in `franka-dash/page/dist` are not those that [`assets`] makes, or if all
-/// that the page is made of takes more than [`SIZE_MAX`].
+/// Fails if the files in `franka-dash/page/dist` are not those that [`assets`] makes.
 pub(crate) fn check_assets(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let page = page(workspace);
-    let sizes = [&page, &page.join("dist"), &page.join("meshes")].map(|it| size(it));
-    let meshes = ["fer", "fr3"].map(|arm| size(&page.join("meshes").join(arm)));
-    let mut total = 0;
-    for size in sizes.into_iter().chain(meshes) {
-        total += size?;
-    }
-    ensure!(
-        total <= SIZE_MAX,
-        "the page takes {total} bytes, expected {SIZE_MAX} at most"
-    );
-    println!("the page takes {total} bytes");
     if find(&["npm"]).is_none() {
         return Outcome::without("no npm".to_owned());
     }
@@ -53,22 +41,6 @@ pub(crate) fn check_assets(workspace: &Workspace) -> anyhow::Result<Outcome> {
 fn page(workspace: &Workspace) -> PathBuf {
     workspace.root().join("franka-dash").join("page")
 }
-
-/// Bytes of the files in a directory, without those in others below it and what npm reads.
-fn size(directory: &Path) -> anyhow::Result<u64> {
-    let mut bytes = 0;
-    for entry in fs::read_dir(directory)? {
-        let entry = entry?;
-        let served = entry.path().extension() != Some(OsStr::new("json"));
-        if entry.file_type()?.is_file() && served {
-            bytes += entry.metadata()?.len();
-        }
-    }
-    Ok(bytes)
-}
-
-/// Bytes of all files of the page together, at most.
-const SIZE_MAX: u64 = 2_500_000;
 
 /// What is made.
 const MADE: [&str; 3] = ["dash.js", "dash.css", "licenses.txt"];

@@ -152,7 +152,7 @@ enum Task {
     },
     /// Make the files of the dashboard's page anew, from npm packages that are pinned by hash.
     Assets {
-        /// Only say whether the files are those that would be made, and small enough.
+        /// Only say whether the files are those that would be made.
         #[arg(long)]
         check: bool,
     },
