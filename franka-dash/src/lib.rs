@@ -105,7 +105,7 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use franka_async::Robot;
 use franka_sim::{Running, Stopped};
-use tokio::net::TcpListener;
+use tokio::net::{TcpListener, TcpSocket};
 
 use hub::Hub;
 pub use options::Options;
@@ -134,7 +134,9 @@ pub enum BindError {
     },
 }
 
-/// Listens for viewers: on a loopback address, or with a token anywhere.
+/// Listens for viewers: on a loopback address, or with a token anywhere. Connections have
+/// `TCP_NODELAY`; a back end that listens by itself should set it, since without it a frame waits
+/// up to 40 ms behind every message that the page does not answer.
 ///
 /// # Errors
 /// [`BindError`].
@@ -145,8 +147,21 @@ pub async fn bind(address: SocketAddr, options: &Options) -> Result<TcpListener,
     if !address.ip().is_loopback() && options.admission.token.is_none() {
         return Err(BindError::NoToken { address });
     }
-    let listener = TcpListener::bind(address).await;
-    listener.map_err(|source| BindError::Io { address, source })
+    listen(address).map_err(|source| BindError::Io { address, source })
+}
+
+fn listen(address: SocketAddr) -> io::Result<TcpListener> {
+    let socket = match address {
+        SocketAddr::V4(_) => TcpSocket::new_v4()?,
+        SocketAddr::V6(_) => TcpSocket::new_v6()?,
+    };
+    // As `TcpListener::bind` does. Elsewhere it means that others may listen there, too.
+    #[cfg(unix)]
+    socket.set_reuseaddr(true)?;
+    // The connections that it accepts have it, too.
+    socket.set_nodelay(true)?;
+    socket.bind(address)?;
+    socket.listen(WAITING)
 }
 
 /// The page and its socket (`/ws`) for a connected robot. Must be called within a Tokio runtime.
@@ -228,6 +243,9 @@ async fn connect(
 
 /// The subprotocol of the socket.
 const PROTOCOL: &str = "franka-dash";
+
+/// Connections that may wait to be accepted.
+const WAITING: u32 = 1024;
 
 /// Bytes of a request.
 const MESSAGE_MAX: usize = 4096;

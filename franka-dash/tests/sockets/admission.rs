@@ -71,6 +71,17 @@ async fn without_a_token_only_this_computer_is_served() {
         .expect("a port");
 }
 
+#[tokio::test]
+async fn what_is_sent_does_not_wait_for_an_acknowledgement() {
+    let here = "127.0.0.1:0".parse().expect("an address");
+    let bound = franka_dash::bind(here, &Options::default()).await;
+    let listener = bound.expect("a port");
+    let address = listener.local_addr().expect("an address");
+    let _client = TcpStream::connect(address).expect("a connection");
+    let (accepted, _) = listener.accept().await.expect("a connection");
+    assert!(accepted.nodelay().expect("an option"));
+}
+
 #[test]
 fn the_page_is_served_with_a_policy_that_keeps_everything_else_out() {
     let served = Served::new(|_| Options::default());
