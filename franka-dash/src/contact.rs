@@ -39,7 +39,8 @@ impl Watch {
             .message_id
             .saturating_sub(last.unwrap_or(state.message_id));
         let (q, dq) = (JointVector::from(state.q), JointVector::from(state.dq));
-        let read = JointVector::from(state.tau_ext_hat_filtered);
+        // The robot's estimate is what it exerts.
+        let read = -JointVector::from(state.tau_ext_hat_filtered);
         let torque = self.tare.update(&read, &dq, passed as f64 * 1e-3);
         if !self.tare.is_touched() || self.tare.learned() < LEARNED {
             return None;
@@ -76,3 +77,40 @@ const STILL: f64 = 0.02;
 
 /// For how long the arm has to have been without a contact before one is shown, `[s]`.
 const LEARNED: f64 = 0.5;
+
+#[cfg(test)]
+mod tests {
+    use franka_async::model::Frame;
+    use franka_async::nalgebra::Vector3;
+    use franka_sim::{Config, Robot, Tool, Touch};
+
+    use super::*;
+
+    #[test]
+    fn the_force_is_that_on_the_arm_and_the_place_is_that_of_the_push() {
+        for push in [[0.0, 40.0, 0.0], [0.0, -40.0, 0.0]] {
+            let push = Vector3::from(push);
+            let mut robot = Robot::new(Config {
+                tool: Tool::hand(),
+                ..Config::default()
+            });
+            let mut watch = Watch::default();
+            let mut look = |robot: &mut Robot, milliseconds: u32| {
+                let mut seen = None;
+                for passed in 1..=milliseconds {
+                    robot.tick();
+                    if passed % 50 == 0 {
+                        seen = watch.update(Model::of(robot.config().kind), robot.state());
+                    }
+                }
+                seen
+            };
+            assert_eq!(look(&mut robot, 1000), None);
+            robot.touch(Touch::force(push).at(Frame::Flange));
+            let contact = look(&mut robot, 300).expect("a contact");
+            let force = Vector3::from(contact.force);
+            assert!(force.dot(&push) > 0.8 * push.norm_squared(), "{contact:?}");
+            assert!(contact.link >= 7, "{contact:?}");
+        }
+    }
+}
