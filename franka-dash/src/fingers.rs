@@ -49,6 +49,11 @@ impl Fingers {
         }
     }
 
+    /// Between the fingers, `[m]`.
+    pub(crate) fn width(&self) -> f64 {
+        self.gripper.state().width
+    }
+
     pub(crate) fn state(&self) -> FingerState {
         let state = self.gripper.state();
         FingerState {

@@ -10,7 +10,7 @@
 //! | 4 | u32 | length of the frame in bytes |
 //! | 8 | u64 | time of the server, `[ms]`: to be acknowledged |
 //! | 16 | u64 | robot time (`message_id`), `[ms]` |
-//! | 24 | u32 | bit 0: a motion runs; bit 1: the reference is that of this driver; bit 2: a hold goes on |
+//! | 24 | u32 | bit 0: a motion runs; bit 1: the reference is that of this driver; bit 2: a hold goes on; bits 3 to 5: the law, see [`law`] |
 //! | 28 | f32 | success rate of commands, 0 to 1 |
 //! | 32 | 7 f32 | q, `[rad]` |
 //! | 60 | 7 f32 | dq, `[rad/s]` |
@@ -21,17 +21,19 @@
 //! | 196 | 9 poses | joint frames 1 to 7, flange, end effector, as measured |
 //! | 448 | 9 poses | the same at the reference |
 //! | 700 | u32 | guards that bound within the last 0.1 s, a bit for each in the order of the hello |
+//! | 704 | f32 | width between the fingers, `[m]`; no number where no gripper is known |
+//! | 708 | 7 f32 | dq as a share of the velocity that the joint may have at q, -1 to 1 |
 //!
 //! A pose is 7 f32: position x y z `[m]` and quaternion x y z w, in the base frame.
 
 use franka_async::model::{EndEffector, Frame, JointVector, Model};
 use franka_async::pose;
-use franka_async::state::RobotState;
+use franka_async::state::{ControllerMode, RobotState};
 
 use crate::source::Sample;
 
-pub(crate) const VERSION: u8 = 2;
-pub(crate) const LENGTH: usize = 704;
+pub(crate) const VERSION: u8 = 3;
+pub(crate) const LENGTH: usize = 736;
 const MAGIC: u16 = 0x4446;
 
 /// The frames whose poses are sent.
@@ -47,8 +49,19 @@ const FRAMES: [Frame; 9] = [
     Frame::EndEffector,
 ];
 
-/// The frame of a sample at this time of the server, `[ms]`.
-pub(crate) fn encode(sample: &Sample, model: &Model, server_ms: u64, holding: bool) -> Vec<u8> {
+/// What the server knows besides the robot's state.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Server {
+    /// Its time, `[ms]`.
+    pub(crate) ms: u64,
+    /// Whether a hold goes on.
+    pub(crate) holding: bool,
+    /// Width between the fingers, `[m]`, of a gripper that it is connected to.
+    pub(crate) width: Option<f64>,
+}
+
+/// The frame of a sample.
+pub(crate) fn encode(sample: &Sample, model: &Model, server: Server) -> Vec<u8> {
     let Sample {
         state,
         reference,
@@ -58,11 +71,12 @@ pub(crate) fn encode(sample: &Sample, model: &Model, server_ms: u64, holding: bo
     frame.extend(MAGIC.to_le_bytes());
     frame.extend([VERSION, state.robot_mode.byte()]);
     frame.extend((LENGTH as u32).to_le_bytes());
-    frame.extend(server_ms.to_le_bytes());
+    frame.extend(server.ms.to_le_bytes());
     frame.extend(state.message_id.to_le_bytes());
     let flags = u32::from(state.motion_running())
         | u32::from(reference.is_some()) << 1
-        | u32::from(holding) << 2;
+        | u32::from(server.holding) << 2
+        | law(state, reference.is_some()) << 3;
     frame.extend(flags.to_le_bytes());
     let wanted = reference.unwrap_or(state.q_d);
     let mut put = |numbers: &[f64]| {
@@ -84,8 +98,36 @@ pub(crate) fn encode(sample: &Sample, model: &Model, server_ms: u64, holding: bo
         }
     }
     frame.extend(guards.to_bits().to_le_bytes());
+    let width = server.width.map_or(f32::NAN, |width| width as f32);
+    frame.extend(width.to_le_bytes());
+    let (lower, upper) = model.joint_limits().velocity_envelope(&state.q.into(), 0.0);
+    for (joint, dq) in state.dq.iter().enumerate() {
+        let most = if *dq < 0.0 {
+            -lower[joint]
+        } else {
+            upper[joint]
+        };
+        // At the end of the range there is none left.
+        let share = (dq / most.max(1e-9)).clamp(-1.0, 1.0);
+        frame.extend((share as f32).to_le_bytes());
+    }
     debug_assert_eq!(frame.len(), LENGTH);
     frame
+}
+
+/// What computes the torques of the motion that runs: 0 nothing, 1 target control of this driver, 2
+/// torques of another client or motion, 3 the robot's joint impedance, 4 its Cartesian impedance.
+fn law(state: &RobotState, ours: bool) -> u32 {
+    if !state.motion_running() {
+        return 0;
+    }
+    match state.controller_mode {
+        ControllerMode::ExternalController if ours => 1,
+        ControllerMode::ExternalController => 2,
+        ControllerMode::JointImpedance => 3,
+        ControllerMode::CartesianImpedance => 4,
+        _ => 0,
+    }
 }
 
 /// Where the frames are at the joint positions `q`.
@@ -115,7 +157,7 @@ pub(crate) fn end_effector(state: &RobotState) -> EndEffector {
 mod tests {
     use franka_async::READY;
     use franka_async::record::{Bindings, Guard};
-    use franka_async::state::RobotMode;
+    use franka_async::state::{MotionGeneratorMode, RobotMode};
 
     use super::*;
 
@@ -146,9 +188,14 @@ mod tests {
             reference,
             guards: Bindings::of(&[Guard::ALL[0], Guard::ALL[9]]),
         };
-        let frame = encode(&sample, model, 9, true);
+        let server = Server {
+            ms: 9,
+            holding: true,
+            width: Some(0.03),
+        };
+        let frame = encode(&sample, model, server);
         assert_eq!(frame.len(), LENGTH);
-        assert_eq!(frame[..8], [0x46, 0x44, VERSION, 4, 0xc0, 2, 0, 0]);
+        assert_eq!(frame[..8], [0x46, 0x44, VERSION, 4, 0xe0, 2, 0, 0]);
         assert_eq!((frame[8], frame[16], frame[24]), (9, 7, 6));
         let at = |offset, wanted: f64| assert!((number(&frame, offset) - wanted).abs() < 1e-6);
         at(28, 0.75);
@@ -167,7 +214,65 @@ mod tests {
         }
         let wanted = model.pose(Frame::Flange, &[0.6; 7].into(), &EndEffector::default());
         at(448 + 7 * 28, wanted[(0, 3)]);
-        assert_eq!(frame[700..], [1, 2, 0, 0]);
+        assert_eq!(frame[700..704], [1, 2, 0, 0]);
+        at(704, 0.03);
+        // Far from the ends of the range the envelope is the nominal velocity.
+        at(708, 0.2 / model.joint_limits().velocity[0]);
+    }
+
+    #[test]
+    fn the_velocity_that_is_left_is_that_at_the_place_of_the_joint() {
+        let model = Model::fr3();
+        let share = |q: f64, dq: f64| {
+            let mut state = RobotState::default();
+            (state.q[0], state.dq[0]) = (q, dq);
+            let frame = encode(&sample_of(state), model, AT_FIRST);
+            number(&frame, 708)
+        };
+        let end = model.joint_limits().upper[0];
+        assert!(share(end, 0.1) > 2.0 * share(0.0, 0.1));
+        assert_eq!(share(end, 3.0), 1.0);
+        assert!((share(0.0, -0.1) + share(0.0, 0.1)).abs() < 1e-6);
+        assert!((share(end, -0.1) + share(0.0, 0.1)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_law_is_that_of_the_motion_that_runs() {
+        let of = |mode, controller, reference: Option<[f64; 7]>| {
+            let state = RobotState {
+                motion_generator_mode: mode,
+                controller_mode: controller,
+                robot_mode: RobotMode::Move,
+                ..RobotState::default()
+            };
+            let sample = Sample {
+                reference,
+                ..sample_of(state)
+            };
+            encode(&sample, Model::fr3(), AT_FIRST)[24] >> 3
+        };
+        let (idle, none) = (MotionGeneratorMode::Idle, MotionGeneratorMode::None);
+        let client = ControllerMode::ExternalController;
+        assert_eq!(of(idle, ControllerMode::Other, None), 0);
+        assert_eq!(of(none, client, Some([0.0; 7])), 1);
+        assert_eq!(of(none, client, None), 2);
+        let positions = MotionGeneratorMode::JointPosition;
+        assert_eq!(of(positions, ControllerMode::JointImpedance, None), 3);
+        assert_eq!(of(positions, ControllerMode::CartesianImpedance, None), 4);
+    }
+
+    const AT_FIRST: Server = Server {
+        ms: 0,
+        holding: false,
+        width: None,
+    };
+
+    fn sample_of(state: RobotState) -> Sample {
+        Sample {
+            state,
+            reference: None,
+            guards: Bindings::default(),
+        }
     }
 
     #[test]
@@ -176,13 +281,9 @@ mod tests {
             q_d: [0.1; 7],
             ..RobotState::default()
         };
-        let sample = Sample {
-            state,
-            reference: None,
-            guards: Bindings::default(),
-        };
-        let frame = encode(&sample, Model::fer(), 0, false);
+        let frame = encode(&sample_of(state), Model::fer(), AT_FIRST);
         assert_eq!(frame[24], 0);
+        assert!(number(&frame, 704).is_nan());
         assert!((number(&frame, 168) - 0.1).abs() < 1e-6);
     }
 }

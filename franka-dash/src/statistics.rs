@@ -1,9 +1,10 @@
 //! How punctual control is, for the page.
 
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 use franka_async::Robot;
-use franka_async::realtime::Stats;
+use franka_async::realtime::{Histogram, Stats};
 use serde::Serialize;
 
 /// Counters and quantiles of the control thread since it was started, `[us]`.
@@ -13,16 +14,77 @@ pub(crate) struct Statistics {
     round_trip_ms: Option<f64>,
     /// `None` where another program controls the robot.
     thread: Option<Thread>,
+    /// Since the last statistics of this viewer; `None` in the first.
+    recent: Option<Recent>,
 }
 
 #[derive(Clone, Debug, Serialize)]
 struct Thread {
+    /// Of `SCHED_FIFO`; `None` if it was not granted.
+    priority: Option<i32>,
     states: u64,
     lost: u64,
     skipped: u64,
     turnaround: Option<Spread>,
     interval: Option<Spread>,
     slack: Option<Spread>,
+}
+
+/// Shortest, median and longest of the last cycles, to 1/16, `[us]`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct Recent {
+    turnaround: [f64; 3],
+    slack: [f64; 3],
+}
+
+/// What the histograms had when a viewer was last told of them.
+#[derive(Debug, Default)]
+pub(crate) struct Counts {
+    turnaround: Buckets,
+    slack: Buckets,
+}
+
+/// How many durations there are up to each one.
+type Buckets = BTreeMap<Duration, u64>;
+
+impl Counts {
+    /// What has come since the last call; `None` for nothing, and at first.
+    fn take(&mut self, stats: &Stats) -> Option<Recent> {
+        let turnaround = since(&mut self.turnaround, &stats.turnaround);
+        let slack = since(&mut self.slack, &stats.slack);
+        Some(Recent {
+            turnaround: turnaround?,
+            slack: slack?,
+        })
+    }
+}
+
+/// Shortest, median and longest of what a histogram has more than `before`, which becomes what it
+/// has now.
+fn since(before: &mut Buckets, histogram: &Histogram) -> Option<[f64; 3]> {
+    spread(before, histogram.buckets().collect())
+}
+
+fn spread(before: &mut Buckets, now: Buckets) -> Option<[f64; 3]> {
+    let before = std::mem::replace(before, now.clone());
+    let more = now.into_iter().filter_map(|(duration, count)| {
+        // Those of another connection begin anew.
+        let count = count.saturating_sub(before.get(&duration).copied().unwrap_or(0));
+        (count > 0).then_some((duration, count))
+    });
+    let more: Vec<_> = more.collect();
+    let half = more.iter().map(|(_, count)| count).sum::<u64>().div_ceil(2);
+    let mut seen = 0;
+    let median = more.iter().find(|(_, count)| {
+        seen += count;
+        seen >= half
+    });
+    let three = [more.first()?, median?, more.last()?];
+    (!before.is_empty()).then(|| three.map(|(duration, _)| micros(*duration)))
+}
+
+fn micros(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e6
 }
 
 /// Median, 99th percentile and maximum, `[us]`.
@@ -34,18 +96,23 @@ struct Spread {
 }
 
 impl Statistics {
-    pub(crate) fn of(robot: Option<&Robot>, round_trip: Option<Duration>) -> Self {
+    /// `before` is what this viewer was told last.
+    pub(crate) fn of(
+        robot: Option<&Robot>,
+        round_trip: Option<Duration>,
+        before: &mut Counts,
+    ) -> Self {
         Self {
             round_trip_ms: round_trip.map(|it| it.as_secs_f64() * 1e3),
-            thread: robot.map(|robot| Thread::of(&robot.stats())),
+            thread: robot.map(|robot| Thread::of(&robot.stats(), robot.granted().priority)),
+            recent: robot.and_then(|robot| before.take(&robot.stats())),
         }
     }
 }
 
 impl Thread {
-    fn of(stats: &Stats) -> Self {
-        let micros = |time: Duration| time.as_secs_f64() * 1e6;
-        let spread = |histogram: &franka_async::realtime::Histogram| {
+    fn of(stats: &Stats, priority: Option<i32>) -> Self {
+        let spread = |histogram: &Histogram| {
             histogram.quantiles().map(|it| Spread {
                 p50: micros(it.p50),
                 p99: micros(it.p99),
@@ -53,6 +120,7 @@ impl Thread {
             })
         };
         Self {
+            priority,
             states: stats.states.get(),
             lost: stats.lost.get(),
             skipped: stats.skipped.get(),
@@ -60,5 +128,26 @@ impl Thread {
             interval: spread(&stats.interval),
             slack: spread(&stats.slack),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_told_is_what_has_come_since() {
+        let buckets = |counts: &[(u64, u64)]| -> Buckets {
+            let each = counts.iter();
+            each.map(|(us, count)| (Duration::from_micros(*us), *count))
+                .collect()
+        };
+        let mut before = Buckets::default();
+        assert_eq!(spread(&mut before, buckets(&[(5, 9), (900, 1)])), None);
+        let now = buckets(&[(5, 10), (7, 3), (20, 1), (900, 1)]);
+        assert_eq!(spread(&mut before, now.clone()), Some([5.0, 7.0, 20.0]));
+        assert_eq!(spread(&mut before, now), None, "nothing has come");
+        // Another connection: its counts begin anew.
+        assert_eq!(spread(&mut before, buckets(&[(6, 2)])), Some([6.0; 3]));
     }
 }

@@ -25,7 +25,7 @@ use crate::hub::Hub;
 use crate::plan::{Question, in_background};
 use crate::reply::Reply;
 use crate::request::Request;
-use crate::statistics::Statistics;
+use crate::statistics::{Counts, Statistics};
 
 /// Serves a viewer until it goes, and then ends what it held.
 pub(crate) async fn attend(hub: Arc<Hub>, socket: WebSocket) {
@@ -171,6 +171,7 @@ async fn write(
     let way = heading.borrow_and_update().clone();
     send(&mut sink, text(&Reply::heading(way))).await?;
     let mut frames = interval(FRAME);
+    let mut before = Counts::default();
     let mut slow = interval(STATISTICS);
     frames.set_missed_tick_behavior(MissedTickBehavior::Skip);
     slow.set_missed_tick_behavior(MissedTickBehavior::Skip);
@@ -199,7 +200,7 @@ async fn write(
                 Err(RecvError::Closed) => return None,
             },
             _ = slow.tick() => {
-                for reply in figures(hub, link) {
+                for reply in figures(hub, link, &mut before) {
                     send(&mut sink, text(&reply)).await?;
                 }
                 continue;
@@ -210,7 +211,12 @@ async fn write(
                 }
                 let now = hub.now_ms();
                 let holding = status.borrow().authority.holding;
-                let frame = frame::encode(&hub.source.newest(), hub.source.model(), now, holding);
+                let server = frame::Server {
+                    ms: now,
+                    holding,
+                    width: hub.fingers.as_ref().map(Fingers::width),
+                };
+                let frame = frame::encode(&hub.source.newest(), hub.source.model(), server);
                 link.sent.store(now, Ordering::Relaxed);
                 link.in_flight.store(true, Ordering::Relaxed);
                 Message::Binary(frame.into())
@@ -221,9 +227,9 @@ async fn write(
 }
 
 /// What changes all the time, and is told a few times per second.
-fn figures(hub: &Hub, link: &Link) -> impl Iterator<Item = Reply> + use<> {
+fn figures(hub: &Hub, link: &Link, before: &mut Counts) -> impl Iterator<Item = Reply> + use<> {
     let round_trip = link.round_trip(hub.now_ms());
-    let statistics = Statistics::of(hub.source.robot(), round_trip);
+    let statistics = Statistics::of(hub.source.robot(), round_trip, before);
     let fingers = hub.fingers.as_ref().map(Fingers::state);
     let recordings = hub.recordings.as_ref();
     let recording = recordings.map(|it| Reply::Recording {

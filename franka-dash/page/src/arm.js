@@ -6,11 +6,13 @@ const UP = new THREE.Vector3(0, 1, 0);
 /** Of the hand on the flange, and of the fingers on the hand. */
 const HAND_TURN = -Math.PI / 4;
 const FINGER_HEIGHT = 0.0584;
+/** Of a finger from the middle, where no width is known. */
 const FINGER_OPEN = 0.02;
 
 export class ArmView {
   #capsules = [];
   #meshes = [];
+  #fingers = [];
   #tint;
 
   /** `links[0]` is the base, 1 to 7 the joint frames, 8 the flange, 9 the end effector. */
@@ -41,6 +43,9 @@ export class ArmView {
     }
   }
 
+  /** Width between the drawn fingers, `[m]`; null without fingers. */
+  get width() { return this.#fingers.length ? 2 * this.#fingers[0].position.y : null; }
+
   get hasMeshes() { return this.#meshes.length > 0; }
 
   /** Adds what the links look like: copies, in one colour for an arm that is not there. */
@@ -60,7 +65,9 @@ export class ArmView {
       const place = new THREE.Group();
       place.rotation.z = HAND_TURN + (side > 0 ? 0 : Math.PI);
       this.links[8].add(place);
-      add(place, finger).position.set(0, FINGER_OPEN, FINGER_HEIGHT);
+      const copy = add(place, finger);
+      copy.position.set(0, FINGER_OPEN, FINGER_HEIGHT);
+      this.#fingers.push(copy);
     }
   }
 
@@ -89,6 +96,11 @@ export class ArmView {
   hit(ray) {
     const [hit] = ray.intersectObjects(this.#capsules, false);
     return hit ? { link: hit.object.userData.link, point: hit.point } : null;
+  }
+
+  /** Puts the fingers so that `width` is between them, `[m]`; no number for one that is unknown. */
+  open(width) {
+    for (const finger of this.#fingers) finger.position.y = Number.isFinite(width) ? width / 2 : FINGER_OPEN;
   }
 
   /** Puts the links where nine poses of a frame say. */

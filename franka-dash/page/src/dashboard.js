@@ -60,7 +60,10 @@ export function dashboard() {
     byId("legend").classList.toggle("regions", detail.keep_out.length > 0);
   });
   connection.addEventListener("status", ({ detail }) => strip.setStatus(detail));
-  connection.addEventListener("statistics", ({ detail }) => strip.statistics(detail));
+  connection.addEventListener("statistics", ({ detail }) => {
+    strip.statistics(detail);
+    history.told(detail);
+  });
   connection.addEventListener("heading", ({ detail }) => scene.heading(detail.way));
   connection.addEventListener("contact", ({ detail }) => { if (history.live) scene.showContact(detail.contact); });
   connection.addEventListener("frame", ({ detail }) => history.add(detail));

@@ -2,9 +2,11 @@
 
 export const MODES = ["Not ready", "Idle", "Moving", "Guiding", "Reflex", "User stop", "Recovering"];
 export const MODE_CLASSES = ["", "idle", "move", "guiding", "reflex", "stopped", ""];
+/** What computes the torques, by its number. */
+export const LAWS = ["none", "target control", "client's torques", "joint impedance", "Cartesian imp."];
 const MAGIC = 0x4446;
-const VERSION = 2;
-const LENGTH = 704;
+const VERSION = 3;
+const LENGTH = 736;
 export const POSES = 9;
 
 /** The end effector in the poses of a frame: position and quaternion. */
@@ -25,6 +27,7 @@ export function parse(buffer) {
     running: (flags & 1) !== 0,
     ours: (flags & 2) !== 0,
     holding: (flags & 4) !== 0,
+    law: (flags >> 3) & 7,
     success: view.getFloat32(28, true),
     q: floats(32, 7),
     dq: floats(60, 7),
@@ -35,5 +38,9 @@ export function parse(buffer) {
     poses: floats(196, 7 * POSES),
     referencePoses: floats(448, 7 * POSES),
     guards: view.getUint32(700, true),
+    // Not a number where no gripper is known.
+    width: view.getFloat32(704, true),
+    // Of the velocity that the joint may have there, -1 to 1.
+    pace: floats(708, 7),
   };
 }

@@ -9,6 +9,8 @@ const BEHIND_STEP = 0.004;
 
 export class History extends EventTarget {
   frames = [];
+  /** How punctual control was: one line for each time it was told. */
+  control = [];
   #chosen = null;
 
   add(frame) {
@@ -18,6 +20,13 @@ export class History extends EventTarget {
     // Rarely, since it moves all that is kept.
     if (old > 120) this.frames.splice(0, old);
     if (this.#chosen === null) this.#show(frame);
+  }
+
+  /** Takes what was told of the control thread, as of the newest frame. */
+  told({ recent }) {
+    if (!recent || !this.newest) return;
+    this.control.push({ serverMs: this.newest.serverMs, ...recent });
+    while (this.newest.serverMs - this.control[0].serverMs > KEPT_MS) this.control.shift();
   }
 
   get live() { return this.#chosen === null; }
@@ -57,12 +66,12 @@ export class History extends EventTarget {
 
   /** All that is kept as comma-separated values. */
   csv() {
-    const names = ["robot_ms", "mode", "success_rate", "guards"];
+    const names = ["robot_ms", "mode", "law", "success_rate", "guards", "width"];
     const columns = { q: 7, dq: 7, tau: 7, tauExt: 7, force: 6, reference: 7 };
     for (const [name, count] of Object.entries(columns)) {
       for (let i = 0; i < count; i += 1) names.push(`${name}_${i}`);
     }
-    const row = (frame) => [frame.robotMs, frame.mode, frame.success, frame.guards,
+    const row = (frame) => [frame.robotMs, frame.mode, frame.law, frame.success, frame.guards, frame.width,
       ...Object.keys(columns).flatMap((name) => Array.from(frame[name]))].join(",");
     return [names.join(","), ...this.frames.map(row), ""].join("\n");
   }

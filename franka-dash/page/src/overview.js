@@ -18,7 +18,7 @@ class Card {
     this.element = document.createElement("section");
     this.element.className = "panel card";
     this.element.innerHTML = `<h2><a></a><span class="badge" role="status">connecting</span></h2><canvas></canvas>
-      <div class="row"><span class="fact">Commands <b></b></span><button class="stop" type="button">Stop</button></div>`;
+      <div class="row"><span class="fact">Commander <b></b></span><button class="stop" type="button">Stop</button></div>`;
     const link = this.element.querySelector("a");
     link.textContent = name;
     link.href = `${name}/${location.hash}`;
@@ -37,7 +37,7 @@ class Card {
       this.#scene.describe(detail);
     });
     this.connection.addEventListener("status", ({ detail }) => {
-      this.commander.textContent = detail.name ?? "nobody";
+      this.commander.textContent = detail.name ?? "none";
     });
     this.connection.addEventListener("heading", ({ detail }) => this.#scene.heading(detail.way));
     this.connection.addEventListener("contact", ({ detail }) => this.#scene.showContact(detail.contact));

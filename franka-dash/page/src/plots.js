@@ -3,6 +3,7 @@
 import uPlot from "uplot";
 
 const COLOURS = ["#2f7de1", "#d8662a", "#2e9e5b", "#b0479c", "#8a7a1f", "#1aa3a8", "#d8433f"];
+const SPREAD = ["shortest", "median", "longest"];
 const QUANTITIES = {
   "q, rad": { field: "q", names: ["1", "2", "3", "4", "5", "6", "7"] },
   "dq, rad/s": { field: "dq", names: ["1", "2", "3", "4", "5", "6", "7"] },
@@ -10,6 +11,8 @@ const QUANTITIES = {
   "tau_ext, N m": { field: "tauExt", names: ["1", "2", "3", "4", "5", "6", "7"] },
   "F_ext, N": { field: "force", names: ["x", "y", "z"] },
   "success rate": { field: "success", names: ["rate"] },
+  "turnaround, µs": { field: "turnaround", names: SPREAD, from: "control" },
+  "slack, µs": { field: "slack", names: SPREAD, from: "control" },
 };
 const EVERY_MS = 200;
 const SHOWN_S = 20;
@@ -23,9 +26,9 @@ export function plots(history) {
   const line = () => getComputedStyle(document.documentElement).getPropertyValue("--line").trim();
 
   const data = () => {
-    const { field, names } = QUANTITIES[choice.value];
+    const { field, names, from = "frames" } = QUANTITIES[choice.value];
     const newest = history.newest?.serverMs ?? 0;
-    const shown = history.frames.filter((frame) => newest - frame.serverMs <= SHOWN_S * 1000);
+    const shown = history[from].filter((frame) => newest - frame.serverMs <= SHOWN_S * 1000);
     const time = shown.map((frame) => (frame.serverMs - newest) / 1000);
     return [time, ...names.map((_, i) => shown.map((frame) => (names.length === 1 ? frame[field] : frame[field][i])))];
   };
@@ -48,7 +51,8 @@ export function plots(history) {
   addEventListener("resize", () => plot?.setSize({ width: place.clientWidth, height: 190 }));
   build();
   let zoomed = false;
-  plot.over.addEventListener("mousedown", () => { zoomed = true; });
+  // Of whichever plot is there now.
+  place.addEventListener("mousedown", ({ target }) => { zoomed ||= target.closest(".u-over") !== null; });
   place.addEventListener("dblclick", () => { zoomed = false; });
   choice.addEventListener("change", () => { zoomed = false; });
   setInterval(() => {

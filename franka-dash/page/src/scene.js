@@ -11,6 +11,8 @@ import { load } from "./meshes.js";
 
 const METRES_PER_NEWTON = 0.01;
 const FORCE_SHOWN = 2;
+/** Of half the angle of view, from top to bottom. */
+const TANGENT = Math.tan((19 * Math.PI) / 180);
 /** Joint positions that differ by less are the same place: equal arms only blur each other. */
 const APART = 0.01;
 
@@ -111,6 +113,7 @@ export class Scene extends EventTarget {
     this.#frame = frame;
     measured.place(frame.poses);
     reference.place(frame.referencePoses);
+    for (const arm of Object.values(this.#arms)) arm.open(frame.width);
     reference.group.visible = differs(frame.q, frame.reference);
     // The robot's estimate is what it exerts; shown is what is exerted on it.
     const force = new THREE.Vector3(-frame.force[0], -frame.force[1], -frame.force[2]);
@@ -158,6 +161,8 @@ export class Scene extends EventTarget {
     if (size.x !== width || size.y !== height) {
       this.#renderer.setSize(width, height, false);
       this.#camera.aspect = width / height;
+      // A high window shows as much from left to right as a square one.
+      this.#camera.fov = 2 * Math.atan(TANGENT / Math.min(1, this.#camera.aspect)) * (180 / Math.PI);
       this.#camera.updateProjectionMatrix();
     }
     this.#renderer.render(this.#scene, this.#camera);
@@ -203,6 +208,7 @@ export class Scene extends EventTarget {
       forceShown: this.#force.group.visible,
       contactShown: this.#contact.group.visible,
       meshes: measured?.hasMeshes ?? false,
+      width: measured?.width ?? null,
       ghost: goal?.group.visible ? at(goal.links[9]).toArray() : null,
       ahead: this.#ahead.count,
       behind: this.#behind.count,

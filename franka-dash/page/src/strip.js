@@ -1,8 +1,15 @@
-// The line at the top: mode, session, who commands, how far away the server is; and the stop.
+// The lines at the top: mode, session, law, who commands, deadman, real-time priority, how far away
+// the server is; and the stop.
 
-import { MODES, MODE_CLASSES } from "./frame.js";
+import { LAWS, MODES, MODE_CLASSES } from "./frame.js";
 
 const ALIVE_MS = 1000;
+
+/** Writes what has changed: 60 times per second, all else would be laid out again. */
+const write = (id, text) => {
+  const place = document.getElementById(id);
+  if (place.textContent !== text) place.textContent = text;
+};
 
 export class Strip {
   status = { commander: null, name: null, holding: false };
@@ -47,7 +54,8 @@ export class Strip {
     this.status = status;
     const hello = this.#hello;
     const may = hello?.may_command;
-    document.getElementById("commander").textContent = status.name ?? "nobody";
+    write("commander", status.name ?? "none");
+    write("deadman", status.holding ? "fed" : status.expired ? "expired" : "off");
     const lease = document.getElementById("lease");
     lease.textContent = this.commands ? "Release" : "Take command";
     lease.disabled = !may || (status.commander !== null && !this.commands);
@@ -59,14 +67,17 @@ export class Strip {
   }
 
   show(frame) {
-    this.mode.textContent = MODES[frame.mode] ?? "unknown";
+    write("mode", MODES[frame.mode] ?? "unknown");
     this.mode.className = `badge ${MODE_CLASSES[frame.mode] ?? ""}`;
     const session = frame.holding ? "held" : frame.running ? "running" : "none";
-    document.getElementById("session").textContent = session;
-    document.getElementById("success").textContent = frame.running ? `${(frame.success * 100).toFixed(0)} %` : "–";
+    write("session", session);
+    write("law", LAWS[frame.law] ?? "unknown");
+    write("success", frame.running ? `${(frame.success * 100).toFixed(0)} %` : "–");
   }
 
-  statistics({ round_trip_ms: roundTrip }) {
-    document.getElementById("round-trip").textContent = roundTrip === null ? "–" : `${roundTrip.toFixed(0)} ms`;
+  statistics({ round_trip_ms: roundTrip, thread }) {
+    const priority = thread?.priority ?? null;
+    write("real-time", priority !== null ? `FIFO ${priority}` : thread ? "not granted" : "–");
+    write("round-trip", roundTrip === null ? "–" : `${roundTrip.toFixed(0)} ms`);
   }
 }

@@ -7,13 +7,18 @@ export function timeline(history) {
   scrub.max = 0;
   scrub.step = 0.05;
   scrub.value = 0;
-  const choose = () => {
-    const seconds = -Number(scrub.value);
+  const pause = document.getElementById("pause");
+  const choose = (seconds) => {
     history.choose(seconds);
     label.textContent = seconds > 0 ? `-${seconds.toFixed(1)} s` : "live";
+    pause.textContent = history.live ? "Pause" : "Live";
   };
-  scrub.addEventListener("input", choose);
-  document.getElementById("live").addEventListener("click", () => { scrub.value = 0; choose(); });
+  scrub.addEventListener("input", () => choose(-Number(scrub.value)));
+  pause.addEventListener("click", () => {
+    const step = Number(scrub.step);
+    scrub.value = history.live ? -step : 0;
+    choose(history.live ? step : 0);
+  });
   document.getElementById("export").addEventListener("click", () => {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([history.csv()], { type: "text/csv" }));

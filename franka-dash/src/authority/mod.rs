@@ -50,6 +50,8 @@ pub(crate) struct Status {
     pub(crate) name: Option<String>,
     /// Whether a hold goes on.
     pub(crate) holding: bool,
+    /// Whether the last hold of the commander has ended by silence.
+    pub(crate) expired: bool,
 }
 
 impl Permissions {
@@ -132,6 +134,7 @@ struct Lease {
     name: String,
     heard: Duration,
     hold: Option<Hold>,
+    expired: bool,
 }
 
 #[derive(Debug)]
@@ -157,6 +160,7 @@ impl Authority {
             commander: lease.map(|lease| lease.viewer),
             name: lease.map(|lease| lease.name.clone()),
             holding: lease.is_some_and(|lease| lease.hold.is_some()),
+            expired: lease.is_some_and(|lease| lease.expired),
         }
     }
 
@@ -204,6 +208,7 @@ impl Authority {
         let lease = self.lease.as_mut()?;
         let silent = |hold: &mut Hold| self.now - hold.heard > deadman;
         if lease.hold.take_if(silent).is_some() {
+            lease.expired = true;
             return Some(Lost::Silent);
         }
         if self.now - lease.heard > LEASE {
@@ -238,6 +243,7 @@ impl Authority {
                     name,
                     heard: self.now,
                     hold: None,
+                    expired: false,
                 });
             }
         }
@@ -282,6 +288,7 @@ impl Authority {
                     Some(_) => {}
                 }
                 self.holds += 1;
+                lease.expired = false;
                 lease.hold = Some(Hold {
                     number: self.holds,
                     seq: 0,

@@ -106,6 +106,12 @@ fn a_hold_ends_by_silence_within_the_deadman() {
         let mut server = Server::holding(messages);
         assert_eq!(server.pass(151), Some(Lost::Silent));
         server.assert_at_rest();
+        // Shown until the next one.
+        assert!(server.authority.status().expired);
+        server.begin(COMMANDER);
+        assert!(!server.authority.status().expired);
+        server.ask(COMMANDER, Request::End {});
+        assert!(!server.authority.status().expired);
     }
 }
 
