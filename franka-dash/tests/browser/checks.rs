@@ -1,6 +1,5 @@
 //! What a person does with the page, and what has to come of it.
 
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, ensure};
@@ -8,24 +7,30 @@ use franka_async::state::RobotMode;
 use serde_json::json;
 
 use crate::driver::{Browser, down, move_to, point, up};
-use crate::served::{Served, wait};
+use crate::panels;
+use crate::served::{PATIENCE, Served, wait};
+use crate::targets;
 
 /// One thing that a person does or sees.
 type Check = fn(&Browser, &Served) -> anyhow::Result<()>;
 
 /// All checks, one after the other.
 pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    let checks: [(&str, Check); 12] = [
+    let checks: [(&str, Check); 16] = [
         ("load", load),
         ("shows the robot", shows_the_robot),
         ("looks", looks),
+        ("second viewer", second_viewer),
         ("jog", jog),
-        ("preview and go", preview_and_go),
-        ("keep out", keep_out),
-        ("sliders", sliders),
+        ("look back", look_back),
+        ("preview and go", targets::preview_and_go),
+        ("keep out", targets::keep_out),
+        ("sliders", targets::sliders),
         ("lose the hold", lose_the_hold),
         ("keyboard", keyboard),
         ("push", push),
+        ("tune", panels::tune),
+        ("network cut", panels::cut),
         ("reflex and recovery", reflex_and_recovery),
         ("leave", leave),
     ];
@@ -47,7 +52,7 @@ pub(crate) fn load(page: &Browser, served: &Served) -> anyhow::Result<()> {
 }
 
 /// The end effector of the scene is that of the robot.
-fn shows_the_robot(page: &Browser, served: &Served) -> anyhow::Result<()> {
+pub(crate) fn shows_the_robot(page: &Browser, served: &Served) -> anyhow::Result<()> {
     wait("the drawn arm", || {
         let shown = page.state()?["endEffector"].clone();
         let robot = served.robot.pose().translation;
@@ -56,10 +61,81 @@ fn shows_the_robot(page: &Browser, served: &Served) -> anyhow::Result<()> {
     })
 }
 
-/// The links are drawn as they look; from then on as capsules, which take less of a computer
-/// without a graphics card, and the arm goes faster.
-pub(crate) fn looks(page: &Browser, _: &Served) -> anyhow::Result<()> {
+/// The fingers of the scene are as wide apart as those of the hand.
+fn shows_the_fingers(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    wait("the drawn fingers", || {
+        let shown = page.state()?["width"].as_f64();
+        let width = served.gripper.state().width;
+        Ok(shown.is_some_and(|shown| (shown - width).abs() < 1e-3))
+    })
+}
+
+/// Another socket of the same page is another viewer: what it asks for is refused, but for a stop.
+fn second_viewer(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    take(page)?;
+    let start = served.robot.state().q;
+    let refused = page.run(
+        "const it = new WebSocket(`ws://${location.host}/ws`, ['franka-dash']); \
+         const asked = [{type: 'take', name: 'another'}, {type: 'recover'}, \
+           {type: 'begin', motion: {kind: 'ready'}, speed: 0.05}, \
+           {type: 'disturb', disturbance: {kind: 'reflex'}}, {type: 'stop'}]; \
+         const heard = []; \
+         return new Promise((resolve) => { \
+           it.onopen = () => { for (const one of asked) it.send(JSON.stringify(one)); }; \
+           it.onmessage = ({data}) => { \
+             if (typeof data !== 'string') return; \
+             const {type, why} = JSON.parse(data); \
+             if (type === 'refused') heard.push(why); \
+             if (heard.length === 4) { it.close(); resolve(heard); } \
+           }; \
+         })",
+    )?;
+    let refused = refused.as_array().context("refusals")?.len();
+    ensure!(refused == 4, "{refused} refusals");
+    wait("the stop of the other viewer", || {
+        let text = page.run("return document.getElementById('events').textContent")?;
+        Ok(text
+            .as_str()
+            .is_some_and(|text| text.contains("Stopped by a viewer")))
+    })?;
+    let moved = (0..7).map(|i| (served.robot.state().q[i] - start[i]).abs());
+    ensure!(moved.fold(0.0, f64::max) < 2e-3, "it moved");
+    ensure!(
+        served.robot.state().robot_mode == RobotMode::Idle,
+        "a reflex"
+    );
+    ensure!(page.state()?["commands"] == true, "the lease is gone");
+    Ok(())
+}
+
+/// The last seconds can be looked at again, and then what is now.
+fn look_back(page: &Browser, _: &Served) -> anyhow::Result<()> {
+    let height = || page.state()?["endEffector"][2].as_f64().context("a height");
+    let now = height()?;
+    let scrub = |seconds: f64| {
+        page.run(&format!(
+            "const it = document.getElementById('scrub'); it.value = {seconds}; \
+             it.dispatchEvent(new Event('input'))"
+        ))
+    };
+    // As far back as there is anything: before the jog.
+    scrub(-60.0)?;
+    wait("what was", || Ok(height()? < now - 2e-3))?;
+    ensure!(page.state()?["live"] == false, "it is live");
+    page.click("#pause")?;
+    wait("what is", || Ok((height()? - now).abs() < 1e-3))?;
+    page.click("#pause")?;
+    ensure!(page.state()?["live"] == false, "it is not paused");
+    page.click("#pause")?;
+    ensure!(page.state()?["live"] == true, "it is paused");
+    Ok(())
+}
+
+/// The links are drawn as they look, and the fingers; from then on as capsules, which take less of
+/// a computer without a graphics card, and the arm goes faster.
+pub(crate) fn looks(page: &Browser, served: &Served) -> anyhow::Result<()> {
     wait("the meshes", || Ok(page.state()?["meshes"] == true))?;
+    shows_the_fingers(page, served)?;
     page.run(
         "const it = document.getElementById('looks'); it.value = 'capsules'; \
          it.dispatchEvent(new Event('change')); \
@@ -90,7 +166,7 @@ fn hold_up(page: &Browser, served: &Served) -> anyhow::Result<()> {
 
 /// Presses a button, again if the machine was too busy for a hold, until `done`. It may be held on
 /// return.
-fn hold_until(
+pub(crate) fn hold_until(
     page: &Browser,
     selector: &str,
     mut done: impl FnMut() -> bool,
@@ -116,120 +192,21 @@ fn hold_until(
 
 fn jog(page: &Browser, served: &Served) -> anyhow::Result<()> {
     hold_up(page, served)?;
-    page.pointer(&[up()])?;
-    served.check_rest()
-}
-
-/// Types into the numbers of the target.
-fn aim(page: &Browser, numbers: &[(&str, f64)]) -> anyhow::Result<()> {
-    for (name, number) in numbers {
-        page.run(&format!(
-            "const it = document.querySelector('[data-goal={name}]'); \
-             it.value = {number}; it.dispatchEvent(new Event('input'))"
-        ))?;
-    }
-    Ok(())
-}
-
-/// Waits for what the page says about the target.
-fn said(page: &Browser, wanted: &str) -> anyhow::Result<()> {
-    let waited = wait(wanted, || {
-        let said = page.state()?["said"].clone();
-        Ok(said.as_str().is_some_and(|said| said.contains(wanted)))
-    });
-    waited.with_context(|| format!("{:?}", page.state().map(|state| state["said"].clone())))
-}
-
-/// Drags the handle of a target: the page shows what the motion would do, and nothing moves until
-/// a button is held. Then the arm goes where the ghost is.
-fn preview_and_go(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    take(page)?;
-    page.click("#goal-place")?;
-    page.run("scrollTo(0, 0)")?;
-    wait("the handle", || Ok(!page.state()?["gizmo"].is_null()))?;
-    let (x, y) = point(&page.state()?["gizmo"])?;
-    let before = served.robot.state().q;
-    // The middle of the handle: in the plane of the picture.
-    page.pointer(&[move_to((x, y)), down()])?;
-    page.pointer(&[
-        move_to((x + 15.0, y + 5.0)),
-        move_to((x + 30.0, y + 10.0)),
-        up(),
-    ])?;
-    let dragged = point(&page.state()?["gizmo"])?;
-    ensure!(
-        dragged.0 > x + 20.0,
-        "the handle is at {dragged:?}, was at {x}"
-    );
-    said(page, "Takes")?;
-    wait("the ghost", || Ok(!page.state()?["ghost"].is_null()))?;
-    let ghost = page.state()?["ghost"].clone();
-    ensure!(page.state()?["ahead"].as_u64() > Some(2), "no way ahead");
-    std::thread::sleep(Duration::from_millis(300));
-    let moved = (0..7).map(|i| (served.robot.state().q[i] - before[i]).abs());
-    ensure!(
-        moved.fold(0.0, f64::max) < 2e-3,
-        "it moved before a button was held"
-    );
-    let there = || {
-        let at = served.robot.pose().translation.vector;
-        let off = (0..3).map(|i| ghost[i].as_f64().map_or(1.0, |x| (x - at[i]).abs()));
-        off.fold(0.0, f64::max)
-    };
-    hold_until(page, "#goal-go", || there() < 3e-3)?;
+    strip_says(page, ["held", "target control", "fed"])?;
     page.pointer(&[up()])?;
     served.check_rest()?;
-    ensure!(page.state()?["behind"].as_u64() > Some(2), "no way behind");
-    Ok(())
+    strip_says(page, ["none", "none", "off"])
 }
 
-/// A target in a region to keep out of, and one out of reach, are refused with a reason, also by
-/// the server; a way down to the region is slowed down, and its guard lights up.
-fn keep_out(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    ensure!(page.state()?["regions"] == 1, "the region is not drawn");
-    let at = served.robot.pose().translation.vector * 1e3;
-    aim(page, &[("x", at.x), ("y", at.y), ("z", 1900.0)])?;
-    said(page, "no joint positions")?;
-    let below = served.region_top() * 1e3 - 30.0;
-    aim(page, &[("z", below)])?;
-    said(page, "region 1 to keep out of")?;
-    let start = served.robot.state().q;
-    page.pointer(&[move_to(page.find("#goal-go")?), down()])?;
-    wait("the refusal", || {
-        let text = page.run("return document.getElementById('events').textContent")?;
-        Ok(text
-            .as_str()
-            .is_some_and(|text| text.contains("Not moved: the arm would come")))
-    })?;
-    page.pointer(&[up()])?;
-    let moved = (0..7).map(|i| (served.robot.state().q[i] - start[i]).abs());
-    ensure!(moved.fold(0.0, f64::max) < 2e-3, "it moved");
-    aim(page, &[("z", served.region_top() * 1e3 + 40.0)])?;
-    said(page, "Takes")?;
-    hold_until(page, "#goal-go", || {
-        let guards = page.state().map(|state| state["guards"].clone());
-        guards.is_ok_and(|guards| guards.as_str().is_some_and(|it| it.contains("clearance")))
-    })?;
-    page.pointer(&[up()])?;
-    served.check_rest()?;
-    page.click("#goal-remove")?;
-    wait("no ghost", || Ok(page.state()?["ghost"].is_null()))
-}
-
-/// A slider shows where its joint would go.
-fn sliders(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    let wanted = served.robot.state().q[0] + 0.2;
-    page.run(&format!(
-        "const it = document.querySelector('.joint input'); \
-         it.value = {wanted}; it.dispatchEvent(new Event('input'))"
-    ))?;
-    wait("the ghost", || Ok(!page.state()?["ghost"].is_null()))?;
-    hold_until(page, "#go", || {
-        (served.robot.state().q[0] - wanted).abs() < 0.02
-    })?;
-    page.pointer(&[up()])?;
-    page.click("#joints-reset")?;
-    served.check_rest()
+/// Session, law and deadman.
+fn strip_says(page: &Browser, wanted: [&str; 3]) -> anyhow::Result<()> {
+    wait("the top lines", || {
+        let said = page.run(
+            "return ['session', 'law', 'deadman'] \
+             .map((id) => document.getElementById(id).textContent)",
+        )?;
+        Ok(said == json!(wanted))
+    })
 }
 
 /// Each way in which a browser takes a held button away.
@@ -244,7 +221,7 @@ fn lose_the_hold(page: &Browser, served: &Served) -> anyhow::Result<()> {
         format!("{button}.dispatchEvent(new PointerEvent('pointercancel'))"),
         format!("{button}.dispatchEvent(new PointerEvent('lostpointercapture'))"),
         // A page that hangs: no timer runs.
-        "const until = Date.now() + 4000; while (Date.now() < until);".to_owned(),
+        format!("const until = Date.now() + {HANGS}; while (Date.now() < until);"),
     ] {
         hold_up(page, served)?;
         page.run(&way)?;
@@ -252,6 +229,7 @@ fn lose_the_hold(page: &Browser, served: &Served) -> anyhow::Result<()> {
         wait("the page", || Ok(page.state()?["holding"] == false))?;
         page.pointer(&[up()])?;
     }
+    strip_says(page, ["none", "none", "expired"])?;
     // The pointer leaves the button.
     hold_up(page, served)?;
     page.pointer(&[move_to((5.0, 300.0))])?;
@@ -327,32 +305,8 @@ fn leave(page: &Browser, served: &Served) -> anyhow::Result<()> {
     served.check_rest().context("the page was left")
 }
 
-/// A picture of the page, with a hand that is pushed.
-pub(crate) fn picture(
-    page: &Browser,
-    served: &Served,
-    dark: bool,
-    path: &Path,
-) -> anyhow::Result<()> {
-    let scheme = if dark { "dark" } else { "light" };
-    let features = json!([{"name": "prefers-color-scheme", "value": scheme}]);
-    let media = json!({"cmd": "Emulation.setEmulatedMedia", "params": {"features": features}});
-    page.post("goog/cdp/execute", &media)?;
-    load(page, served)?;
-    shows_the_robot(page, served)?;
-    take(page)?;
-    let (x, y) = point(&page.state()?["links"][5])?;
-    page.pointer(&[move_to((x, y)), down()])?;
-    page.pointer(&[move_to((x + 60.0, y + 90.0))])?;
-    wait("the force", || Ok(page.state()?["forceShown"] == true))?;
-    wait("some history", || {
-        Ok(page.state()?["frames"]
-            .as_u64()
-            .is_some_and(|frames| frames > 30))
-    })?;
-    page.picture(path)?;
-    page.pointer(&[up()])
-}
+/// How long a page hangs, `[ms]`: longer than the server waits for a message.
+const HANGS: u128 = PATIENCE.as_millis() + 500;
 
 /// Until a hold begins, on a machine where the page answers late.
 const LONGEST: Duration = Duration::from_secs(60);

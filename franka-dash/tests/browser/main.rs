@@ -4,8 +4,10 @@
 mod checks;
 mod driver;
 mod panels;
+mod pictures;
 mod served;
 mod several;
+mod targets;
 
 use std::path::PathBuf;
 
@@ -19,36 +21,35 @@ use served::Served;
 fn the_page_shows_and_moves_simulated_robots() -> anyhow::Result<()> {
     let variable = |name: &str| std::env::var(name).with_context(|| name.to_owned());
     let (driver, browser) = (variable("FRANKA_WEBDRIVER")?, variable("FRANKA_BROWSER")?);
-    let pictures = PathBuf::from(variable("FRANKA_PICTURES")?);
-    std::fs::create_dir_all(&pictures)?;
+    let folder = PathBuf::from(variable("FRANKA_PICTURES")?);
+    std::fs::create_dir_all(&folder)?;
     let driver = Driver::start(&driver)?;
     let fr3 = Served::new(franka_sim::Sim::fr3(), "fr3")?;
-    {
-        let page = Browser::open(&driver, &browser, (900, 640))?;
-        let panels = pictures.join("panels.png");
+    let fer = Served::new(franka_sim::Sim::fer(), "fer")?;
+    let open = |size| Browser::open(&driver, &browser, size);
+    std::thread::scope(|scope| {
+        // Side by side: most of the time is spent on waiting for arms.
+        let beside = scope.spawn(|| {
+            let page = open((1440, 900))?;
+            pictures::run(&page, &fer, "fer", &folder)?;
+            page.check_console()
+        });
+        let page = open((900, 640))?;
         let mut checked = checks::run(&page, &fr3);
-        // Without it, the panels are tested by the server's requests alone: see `sockets`.
+        // Without it, these panels are tested by the server's requests alone: see `sockets`.
         if checked.is_ok() && std::env::var_os("FRANKA_THOROUGH").is_some() {
-            checked = panels::run(&page, &fr3, &panels);
+            checked = panels::run(&page, &fr3, &folder.join("panels.png"));
         }
-        page.picture(&pictures.join("checked.png"))?;
+        page.picture(&folder.join("checked.png"))?;
         checked?;
         page.check_console()?;
-    }
-    let fer = Served::new(franka_sim::Sim::fer(), "fer")?;
-    for (name, served, size, dark) in [
-        ("fr3-light", &fr3, (1440, 900), false),
-        ("fr3-dark", &fr3, (1440, 900), true),
-        ("fer-light", &fer, (1440, 900), false),
-        ("fer-tablet-dark", &fer, (820, 1180), true),
-    ] {
-        let page = Browser::open(&driver, &browser, size)?;
-        checks::picture(&page, served, dark, &pictures.join(format!("{name}.png")))?;
-        page.check_console()?;
-    }
-    let page = Browser::open(&driver, &browser, (1180, 820))?;
-    several::run(&page, [&fr3, &fer], &pictures.join("several.png"))?;
+        beside.join().expect("no panic")
+    })?;
+    let page = open((1440, 900))?;
+    pictures::run(&page, &fr3, "fr3", &folder)?;
+    pictures::resize(&page, 1180, 820)?;
+    several::run(&page, [&fr3, &fer], &folder.join("several.png"))?;
     page.check_console()?;
-    println!("pictures: {}", pictures.display());
+    println!("pictures: {}", folder.display());
     Ok(())
 }

@@ -13,15 +13,14 @@ pub(crate) fn run(page: &Browser, served: &Served, picture: &Path) -> anyhow::Re
     load(page, served)?;
     looks(page, served)?;
     take(page)?;
-    tune(page)?;
     record(page, served)?;
     grip(page, served)?;
-    cut(page, served)?;
     page.run("document.getElementById('tuning-panel').scrollIntoView()")?;
     page.picture(picture)
 }
 
-fn tune(page: &Browser) -> anyhow::Result<()> {
+pub(crate) fn tune(page: &Browser, _: &Served) -> anyhow::Result<()> {
+    take(page)?;
     for (name, factor) in [("soft", 0.25), ("default", 1.0)] {
         page.click(&format!("[data-tuning='{name}']"))?;
         wait(name, || {
@@ -69,7 +68,8 @@ fn grip(page: &Browser, served: &Served) -> anyhow::Result<()> {
 }
 
 /// Cuts the network for 25 ms, while nothing moves.
-fn cut(page: &Browser, served: &Served) -> anyhow::Result<()> {
+pub(crate) fn cut(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    take(page)?;
     let lost = || served.robot.stats().lost.get();
     let before = lost();
     page.click("[data-world='cut-25']")?;

@@ -1,0 +1,63 @@
+//! Pictures of the page: both sizes, light and dark.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::checks::{load, shows_the_robot, take};
+use crate::driver::{Browser, down, move_to, point, up};
+use crate::served::{Served, wait};
+
+/// Takes pictures of the page with a hand that is pushed, `NAME-SIZE-SCHEME.png` each, and one of a
+/// window that is high enough for all there is.
+pub(crate) fn run(
+    page: &Browser,
+    served: &Served,
+    name: &str,
+    folder: &Path,
+) -> anyhow::Result<()> {
+    load(page, served)?;
+    shows_the_robot(page, served)?;
+    take(page)?;
+    wait("the meshes", || Ok(page.state()?["meshes"] == true))?;
+    for (size, width, height) in [("desktop", 1440, 900), ("tablet", 820, 1180)] {
+        resize(page, width, height)?;
+        for scheme in ["light", "dark"] {
+            let features = json!([{"name": "prefers-color-scheme", "value": scheme}]);
+            tell(
+                page,
+                "Emulation.setEmulatedMedia",
+                json!({"features": features}),
+            )?;
+            let (x, y) = point(&page.state()?["links"][5])?;
+            page.pointer(&[move_to((x, y)), down()])?;
+            page.pointer(&[move_to((x + 60.0, y + 90.0))])?;
+            wait("the force", || Ok(page.state()?["forceShown"] == true))?;
+            page.picture(&folder.join(format!("{name}-{size}-{scheme}.png")))?;
+            page.pointer(&[up()])?;
+        }
+    }
+    resize(page, 820, 3400)?;
+    page.picture(&folder.join(format!("{name}-all.png")))
+}
+
+/// Gives the page a size, pixels.
+pub(crate) fn resize(page: &Browser, width: u32, height: u32) -> anyhow::Result<()> {
+    let screen = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
+    tell(page, "Emulation.setDeviceMetricsOverride", screen)?;
+    wait("the new size", || {
+        Ok(page.run("return [innerWidth, innerHeight]")? == json!([width, height]))
+    })?;
+    page.run("scrollTo(0, 0)")?;
+    // The next picture of the browser has the scene in its new size.
+    page.run(
+        "return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))",
+    )?;
+    Ok(())
+}
+
+/// Commands the browser itself.
+fn tell(page: &Browser, what: &str, how: Value) -> anyhow::Result<()> {
+    page.post("goog/cdp/execute", &json!({"cmd": what, "params": how}))?;
+    Ok(())
+}

@@ -1,0 +1,121 @@
+//! Targets: shown before anything moves, refused with a reason, and gone to while a button is held.
+
+use std::time::Duration;
+
+use anyhow::{Context, ensure};
+
+use crate::checks::{hold_until, take};
+use crate::driver::{Browser, down, move_to, point, up};
+use crate::served::{Served, wait};
+
+/// Types into the numbers of the target.
+fn aim(page: &Browser, numbers: &[(&str, f64)]) -> anyhow::Result<()> {
+    for (name, number) in numbers {
+        page.run(&format!(
+            "const it = document.querySelector('[data-goal={name}]'); \
+             it.value = {number}; it.dispatchEvent(new Event('input'))"
+        ))?;
+    }
+    Ok(())
+}
+
+/// Waits for what the page says about the target.
+fn said(page: &Browser, wanted: &str) -> anyhow::Result<()> {
+    let waited = wait(wanted, || {
+        let said = page.state()?["said"].clone();
+        Ok(said.as_str().is_some_and(|said| said.contains(wanted)))
+    });
+    waited.with_context(|| format!("{:?}", page.state().map(|state| state["said"].clone())))
+}
+
+/// Drags the handle of a target: the page shows what the motion would do, and nothing moves until
+/// a button is held. Then the arm goes where the ghost is.
+pub(crate) fn preview_and_go(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    take(page)?;
+    page.click("#goal-place")?;
+    page.run("scrollTo(0, 0)")?;
+    wait("the handle", || Ok(!page.state()?["gizmo"].is_null()))?;
+    let (x, y) = point(&page.state()?["gizmo"])?;
+    let before = served.robot.state().q;
+    // The middle of the handle: in the plane of the picture.
+    page.pointer(&[move_to((x, y)), down()])?;
+    page.pointer(&[
+        move_to((x + 15.0, y + 5.0)),
+        move_to((x + 30.0, y + 10.0)),
+        up(),
+    ])?;
+    let dragged = point(&page.state()?["gizmo"])?;
+    ensure!(
+        dragged.0 > x + 20.0,
+        "the handle is at {dragged:?}, was at {x}"
+    );
+    said(page, "Takes")?;
+    wait("the ghost", || Ok(!page.state()?["ghost"].is_null()))?;
+    let ghost = page.state()?["ghost"].clone();
+    ensure!(page.state()?["ahead"].as_u64() > Some(2), "no way ahead");
+    std::thread::sleep(Duration::from_millis(300));
+    let moved = (0..7).map(|i| (served.robot.state().q[i] - before[i]).abs());
+    ensure!(
+        moved.fold(0.0, f64::max) < 2e-3,
+        "it moved before a button was held"
+    );
+    let there = || {
+        let at = served.robot.pose().translation.vector;
+        let off = (0..3).map(|i| ghost[i].as_f64().map_or(1.0, |x| (x - at[i]).abs()));
+        off.fold(0.0, f64::max)
+    };
+    hold_until(page, "#goal-go", || there() < 3e-3)?;
+    page.pointer(&[up()])?;
+    served.check_rest()?;
+    ensure!(page.state()?["behind"].as_u64() > Some(2), "no way behind");
+    Ok(())
+}
+
+/// A target in a region to keep out of, and one out of reach, are refused with a reason, also by
+/// the server; a way down to the region is slowed down, and its guard lights up.
+pub(crate) fn keep_out(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    ensure!(page.state()?["regions"] == 1, "the region is not drawn");
+    let at = served.robot.pose().translation.vector * 1e3;
+    aim(page, &[("x", at.x), ("y", at.y), ("z", 1900.0)])?;
+    said(page, "no joint positions")?;
+    let below = served.region_top() * 1e3 - 30.0;
+    aim(page, &[("z", below)])?;
+    said(page, "region 1 to keep out of")?;
+    let start = served.robot.state().q;
+    page.pointer(&[move_to(page.find("#goal-go")?), down()])?;
+    wait("the refusal", || {
+        let text = page.run("return document.getElementById('events').textContent")?;
+        Ok(text
+            .as_str()
+            .is_some_and(|text| text.contains("Not moved: the arm would come")))
+    })?;
+    page.pointer(&[up()])?;
+    let moved = (0..7).map(|i| (served.robot.state().q[i] - start[i]).abs());
+    ensure!(moved.fold(0.0, f64::max) < 2e-3, "it moved");
+    aim(page, &[("z", served.region_top() * 1e3 + 40.0)])?;
+    said(page, "Takes")?;
+    hold_until(page, "#goal-go", || {
+        let guards = page.state().map(|state| state["guards"].clone());
+        guards.is_ok_and(|guards| guards.as_str().is_some_and(|it| it.contains("clearance")))
+    })?;
+    page.pointer(&[up()])?;
+    served.check_rest()?;
+    page.click("#goal-remove")?;
+    wait("no ghost", || Ok(page.state()?["ghost"].is_null()))
+}
+
+/// A slider shows where its joint would go.
+pub(crate) fn sliders(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    let wanted = served.robot.state().q[0] + 0.1;
+    page.run(&format!(
+        "const it = document.querySelector('.joint input'); \
+         it.value = {wanted}; it.dispatchEvent(new Event('input'))"
+    ))?;
+    wait("the ghost", || Ok(!page.state()?["ghost"].is_null()))?;
+    hold_until(page, "#go", || {
+        (served.robot.state().q[0] - wanted).abs() < 0.02
+    })?;
+    page.pointer(&[up()])?;
+    page.click("#joints-reset")?;
+    served.check_rest()
+}
