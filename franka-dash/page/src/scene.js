@@ -87,6 +87,9 @@ export class Scene extends EventTarget {
     this.#arms.goal.group.visible = false;
     this.#regions.set(regions);
     this.#frame = null;
+    // First something to look at: the files take a while.
+    await new Promise((done) => this.addEventListener("shown", done, { once: true }));
+    await new Promise(requestAnimationFrame);
     try {
       const set = await load(meshes);
       for (const arm of arms) arm.addMeshes(set);
@@ -123,6 +126,7 @@ export class Scene extends EventTarget {
     this.#regions.light(guards.has("clearance"));
     this.#showGoal();
     this.redraw();
+    this.dispatchEvent(new Event("shown"));
   }
 
   showContact(contact) {
