@@ -31,10 +31,13 @@ fn said(page: &Browser, wanted: &str) -> anyhow::Result<()> {
 /// Drags the handle of a target: the page shows what the motion would do, and nothing moves until
 /// a button is held. Then the arm goes where the ghost is.
 pub(crate) fn preview_and_go(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    take(page)?;
-    page.click("#goal-place")?;
+    // A page that was too busy may lose the lease before the click.
+    wait("the handle", || {
+        take(page)?;
+        page.click("#goal-place")?;
+        Ok(!page.state()?["gizmo"].is_null())
+    })?;
     page.run("scrollTo(0, 0)")?;
-    wait("the handle", || Ok(!page.state()?["gizmo"].is_null()))?;
     let (x, y) = point(&page.state()?["gizmo"])?;
     let before = served.robot.state().q;
     // The middle of the handle: in the plane of the picture.
