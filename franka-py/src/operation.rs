@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use std::future::Future;
 use std::panic::AssertUnwindSafe;
 use std::pin::Pin;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError, mpsc};
 use std::time::Duration;
 
 use futures::FutureExt;
@@ -55,8 +55,15 @@ struct Awaited {
 
 struct Pending {
     future: Py<PyAny>,
-    /// Dropped with this, and the work with it.
-    _keep: oneshot::Sender<Infallible>,
+    task: Threaded<Task>,
+}
+
+/// The task that does the work.
+struct Task {
+    /// Has the work dropped where this is.
+    keep: oneshot::Sender<Infallible>,
+    /// Closed once the work is dropped.
+    over: mpsc::Receiver<Infallible>,
 }
 
 impl Operation {
@@ -158,13 +165,14 @@ impl Operation {
                 let iterator = future.call_method0("__await__")?.unbind();
                 let work = self.begin()?;
                 let (keep, given_up) = oneshot::channel();
+                let (dropped, over) = mpsc::channel();
                 let waiting = (event_loop.unbind(), future.clone().unbind());
-                runtime.spawn(begun(work, given_up, waiting));
+                runtime.spawn(begun(work, given_up, dropped, waiting));
                 Awaited {
                     iterator,
                     future: Some(Pending {
                         future: future.unbind(),
-                        _keep: keep,
+                        task: Threaded::new(Task { keep, over }),
                     }),
                 }
             }
@@ -179,6 +187,7 @@ impl Operation {
 async fn begun(
     work: Work,
     given_up: oneshot::Receiver<Infallible>,
+    dropped: mpsc::Sender<Infallible>,
     (event_loop, future): (Py<PyAny>, Py<PyAny>),
 ) {
     let delivered = tokio::select! {
@@ -186,6 +195,7 @@ async fn begun(
         _ = given_up => return,
         delivered = AssertUnwindSafe(work).catch_unwind() => delivered,
     };
+    drop(dropped);
     let delivered = delivered.unwrap_or_else(|_| {
         let bug = || {
             Err(PyRuntimeError::new_err(
@@ -225,10 +235,16 @@ pub(crate) fn _complete(
 }
 
 impl Pending {
-    /// Drops the work, whether the event loop runs on or not.
+    /// Has the work dropped, whether the event loop runs on or not, and waits until it is: what
+    /// begins after this finds the arm braking for it.
     fn give_up(self, py: Python<'_>) {
         // Of a loop that is closed it fails, once the future is cancelled.
         let _ = self.future.bind(py).call_method0("cancel");
+        if runtime::started().is_some() {
+            let Task { keep, over } = self.task.into_inner();
+            drop(keep);
+            let Err(mpsc::RecvError) = py.detach(move || over.recv());
+        }
     }
 }
 
