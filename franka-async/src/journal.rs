@@ -9,8 +9,8 @@
 //! An entry holds what its writer has at hand; readers make words of it on a thread of theirs.
 //! Writing never waits for a reader. Without one, nothing is kept.
 
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{SyncSender, TrySendError};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
@@ -34,11 +34,50 @@ pub(crate) struct Journal(Arc<Mutex<Vec<Reader>>>);
 pub(crate) struct Reader {
     /// Which journal this is, for a reader of several.
     pub(crate) track: usize,
-    pub(crate) entries: SyncSender<(usize, Entry)>,
-    /// Counts the entries for which there was no room.
-    pub(crate) lost: Arc<AtomicU64>,
+    pub(crate) entries: EntrySender,
     /// How many cycles of a connection may wait for it; `None` if it takes none.
     pub(crate) cycles: Option<usize>,
+}
+
+/// The writing end of a reader's queue. Clones are of the same queue.
+#[derive(Clone, Debug)]
+pub(crate) struct EntrySender {
+    entries: Sender<(usize, Entry)>,
+    counts: Arc<Counts>,
+}
+
+/// The reading end of a reader's queue.
+#[derive(Debug)]
+pub(crate) struct EntryReceiver {
+    entries: Receiver<(usize, Entry)>,
+    counts: Arc<Counts>,
+}
+
+/// Relaxed everywhere: they order no other memory.
+#[derive(Debug)]
+struct Counts {
+    /// How many more entries may wait.
+    room: AtomicUsize,
+    /// Entries for which there was no room.
+    lost: AtomicU64,
+}
+
+/// A queue in which `room` entries may wait, and besides what [`What::needs_room`] tells.
+pub(crate) fn entry_queue(room: usize) -> (EntrySender, EntryReceiver) {
+    let (sender, receiver) = mpsc::channel();
+    let counts = Arc::new(Counts {
+        room: AtomicUsize::new(room),
+        lost: AtomicU64::new(0),
+    });
+    let sender = EntrySender {
+        entries: sender,
+        counts: counts.clone(),
+    };
+    let receiver = EntryReceiver {
+        entries: receiver,
+        counts,
+    };
+    (sender, receiver)
 }
 
 /// Something that was asked for or happened.
@@ -87,6 +126,14 @@ pub(crate) enum What {
     End,
 }
 
+impl What {
+    /// Whether it is lost where no room is left. A connection is not, since its cycles would be
+    /// lost with it, and neither is the end; both are rare.
+    fn needs_room(&self) -> bool {
+        !matches!(self, Self::Connected(_) | Self::End)
+    }
+}
+
 /// Whether an action did what it was to do, or the text of its error.
 pub(crate) type ActionEnd = Result<bool, String>;
 
@@ -117,7 +164,10 @@ impl Journal {
 
     /// Writes what `what` returns, if anybody reads it.
     pub(crate) fn write(&self, what: impl Fn() -> Option<What>) {
-        let tell = |reader: &Reader| what().is_none_or(|what| reader.tell(Entry::now(what)));
+        let tell = |reader: &Reader| {
+            let entry = what().map(Entry::now);
+            entry.is_none_or(|entry| reader.entries.send(reader.track, entry))
+        };
         self.with(|readers| readers.retain(tell));
     }
 
@@ -128,7 +178,8 @@ impl Journal {
         for reader in self.with(|readers| readers.clone()) {
             if let Some(capacity) = reader.cycles {
                 let attached = cycles.attach(capacity);
-                reader.tell(Entry::now(What::Connected(attached)));
+                let entry = Entry::now(What::Connected(attached));
+                reader.entries.send(reader.track, entry);
             }
         }
     }
@@ -177,17 +228,38 @@ impl Journal {
     }
 }
 
-impl Reader {
-    /// Passes an entry on, if there is room. Returns whether the reader is still there.
-    fn tell(&self, entry: Entry) -> bool {
-        match self.entries.try_send((self.track, entry)) {
-            Ok(()) => true,
-            Err(TrySendError::Full(_)) => {
-                self.lost.fetch_add(1, Ordering::Relaxed);
-                true
-            }
-            Err(TrySendError::Disconnected(_)) => false,
+impl EntrySender {
+    /// Passes an entry of a track on, if there is room, and counts it otherwise. Returns whether
+    /// the reader is still there.
+    pub(crate) fn send(&self, track: usize, entry: Entry) -> bool {
+        let less = |room: usize| room.checked_sub(1);
+        let has_room = || {
+            let room = &self.counts.room;
+            room.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less)
+                .is_ok()
+        };
+        if entry.what.needs_room() && !has_room() {
+            self.counts.lost.fetch_add(1, Ordering::Relaxed);
+            return true;
         }
+        self.entries.send((track, entry)).is_ok()
+    }
+
+    /// Entries for which there was no room.
+    pub(crate) fn lost(&self) -> u64 {
+        self.counts.lost.load(Ordering::Relaxed)
+    }
+}
+
+impl EntryReceiver {
+    /// Waits for the next entry and returns it with its track; `None` once nothing writes any
+    /// more.
+    pub(crate) fn next(&self) -> Option<(usize, Entry)> {
+        let (track, entry) = self.entries.recv().ok()?;
+        if entry.what.needs_room() {
+            self.counts.room.fetch_add(1, Ordering::Relaxed);
+        }
+        Some((track, entry))
     }
 }
 
@@ -228,7 +300,8 @@ impl Given {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::mpsc;
+    use franka_proto::Version;
+    use franka_rt::thread::cycle_feed;
 
     use super::*;
 
@@ -237,37 +310,39 @@ mod tests {
     }
 
     #[test]
-    fn a_full_reader_loses_entries_and_counts_them_and_a_gone_one_is_forgotten() {
+    fn a_full_reader_loses_remarks_and_counts_them_but_no_connection_and_a_gone_one_is_forgotten() {
         let journal = Journal::default();
         journal.write(|| panic!("nobody reads this"));
-        let lost = Arc::<AtomicU64>::default();
         let read = |track| {
-            let (entries, queue) = mpsc::sync_channel(2);
-            let lost = lost.clone();
+            let (entries, queue) = entry_queue(2);
             journal.read(Reader {
                 track,
-                entries,
-                lost,
-                cycles: None,
+                entries: entries.clone(),
+                cycles: Some(1),
             });
-            queue
+            (entries, queue)
         };
-        let (kept, dropped) = (read(7), read(8));
+        let ((entries, kept), (_, dropped)) = (read(7), read(8));
         drop(dropped);
         for text in ["one", "two", "three"] {
             journal.write(|| remark(text));
         }
-        assert_eq!(lost.load(Ordering::Relaxed), 1);
-        let texts: Vec<_> = kept
-            .try_iter()
-            .map(|(track, entry)| match entry.what {
-                What::Remark(text) => (track, text),
+        let (cycles, _thread) = cycle_feed(Version::V10);
+        journal.connected(&cycles);
+        assert_eq!(entries.lost(), 1);
+        let texts = [(); 2].map(|()| match kept.next() {
+            Some((7, entry)) => match entry.what {
+                What::Remark(text) => text,
                 other => panic!("{other:?}"),
-            })
-            .collect();
-        assert_eq!(texts, [(7, "one".to_owned()), (7, "two".to_owned())]);
+            },
+            other => panic!("{other:?}"),
+        });
+        assert_eq!(texts, ["one", "two"]);
+        let (_, connection) = kept.next().unwrap();
+        assert!(matches!(connection.what, What::Connected(Ok(_))));
         journal.write(|| remark("four"));
-        assert_eq!(kept.try_iter().count(), 1);
+        assert!(kept.next().is_some());
+        assert_eq!(entries.lost(), 1);
         drop(kept);
         journal.write(|| remark("five"));
         journal.write(|| panic!("nobody reads this any more"));

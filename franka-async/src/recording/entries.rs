@@ -1,8 +1,6 @@
 //! The thread that makes words of what journals say.
 
 use std::collections::BTreeMap;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{self, Receiver, SyncSender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 
@@ -11,7 +9,7 @@ use franka_record::recorder::{RecordError, RecordHandle};
 use franka_record::{EventKind, GripperState};
 
 use super::{Track, words};
-use crate::journal::{Entry, Journal, Reader, What};
+use crate::journal::{Entry, EntryReceiver, EntrySender, Journal, Reader, What, entry_queue};
 
 /// Entries that may wait for the thread.
 const ENTRIES: usize = 4096;
@@ -26,26 +24,23 @@ pub(super) struct Recorded {
     pub(super) track: Track,
 }
 
-/// The way to the thread. Dropping it ends the thread, which is not waited for.
+/// The way to the thread. Dropping it ends the thread once it has passed on what waits; that is not
+/// waited for.
 #[derive(Debug)]
 pub(super) struct EntryQueue {
-    entries: SyncSender<(usize, Entry)>,
+    entries: EntrySender,
     shared: Arc<Shared>,
-    /// Counts the entries for which there was no room.
-    lost: Arc<AtomicU64>,
     thread: Option<JoinHandle<()>>,
 }
 
 #[derive(Debug, Default)]
 struct Shared {
     tracks: Mutex<Tracks>,
-    /// Whether the thread is to end when it has nothing to do.
-    ending: AtomicBool,
 }
 
 impl EntryQueue {
     pub(super) fn start() -> Result<Self, RecordError> {
-        let (entries, queue) = mpsc::sync_channel(ENTRIES);
+        let (entries, queue) = entry_queue(ENTRIES);
         let shared = Arc::<Shared>::default();
         let of_thread = shared.clone();
         let thread = thread::Builder::new()
@@ -57,7 +52,6 @@ impl EntryQueue {
         Ok(Self {
             entries,
             shared,
-            lost: Arc::default(),
             thread: Some(thread),
         })
     }
@@ -68,7 +62,6 @@ impl EntryQueue {
         journal.read(Reader {
             track: id,
             entries: self.entries.clone(),
-            lost: self.lost.clone(),
             cycles,
         });
     }
@@ -88,24 +81,21 @@ impl EntryQueue {
         let ids: Vec<_> = self.with(|tracks| tracks.iter().filter_map(wanted).collect());
         for id in ids {
             let entry = Entry::now(What::Told(Box::new(event.clone())));
-            if self.entries.try_send((id, entry)).is_err() {
-                self.lost.fetch_add(1, Ordering::Relaxed);
-            }
+            self.entries.send(id, entry);
         }
     }
 
     /// Entries for which there was no room.
     pub(super) fn lost(&self) -> u64 {
-        self.lost.load(Ordering::Relaxed)
+        self.entries.lost()
     }
 
     /// Waits until everything that was written before the call is passed on, and ends the thread.
     /// Returns how many entries were lost.
     pub(super) fn finish(mut self) -> u64 {
-        let end = (usize::MAX, Entry::now(What::End));
-        let sent = self.entries.send(end);
+        self.entries.send(usize::MAX, Entry::now(What::End));
         if let Some(thread) = self.thread.take()
-            && (sent.is_err() || thread.join().is_err())
+            && thread.join().is_err()
         {
             tracing::error!("the thread that records events has panicked");
         }
@@ -115,10 +105,7 @@ impl EntryQueue {
 
 impl Drop for EntryQueue {
     fn drop(&mut self) {
-        // Relaxed: the entry below, or those that fill the queue, wake the thread, which looks
-        // again after each.
-        self.shared.ending.store(true, Ordering::Relaxed);
-        let _ = self.entries.try_send((usize::MAX, Entry::now(What::End)));
+        self.entries.send(usize::MAX, Entry::now(What::End));
     }
 }
 
@@ -129,8 +116,8 @@ impl Shared {
     }
 
     /// Passes entries on until the end of them.
-    fn write(&self, queue: &Receiver<(usize, Entry)>) {
-        while let Ok((id, entry)) = queue.recv() {
+    fn write(&self, queue: &EntryReceiver) {
+        while let Some((id, entry)) = queue.next() {
             if matches!(entry.what, What::End) {
                 break;
             }
@@ -139,9 +126,6 @@ impl Shared {
                     recorded.write(entry);
                 }
             });
-            if self.ending.load(Ordering::Relaxed) {
-                break;
-            }
         }
     }
 }

@@ -136,7 +136,7 @@ impl Drain {
                 Order::Attach(attached) => self.attach(*attached),
                 Order::Resume(robot, cycles) => {
                     if let Some(source) = self.sources.get_mut(robot) {
-                        source.next.push_back(*cycles);
+                        source.resume(*cycles);
                     }
                 }
                 Order::Event(robot, event) => self.wait(robot, Waiting::Event(*event)),
@@ -268,6 +268,15 @@ impl Drain {
 }
 
 impl Source {
+    /// Takes these cycles after those it has, unless they are of the same control thread: a
+    /// connection that is made while its robot is attached comes both ways.
+    fn resume(&mut self, cycles: CycleReader) {
+        let last = self.next.back().unwrap_or(&self.cycles);
+        if !last.is_of_same_thread(&cycles) {
+            self.next.push_back(cycles);
+        }
+    }
+
     /// Passes on what is not a cycle, up to `time`.
     fn pass(&mut self, time: HostTime, files: &mut Files) {
         let count = self

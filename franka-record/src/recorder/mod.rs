@@ -297,7 +297,8 @@ impl RecordHandle {
     }
 
     /// Goes on with the cycles of another control thread of the same robot, when all of the one
-    /// before were taken: after a reconnect. Waits while there is no room for an order.
+    /// before were taken: after a reconnect. Does nothing where the newest are of that thread
+    /// already. Waits while there is no room for an order.
     pub fn resume(&self, cycles: CycleReader) {
         // Fails when the recording has ended.
         let _ = self

@@ -15,7 +15,7 @@ use nalgebra::Isometry3;
 pub(crate) struct Arm {
     version: Version,
     publisher: CyclePublisher,
-    _feed: CycleFeed,
+    feed: CycleFeed,
     began: Instant,
     ms: u64,
     /// The state of the next cycle, but for what moves.
@@ -36,13 +36,11 @@ impl Arm {
             RobotKind::Fer => Version::V5,
             _ => Version::V10,
         };
-        let (feed, mut publisher) = cycle_feed(version);
-        let reader = feed.attach(RING).unwrap();
-        publisher.take_attached();
-        let arm = Self {
+        let (feed, publisher) = cycle_feed(version);
+        let mut arm = Self {
             version,
             publisher,
-            _feed: feed,
+            feed,
             began: Instant::now(),
             ms: 0,
             state: RobotState {
@@ -51,7 +49,15 @@ impl Arm {
                 ..RobotState::default()
             },
         };
+        let reader = arm.reader();
         (arm, reader)
+    }
+
+    /// A reader of its cycles from now on.
+    pub(crate) fn reader(&mut self) -> CycleReader {
+        let reader = self.feed.attach(RING).unwrap();
+        self.publisher.take_attached();
+        reader
     }
 
     /// Feeds `count` cycles of a millisecond each, as fast as `recorder` takes them.

@@ -30,17 +30,20 @@ fn every_cycle_is_in_the_file() {
     assert_eq!(cycles, 5000);
 }
 
-/// Also where the recording ends before the recorder has looked at the newest connection.
+/// Also where the recording ends before the recorder has looked at the newest connection, and once
+/// each where a connection comes twice.
 #[test]
 fn cycles_of_other_connections_follow_those_of_the_first() {
     let scratch = Scratch::new();
     let path = scratch.path("run.mcap");
     let recorder = Recorder::to_file(&path, quick()).unwrap();
     let (mut first, handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
+    handle.resume(first.reader());
     first.run(&recorder, 1000);
     let others = [300, 200].map(|count| {
         let (mut arm, cycles) = Arm::new(RobotKind::Fr3);
         handle.resume(cycles);
+        handle.resume(arm.reader());
         (0..count).for_each(|_| arm.step());
         arm
     });
