@@ -124,5 +124,6 @@ fn speed(state: &RobotState) -> f64 {
     state.dq.iter().fold(0.0, |most, dq| dq.abs().max(most))
 }
 
-/// For commands of a busy computer.
-const PATIENCE: Duration = Duration::from_secs(10);
+/// For commands of a busy computer. Less than the second after which the driver gives up a robot
+/// that is silent, as this one is while it waits for a command that the driver has skipped.
+const PATIENCE: Duration = Duration::from_millis(500);
