@@ -1,14 +1,14 @@
 //! `franka gripper`: the Franka Hand.
 
 use std::future::Future;
-use std::pin::pin;
 
 use clap::{Args, Subcommand};
+use franka_async::Error;
 use franka_async::error::GripperError;
 use franka_async::gripper::{Grasp, Gripper as Hand, State};
 use tokio::time::{Duration, timeout};
 
-use crate::connection::{Place, Which};
+use crate::connection::Which;
 use crate::ending::{Ending, Failure};
 use crate::interrupt::interrupted;
 use crate::output::{BOLD, Output, say};
@@ -89,39 +89,25 @@ impl Gripper {
                 print(&hand.state(), output)
             }
             Self::Open { fingers, width } => {
-                let (hand, place) = fingers.connect().await?;
+                let hand = fingers.connect().await?;
                 let width = width.unwrap_or(hand.state().max_width);
                 if width <= 0.0 {
                     let failure =
                         Failure::new(Ending::Failed, "the Hand does not know how wide it opens");
                     return Err(failure.advice("First: franka gripper home").into());
                 }
-                let what = fingers.way(&hand, width);
-                let speed = fingers.speed;
-                let motion = |hand: Hand| async move { moved(&hand, width, speed).await };
+                let not = "the fingers did not open so far";
+                let motion = moved(&hand, width, fingers.speed);
                 fingers
-                    .act(
-                        &hand,
-                        &place,
-                        &what,
-                        motion,
-                        "the fingers did not open so far",
-                    )
+                    .act(&hand, &fingers.way(&hand, width), motion, not)
                     .await
             }
             Self::Close { fingers } => {
-                let (hand, place) = fingers.connect().await?;
-                let what = fingers.way(&hand, 0.0);
-                let speed = fingers.speed;
-                let motion = |hand: Hand| async move { moved(&hand, 0.0, speed).await };
+                let hand = fingers.connect().await?;
+                let not = "the fingers did not close: something is between them";
+                let motion = moved(&hand, 0.0, fingers.speed);
                 fingers
-                    .act(
-                        &hand,
-                        &place,
-                        &what,
-                        motion,
-                        "the fingers did not close: something is between them",
-                    )
+                    .act(&hand, &fingers.way(&hand, 0.0), motion, not)
                     .await
             }
             Self::Grasp {
@@ -130,57 +116,37 @@ impl Gripper {
                 within,
                 force,
             } => {
-                let (hand, place) = fingers.connect().await?;
+                let hand = fingers.connect().await?;
                 let mut grasp = Grasp::new(width, fingers.speed, force);
                 grasp.epsilon_inner = within;
                 grasp.epsilon_outer = within;
-                let what = format!(
-                    "{}, then press with {force:.0} N",
-                    fingers.way(&hand, width)
-                );
-                let motion = |hand: Hand| async move { hand.grasp(grasp).await };
-                let not = format!(
-                    "nothing of {:.1} mm is held (within {:.1} mm)",
-                    width * 1e3,
-                    within * 1e3
-                );
-                fingers.act(&hand, &place, &what, motion, &not).await
+                let way = fingers.way(&hand, width);
+                let what = format!("{way}, then press with {force:.0} N");
+                let (width, within) = (width * 1e3, within * 1e3);
+                let not = format!("nothing of {width:.1} mm is held (within {within:.1} mm)");
+                fingers.act(&hand, &what, hand.grasp(grasp), &not).await
             }
             Self::Home { fingers } => {
-                let (hand, place) = fingers.connect().await?;
+                let hand = fingers.connect().await?;
                 let what = "The fingers close, and open as wide as they go";
-                let motion = |hand: Hand| async move { hand.homing().await };
-                fingers
-                    .act(
-                        &hand,
-                        &place,
-                        what,
-                        motion,
-                        "the fingers did not find their ends",
-                    )
-                    .await
+                let not = "the fingers did not find their ends";
+                fingers.act(&hand, what, hand.homing(), not).await
             }
-            Self::Stop { fingers } => {
+            Self::Stop { mut fingers } => {
                 // Stopping is never asked about.
-                let fingers = Fingers {
-                    yes: true,
-                    ..fingers
-                };
-                let (hand, place) = fingers.connect().await?;
+                fingers.yes = true;
+                let hand = fingers.connect().await?;
                 let what = "The fingers stop, and let go of what they hold";
-                let motion = |hand: Hand| async move { hand.stop().await };
-                fingers
-                    .act(&hand, &place, what, motion, "the fingers were not stopped")
-                    .await
+                let not = "the fingers were not stopped";
+                fingers.act(&hand, what, hand.stop(), not).await
             }
         }
     }
 }
 
 impl Fingers {
-    async fn connect(&self) -> anyhow::Result<(Hand, Place)> {
-        let place = self.which.place()?;
-        Ok((place.connect_hand().await?, place))
+    async fn connect(&self) -> anyhow::Result<Hand> {
+        self.which.place()?.connect_hand().await
     }
 
     fn way(&self, hand: &Hand, width: f64) -> String {
@@ -193,37 +159,22 @@ impl Fingers {
     }
 
     /// Asks, lets the fingers do it, and says what came of it. Ctrl-C stops them.
-    async fn act<F: Future<Output = Result<bool, GripperError>>>(
+    async fn act(
         &self,
         hand: &Hand,
-        place: &Place,
         what: &str,
-        motion: impl FnOnce(Hand) -> F,
+        motion: impl Future<Output = Result<bool, GripperError>>,
         not: &str,
     ) -> anyhow::Result<Ending> {
+        let place = self.which.place()?;
         let title = format!("{BOLD}gripper: Franka Hand, {place}{BOLD:#}");
         question::ask(&format!("{title}\n{what}."), self.yes).await?;
         let interrupt = interrupted()?;
-        let mut motion = pin!(motion(hand.clone()));
         let done = tokio::select! {
             biased;
-            done = &mut motion => done,
-            () = interrupt => {
-                say("Ctrl-C: stopping the fingers");
-                let stopped = timeout(PATIENCE, hand.stop()).await;
-                return Err(match stopped {
-                    Ok(Ok(true)) => Failure::new(
-                        Ending::Interrupted,
-                        "interrupted: the fingers were stopped, and hold nothing",
-                    ),
-                    other => Failure::new(
-                        Ending::Failed,
-                        format!("the fingers were not stopped: {other:?}"),
-                    ),
-                }.into());
-            }
+            done = motion => done.map_err(Error::from)?,
+            () = interrupt => return Err(interrupted_by_ctrl_c(hand).await.into()),
         };
-        let done = done.map_err(|error| Failure::new(Ending::Failed, error.to_string()))?;
         let state = hand.state();
         if !done {
             let message = format!("{not}; the fingers are {:.1} mm apart", state.width * 1e3);
@@ -231,6 +182,24 @@ impl Fingers {
         }
         print(&state, self.output)
     }
+}
+
+/// Stops the fingers; returns how that ends the program.
+async fn interrupted_by_ctrl_c(hand: &Hand) -> Failure {
+    say("Ctrl-C: stopping the fingers");
+    let why = match timeout(PATIENCE, hand.stop()).await {
+        Ok(Ok(true)) => {
+            let message = "interrupted: the fingers were stopped, and hold nothing";
+            return Failure::new(Ending::Interrupted, message);
+        }
+        Ok(Ok(false)) => "the Hand refused".to_owned(),
+        Ok(Err(error)) => error.to_string(),
+        Err(_) => format!("no answer in {} s", PATIENCE.as_secs()),
+    };
+    Failure::new(
+        Ending::Failed,
+        format!("the fingers were not stopped: {why}"),
+    )
 }
 
 /// Moves the fingers; false if they did not arrive, for instance as something holds them up: the

@@ -57,3 +57,15 @@ fn ctrl_c_stops_the_fingers() {
         assert!((width() - stopped).abs() < 1e-4);
     });
 }
+
+#[test]
+fn a_hand_that_goes_away_is_told_with_code_3() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let hand = sim.hand();
+    home.run(&["gripper", "home", &hand, "--yes"]).done();
+    let slow = ["gripper", "close", &hand, "--yes", "--speed", "0.002"];
+    let program = home.start(&slow);
+    until("a motion", || sim.fingers_width() < 0.0798);
+    sim.end();
+    program.ended().failed(3, &["errors.md#"]);
+}
