@@ -3,6 +3,7 @@
 use core::time::Duration;
 
 use crate::finding::{About, Finding, Group, Judged, Matters, Purpose};
+use crate::report::counted;
 use crate::timing::quantile;
 
 /// How fast a control loop answered a simulated robot.
@@ -82,8 +83,8 @@ fn judge(run: &DryRun) -> Judged {
     );
     if run.pauses > 0 {
         read += &format!(
-            "; the simulated robot was held up {} times, which does not count",
-            run.pauses
+            "; the simulated robot was held up {}, which does not count",
+            counted(run.pauses, "time")
         );
     }
     if let Some(why) = &run.ended {

@@ -103,11 +103,11 @@ impl Report {
         }
         let _ = writeln!(
             text,
-            "{} good, {} to know, {} warnings, {} failures, {} unknown, for {}",
+            "{} good, {} to know, {}, {}, {} unknown, for {}",
             self.count(Verdict::Good),
             self.count(Verdict::Info),
-            self.count(Verdict::Warning),
-            self.count(Verdict::Failure),
+            counted(self.count(Verdict::Warning), "warning"),
+            counted(self.count(Verdict::Failure), "failure"),
             self.count(Verdict::Unknown),
             match self.purpose {
                 Purpose::Sim => "simulating",
@@ -199,6 +199,11 @@ const COLUMNS: usize = 80;
 
 /// Where lines go on.
 const INDENT: usize = 12;
+
+/// How many of `what` there are, in words.
+pub(crate) fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
 
 /// `text` without line breaks, as a comment of a script has to be.
 fn one_line(text: &str) -> String {
