@@ -7,7 +7,7 @@ use crate::simulated::Simulated;
 
 #[test]
 fn the_hand_opens_grasps_and_lets_go() {
-    Simulated::each_fast(|sim| {
+    Simulated::each(|sim| {
         let (home, hand) = (Home::new(), sim.hand());
         let run = |rest: &[&str]| {
             let arguments = [&["gripper"], rest, &[&hand, "--yes", "--json"]].concat();

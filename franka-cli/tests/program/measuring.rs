@@ -121,7 +121,7 @@ fn this_computer_and_the_way_to_a_robot_are_checked() {
     );
 }
 
-/// With the dry run of the control loop, and a robot that is connected to.
+/// The dry run of the control loop, and a robot that is connected to, included.
 #[test]
 fn a_doctor_changes_nothing_on_this_computer() {
     let (home, sim) = (Home::new(), Simulated::fr3());
@@ -133,10 +133,9 @@ fn a_doctor_changes_nothing_on_this_computer() {
     let Some((output, calls)) = traced else {
         return;
     };
-    let report = serde_json::from_slice(&output.stdout).expect("JSON");
-    for id in ["timing.dry_run", "robot.lost"] {
-        assert_ne!(verdict(&report, id), "unknown", "{report}");
-    }
+    assert!(matches!(output.status.code(), Some(0 | 1)), "{output:?}");
+    let (_, port) = robot.split_once(':').expect("a port");
+    assert!(calls.contains(&format!("htons({port})")), "{calls}");
     let found = harm::harmful(&calls);
     assert!(found.is_empty(), "{found:#?}");
 }

@@ -1,12 +1,15 @@
 //! Motions, and what ends them early.
 
+use std::time::{Duration, Instant};
+
 use franka_async::model::Wrench;
-use franka_async::state::RobotMode;
+use franka_async::state::{RobotError, RobotMode};
 use franka_sim::network::{BurstLoss, Conditions, Loss};
 use franka_sim::{Network, Sim};
-use nix::sys::signal::Signal;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 
-use crate::program::Home;
+use crate::program::{Home, until};
 use crate::simulated::Simulated;
 
 /// Arguments of a motion that starts without a question.
@@ -122,6 +125,41 @@ fn a_reflex_is_explained() {
 }
 
 #[test]
+fn ctrl_c_at_a_recovery_says_that_it_may_go_on() {
+    Simulated::each(|sim| {
+        let (home, robot) = (Home::new(), sim.address());
+        sim.with(|robot| robot.trip(RobotError::CartesianReflex));
+        sim.rests(RobotMode::Reflex);
+        let mut program = home.start(&["recover", &robot, "--yes"]);
+        let id = program.child().id();
+        until("a recovery", || {
+            sim.with(move |robot| {
+                let recovers = robot.state().robot_mode == RobotMode::AutomaticErrorRecovery;
+                if recovers {
+                    interrupt_and_wait(id);
+                }
+                recovers
+            })
+        });
+        program.ended().failed(130, &["may recover all the same"]);
+        sim.rests(RobotMode::Idle);
+    });
+}
+
+/// Interrupts a program, and waits for its end or some seconds: the robot stands still meanwhile.
+fn interrupt_and_wait(id: u32) {
+    kill(Pid::from_raw(id as i32), Signal::SIGINT).expect("it runs");
+    let begin = Instant::now();
+    let has_ended = || {
+        let status = std::fs::read_to_string(format!("/proc/{id}/stat"));
+        status.is_ok_and(|status| status.contains(") Z"))
+    };
+    while !has_ended() && begin.elapsed() < Duration::from_secs(5) {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+#[test]
 fn a_motion_that_ends_for_want_of_packets_names_causes_on_this_computer() {
     // After some 200 commands no more get through.
     let lost = Conditions {
@@ -149,7 +187,7 @@ fn a_guided_arm_is_held_again_at_the_end() {
         let (home, robot) = (Home::new(), sim.address());
         let guide = ["guide", &robot, "--realtime", "ignore", "--yes"];
         let mut program = home.start(&guide);
-        crate::program::until("a session", || sim.state().robot_mode == RobotMode::Move);
+        until("a session", || sim.state().robot_mode == RobotMode::Move);
         sim.with(|robot| robot.push_end_effector(Wrench::new(0.0, 20.0, 0.0, 0.0, 0.0, 0.0), 200));
         sim.moves();
         program.signal(Signal::SIGINT);

@@ -1,5 +1,7 @@
 //! Tool, collision, stop.
 
+use franka_sim::Sim;
+
 use crate::program::Home;
 use crate::simulated::Simulated;
 
@@ -23,25 +25,24 @@ fn a_load_and_an_end_effector_are_declared() {
 
 #[test]
 fn an_arm_is_identified() {
-    Simulated::each_fast(|sim| {
-        let (home, robot) = (Home::new(), sim.address());
-        let identify = [
-            "tool",
-            "identify",
-            &robot,
-            "--realtime",
-            "ignore",
-            "--save",
-            "found.json",
-        ];
-        home.run(&identify).failed(5, &["mm away", "deg/s"]);
-        let text = home.run(&[&identify[..], &["--yes"]].concat()).done();
-        assert!(text.contains("load"), "{text}");
-        let found = std::fs::read_to_string(home.path("found.json")).expect("saved");
-        assert!(found.contains("joints"), "{found}");
-        home.run(&[&identify[..], &["--yes"]].concat())
-            .failed(6, &["exists already"]);
-    });
+    let (home, sim) = (Home::new(), Simulated::fast(Sim::fr3()));
+    let robot = sim.address();
+    let identify = [
+        "tool",
+        "identify",
+        &robot,
+        "--realtime",
+        "ignore",
+        "--save",
+        "found.json",
+    ];
+    home.run(&identify).failed(5, &["mm away", "deg/s"]);
+    let text = home.run(&[&identify[..], &["--yes"]].concat()).done();
+    assert!(text.contains("load"), "{text}");
+    let found = std::fs::read_to_string(home.path("found.json")).expect("saved");
+    assert!(found.contains("joints"), "{found}");
+    home.run(&[&identify[..], &["--yes"]].concat())
+        .failed(6, &["exists already"]);
 }
 
 #[test]

@@ -26,24 +26,21 @@ impl Simulated {
 
     /// Both robots, side by side.
     pub(crate) fn each(test: impl Fn(&Self) + Sync) {
-        Self::side_by_side(Self::of, |_, sim| test(sim));
+        Self::each_kind(|_, sim| test(sim));
     }
 
-    /// Both robots, side by side, as [`Self::fast`] makes them.
-    pub(crate) fn each_fast(test: impl Fn(&Self) + Sync) {
-        Self::side_by_side(Self::fast, |_, sim| test(sim));
+    /// Both robots, one after the other, as [`Self::fast`] makes them: each keeps a processor busy.
+    pub(crate) fn each_fast(test: impl Fn(&Self)) {
+        test(&Self::fast(Sim::fr3()));
+        test(&Self::fast(Sim::fer()));
     }
 
     /// Both robots, side by side, with others like them that have not been started.
     pub(crate) fn each_kind(test: impl Fn(Sim, &Self) + Sync) {
-        Self::side_by_side(Self::of, test);
-    }
-
-    fn side_by_side(start: fn(Sim) -> Self, test: impl Fn(Sim, &Self) + Sync) {
         thread::scope(|scope| {
             for kind in [Sim::fr3 as fn() -> Sim, Sim::fer] {
                 let test = &test;
-                scope.spawn(move || test(kind(), &start(kind())));
+                scope.spawn(move || test(kind(), &Self::of(kind())));
             }
         });
     }
@@ -124,6 +121,7 @@ fn speed(state: &RobotState) -> f64 {
     state.dq.iter().fold(0.0, |most, dq| dq.abs().max(most))
 }
 
-/// For commands of a busy computer. Less than the second after which the driver gives up a robot
-/// that is silent, as this one is while it waits for a command that the driver has skipped.
-const PATIENCE: Duration = Duration::from_millis(500);
+/// For commands of a busy computer: twenty that are missing in a row end a motion. A command that
+/// the driver has skipped is waited for that long, too, without a state; after a second without any
+/// the driver gives the robot up.
+const PATIENCE: Duration = Duration::from_millis(100);
