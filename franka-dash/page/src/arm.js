@@ -23,8 +23,8 @@ export class ArmView {
     this.hasHand = capsules.some(({ link }) => link === 8);
     const ghost = opacity < 1;
     this.#tint = ghost ? { color, opacity } : null;
-    this.material = new THREE.MeshStandardMaterial({
-      color, roughness: 0.55, metalness: 0.1, transparent: ghost, opacity, depthWrite: !ghost,
+    this.material = new THREE.MeshLambertMaterial({
+      color, transparent: ghost, opacity, depthWrite: !ghost,
     });
     for (const { link, start, end, radius } of capsules) {
       if (ghost && link === 0) continue;
@@ -73,7 +73,7 @@ export class ArmView {
 
   /** One layer of a colour: what is behind its own front is not seen. */
   #ghost() {
-    this.ghost ??= new THREE.MeshStandardMaterial({ ...this.#tint, transparent: true, roughness: 0.7 });
+    this.ghost ??= new THREE.MeshLambertMaterial({ ...this.#tint, transparent: true });
     return this.ghost;
   }
 

@@ -67,6 +67,8 @@ export function dashboard() {
   connection.addEventListener("heading", ({ detail }) => scene.heading(detail.way));
   connection.addEventListener("contact", ({ detail }) => { if (history.live) scene.showContact(detail.contact); });
   connection.addEventListener("frame", ({ detail }) => history.add(detail));
+  // How long it took until a state was drawn.
+  scene.addEventListener("drawn", () => performance.mark("ready"), { once: true });
   let errors = 0;
   addEventListener("error", () => { errors += 1; });
   addEventListener("unhandledrejection", () => { errors += 1; });
@@ -87,8 +89,6 @@ export function dashboard() {
       strip.show(shown);
       goal.at(endEffector(history.newest));
       preview.at(history.newest.q);
-      // How long it took to get here.
-      if (!performance.getEntriesByName("ready").length) performance.mark("ready");
     });
   });
   strip.setStatus(strip.status);

@@ -84,7 +84,7 @@ export class Regions {
 
   constructor() {
     this.group = new THREE.Group();
-    const material = () => new THREE.MeshStandardMaterial({
+    const material = () => new THREE.MeshLambertMaterial({
       color: COLOURS.region, transparent: true, side: THREE.DoubleSide, depthWrite: false,
     });
     // A plane fills the picture: it is fainter.

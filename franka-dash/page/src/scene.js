@@ -88,8 +88,7 @@ export class Scene extends EventTarget {
     this.#regions.set(regions);
     this.#frame = null;
     // First something to look at: the files take a while.
-    await new Promise((done) => this.addEventListener("shown", done, { once: true }));
-    await new Promise(requestAnimationFrame);
+    await new Promise((done) => this.addEventListener("drawn", done, { once: true }));
     try {
       const set = await load(meshes);
       for (const arm of arms) arm.addMeshes(set);
@@ -126,7 +125,6 @@ export class Scene extends EventTarget {
     this.#regions.light(guards.has("clearance"));
     this.#showGoal();
     this.redraw();
-    this.dispatchEvent(new Event("shown"));
   }
 
   showContact(contact) {
@@ -157,7 +155,8 @@ export class Scene extends EventTarget {
   }
 
   #draw() {
-    if (!this.#stale) return;
+    // Before the first frame there is nothing to see, and even that takes time.
+    if (!this.#stale || !this.#frame) return;
     this.#stale = false;
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!width || !height) return;

@@ -31,7 +31,7 @@ pub(crate) fn run(
             )?;
             let (x, y) = point(&page.state()?["links"][5])?;
             page.pointer(&[move_to((x, y)), down()])?;
-            page.pointer(&[move_to((x + 60.0, y + 90.0))])?;
+            page.pointer(&[move_to((x + 45.0, y + 65.0))])?;
             wait("the force", || Ok(page.state()?["forceShown"] == true))?;
             page.picture(&folder.join(format!("{name}-{size}-{scheme}.png")))?;
             page.pointer(&[up()])?;
