@@ -206,14 +206,16 @@ async fn interrupted_by_ctrl_c(hand: &Hand) -> Failure {
 /// Hand itself would try for minutes.
 async fn moved(hand: &Hand, width: f64, speed: f64) -> Result<bool, GripperError> {
     let stuck = async {
-        let mut before = hand.state().width;
+        let mut before = hand.state();
         loop {
-            tokio::time::sleep(STUCK).await;
-            let now = hand.state().width;
-            if (now - before).abs() < STILL {
+            tokio::time::sleep(LOOK).await;
+            let now = hand.state();
+            // By the Hand's clock: a Hand that does not tell where it is may be moving.
+            if (now.width - before.width).abs() >= STILL {
+                before = now;
+            } else if now.message_id.wrapping_sub(before.message_id) >= STUCK_MS {
                 break;
             }
-            before = now;
         }
     };
     tokio::select! {
@@ -243,7 +245,10 @@ fn print(state: &State, output: Output) -> anyhow::Result<Ending> {
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Fingers that come no further than [`STILL`] in this time are held up.
-const STUCK: Duration = Duration::from_secs(1);
+const STUCK_MS: u32 = 1000;
+
+/// How often the fingers are looked at.
+const LOOK: Duration = Duration::from_millis(100);
 
 /// `[m]`.
 const STILL: f64 = 1e-4;
