@@ -143,7 +143,8 @@ impl Dash {
 pub(super) async fn listen(address: SocketAddr, options: &Options) -> Result<TcpListener, Failure> {
     let bound = franka_dash::bind(address, options).await;
     bound.map_err(|error| match &error {
-        BindError::NoToken { .. } => Failure::usage(error.to_string()),
+        BindError::NoToken { .. } => Failure::usage(error.to_string())
+            .advice("franka dash --token TOKEN asks pages for one; franka sim has none."),
         _ => Failure::new(Ending::Host, format!("{:#}", anyhow::Error::new(error))),
     })
 }

@@ -84,7 +84,7 @@ fn a_folder_for_recordings_has_to_be_there() {
 fn pages_for_other_computers_take_a_token() {
     let (home, sim) = (Home::new(), Simulated::fr3());
     let open = ["dash", &sim.address(), "--listen", "0.0.0.0:0"];
-    home.run(&open).failed(2, &["token"]);
+    home.run(&open).failed(2, &["--token"]);
     let open = ["sim", "--port", "0", "--dash", "0.0.0.0:0"];
-    home.run(&open).failed(2, &["token"]);
+    home.run(&open).failed(2, &["--token"]);
 }
