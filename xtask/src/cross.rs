@@ -34,20 +34,20 @@ pub(crate) fn lacks(target: &str, sysroot: &Path) -> Option<String> {
     })
 }
 
-/// Of the step `targets`: checks driver, simulator, dashboard and doctor for other systems and
-/// machines, as far as the toolchain has their standard library.
+/// Of the step `targets`: checks what is portable for other systems and machines, as far as the
+/// toolchain has their standard library.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let sysroot = sysroot()?;
     let (there, missing): (Vec<_>, Vec<_>) = TARGETS
         .into_iter()
-        .partition(|target| lacks(target, &sysroot).is_none());
-    for target in &there {
+        .partition(|(target, _)| lacks(target, &sysroot).is_none());
+    for (target, packages) in &there {
         let mut check = workspace.cargo();
         check.args(["check", "--locked", "--target", target]);
-        // None of them needs a compiler for C.
-        check.args(["franka-dash", "franka-doctor"].map(|name| format!("--package={name}")));
+        check.args(packages.iter().map(|name| format!("--package={name}")));
         workspace.run(&mut check)?;
     }
+    let missing: Vec<&str> = missing.iter().map(|(target, _)| *target).collect();
     let missing = missing.join(" ");
     Ok(match (there.is_empty(), missing.is_empty()) {
         (_, true) => Outcome::Passed,
@@ -56,13 +56,20 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     })
 }
 
-/// Other systems that programs are developed on, and other machines that they run on. The driver
-/// needs a Unix.
-const TARGETS: [&str; 3] = [
-    "aarch64-apple-darwin",
-    "aarch64-unknown-linux-gnu",
-    "aarch64-unknown-linux-musl",
+/// Other systems that programs are developed on, and other machines that they run on, with the
+/// packages that are for them. None of these needs a compiler for C.
+const TARGETS: [(&str, &[&str]); 4] = [
+    ("aarch64-apple-darwin", UNIX),
+    ("aarch64-unknown-linux-gnu", UNIX),
+    ("aarch64-unknown-linux-musl", UNIX),
+    ("x86_64-pc-windows-msvc", ANYWHERE),
 ];
+
+/// Driver, simulator, dashboard and doctor.
+const UNIX: &[&str] = &["franka-dash", "franka-doctor"];
+
+/// What needs no Unix: the driver does.
+const ANYWHERE: &[&str] = &["franka-proto", "franka-model", "franka-otg"];
 
 /// The architecture of a target.
 pub(crate) fn architecture(target: &str) -> &str {
