@@ -146,7 +146,7 @@ impl Hub {
             text,
             detail,
         };
-        // Nobody may be listening.
+        // There may be no viewer.
         let _ = self.news.send(news);
     }
 
@@ -390,7 +390,7 @@ async fn watch_silence(hub: Weak<Hub>) {
     }
 }
 
-/// Estimates contacts while somebody looks.
+/// Estimates contacts while there are viewers.
 async fn watch_contacts(hub: Weak<Hub>) {
     let mut clock = interval(contact::EVERY);
     clock.set_missed_tick_behavior(MissedTickBehavior::Skip);
