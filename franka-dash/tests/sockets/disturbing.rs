@@ -1,9 +1,11 @@
 //! What viewers do to a simulated robot.
 
+use std::time::Instant;
+
 use franka_async::state::RobotMode;
 use serde_json::{Value, json};
 
-use crate::viewer::{Served, Viewer};
+use crate::viewer::{LONGEST, Served, Viewer};
 
 fn disturb(viewer: &mut Viewer, disturbance: Value) {
     viewer.send(json!({"type": "disturb", "disturbance": disturbance}));
@@ -67,6 +69,39 @@ fn a_load_pulls_another_arm_stands_there_and_an_object_needs_a_hand() {
     disturb(&mut viewer, json!({"kind": "object", "width": 0.04}));
     viewer.event("no hand");
     viewer.wait_for_status(|it| it["simulation"]["object"] == Value::Null);
+}
+
+#[test]
+fn the_user_stop_guiding_and_the_brakes_are_those_of_the_robot() {
+    let served = Served::movable();
+    let mut viewer = Viewer::connect(served.address);
+    viewer.take();
+    for (disturbance, mode) in [
+        (
+            json!({"kind": "user_stop", "pressed": true}),
+            RobotMode::UserStopped,
+        ),
+        (
+            json!({"kind": "user_stop", "pressed": false}),
+            RobotMode::Idle,
+        ),
+        (
+            json!({"kind": "guide", "pressed": true}),
+            RobotMode::Guiding,
+        ),
+        (json!({"kind": "guide", "pressed": false}), RobotMode::Idle),
+    ] {
+        disturb(&mut viewer, disturbance);
+        let begin = Instant::now();
+        while viewer.frame[3] != mode.byte() {
+            viewer.wait_for("frame");
+            assert!(begin.elapsed() < LONGEST, "it is not {mode}");
+        }
+    }
+    disturb(&mut viewer, json!({"kind": "brakes", "closed": true}));
+    viewer.event("Brakes closed");
+    disturb(&mut viewer, json!({"kind": "brakes", "closed": false}));
+    viewer.event("Brakes open");
 }
 
 #[test]
