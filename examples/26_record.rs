@@ -1,6 +1,6 @@
 //! Records what happens to a robot in a file, with a black box for incidents, and reads the file.
 //!
-//! `cargo run --release --example record -- [ADDRESS] [--to FILE.mcap]`
+//! `cargo run --release --features record --example record -- [ADDRESS] [--to FILE.mcap]`
 
 use std::path::{Path, PathBuf};
 

@@ -1,6 +1,6 @@
 //! Something runs into the forearm of a moving arm: why the robot stopped, and where it was hit.
 //!
-//! `cargo run --release --example explain -- [--figure FILE.svg]`
+//! `cargo run --release --features record --example explain -- [--figure FILE.svg]`
 //!
 //! The robot is a simulated one, so that what is found can be held against what was done.
 

@@ -1,7 +1,7 @@
 //! Records a motion, exports it as tables and as a dataset for training, and replays it at half its
 //! speed.
 //!
-//! `cargo run --release --example replay -- --to FOLDER [ADDRESS]`
+//! `cargo run --release --features export --example replay -- --to FOLDER [ADDRESS]`
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};

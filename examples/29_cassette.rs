@@ -1,10 +1,10 @@
 //! Records a session with a robot byte for byte, and plays it back as the robot.
 //!
 //! ```text
-//! cargo run --release --example cassette -- tap session.mcap 172.16.0.2
-//! cargo run --release --example cassette -- play session.mcap
-//! cargo run --release --example cassette -- convert session.mcap session.pcap
-//! cargo run --release --example cassette -- demo
+//! cargo run --release --features pcap --example cassette -- tap session.mcap 172.16.0.2
+//! cargo run --release --features pcap --example cassette -- play session.mcap
+//! cargo run --release --features pcap --example cassette -- convert session.mcap session.pcap
+//! cargo run --release --features pcap --example cassette -- demo
 //! ```
 //!
 //! `tap` stands between clients and the robot until Enter is pressed: connect them to 127.0.0.1

@@ -3,9 +3,12 @@
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo::rerun-if-changed=proto/arm.proto");
-    let definitions = protox::compile(["arm.proto"], ["proto"])?;
-    let mut messages = tonic_prost_build::Config::new();
-    messages.enable_type_names(); // to be packed into the details of a status
-    tonic_prost_build::configure().compile_fds_with_config(definitions, messages)?;
+    #[cfg(feature = "grpc")]
+    {
+        let definitions = protox::compile(["arm.proto"], ["proto"])?;
+        let mut messages = tonic_prost_build::Config::new();
+        messages.enable_type_names(); // to be packed into the details of a status
+        tonic_prost_build::configure().compile_fds_with_config(definitions, messages)?;
+    }
     Ok(())
 }

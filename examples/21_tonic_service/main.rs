@@ -1,7 +1,8 @@
 //! A gRPC service: `proto/arm.proto` says what each call does. A motion belongs to its call: one
 //! that is cancelled, or whose caller goes away, brakes the arm.
 //!
-//! `cargo run --release --example tonic_service -- [ADDRESS] [--listen 127.0.0.1:8080]`
+//! `cargo run --release --features grpc --example tonic_service`, then `-- ADDRESS` for the robot
+//! there, and `--listen 127.0.0.1:8080` for another port
 
 use std::pin::Pin;
 use std::time::Duration;

@@ -73,6 +73,8 @@ struct Target {
     name: String,
     /// The file of its root.
     file: PathBuf,
+    /// The features without which it is not built.
+    features: Vec<String>,
 }
 
 fn targets(workspace: &Workspace) -> Vec<Target> {
@@ -87,6 +89,10 @@ fn targets(workspace: &Workspace) -> Vec<Target> {
                     kind: text(&kind),
                     name: text(&target["name"]),
                     file: text(&target["src_path"]).into(),
+                    features: list(&target["required-features"])
+                        .iter()
+                        .map(text)
+                        .collect(),
                 });
             }
         }
@@ -165,6 +171,11 @@ impl Known<'_> {
             let Some(target) = target else {
                 return Some(format!("no {kind} {name}"));
             };
+            let given = behind(&["--features", "-F"]).unwrap_or_default();
+            let missing = |feature: &&String| given.split(',').all(|it| it != *feature);
+            if let Some(feature) = target.features.iter().find(missing) {
+                return Some(format!("{name} takes --features {feature}"));
+            }
             let at = words.iter().position(|word| *word == option)?;
             let filter = words.get(at + 2).filter(|word| !word.starts_with('-'));
             if let (Some(filter), "test") = (filter, kind)
@@ -219,12 +230,18 @@ mod tests {
             kind: kind.to_owned(),
             name: name.to_owned(),
             file: Path::new("none/main.rs").to_owned(),
+            features: vec![],
+        };
+        let with_feature = Target {
+            features: vec!["f".to_owned()],
+            ..target("a", "example", "g")
         };
         let known = Known {
             targets: &[
                 target("a", "example", "e"),
                 target("b", "bin", "p"),
                 target("b", "test", "t"),
+                with_feature,
             ],
             tasks: &[
                 ("test".into(), vec!["only".into()]),
@@ -235,6 +252,8 @@ mod tests {
         for (command, fault) in [
             ("cargo run --example e -- --figure x", None),
             ("cargo run --example x", Some("no example x")),
+            ("cargo run --example g", Some("g takes --features f")),
+            ("cargo run --features e,f --example g", None),
             ("cargo run -p a --bin p", Some("no bin p")),
             ("cargo run --package c", Some("no package c")),
             ("cargo xtask test --only fmt", None),

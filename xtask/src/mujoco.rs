@@ -46,7 +46,7 @@ pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<(), String
 /// The features that everything is built with once: the phases of a cycle timed, and the MuJoCo
 /// plant where its library can be had. Without them the code is linted.
 pub(crate) fn features(workspace: &Workspace) -> anyhow::Result<String> {
-    let mut features = "franka-tests/cycle-phases".to_owned();
+    let mut features = "franka-tests/cycle-phases,franka-examples/all".to_owned();
     if prepare(workspace)?.is_ok() {
         features += ",franka-tests/mujoco,franka-examples/mujoco";
     }
