@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use clap::Parser;
 use franka_async::control::{CartesianPose, Finish, Torques};
 use franka_async::model::JointVector;
-use franka_examples::{Arguments, Ease, Summary, dynamics};
+use franka_examples::{Arguments, Ease, Summary};
 
 /// Radius of the circle, `[m]`.
 const RADIUS: f64 = 0.05;
@@ -43,9 +43,9 @@ async fn main() -> anyhow::Result<()> {
         command.finish_if(time >= DURATION)
     });
 
-    let (model, version) = (robot.model().clone(), robot.version());
+    let model = robot.state_model();
     let circle = circle.with_torques(move |state, _| {
-        let coriolis = dynamics(&model, version, state).coriolis;
+        let coriolis = model.dynamics(state).coriolis;
         // The robot compensates gravity and friction; the commanded torques are added to that.
         let torques = JointVector::from_fn(|i, _| {
             STIFFNESS[i] * (state.q_d[i] - state.q[i]) + DAMPING[i] * (state.dq_d[i] - state.dq[i])

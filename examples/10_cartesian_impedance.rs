@@ -6,16 +6,14 @@
 //! likewise `active`
 
 use clap::{Parser, ValueEnum};
-use franka_async::connection::Version;
 use franka_async::control::{Finish, Torques};
-use franka_async::model::Model;
-use franka_async::model::{JointVector, Twist, Wrench};
+use franka_async::model::{JointVector, StateModel, Twist, Wrench};
 use franka_async::pose;
 use franka_async::pose::rotation;
 use franka_async::realtime::Scheduling;
 use franka_async::state::RobotState;
 use franka_async::{MotionError, MotionReport, Pose, Robot};
-use franka_examples::{Connection, Summary, dynamics, push_simulated, report_hand};
+use franka_examples::{Connection, Summary, push_simulated, report_hand};
 use tokio::runtime::Handle;
 use tokio::sync::oneshot;
 
@@ -45,8 +43,7 @@ async fn main() -> anyhow::Result<()> {
     let (robot, sim) = connection.open_ready(what).await?;
     let start = robot.pose();
     let springs = Springs {
-        model: robot.model().clone(),
-        version: robot.version(),
+        model: robot.state_model(),
         place: start,
     };
     if let Some(sim) = &sim {
@@ -70,8 +67,7 @@ async fn main() -> anyhow::Result<()> {
 
 /// Springs and dampers between the hand and a fixed pose.
 struct Springs {
-    model: Model,
-    version: Version,
+    model: StateModel,
     place: Pose,
 }
 
@@ -87,7 +83,7 @@ impl Springs {
     /// The torques for a state: `J' (K e - D J dq)`, a damper at each joint, and the Coriolis
     /// torques.
     fn torques(&self, state: &RobotState) -> Torques {
-        let dynamics = dynamics(&self.model, self.version, state);
+        let dynamics = self.model.dynamics(state);
         let pose = pose::from_matrix(&dynamics.pose).unwrap_or(self.place);
         let dq = JointVector::from(state.dq);
         let twist = dynamics.jacobian * dq;

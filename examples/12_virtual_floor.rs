@@ -6,12 +6,10 @@
 
 use clap::Parser;
 use franka_async::READY;
-use franka_async::connection::Version;
 use franka_async::control::{Finish, Torques};
-use franka_async::model::Model;
-use franka_async::model::{Dynamics, JointVector, Twist, Wrench};
+use franka_async::model::{Dynamics, JointVector, StateModel, Twist, Wrench};
 use franka_async::state::RobotState;
-use franka_examples::{Connection, Summary, dynamics, push_simulated, report_hand};
+use franka_examples::{Connection, Summary, push_simulated, report_hand};
 
 #[derive(Parser)]
 struct Arguments {
@@ -31,8 +29,7 @@ async fn main() -> anyhow::Result<()> {
     let what = "lets itself be led by the hand";
     let (robot, sim) = arguments.connection.open_ready(what).await?;
     let law = Law {
-        model: robot.model().clone(),
-        version: robot.version(),
+        model: robot.state_model(),
         floor: robot.pose().translation.z - arguments.below,
     };
     println!("floor at {:.4} m", law.floor);
@@ -53,8 +50,7 @@ async fn main() -> anyhow::Result<()> {
 }
 
 struct Law {
-    model: Model,
-    version: Version,
+    model: StateModel,
     /// Height of the floor in the base frame, `[m]`.
     floor: f64,
 }
@@ -71,7 +67,7 @@ const POSTURE: (f64, f64) = (20.0, 4.0);
 
 impl Law {
     fn torques(&self, state: &RobotState) -> Torques {
-        let dynamics = dynamics(&self.model, self.version, state);
+        let dynamics = self.model.dynamics(state);
         let dq = JointVector::from(state.dq);
         let twist = dynamics.jacobian * dq;
 

@@ -1,13 +1,11 @@
 //! What the examples share: a robot at the address given, or a simulated one in this process;
-//! smooth references; the dynamics of a state; motions as jobs; the end of a service.
+//! smooth references; motions as jobs; the end of a service.
 #![doc = include_str!("../README.md")]
 
-mod dynamics;
 mod ease;
 mod job;
 mod service;
 
-pub use dynamics::dynamics;
 pub use ease::Ease;
 pub use job::{Job, Progress, Stage};
 pub use service::{Serving, serve_until_told};

@@ -16,11 +16,15 @@ async fn nod(robot: &Robot, depth: f64) -> Result<(), MotionError> {
 /// A robot of its own for each test, in virtual time: as fast as this machine, and never too fast
 /// for it. Keep what comes with the connection; dropping it ends the robot.
 async fn simulated() -> (Robot, Running) {
-    let sim = Sim::fr3().virtual_time(Duration::from_millis(500));
+    let sim = Sim::fr3().virtual_time(PATIENCE / 2);
     let sim = sim.start().await.expect("a free port");
     let robot = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
-    (robot.connect().await.expect("it answers"), sim)
+    let robot = robot.link_timeout(PATIENCE).connect().await;
+    (robot.expect("it answers"), sim)
 }
+
+/// For how long robot and driver wait for each other on a machine that is busy.
+const PATIENCE: Duration = Duration::from_secs(10);
 
 #[tokio::test]
 async fn a_nod_ends_where_it_began() {

@@ -304,10 +304,11 @@
 //!
 //! #[tokio::main] // in a test: #[tokio::test]
 //! async fn main() -> anyhow::Result<()> {
-//!     // The robot's next millisecond begins with the command: a busy machine changes nothing.
-//!     let sim = Sim::fr3().virtual_time(Duration::from_millis(500)).start().await?;
+//!     // The robot's next millisecond begins with the command: a busy machine changes nothing,
+//!     // unless it keeps either end waiting for longer than this.
+//!     let sim = Sim::fr3().virtual_time(Duration::from_secs(5)).start().await?;
 //!     let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
-//!     let robot = builder.connect().await?;
+//!     let robot = builder.link_timeout(Duration::from_secs(10)).connect().await?;
 //!     let height = robot.pose().translation.z;
 //!     robot.move_by(Offset::base([0.0, 0.0, 0.05])).await?;
 //!     assert!((robot.pose().translation.z - height - 0.05).abs() < 2e-3);
@@ -430,6 +431,7 @@ mod robot;
 mod session;
 pub mod settings;
 pub mod state;
+mod state_model;
 mod state_stream;
 mod states;
 pub mod supervision;

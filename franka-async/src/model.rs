@@ -3,7 +3,8 @@
 //! [`Robot::model`](crate::Robot::model) is that of the connected arm, from its own description
 //! (feature `urdf`, on by default). [`Model::fr3`] and [`Model::fer`] are there without a robot.
 //! Control functions may call what is computed here: it neither allocates nor waits. Models that
-//! are read from a description, or loaded, are made beforehand.
+//! are read from a description, or loaded, are made beforehand. [`StateModel`] is asked by states,
+//! with the end effector and the load that they have.
 //!
 //! ```
 //! use franka_async::READY;
@@ -20,6 +21,7 @@
 //!
 //! [`load_model_library`]: crate::Robot::load_model_library
 
+pub use crate::state_model::StateModel;
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 pub use franka_model::model_library::ModelLibrary;
 pub use franka_model::{

@@ -23,6 +23,7 @@ use crate::end_effector_pose::{pose_at, pose_of};
 use crate::input::{Beginning, EndReply, Input, Replies};
 use crate::link::Link;
 use crate::progress::Reference;
+use crate::state_model::StateModel;
 use crate::states::States;
 use crate::supervisor::{Events, Supervisor};
 
@@ -167,6 +168,11 @@ impl Robot {
     /// [`Model::fer`].
     pub fn model(&self) -> &Model {
         &self.shared.model
+    }
+
+    /// [`Self::model`] as control functions ask it: by states, each with its end effector and load.
+    pub fn state_model(&self) -> StateModel {
+        StateModel::new(self.shared.model.clone(), self.shared.version)
     }
 
     /// How far gains are from the first oscillation of an arm like this where it is. A motion whose

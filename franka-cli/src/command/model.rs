@@ -5,7 +5,7 @@ use clap::{Args, Subcommand};
 use franka_async::model::{
     EndEffector, Frame, JointVector, Load, Model as ArmModel, inverse_kinematics,
 };
-use franka_async::nalgebra::{Matrix, Matrix3, Storage, U1, U7, Vector3};
+use franka_async::nalgebra::{Matrix, Storage, U1, U7};
 use franka_async::{Pose, READY, pose};
 use franka_sim::command_line::numbers;
 use serde_json::json;
@@ -109,17 +109,13 @@ impl Arm {
         }
         let (robot, _) = self.which.connect().await?;
         let state = robot.state();
-        let total = state.total_load(robot.version());
+        let model = robot.state_model();
         robot.shutdown().await;
         Ok(Known {
-            model: robot.model().clone(),
             q: self.q.unwrap_or(state.q).into(),
-            ee: EndEffector::from_arrays(&state.F_T_EE, &state.EE_T_K),
-            load: Load {
-                mass: total.m_total,
-                com: Vector3::from(total.F_x_Ctotal),
-                inertia: Matrix3::from_column_slice(&total.I_total),
-            },
+            ee: model.end_effector(&state),
+            load: model.load(&state),
+            model: model.model().clone(),
         })
     }
 }
