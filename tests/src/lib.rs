@@ -80,6 +80,9 @@ mod programs {
     #[doc = include_str!("../../docs/src/gripper.md")]
     struct Gripper;
 
+    #[doc = include_str!("../../docs/src/from-libfranka.md")]
+    struct FromLibfranka;
+
     #[doc = include_str!("../../docs/src/model.md")]
     struct Model;
 
