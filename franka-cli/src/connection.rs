@@ -13,7 +13,7 @@ use franka_async::state::{RobotMode, RobotState};
 use franka_async::{Error, Robot};
 
 use crate::ending::{Ending, Failure};
-use crate::robots_file::{Realtime, RobotsFile};
+use crate::robots_file::{Realtime, RobotsFile, check_name};
 
 /// What a [`ConnectError`] of any device shows.
 macro_rules! seen {
@@ -76,18 +76,37 @@ impl Which {
 
     /// Where the robot is.
     pub(crate) fn place(&self) -> anyhow::Result<Place> {
-        let file = RobotsFile::read()?;
         let variable = || {
             std::env::var("FRANKA_ROBOT")
                 .ok()
                 .filter(|name| !name.is_empty())
         };
+        let named = self.robot.clone().or_else(variable);
+        let endpoint = |text: &str| {
+            let parsed = text.parse::<Endpoint>();
+            parsed.map_err(|error| Failure::usage(error.to_string()))
+        };
+        // A port in it is that of the device that is asked for.
+        let unlisted = |name: String| {
+            let address = endpoint(&name)?;
+            Ok(Place {
+                listed: None,
+                hand: address.clone(),
+                address,
+                name,
+                realtime: None,
+            })
+        };
+        // In a container or a service there may be no directory for the file.
+        if let Some(address) = named.clone().filter(|name| check_name(name).is_err()) {
+            return unlisted(address);
+        }
+        let file = RobotsFile::read()?;
         let only = || match file.robots.len() {
             1 => file.robots.keys().next().cloned(),
             _ => None,
         };
-        let name = self.robot.clone().or_else(variable).or_else(only);
-        let name = name.ok_or_else(|| {
+        let name = named.or_else(only).ok_or_else(|| {
             let known = match file.robots.len() {
                 0 => format!("{} has none", file.path.display()),
                 count => format!("{} has {count}", file.path.display()),
@@ -95,20 +114,8 @@ impl Which {
             Failure::usage(format!("no robot was named, and {known}"))
                 .advice("Name one or give an address, or: franka robots add NAME ADDRESS")
         })?;
-        let endpoint = |text: &str| {
-            let parsed = text.parse::<Endpoint>();
-            parsed.map_err(|error| Failure::usage(error.to_string()))
-        };
         let Some(entry) = file.robots.get(&name) else {
-            // An address; a port in it is that of the device that is asked for.
-            let address = endpoint(&name)?;
-            return Ok(Place {
-                listed: None,
-                hand: address.clone(),
-                address,
-                name,
-                realtime: None,
-            });
+            return unlisted(name);
         };
         let address = endpoint(&entry.address)?;
         let hand = match &entry.hand {

@@ -167,3 +167,19 @@ fn robots_have_names() {
     home.run(&["state", "left"])
         .failed(2, &["robots.toml", "port"]);
 }
+
+/// As in a container: the file of names is not needed, and there is no place for it.
+#[test]
+fn an_address_needs_no_home() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let without = |robot: &str| {
+        let mut command = home.command(&["state", robot]);
+        command.env_remove("XDG_CONFIG_HOME").env_remove("HOME");
+        command.output().expect("it runs")
+    };
+    let output = without(&sim.address());
+    assert!(output.status.success(), "{output:?}");
+    let output = without("left");
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(text.contains("HOME"), "{output:?}");
+}
