@@ -167,6 +167,10 @@ enum Task {
         /// Build everything twice, and compare.
         #[arg(long)]
         twice: bool,
+        /// Use the program for this machine, the packages of the crates and the wheel, outside the
+        /// repository.
+        #[arg(long = "try")]
+        trial: bool,
     },
     /// Build the book with the references of Rust and Python beside it, and serve it.
     Book {
@@ -294,7 +298,9 @@ fn run(task: Task) -> anyhow::Result<()> {
             println!("{outcome:?}");
             Ok(())
         }
-        Task::Dist { only, twice } => dist::run(&workspace, &only, twice),
+        Task::Dist { only, twice, trial } => {
+            dist::run(&workspace, &only, dist::Depth { twice, trial })
+        }
         Task::Book { port, build_only } => book::serve(&workspace, (!build_only).then_some(port)),
         Task::Pictures => workspace.run(&mut workspace.cargo_release_binary("pictures")),
         Task::Mujoco => mujoco::provide(&workspace),

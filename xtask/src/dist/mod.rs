@@ -16,6 +16,7 @@
 //! | `debian` | the package for Debian |
 //! | `image` | the container image |
 //! | `program` | checking what was built |
+//! | `trial` | what was packed, used outside the repository |
 //!
 //! Two builds of one commit are the same, byte for byte: `--twice` builds twice and compares. Time
 //! is that of the commit, and paths of this machine are no part of what is built.
@@ -26,6 +27,7 @@ mod content;
 mod debian;
 mod image;
 mod program;
+mod trial;
 
 use std::env;
 use std::fs;
@@ -121,10 +123,19 @@ impl Release {
     }
 }
 
+/// What to check beside each program.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Depth {
+    /// Build everything twice: differences are failures.
+    pub(crate) twice: bool,
+    /// Use the program for this machine, the crates and the wheel outside the repository.
+    pub(crate) trial: bool,
+}
+
 /// Builds for every machine that this one can build for, checks what can run here, packs it, and
 /// says of each what became of it. Fails if a check fails, or if none was built, and with `CI=true`
-/// if one was not. With `twice`, everything is built twice, and differences are failures.
-pub(crate) fn run(workspace: &Workspace, only: &[String], twice: bool) -> anyhow::Result<()> {
+/// if one was not.
+pub(crate) fn run(workspace: &Workspace, only: &[String], depth: Depth) -> anyhow::Result<()> {
     let is_chosen =
         |machine: &&Machine| only.is_empty() || only.iter().any(|it| it == machine.target);
     let chosen: Vec<&Machine> = MACHINES.iter().filter(is_chosen).collect();
@@ -133,6 +144,7 @@ pub(crate) fn run(workspace: &Workspace, only: &[String], twice: bool) -> anyhow
     let release = Release::of(workspace)?;
     let mut artefacts = Artefacts::begin(workspace)?;
     let (mut built, mut lines, mut parts) = (0, Vec::new(), Vec::new());
+    let mut of_this_machine = None;
     for machine in &chosen {
         let line = match machine.build(workspace, &release, "")? {
             Ok(path) => {
@@ -148,10 +160,13 @@ pub(crate) fn run(workspace: &Workspace, only: &[String], twice: bool) -> anyhow
                             &mut artefacts,
                             &mut parts,
                         )?;
+                        if program.is_of_this_machine() {
+                            of_this_machine.get_or_insert(*machine);
+                        }
                         format!("{about}; {packed}")
                     }
                 };
-                if twice {
+                if depth.twice {
                     line += &machine.compare(workspace, &release, &path)?;
                 }
                 line
@@ -169,7 +184,11 @@ pub(crate) fn run(workspace: &Workspace, only: &[String], twice: bool) -> anyhow
             format!("{name}: {}", image::check(workspace, &file, &work)?)
         }
     });
-    artefacts.end()?;
+    let directory = artefacts.end()?;
+    if depth.trial {
+        let machine = of_this_machine.context("no chosen program is for this machine")?;
+        lines.extend(trial::run(workspace, &release, machine, &directory)?);
+    }
     println!("\n{}", lines.join("\n"));
     ensure!(built > 0, "nothing was built");
     ensure!(
@@ -233,6 +252,23 @@ impl Machine {
         self.glibc.is_empty()
     }
 
+    /// The name of its archive and of the directory in that.
+    fn name(&self, release: &Release) -> String {
+        format!("franka-{}-{}", release.version, self.target)
+    }
+
+    fn for_debian(&self) -> anyhow::Result<debian::Target<'static>> {
+        let architecture = match architecture(self.target) {
+            "x86_64" => "amd64",
+            "aarch64" => "arm64",
+            other => anyhow::bail!("no name for {other}"),
+        };
+        Ok(debian::Target {
+            architecture,
+            glibc: (!self.is_static()).then_some(self.glibc),
+        })
+    }
+
     /// Packs a program; adds to the parts of the image if it can run in one. Returns a line about
     /// it.
     fn pack(
@@ -249,24 +285,16 @@ impl Machine {
             fs::remove_dir_all(&work)?;
         }
         let content = Content::collect(workspace, program, &work, bill.licences()?)?;
-        let name = format!("franka-{}-{}", release.version, self.target);
+        let name = self.name(release);
         artefacts.add(&format!("{name}.cdx.json"), bill.to_json()?.as_bytes())?;
         let archive = archive::tar(&content.portable(&name), release.epoch)?;
         artefacts.add(&format!("{name}.tar.gz"), &gzip(&archive)?)?;
-        let architecture = match architecture(self.target) {
-            "x86_64" => "amd64",
-            "aarch64" => "arm64",
-            other => anyhow::bail!("no name for {other}"),
-        };
-        let for_debian = debian::Target {
-            architecture,
-            glibc: (!self.is_static()).then_some(self.glibc),
-        };
+        let for_debian = self.for_debian()?;
         let package = debian::package(release, for_debian, &content)?;
         let package = artefacts.add(&debian::file_name(release, for_debian), &package)?;
         if self.is_static() {
             parts.push(Part {
-                architecture,
+                architecture: for_debian.architecture,
                 program: content.program,
                 papers: content.papers,
             });
@@ -324,8 +352,8 @@ impl Artefacts {
         Ok(file)
     }
 
-    /// Writes the checksums, as `sha256sum --check` reads them.
-    fn end(mut self) -> anyhow::Result<()> {
+    /// Writes the checksums, as `sha256sum --check` reads them; returns where all of it is.
+    fn end(mut self) -> anyhow::Result<PathBuf> {
         self.sums.sort();
         let lines = self
             .sums
@@ -333,7 +361,8 @@ impl Artefacts {
             .map(|(name, hash)| format!("{hash}  {name}\n"));
         let lines: String = lines.collect();
         println!("\n{}:\n{lines}", self.directory.display());
-        Ok(fs::write(self.directory.join("SHA256SUMS"), lines)?)
+        fs::write(self.directory.join("SHA256SUMS"), lines)?;
+        Ok(self.directory)
     }
 }
 

@@ -5,10 +5,10 @@ use std::env;
 use std::fs;
 use std::io::{BufRead as _, BufReader};
 use std::path::PathBuf;
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use anyhow::{Context as _, ensure};
+use anyhow::{Context as _, bail, ensure};
 
 use crate::cross::{emulator, is_installed};
 
@@ -28,6 +28,10 @@ impl Program {
             false => Some(emulator(architecture, is_installed)?),
         };
         Ok(Self { path, emulator })
+    }
+
+    pub(super) fn is_of_this_machine(&self) -> bool {
+        self.emulator.is_none()
     }
 
     /// Begins a call of it.
@@ -98,17 +102,15 @@ fn time_of_help(run: impl Fn() -> Command) -> anyhow::Result<Duration> {
 /// Starts a simulated robot in virtual time and moves its hand by 5 cm.
 fn moves_a_simulated_robot(run: impl Fn() -> Command) -> anyhow::Result<()> {
     let mut sim = run();
-    sim.args(["sim", "--port", "0", "--virtual-time=5"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null());
-    let mut sim = Running(sim.spawn()?);
-    let mut line = String::new();
-    let out = sim.0.stdout.as_mut().context("piped")?;
-    BufReader::new(out).read_line(&mut line)?;
-    let address = line.trim().rsplit(' ').next().unwrap_or_default();
-    let mut motion = run();
-    motion.args(["move", address, "--by", "0,0,0.05", "--yes"]);
-    let status = motion.args(["--realtime", "ignore"]).status()?;
+    let mut sim = Running::start(sim.args(["sim", "--port", "0", "--virtual-time=5"]))?;
+    let address = sim.address("listening on ")?;
+    moves(run(), &address)
+}
+
+/// Moves the hand of a simulated robot by 5 cm.
+pub(super) fn moves(mut franka: Command, address: &str) -> anyhow::Result<()> {
+    franka.args(["move", address, "--by", "0,0,0.05", "--yes"]);
+    let status = franka.args(["--realtime", "ignore"]).status()?;
     ensure!(
         status.success(),
         "the simulated robot at {address} was not moved"
@@ -116,14 +118,39 @@ fn moves_a_simulated_robot(run: impl Fn() -> Command) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Killed at the end.
-struct Running(Child);
+/// A program that says where it listens; killed at the end.
+#[derive(Debug)]
+pub(super) struct Running {
+    program: Child,
+    output: BufReader<ChildStdout>,
+}
+
+impl Running {
+    pub(super) fn start(command: &mut Command) -> anyhow::Result<Self> {
+        let mut program = command
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()?;
+        let output = BufReader::new(program.stdout.take().context("piped")?);
+        Ok(Self { program, output })
+    }
+
+    /// What follows `before` in the next line that has it.
+    pub(super) fn address(&mut self, before: &str) -> anyhow::Result<String> {
+        for line in (&mut self.output).lines() {
+            if let Some((_, address)) = line?.split_once(before) {
+                return Ok(address.trim().to_owned());
+            }
+        }
+        bail!("the program ended without a line {before:?}")
+    }
+}
 
 impl Drop for Running {
     fn drop(&mut self) {
         // It may have ended by itself.
-        let _ = self.0.kill();
-        let _ = self.0.wait();
+        let _ = self.program.kill();
+        let _ = self.program.wait();
     }
 }
 

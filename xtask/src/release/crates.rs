@@ -73,6 +73,17 @@ impl Manifest {
         }
     }
 
+    /// The directory that is in its package.
+    fn root(&self) -> String {
+        format!("{}-{}", self.name, self.version)
+    }
+
+    /// Where its package is, once it is packed.
+    pub(super) fn package(&self, workspace: &Workspace) -> PathBuf {
+        let name = format!("{}.crate", self.root());
+        workspace.target().join("package").join(name)
+    }
+
     /// What a registry would refuse, or a reader miss.
     pub(crate) fn faults(&self) -> Vec<String> {
         let mut found = Vec::new();
@@ -158,11 +169,7 @@ pub(crate) fn pack(
     workspace.run(&mut pack)?;
     let mut found = Vec::new();
     for it in published {
-        let root = format!("{}-{}", it.name, it.version);
-        let file = workspace
-            .target()
-            .join("package")
-            .join(format!("{root}.crate"));
+        let (root, file) = (it.root(), it.package(workspace));
         let size = fs::metadata(&file).with_context(|| file.display().to_string())?;
         let files = list(&file, &root)?;
         println!("{root}: {} files, {} kB", files.len(), size.len() / 1000);

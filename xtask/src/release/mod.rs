@@ -18,9 +18,10 @@ pub(crate) mod changelog;
 mod crates;
 pub(crate) mod version;
 
+use std::path::PathBuf;
 use std::process::Stdio;
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, bail, ensure};
 
 use crate::realtime::succeeds;
 use crate::step::Outcome;
@@ -56,6 +57,16 @@ pub(crate) fn check(workspace: &Workspace, depth: Depth) -> anyhow::Result<Outco
         bail!("what a release takes:\n{}", found.join("\n"));
     }
     compare_with_last_release(workspace)
+}
+
+/// Packs the crates that are published, and returns where the packages are.
+pub(crate) fn packages(workspace: &Workspace) -> anyhow::Result<Vec<PathBuf>> {
+    let manifests = Manifest::all(workspace)?;
+    let published = crates::order(&manifests)?;
+    let found = crates::pack(workspace, &published, false)?;
+    ensure!(found.is_empty(), "{}", found.join("\n"));
+    let packages = published.iter().map(|it| it.package(workspace));
+    Ok(packages.collect())
 }
 
 /// What is missing for the very version to be published now.

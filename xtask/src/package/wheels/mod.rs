@@ -91,6 +91,14 @@ pub(crate) fn run(workspace: &Workspace, only: &[String]) -> anyhow::Result<()> 
     Ok(())
 }
 
+/// The optimised wheel for this machine, or what is missing to build it.
+pub(crate) fn for_this_machine(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
+    match PLATFORMS.iter().find(|it| it.is_of_this_machine()) {
+        Some(platform) => build(workspace, platform, "release"),
+        None => Ok(Err(format!("this machine is none of {}", targets()))),
+    }
+}
+
 /// Of the step `python`: imports the wheel of this machine, which is built already, with every
 /// Python that is installed, and builds those for other machines where that is possible.
 pub(crate) fn check(workspace: &Workspace, wheel: &Path) -> anyhow::Result<Outcome> {
