@@ -115,6 +115,8 @@ pub(crate) const REQUESTS: &[&str] = &[
     r#"{"type":"disturb","disturbance":{"kind":"object","width":null}}"#,
     r#"{"type":"disturb","disturbance":{"kind":"load","mass":1.5}}"#,
     r#"{"type":"disturb","disturbance":{"kind":"arm","arm":"bad"}}"#,
+    r#"{"type":"disturb","disturbance":{"kind":"speed","speed":0.1}}"#,
+    r#"{"type":"disturb","disturbance":{"kind":"speed","speed":null}}"#,
     r#"{"type":"tune","tuning":{"end_effector":0.25,"joints":0.25,"damping":1,"force_cap":15,"compensation":true}}"#,
     r#"{"type":"begin","motion":{"kind":"stay"},"speed":0.05}"#,
     r#"{"type":"speed","speed":0.1}"#,

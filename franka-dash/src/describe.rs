@@ -23,6 +23,8 @@ pub(crate) struct Hello {
     simulated: bool,
     /// Whether it is simulated with a Hand.
     simulated_hand: bool,
+    /// Whether it is simulated in virtual time, whose speed can be set.
+    virtual_time: bool,
     motion_allowed: bool,
     /// Whether anything takes command.
     may_command: bool,
@@ -113,6 +115,10 @@ impl Hello {
             },
             simulated: permissions.disturbances,
             simulated_hand: hub.simulated.as_ref().is_some_and(Simulated::has_hand),
+            virtual_time: {
+                let simulated = hub.simulated.as_ref();
+                simulated.is_some_and(Simulated::is_in_virtual_time)
+            },
             motion_allowed: permissions.motion,
             may_command: permissions.any(),
             gripper: permissions.gripper,

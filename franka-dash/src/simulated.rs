@@ -31,6 +31,8 @@ pub(crate) struct Setting {
     object: Option<f64>,
     /// What hangs on the flange, `[kg]`.
     load: f64,
+    /// How fast robot time passes in virtual time; 0 is a pause, `None` as fast as it can.
+    speed: Option<f64>,
 }
 
 impl Simulated {
@@ -45,6 +47,11 @@ impl Simulated {
     /// Whether it has a Hand, which an object can be put into.
     pub(crate) fn has_hand(&self) -> bool {
         self.running.hand().is_some()
+    }
+
+    /// Whether the speed of its time can be set.
+    pub(crate) fn is_in_virtual_time(&self) -> bool {
+        self.running.is_in_virtual_time()
     }
 
     pub(crate) fn setting(&self) -> Setting {
@@ -89,6 +96,7 @@ impl Simulated {
             Disturbance::Object { width } => setting.object = width,
             Disturbance::Load { mass } => setting.load = mass,
             Disturbance::Arm { arm } => setting.arm = Some(arm),
+            Disturbance::Speed { speed } => setting.speed = speed,
             _ => {}
         }
         Ok(())
@@ -103,6 +111,10 @@ impl Simulated {
                     .running
                     .with_network(move |network, _| *network = network_under(conditions, seed));
                 set.await.map_err(stopped)
+            }
+            Disturbance::Speed { speed } => {
+                let set = self.running.set_speed(speed);
+                set.map_err(|error| error.to_string())
             }
             Disturbance::Cut { milliseconds } => {
                 let time = Duration::from_millis(milliseconds.into());
@@ -195,7 +207,10 @@ fn apply(disturbance: Disturbance, robot: &mut Robot, pushing: &mut Option<Touch
         }),
         Disturbance::Arm { arm } => robot.fit(simulate(arm, robot.config().kind)),
         // Not the robot's.
-        Disturbance::Network { .. } | Disturbance::Cut { .. } | Disturbance::Object { .. } => {}
+        Disturbance::Network { .. }
+        | Disturbance::Cut { .. }
+        | Disturbance::Object { .. }
+        | Disturbance::Speed { .. } => {}
     }
 }
 

@@ -96,4 +96,4 @@ pub use config::{Config, Tool, Unpublished};
 pub use end_effector::{Fingers, Hand, Suction, VacuumGripper};
 pub use network::Network;
 pub use robot::{Datagram, Robot, SessionError, Touch, TouchId};
-pub use serve::{Pace, Running, Service, Sim, Stopped};
+pub use serve::{Pace, Running, Service, Sim, SpeedError, Stopped};

@@ -19,6 +19,11 @@ const NUMBERS = {
   stall_ms: ["of", { min: 0, max: 50, step: 0.1, unit: " ms" }],
 };
 
+const SPEEDS = [
+  ["", "as fast as it can"], ["0", "paused"], ["0.05", "0.05 ×"], ["0.1", "0.1 ×"], ["0.25", "0.25 ×"], ["0.5", "0.5 ×"],
+  ["1", "1 ×"], ["2", "2 ×"], ["5", "5 ×"],
+];
+
 export function world(connection) {
   const place = document.getElementById("world");
   const disturb = (disturbance) => connection.send({ type: "disturb", disturbance });
@@ -35,7 +40,11 @@ export function world(connection) {
   load.input.addEventListener("change", () => disturb({ kind: "load", mass: load.get() }));
   const seed = document.createElement("span");
   seed.className = "hint";
-  place.append(row(arm.label, seed), row(load.label));
+  const speed = choice("Time passes", "command", SPEEDS);
+  speed.select.addEventListener("change", () => {
+    disturb({ kind: "speed", speed: speed.select.value === "" ? null : Number(speed.select.value) });
+  });
+  place.append(row(arm.label, seed), row(load.label), row(speed.label));
 
   const width = number("Object", "command", { min: 1, max: 80, step: 1, value: 40, unit: " mm" });
   const object = row(
@@ -71,11 +80,15 @@ export function world(connection) {
     row(named("network", "Set the network", apply)),
   );
 
-  connection.addEventListener("hello", ({ detail }) => { object.hidden = !detail.simulated_hand; });
+  connection.addEventListener("hello", ({ detail }) => {
+    object.hidden = !detail.simulated_hand;
+    speed.label.parentElement.hidden = !detail.virtual_time;
+  });
   connection.addEventListener("status", ({ detail: { simulation } }) => {
     if (!simulation) return;
     if (simulation.arm) arm.select.value = simulation.arm;
     load.set(simulation.load);
+    speed.select.value = simulation.speed === null ? "" : String(simulation.speed);
     if (simulation.network) show(simulation.network);
     seed.textContent = simulation.seed === null ? "" : `seed ${simulation.seed}`;
   });

@@ -35,6 +35,9 @@ pub(crate) enum Disturbance {
     Load { mass: f64 },
     /// Puts another arm in place of the present one, at rest where that is.
     Arm { arm: ArmKind },
+    /// Has robot time pass so many times as fast as the clock on the wall; 0 is a pause, `null` as
+    /// fast as it can. In virtual time only.
+    Speed { speed: Option<f64> },
 }
 
 /// Families of simulated arms, by how they differ from their model.
@@ -104,6 +107,8 @@ impl Disturbance {
             | Self::Brakes { .. }
             | Self::Reflex {}
             | Self::Object { width: None }
+            // Which speeds are possible, the simulator says.
+            | Self::Speed { .. }
             | Self::Arm { .. } => Ok(()),
         }
     }

@@ -1,6 +1,6 @@
 //! What viewers do to a simulated robot.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use franka_async::state::RobotMode;
 use serde_json::{Value, json};
@@ -69,6 +69,33 @@ fn a_load_pulls_another_arm_stands_there_and_an_object_needs_a_hand() {
     disturb(&mut viewer, json!({"kind": "object", "width": 0.04}));
     viewer.event("no hand");
     viewer.wait_for_status(|it| it["simulation"]["object"] == Value::Null);
+}
+
+#[test]
+fn virtual_time_is_paused_and_goes_on_with_the_robot_still_connected() {
+    let served = Served::in_virtual_time();
+    let mut viewer = Viewer::connect(served.address);
+    assert_eq!(viewer.hello["virtual_time"], true);
+    viewer.take();
+    let time = || served.with(|robot| robot.state().message_id);
+    disturb(&mut viewer, json!({"kind": "speed", "speed": 0}));
+    viewer.wait_for_status(|it| it["simulation"]["speed"] == 0.0);
+    let (begun, before) = (Instant::now(), time());
+    // For longer than what clients take for a lost connection.
+    std::thread::sleep(Duration::from_millis(1500));
+    let passed = time() - before;
+    assert!(
+        u128::from(passed) <= begun.elapsed().as_millis() / 400 + 2,
+        "{passed} ms"
+    );
+    disturb(&mut viewer, json!({"kind": "speed", "speed": 20}));
+    viewer.event("possible are");
+    disturb(&mut viewer, json!({"kind": "speed", "speed": null}));
+    viewer.wait_until("frame", |_| served.robot.state().message_id > before + 500);
+
+    let on_the_wall = Served::movable();
+    let viewer = Viewer::connect(on_the_wall.address);
+    assert_eq!(viewer.hello["virtual_time"], false);
 }
 
 #[test]

@@ -73,6 +73,14 @@ impl Served {
         done.expect("it runs")
     }
 
+    /// A server that may do all to a robot in virtual time.
+    pub(crate) fn in_virtual_time() -> Self {
+        let sim = Sim::fr3().virtual_time(Duration::ZERO);
+        Self::start(sim, async |running| {
+            Options::default().allow_motion().simulated(running)
+        })
+    }
+
     pub(crate) fn movable() -> Self {
         Self::new(|running| Options::default().allow_motion().simulated(running))
     }

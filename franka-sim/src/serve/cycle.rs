@@ -6,6 +6,7 @@ use super::Hook;
 use super::clock::{Clock, PERIOD, Pace};
 use super::device_server::DeviceServer;
 use super::in_step::InStep;
+use super::speed::{Pacer, Speed};
 use crate::end_effector::{Hand, VacuumGripper};
 use crate::robot::{Awaited, Robot};
 
@@ -60,10 +61,11 @@ impl Cycle {
 
     /// Runs in virtual time, in which each state waits for the client's answer, until the same end:
     /// see [`Sim::virtual_time`](super::Sim::virtual_time).
-    pub(super) fn run_on_answers(mut self, patience: Duration) {
+    pub(super) fn run_on_answers(mut self, patience: Duration, speed: Speed) {
         // Nothing is late here, so nothing slips.
         let mut clock = Clock::new(Instant::now(), true);
         let mut attempts = 0;
+        let mut pacer = Pacer::new(speed);
         // The robot's time, and that of a network.
         let mut now = Instant::now();
         loop {
@@ -85,7 +87,7 @@ impl Cycle {
                 self.robot.relay(now);
             }
             now = next;
-            if !asks {
+            if !pacer.wait() && !asks {
                 std::thread::sleep(match self.has_client() {
                     true => VIRTUAL_IDLE_PERIOD,
                     false => PERIOD,

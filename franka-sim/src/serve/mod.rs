@@ -32,10 +32,12 @@ mod priority;
 mod relay;
 mod service;
 mod sessions;
+mod speed;
 mod stream;
 
 pub use clock::Pace;
 pub use service::{Service, Stopped};
+pub use speed::SpeedError;
 
 use std::fmt;
 use std::io;
@@ -54,6 +56,7 @@ use crate::plant::Plant;
 use crate::robot::Robot;
 use cycle::Cycle;
 use in_step::InStep;
+use speed::Speed;
 
 /// A robot to be simulated: configure, then [`start`](Self::start).
 ///
@@ -237,7 +240,7 @@ impl Sim {
     ///
     /// The times of a [`network`](Self::network) are the robot's, in which the client takes no time
     /// to answer. Seconds that a client counts by a clock of its own, and not by the states, differ
-    /// from those of the robot.
+    /// from those of the robot. [`Running::set_speed`] slows robot time down, and pauses it.
     pub fn virtual_time(mut self, patience: Duration) -> Self {
         self.virtual_time = true;
         self.patience = patience;
@@ -334,7 +337,8 @@ impl Sim {
             after_each_state: self.after_each_state,
             in_step: self.in_step,
         };
-        let (virtual_time, patience) = (self.virtual_time, self.patience);
+        let (speed, patience) = (self.virtual_time.then(Speed::default), self.patience);
+        let of_thread = speed.clone();
         let (realtime, strict) = (self.realtime, self.strict_clock);
         let (done, finished) = watch::channel(());
         std::thread::Builder::new()
@@ -343,9 +347,9 @@ impl Sim {
                 if realtime && let Err(error) = priority::raise() {
                     tracing::warn!(%error, "no real-time priority");
                 }
-                match virtual_time {
-                    true => cycle.run_on_answers(patience),
-                    false => cycle.run(strict, patience),
+                match of_thread {
+                    Some(speed) => cycle.run_on_answers(patience, speed),
+                    None => cycle.run(strict, patience),
                 }
                 drop(done);
             })?;
@@ -353,6 +357,7 @@ impl Sim {
             robot,
             hand,
             vacuum_gripper,
+            speed,
             finished,
         })
     }
@@ -374,6 +379,8 @@ pub struct Running {
     robot: Service<Robot>,
     hand: Option<Service<Hand>>,
     vacuum_gripper: Option<Service<VacuumGripper>>,
+    /// `None` without virtual time.
+    speed: Option<Speed>,
     /// Closed by the end of the thread, whichever it is.
     finished: watch::Receiver<()>,
 }
@@ -495,6 +502,7 @@ impl Running {
             robot,
             hand,
             vacuum_gripper,
+            speed: _,
             mut finished,
         } = self;
         if let Some(hand) = hand {
