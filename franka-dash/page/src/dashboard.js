@@ -2,7 +2,7 @@
 
 import { Connection } from "./connection.js";
 import { events } from "./events.js";
-import { endEffector } from "./frame.js";
+import { endEffector, reference } from "./frame.js";
 import { Goal } from "./goal.js";
 import { gripper } from "./gripper.js";
 import { Guards } from "./guards.js";
@@ -37,7 +37,7 @@ export function dashboard() {
     if (hold.active) connection.send({ type: "speed", speed: speed() });
     preview.again();
   });
-  jog(hold, speed);
+  jog(hold, speed, () => reference(history.newest));
   const joints = new Joints(hold, preview, speed);
   const goal = new Goal({ scene, hold, preview, speed });
   byId("looks").addEventListener("change", ({ target }) => scene.show3d(target.value));

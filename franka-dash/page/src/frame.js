@@ -9,8 +9,13 @@ const VERSION = 3;
 const LENGTH = 736;
 export const POSES = 9;
 
+const last = (poses) => poses.subarray(7 * (POSES - 1), 7 * POSES);
+
 /** The end effector in the poses of a frame: position and quaternion. */
-export const endEffector = ({ poses }) => poses.subarray(7 * (POSES - 1), 7 * POSES);
+export const endEffector = ({ poses }) => last(poses);
+
+/** Where the reference has the end effector: position and quaternion. */
+export const reference = ({ referencePoses }) => last(referencePoses);
 
 /** The frame in `buffer`; throws if it is none of this version. */
 export function parse(buffer) {

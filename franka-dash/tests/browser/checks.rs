@@ -16,12 +16,13 @@ type Check = fn(&Browser, &Served) -> anyhow::Result<()>;
 
 /// All checks, one after the other.
 pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    let checks: [(&str, Check); 16] = [
+    let checks: [(&str, Check); 17] = [
         ("load", load),
         ("shows the robot", shows_the_robot),
         ("looks", looks),
         ("second viewer", second_viewer),
         ("jog", jog),
+        ("step", step),
         ("look back", look_back),
         ("preview and go", targets::preview_and_go),
         ("keep out", targets::keep_out),
@@ -196,6 +197,29 @@ fn jog(page: &Browser, served: &Served) -> anyhow::Result<()> {
     page.pointer(&[up()])?;
     served.check_rest()?;
     strip_says(page, ["none", "none", "off"])
+}
+
+/// A step goes as far as it says, and ends by itself.
+fn step(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    let choose = |step| page.run(&format!("document.getElementById('step').value = '{step}'"));
+    choose("10")?;
+    let begin = Instant::now();
+    loop {
+        ensure!(begin.elapsed() < LONGEST, "each step was cut short");
+        take(page)?;
+        let start = served.height();
+        page.pointer(&[move_to(page.find("[data-jog='Z+']")?), down()])?;
+        // There, or lost on a machine that is too busy for a hold.
+        wait("the end", || Ok(page.state()?["holding"] == false))?;
+        page.pointer(&[up()])?;
+        served.check_rest()?;
+        let gone = served.height() - start;
+        ensure!(gone < 0.013, "{gone} m");
+        if gone > 0.007 {
+            break;
+        }
+    }
+    choose("").map(drop)
 }
 
 /// Session, law and deadman.
