@@ -16,7 +16,7 @@ type Check = fn(&Browser, &Served) -> anyhow::Result<()>;
 
 /// All checks, one after the other.
 pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    let checks: [(&str, Check); 17] = [
+    let checks: [(&str, Check); 18] = [
         ("load", load),
         ("shows the robot", shows_the_robot),
         ("looks", looks),
@@ -24,6 +24,7 @@ pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
         ("jog", jog),
         ("step", step),
         ("look back", look_back),
+        ("plots and export", panels::plots_and_export),
         ("preview and go", targets::preview_and_go),
         ("keep out", targets::keep_out),
         ("sliders", targets::sliders),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use anyhow::Context as _;
+use anyhow::{Context as _, ensure};
 
 use crate::checks::{load, looks, take};
 use crate::driver::Browser;
@@ -33,6 +33,55 @@ pub(crate) fn tune(page: &Browser, _: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Every quantity draws a line in colour, and the table has a row per frame, the newest joints in the
+/// last.
+pub(crate) fn plots_and_export(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    let empty = page.run(
+        "const choice = document.getElementById('plotted'); \
+         const coloured = () => { \
+           const canvas = document.querySelector('#plot canvas'); \
+           const all = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height); \
+           for (let i = 0; i < all.data.length; i += 4) { \
+             const [r, g, b, a] = all.data.subarray(i, i + 4); \
+             if (a > 99 && Math.max(r, g, b) - Math.min(r, g, b) > 60) return true; \
+           } \
+           return false; \
+         }; \
+         return (async () => { \
+           const empty = []; \
+           for (const {value} of choice.options) { \
+             choice.value = value; \
+             choice.dispatchEvent(new Event('change')); \
+             for (let i = 0; i < 50 && !coloured(); i += 1) await new Promise((ok) => setTimeout(ok, 100)); \
+             if (!coloured()) empty.push(value); \
+           } \
+           return empty; \
+         })()",
+    )?;
+    ensure!(empty == serde_json::json!([]), "nothing is drawn: {empty}");
+    let text = page.run(
+        "let text; const make = URL.createObjectURL; \
+         URL.createObjectURL = (blob) => { text = blob.text(); return make(blob); }; \
+         document.getElementById('export').click(); URL.createObjectURL = make; return text",
+    )?;
+    let mut rows = text.as_str().context("a text")?.lines();
+    let names: Vec<_> = rows.next().context("names")?.split(',').collect();
+    let last: Vec<_> = rows.clone().last().context("rows")?.split(',').collect();
+    ensure!(
+        rows.count() > 100 && names.len() == last.len(),
+        "{names:?}, {last:?}"
+    );
+    let q = names
+        .iter()
+        .position(|name| *name == "q_0")
+        .context("q_0")?;
+    for (i, real) in served.robot.state().q.iter().enumerate() {
+        let off = last[q + i].parse::<f64>()? - real;
+        ensure!(off.abs() < 2e-3, "joint {i} is {off} rad off");
+    }
+    Ok(())
+}
+
 fn record(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let text = || page.run("return document.getElementById('record-panel').textContent");
     let says = |wanted: &'static str| Ok(text()?.as_str().is_some_and(|it| it.contains(wanted)));
@@ -41,7 +90,7 @@ fn record(page: &Browser, served: &Served) -> anyhow::Result<()> {
     page.click("#record")?;
     wait("the end of the recording", || Ok(!says(".mcap")?))?;
     let files = std::fs::read_dir(&served.folder)?.count();
-    anyhow::ensure!(files == 1, "{files} files");
+    ensure!(files == 1, "{files} files");
     Ok(())
 }
 
