@@ -3,7 +3,7 @@
 use franka_async::state::RobotMode;
 use nix::sys::signal::Signal;
 
-use crate::program::Home;
+use crate::program::{Home, until};
 use crate::simulated::Simulated;
 use crate::terminal::Terminal;
 
@@ -85,6 +85,8 @@ fn an_arm_that_moves_while_somebody_reads_is_not_moved_as_said() {
         q[0] += 0.1;
         robot.place(&q);
     });
+    let placed = sim.state().message_id;
+    until("a state from there", || sim.state().message_id > placed + 1);
     terminal.types("y\n");
     let (code, shown) = terminal.ended();
     assert_eq!(code, Some(4), "{shown}");
