@@ -33,8 +33,8 @@ pub(crate) fn tune(page: &Browser, _: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Every quantity draws a line in colour, and the table has a row per frame, the newest joints in the
-/// last.
+/// Every quantity draws a line in colour, and the table has a row per frame, the newest joints in
+/// the last.
 pub(crate) fn plots_and_export(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let empty = page.run(
         "const choice = document.getElementById('plotted'); \
