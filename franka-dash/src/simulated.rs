@@ -55,7 +55,10 @@ impl Simulated {
     }
 
     pub(crate) fn setting(&self) -> Setting {
-        *self.lock()
+        Setting {
+            speed: self.running.speed(),
+            ..*self.lock()
+        }
     }
 
     /// Reads how the simulator was started.
@@ -96,7 +99,6 @@ impl Simulated {
             Disturbance::Object { width } => setting.object = width,
             Disturbance::Load { mass } => setting.load = mass,
             Disturbance::Arm { arm } => setting.arm = Some(arm),
-            Disturbance::Speed { speed } => setting.speed = speed,
             _ => {}
         }
         Ok(())

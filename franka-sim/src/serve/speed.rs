@@ -54,15 +54,17 @@ impl Running {
     /// [`SpeedError`]: the speed is as before.
     pub fn set_speed(&self, speed: Option<f64>) -> Result<(), SpeedError> {
         let set = self.speed.as_ref().ok_or(SpeedError::WallClock)?;
-        match speed {
-            None => set.store(Duration::ZERO),
-            Some(0.0) => set.store(PAUSED_PERIOD),
-            Some(speed) if (Self::SPEED_MIN..=Self::SPEED_MAX).contains(&speed) => {
-                set.store(PERIOD.div_f64(speed));
-            }
-            Some(got) => return Err(SpeedError::Range { got }),
+        let possible = Self::SPEED_MIN..=Self::SPEED_MAX;
+        if let Some(got) = speed.filter(|speed| *speed != 0.0 && !possible.contains(speed)) {
+            return Err(SpeedError::Range { got });
         }
+        set.set(speed);
         Ok(())
+    }
+
+    /// The speed that was [set](Self::set_speed).
+    pub fn speed(&self) -> Option<f64> {
+        self.speed.as_ref().and_then(Speed::get)
     }
 
     /// Whether it runs in [virtual time](super::Sim::virtual_time), in which
@@ -72,21 +74,34 @@ impl Running {
     }
 }
 
-/// How long a millisecond of the robot lasts on the wall, in nanoseconds; 0 for no longer than it
-/// takes. Clones are the same.
-#[derive(Clone, Debug, Default)]
+/// The bits of the speed; infinite for as fast as the client answers. Clones are the same.
+#[derive(Clone, Debug)]
 pub(super) struct Speed(Arc<AtomicU64>);
+
+impl Default for Speed {
+    fn default() -> Self {
+        Self(Arc::new(AtomicU64::new(f64::INFINITY.to_bits())))
+    }
+}
 
 impl Speed {
     // Relaxed: it orders no other memory.
-    fn store(&self, period: Duration) {
-        let nanos = u64::try_from(period.as_nanos()).expect("less than a second");
-        self.0.store(nanos, Ordering::Relaxed);
+    fn set(&self, speed: Option<f64>) {
+        let bits = speed.unwrap_or(f64::INFINITY).to_bits();
+        self.0.store(bits, Ordering::Relaxed);
     }
 
+    fn get(&self) -> Option<f64> {
+        let speed = f64::from_bits(self.0.load(Ordering::Relaxed));
+        speed.is_finite().then_some(speed)
+    }
+
+    /// How long a millisecond of the robot lasts on the wall; `None` for no longer than it takes.
     fn period(&self) -> Option<Duration> {
-        let nanos = self.0.load(Ordering::Relaxed);
-        (nanos > 0).then(|| Duration::from_nanos(nanos))
+        self.get().map(|speed| match speed {
+            0.0 => PAUSED_PERIOD,
+            _ => PERIOD.div_f64(speed),
+        })
     }
 }
 
@@ -121,5 +136,48 @@ impl Pacer {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::serve::Sim;
+    use crate::serve::tests::{SOON, robot_time, runtime};
+
+    #[test]
+    fn in_virtual_time_the_speed_is_set_and_a_pause_ends() {
+        runtime().block_on(async {
+            let sim = Sim::fr3()
+                .virtual_time(SOON)
+                .start()
+                .await
+                .expect("a robot");
+            for (speed, period) in [(0.1, 10), (0.0, 400)] {
+                sim.set_speed(Some(speed)).expect("virtual time");
+                assert_eq!(sim.speed(), Some(speed));
+                // What was asked for while it slept may take the speed before.
+                robot_time(&sim, 1).await;
+                let begun = Instant::now();
+                let first = sim.state().await.expect("running").message_id;
+                tokio::time::sleep(Duration::from_millis(300)).await;
+                let passed = sim.state().await.expect("running").message_id - first;
+                // A busy machine has less time pass; some is made up for.
+                let most = begun.elapsed().as_millis() / period + 5;
+                assert!(u128::from(passed) <= most, "{speed}: {passed} > {most}");
+            }
+            for got in [-1.0, 0.001, 11.0, f64::INFINITY] {
+                assert_eq!(sim.set_speed(Some(got)), Err(SpeedError::Range { got }));
+            }
+            assert!(sim.set_speed(Some(f64::NAN)).is_err());
+            sim.set_speed(None).expect("virtual time");
+            robot_time(&sim, 500).await;
+            sim.stop().await;
+
+            let sim = Sim::fr3().start().await.expect("a robot");
+            assert!(!sim.is_in_virtual_time());
+            assert_eq!(sim.set_speed(Some(0.1)), Err(SpeedError::WallClock));
+            sim.stop().await;
+        });
     }
 }

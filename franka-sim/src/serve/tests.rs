@@ -62,7 +62,7 @@ impl Client {
 }
 
 /// Waits for so many milliseconds of the robot's time; returns the state then.
-async fn robot_time(sim: &Running, milliseconds: u64) -> RobotState {
+pub(super) async fn robot_time(sim: &Running, milliseconds: u64) -> RobotState {
     let begun = Instant::now();
     let mut state = sim.state().await.expect("running");
     let end = state.message_id + milliseconds;
@@ -74,7 +74,7 @@ async fn robot_time(sim: &Running, milliseconds: u64) -> RobotState {
     state
 }
 
-fn runtime() -> tokio::runtime::Runtime {
+pub(super) fn runtime() -> tokio::runtime::Runtime {
     tokio::runtime::Builder::new_multi_thread()
         .worker_threads(1)
         .enable_all()
@@ -167,41 +167,6 @@ fn robots_in_step_begin_each_millisecond_together_until_one_stops() {
         first.stop().await;
         robot_time(&second, 50).await;
         second.stop().await;
-    });
-}
-
-#[test]
-fn in_virtual_time_the_speed_is_set_and_a_pause_ends() {
-    runtime().block_on(async {
-        let sim = Sim::fr3()
-            .virtual_time(SOON)
-            .start()
-            .await
-            .expect("a robot");
-        for (speed, period) in [(0.1, 10), (0.0, 400)] {
-            sim.set_speed(Some(speed)).expect("virtual time");
-            // What was asked for while it slept may take the speed before.
-            robot_time(&sim, 1).await;
-            let begun = Instant::now();
-            let first = sim.state().await.expect("running").message_id;
-            tokio::time::sleep(Duration::from_millis(300)).await;
-            let passed = sim.state().await.expect("running").message_id - first;
-            // A busy machine has less time pass; some is made up for.
-            let most = begun.elapsed().as_millis() / period + 5;
-            assert!(u128::from(passed) <= most, "{speed}: {passed} > {most}");
-        }
-        for got in [-1.0, 0.001, 11.0, f64::INFINITY] {
-            assert_eq!(sim.set_speed(Some(got)), Err(SpeedError::Range { got }));
-        }
-        assert!(sim.set_speed(Some(f64::NAN)).is_err());
-        sim.set_speed(None).expect("virtual time");
-        robot_time(&sim, 500).await;
-        sim.stop().await;
-
-        let sim = Sim::fr3().start().await.expect("a robot");
-        assert!(!sim.is_in_virtual_time());
-        assert_eq!(sim.set_speed(Some(0.1)), Err(SpeedError::WallClock));
-        sim.stop().await;
     });
 }
 
