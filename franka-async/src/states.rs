@@ -42,7 +42,8 @@ impl<S: Copy + Send + Sync + 'static> States<S> {
         *self.published.borrow()
     }
 
-    /// Waits for a state that was not returned before, and returns the newest one.
+    /// Waits for a change that neither this nor the stream has returned, and returns the newest
+    /// state. [`newest`](Self::newest) may have shown it before.
     ///
     /// # Errors
     /// [`ReadError::ConnectionClosed`].
