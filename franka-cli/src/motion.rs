@@ -13,7 +13,7 @@ use franka_async::motion::MotionHandle;
 use franka_async::recording::{RecordOptions, RecordStatus, Recorder, Track};
 use franka_async::replay::ReplayFailure;
 use franka_async::state::RobotState;
-use franka_async::{MotionError, Robot};
+use franka_async::{Error, MotionError, Robot};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::connection::{Place, Which, check_ready};
@@ -97,7 +97,7 @@ impl Moving {
         let before = self.robot.state();
         let title = question::title(title, self.robot.model().kind(), &self.place);
         question::ask(&format!("{title}\n{what}"), self.yes).await?;
-        let now = self.state_from_now().await;
+        let now = self.state_from_now().await?;
         check_ready(&now, &self.place)?;
         for (i, (from, to)) in before.q.iter().zip(now.q).enumerate() {
             // A position that is not finite counts as moved.
@@ -113,18 +113,16 @@ impl Moving {
         Ok(())
     }
 
-    /// A state that the robot has sent since the call; the newest one if its connection has ended.
-    async fn state_from_now(&self) -> RobotState {
+    /// A state that the robot has sent since the call.
+    async fn state_from_now(&self) -> Result<RobotState, Error> {
         let mut newest = self.robot.state();
         let mut states = self.robot.states();
         // The first one may have been on its way.
         for _ in 0..2 {
             let before = newest.message_id;
-            if let Ok(state) = states.wait_for(|state| state.message_id > before).await {
-                newest = state;
-            }
+            newest = states.wait_for(|state| state.message_id > before).await?;
         }
-        newest
+        Ok(newest)
     }
 
     /// Awaits a motion of the robot, with its progress on the terminal if its length is given.
