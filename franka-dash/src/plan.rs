@@ -109,7 +109,7 @@ pub(crate) async fn in_background(
     planned.unwrap_or_else(|error| Err(error.to_string()))
 }
 
-/// The text of a refusal for a viewer who has given one target, and no waypoints.
+/// The text of a refusal, without the number of a waypoint: a viewer gives one target.
 fn refusal(error: MotionError) -> String {
     match error {
         MotionError::Path(PathError::Waypoint { error, .. }) => error.to_string(),

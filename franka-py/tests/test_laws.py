@@ -318,14 +318,16 @@ def test_parameters_reach_a_law_that_runs_whole(start: Start, library: ctypes.CD
 @ROBOTS
 def test_cancelling_has_the_robot_stop(start: Start, library: ctypes.CDLL) -> None:
     async def program(robot: Robot) -> None:
-        law = Law(library.until_told, parameters=np.full(256, 1.0), memory=[0.0, 0.0])
-        running = asyncio.ensure_future(robot.run_law(law))
-        while law.memory[0] != 1.0:
-            await asyncio.sleep(0.001)
-        running.cancel()
-        with pytest.raises(asyncio.CancelledError):
-            await running
-        await robot.run_law(library.no_velocity, parameters=[5.0, 0.0], memory=[0.0])
+        # Often: the next law must find the arm braking each time, however soon it comes.
+        for _ in range(20):
+            law = Law(library.until_told, parameters=np.full(256, 1.0), memory=[0.0, 0.0])
+            running = asyncio.ensure_future(robot.run_law(law))
+            while law.memory[0] != 1.0:
+                await asyncio.sleep(0.001)
+            running.cancel()
+            with pytest.raises(asyncio.CancelledError):
+                await running
+            await robot.run_law(library.no_velocity, parameters=[5.0, 0.0], memory=[0.0])
 
     on(start, program)
 

@@ -1,7 +1,7 @@
 // All robots of the server side by side: what they do, and one button that stops them all.
 
 import { Connection } from "./connection.js";
-import { MODES, MODE_CLASSES } from "./frame.js";
+import { endEffector, MODES, MODE_CLASSES } from "./frame.js";
 import { Scene } from "./scene.js";
 import { tabs } from "./tabs.js";
 
@@ -54,7 +54,7 @@ class Card {
     this.#due = true;
     requestAnimationFrame(() => {
       this.#due = false;
-      this.#behind = [...this.#behind, Array.from(this.frame.poses.subarray(56, 59))].slice(-BEHIND);
+      this.#behind = [...this.#behind, Array.from(endEffector(this.frame).subarray(0, 3))].slice(-BEHIND);
       this.#scene.show(this.frame, this.#behind, new Set());
       this.#show(MODES[this.frame.mode] ?? "unknown", MODE_CLASSES[this.frame.mode] ?? "");
     });

@@ -100,8 +100,7 @@ fn second_viewer(page: &Browser, served: &Served) -> anyhow::Result<()> {
             .as_str()
             .is_some_and(|text| text.contains("Stopped by a viewer")))
     })?;
-    let moved = (0..7).map(|i| (served.robot.state().q[i] - start[i]).abs());
-    ensure!(moved.fold(0.0, f64::max) < 2e-3, "it moved");
+    served.check_still(start)?;
     ensure!(
         served.robot.state().robot_mode == RobotMode::Idle,
         "a reflex"

@@ -98,6 +98,14 @@ impl Served {
         self.robot.pose().translation.z
     }
 
+    /// The arm is where it was, but for what it creeps at rest.
+    pub(crate) fn check_still(&self, before: [f64; 7]) -> anyhow::Result<()> {
+        let now = self.robot.state().q;
+        let moved = now.iter().zip(before).map(|(q, before)| (q - before).abs());
+        ensure!(moved.fold(0.0, f64::max) < 2e-3, "it moved");
+        Ok(())
+    }
+
     /// Waits until the arm rests: it has 5 s for that, and then may creep by a millimetre.
     pub(crate) fn check_rest(&self) -> anyhow::Result<()> {
         let moving = || {

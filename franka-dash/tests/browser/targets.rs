@@ -57,11 +57,8 @@ pub(crate) fn preview_and_go(page: &Browser, served: &Served) -> anyhow::Result<
     let ghost = page.state()?["ghost"].clone();
     ensure!(page.state()?["ahead"].as_u64() > Some(2), "no way ahead");
     std::thread::sleep(Duration::from_millis(300));
-    let moved = (0..7).map(|i| (served.robot.state().q[i] - before[i]).abs());
-    ensure!(
-        moved.fold(0.0, f64::max) < 2e-3,
-        "it moved before a button was held"
-    );
+    let held = served.check_still(before);
+    held.context("before a button was held")?;
     let there = || {
         let at = served.robot.pose().translation.vector;
         let off = (0..3).map(|i| ghost[i].as_f64().map_or(1.0, |x| (x - at[i]).abs()));
@@ -93,8 +90,7 @@ pub(crate) fn keep_out(page: &Browser, served: &Served) -> anyhow::Result<()> {
             .is_some_and(|text| text.contains("Not moved: the arm would come")))
     })?;
     page.pointer(&[up()])?;
-    let moved = (0..7).map(|i| (served.robot.state().q[i] - start[i]).abs());
-    ensure!(moved.fold(0.0, f64::max) < 2e-3, "it moved");
+    served.check_still(start)?;
     aim(page, &[("z", served.region_top() * 1e3 + 40.0)])?;
     said(page, "Takes")?;
     hold_until(page, "#goal-go", || {

@@ -49,15 +49,17 @@ use crate::{Event, EventKind, GripperState, HostTime};
 /// ```no_run
 /// use franka_model::RobotKind;
 /// use franka_record::recorder::{RecordOptions, Recorder, Robot};
-/// # fn cycles() -> franka_rt::thread::CycleReader { unimplemented!() }
+/// # fn record(cycles: franka_rt::thread::CycleReader)
+/// # -> Result<(), franka_record::recorder::RecordError> {
 ///
 /// let recorder = Recorder::to_file("run.mcap", RecordOptions::default())?;
-/// let handle = recorder.attach(Robot::new(RobotKind::Fr3), cycles())?;
+/// let handle = recorder.attach(Robot::new(RobotKind::Fr3), cycles)?;
 /// handle.note("ready");
 /// // ... the robot moves ...
 /// let report = recorder.finish()?;
 /// println!("{} cycles, {} dropped", report.cycles, report.dropped);
-/// # Ok::<(), franka_record::recorder::RecordError>(())
+/// # Ok(())
+/// # }
 /// ```
 ///
 /// Nothing it does can delay a cycle. Dropping it ends the recording in the background, as
