@@ -95,10 +95,7 @@ fn second_viewer(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let refused = refused.as_array().context("refusals")?.len();
     ensure!(refused == 4, "{refused} refusals");
     wait("the stop of the other viewer", || {
-        let text = page.run("return document.getElementById('events').textContent")?;
-        Ok(text
-            .as_str()
-            .is_some_and(|text| text.contains("Stopped by a viewer")))
+        page.shows("events", "Stopped by a viewer")
     })?;
     served.check_still(start)?;
     ensure!(
@@ -313,10 +310,7 @@ fn reflex_and_recovery(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let is = |mode| Ok(served.robot.state().robot_mode == mode);
     wait("the reflex", || is(RobotMode::Reflex))?;
     wait("the reflex in the log", || {
-        let text = page.run("return document.getElementById('events').textContent")?;
-        Ok(text
-            .as_str()
-            .is_some_and(|text| text.contains("cartesian_reflex")))
+        page.shows("events", "cartesian_reflex")
     })?;
     page.click("#recover")?;
     wait("the recovery", || is(RobotMode::Idle))

@@ -89,6 +89,14 @@ impl Browser {
         self.run("return window.__state ? window.__state() : {}")
     }
 
+    /// Whether the element of this `id` has this text.
+    pub(crate) fn shows(&self, id: &str, text: &str) -> anyhow::Result<bool> {
+        let all = self.run(&format!(
+            "return document.getElementById({id:?}).textContent"
+        ))?;
+        Ok(all.as_str().is_some_and(|all| all.contains(text)))
+    }
+
     /// Where the middle of an element is on the page.
     pub(crate) fn find(&self, selector: &str) -> anyhow::Result<(f64, f64)> {
         let middle = self.run(&format!(

@@ -83,12 +83,11 @@ pub(crate) fn plots_and_export(page: &Browser, served: &Served) -> anyhow::Resul
 }
 
 fn record(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    let text = || page.run("return document.getElementById('record-panel').textContent");
-    let says = |wanted: &'static str| Ok(text()?.as_str().is_some_and(|it| it.contains(wanted)));
+    let recording = || page.shows("record-panel", ".mcap");
     page.click("#record")?;
-    wait("the recording", || says(".mcap"))?;
+    wait("the recording", recording)?;
     page.click("#record")?;
-    wait("the end of the recording", || Ok(!says(".mcap")?))?;
+    wait("the end of the recording", || Ok(!recording()?))?;
     let files = std::fs::read_dir(&served.folder)?.count();
     ensure!(files == 1, "{files} files");
     Ok(())
@@ -99,10 +98,7 @@ fn grip(page: &Browser, served: &Served) -> anyhow::Result<()> {
     page.click("[data-gripper='Home']")?;
     wait("the homing", || Ok(served.gripper.state().max_width > 0.07))?;
     wait("the width in the page", || {
-        let shown = page.run("return document.getElementById('gripper').textContent")?;
-        Ok(shown
-            .as_str()
-            .is_some_and(|it| it.contains("80.0 mm of 80.0")))
+        page.shows("gripper", "80.0 mm of 80.0")
     })?;
     page.click("[data-world='put']")?;
     wait("the object", || {

@@ -84,10 +84,7 @@ pub(crate) fn keep_out(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let start = served.robot.state().q;
     page.pointer(&[move_to(page.find("#goal-go")?), down()])?;
     wait("the refusal", || {
-        let text = page.run("return document.getElementById('events').textContent")?;
-        Ok(text
-            .as_str()
-            .is_some_and(|text| text.contains("Not moved: the arm would come")))
+        page.shows("events", "Not moved: the arm would come")
     })?;
     page.pointer(&[up()])?;
     served.check_still(start)?;
