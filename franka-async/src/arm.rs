@@ -46,6 +46,17 @@ impl Engage {
         self
     }
 
+    /// Keeps all joints, the flange and the end effector to this speed, `[m/s]`, 0.05 to 3; by
+    /// default there is only what goals ask for. On the way to a pose the reference is slowed to
+    /// 94 % of it. An arm that is faster, because its goal over joints or its chunk is, or because
+    /// something throws it, gives up its goal and is braked, as
+    /// [`Lapse::TooFast`](crate::error::Lapse::TooFast).
+    /// [`GoalError::Number`](crate::error::GoalError::Number) refuses other numbers.
+    pub fn speed_cap(mut self, speed: f64) -> Self {
+        self.engagement.speed_cap = Some(speed);
+        self
+    }
+
     /// Binds the session to a deadman: while it is silent, and once it is dropped, the arm brakes
     /// and holds, and every goal resolves as [`MotionError::Held`]. Its silence has to be 10 ms or
     /// more. See [`Deadman::new`](crate::goal::Deadman::new).

@@ -165,6 +165,7 @@ fn name(guard: Guard) -> &'static str {
         Guard::PlanFailure => "no plan",
         Guard::Reaction => "reaction",
         Guard::Team => "team",
+        Guard::SpeedCap => "speed cap",
         _ => "another guard",
     }
 }

@@ -84,12 +84,6 @@ pub(crate) async fn run(robot: &Robot, task: Task, show: impl FnOnce(Plan)) -> E
             MotionError::Stopped | MotionError::Held(_) | MotionError::Disengaged,
         )) if end.is_cancelled() => Ended::AsAsked,
         Err(Fault::Refused(why)) => Ended::Failed(format!("Not moved: {why}"), None),
-        Err(Fault::Fast(speed)) => {
-            let text = format!(
-                "A point of the arm moved at {speed:.2} m/s, above {SPEED_MAX} m/s: the hold has ended"
-            );
-            Ended::Failed(text, None)
-        }
         Err(Fault::Motion(error)) => {
             let why = error.diagnose().map(|diagnosis| diagnosis.to_string());
             Ended::Failed(error.to_string(), why)
@@ -116,6 +110,7 @@ async fn attempt(robot: &Robot, task: Task, show: impl FnOnce(Plan)) -> Result<(
         .gains(way.gains(&now.tuning))
         .force_cap(now.tuning.force_cap)
         .keep_out(keep_out)
+        .speed_cap(SPEED_MAX)
         .deadman(deadman);
     let arm = tokio::select! {
         biased;
@@ -126,7 +121,6 @@ async fn attempt(robot: &Robot, task: Task, show: impl FnOnce(Plan)) -> Result<(
     let moved = tokio::select! {
         biased;
         () = end.cancelled() => Ok(()),
-        speed = too_fast(robot) => Err(Fault::Fast(speed)),
         tuned = keep_tuned(&arm, way, settings.clone()) => tuned.map_err(Fault::Motion),
         moved = go(&arm, motion, way, &settings) => moved.map_err(Fault::Motion),
     };
@@ -139,20 +133,6 @@ enum Fault {
     /// Before it began.
     Refused(String),
     Motion(MotionError),
-    Fast(f64),
-}
-
-/// Resolves when a joint, the flange or the end effector is faster than is allowed, with its speed,
-/// `[m/s]`.
-async fn too_fast(robot: &Robot) -> f64 {
-    let mut clock = ticks(Duration::from_millis(10));
-    loop {
-        clock.tick().await;
-        let speed = pace::fastest(robot.model(), &robot.state());
-        if speed > SPEED_MAX {
-            return speed;
-        }
-    }
 }
 
 /// Has the session follow changes of speed and tuning, until it ends.

@@ -1,12 +1,10 @@
 //! How fast the arm may go, so that none of its points exceeds a speed.
 
 use franka_async::goal::Budget;
+use franka_async::model::Model;
 use franka_async::model::geometry::{FLANGE, JOINT_ORIGINS};
-use franka_async::model::{Frame, JointVector, Model};
 use franka_async::nalgebra::Vector3;
 use franka_async::state::RobotState;
-
-use crate::frame::end_effector;
 
 /// Half the width of a hand, and more than the radius of any link, `[m]`.
 const BODY: f64 = 0.11;
@@ -41,23 +39,12 @@ pub(crate) fn joints(model: &Model, state: &RobotState, way: [f64; 7], speed: f6
 }
 
 /// The budget for an end effector that goes at `speed`, `[m/s]`, or turns so that what is around it
-/// does. It bounds the end effector only; the rest of the arm is watched by [`fastest`].
+/// does. It bounds the end effector only; the rest of the arm has the session's speed cap.
 pub(crate) fn end_effector_at(model: &Model, speed: f64) -> Budget {
     let mut budget = Budget::of(model.joint_limits());
     budget.translation.velocity = speed;
     budget.rotation.velocity = speed / TURNING_RADIUS;
     budget
-}
-
-/// The speed of the fastest of the arm's joints, its flange and its end effector, `[m/s]`.
-pub(crate) fn fastest(model: &Model, state: &RobotState) -> f64 {
-    let (q, dq) = (JointVector::from(state.q), JointVector::from(state.dq));
-    let tool = end_effector(state);
-    let speed = |frame: &Frame| {
-        let twist = model.zero_jacobian(*frame, &q, &tool) * dq;
-        twist.fixed_rows::<3>(0).norm()
-    };
-    Frame::ALL[..9].iter().map(speed).fold(0.0, f64::max)
 }
 
 /// A way of a joint that counts as this long at least, `[rad]`: velocities are above zero.
@@ -70,7 +57,7 @@ pub(crate) const TURNING_RADIUS: f64 = 0.25;
 mod tests {
     use franka_async::READY;
     use franka_async::model::collision::Shape;
-    use franka_async::model::{EndEffector, RobotKind};
+    use franka_async::model::{EndEffector, Frame, JointVector, RobotKind};
 
     use super::*;
 
@@ -114,14 +101,11 @@ mod tests {
         let model = Model::fr3();
         for (k, q) in postures(model).enumerate() {
             let way: [f64; 7] = (q - READY).into();
-            let mut state = RobotState {
-                q: q.into(),
-                ..RobotState::default()
-            };
+            let state = RobotState::default();
             let speed = 0.01 + 0.24 * (k as f64 / 500.0);
             let budget = joints(model, &state, way, speed);
-            state.dq = core::array::from_fn(|i| budget.joints[i].velocity * way[i].signum());
-            let fastest = fastest(model, &state);
+            let dq = JointVector::from_fn(|i, _| budget.joints[i].velocity * way[i].signum());
+            let fastest = model.fastest_point(&q, &dq, &EndEffector::default());
             assert!(fastest <= speed && fastest > 0.0, "{fastest} above {speed}");
         }
     }

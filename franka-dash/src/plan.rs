@@ -2,6 +2,7 @@
 //! refuses what this refuses.
 
 use franka_async::error::PathError;
+use franka_async::model::JointVector;
 use franka_async::model::collision::Obstacle;
 use franka_async::motion::Preview;
 use franka_async::nalgebra::Vector3;
@@ -10,7 +11,6 @@ use franka_async::{MotionError, Robot};
 use serde::Serialize;
 
 use crate::frame;
-use crate::pace;
 use crate::request::{Motion, SPEED_MAX};
 use crate::way::Way;
 
@@ -145,13 +145,12 @@ fn millimetres(at: Vector3<f64>) -> String {
 
 /// The speed of the fastest point on the way, `[m/s]`.
 fn fastest(robot: &Robot, state: &RobotState, preview: &Preview) -> f64 {
-    let mut state = *state;
+    let tool = frame::end_effector(state);
     let speeds = preview.postures.windows(2).map(|ends| {
         let [(from, q), (to, next)] = [ends[0], ends[1]];
         let time = (to - from).as_secs_f64();
-        state.q = q;
-        state.dq = core::array::from_fn(|i| (next[i] - q[i]) / time);
-        pace::fastest(robot.model(), &state)
+        let [q, next] = [q, next].map(JointVector::from);
+        robot.model().fastest_point(&q, &((next - q) / time), &tool)
     });
     speeds.fold(0.0, f64::max)
 }

@@ -2,13 +2,13 @@
 
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
-use crate::Jacobian;
 use crate::chain::Chain;
 use crate::frame::{EndEffector, Frame};
 use crate::geometry::SHOULDER;
 use crate::inertia::cross;
 use crate::ldl::Ldl;
 use crate::scalar::sqrt;
+use crate::{Jacobian, JointVector};
 
 /// Rotation block and origin of a frame, in base axes and from the shoulder.
 pub(crate) struct Placement {
@@ -92,6 +92,25 @@ pub(crate) fn zero_jacobian(chain: &Chain, joints: usize, point: &Vector3<f64>) 
     jacobian
 }
 
+/// Speed of the fastest of the origins of the joint frames, the flange and the end effector.
+pub(crate) fn fastest_point(chain: &Chain, dq: &JointVector, ee: &EndEffector) -> f64 {
+    let (mut turning, mut moment) = (Vector3::zeros(), Vector3::zeros());
+    let squared_speed = |turning: &Vector3<f64>, moment: &Vector3<f64>, point: &Vector3<f64>| {
+        (cross(turning, point) + moment).norm_squared()
+    };
+    let mut fastest = 0.0_f64;
+    for i in 0..7 {
+        turning += chain.axis[i] * dq[i];
+        moment += chain.moment[i] * dq[i];
+        fastest = squared_speed(&turning, &moment, &chain.origin[i]).max(fastest);
+    }
+    for frame in [Frame::Flange, Frame::EndEffector] {
+        let point = Placement::of(chain, frame, ee).origin;
+        fastest = squared_speed(&turning, &moment, &point).max(fastest);
+    }
+    sqrt(fastest)
+}
+
 /// The same twist in the frame's own axes.
 pub(crate) fn body_jacobian(zero: &Jacobian, rotation: &Matrix3<f64>) -> Jacobian {
     let mut body = *zero;
@@ -129,4 +148,36 @@ pub(crate) fn squared_manipulabilities(jacobian: &Jacobian) -> [f64; 2] {
     }
     let [_, _, position, _, _, pose] = Ldl::leading_minors(&gram);
     [position, pose]
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Isometry3, Translation3};
+
+    use crate::random::Random;
+    use crate::{EndEffector, Frame, JointVector, Model};
+
+    #[test]
+    fn the_fastest_point_is_that_of_the_jacobians() {
+        let mut random = Random::new(72);
+        let model = Model::fr3();
+        let ee = EndEffector {
+            f_t_ee: Isometry3::from(Translation3::new(0.1, -0.2, 0.3)).to_homogeneous(),
+            ..EndEffector::default()
+        };
+        for case in 0..100 {
+            let (q, mut dq) = (random.posture(model), random.posture(model));
+            if case % 2 == 0 {
+                // The elbow is the fastest.
+                dq = JointVector::from([dq[0], dq[1], dq[2], 0.0, 0.0, 0.0, 0.0]);
+            }
+            let speed = |frame: &Frame| {
+                let twist = model.zero_jacobian(*frame, &q, &ee) * dq;
+                twist.fixed_rows::<3>(0).norm()
+            };
+            let fastest = Frame::ALL[..9].iter().map(speed).fold(0.0, f64::max);
+            let got = model.fastest_point(&q, &dq, &ee);
+            assert!((got - fastest).abs() < 1e-12, "{got}, {fastest}");
+        }
+    }
 }

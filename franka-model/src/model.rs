@@ -99,6 +99,12 @@ impl Model {
         (placement.pose(), jacobian)
     }
 
+    /// Speed of the fastest of the centres of the joints, the flange and the end effector, `[m/s]`:
+    /// the origins of the first nine frames of [`Frame::ALL`].
+    pub fn fastest_point(&self, q: &JointVector, dq: &JointVector, ee: &EndEffector) -> f64 {
+        jacobian::fastest_point(&Chain::at(q), dq, ee)
+    }
+
     /// [`zero_jacobian`](Self::zero_jacobian) in the frame's own axes.
     pub fn body_jacobian(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Jacobian {
         let chain = Chain::at(q);

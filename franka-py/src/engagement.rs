@@ -44,6 +44,9 @@ impl Engagement {
             let regions: PyResult<Vec<_>> = regions.try_iter()?.map(|it| region(&it?)).collect();
             engage = engage.keep_out(regions?);
         }
+        if let Some(cap) = keywords.take("speed_cap")? {
+            engage = engage.speed_cap(cap.extract()?);
+        }
         if let Some(chosen) = keywords.take("backend")? {
             engage = engage.backend(backend(&chosen)?);
         }

@@ -129,7 +129,8 @@ impl Robot {
     ///
     /// Options: `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture` as of
     /// `move_to`, for all its goals; `keep_out`, regions (`Plane`, `Box`) that the arm keeps
-    /// out of; `deadman`, a `Deadman`; and `backend`, `torques` or a pair of a controller of
+    /// out of; `speed_cap`, in m/s, the most of any joint, the flange and the end effector;
+    /// `deadman`, a `Deadman`; and `backend`, `torques` or a pair of a controller of
     /// the robot and its setpoints.
     #[pyo3(signature = (**options))]
     fn engage(

@@ -5,6 +5,7 @@ use std::time::Duration;
 use franka_model::collision::Obstacle;
 use franka_model::{READY, Wrench};
 use franka_proto::{CollisionBehavior, Request};
+use franka_rt::lifecycle::Engagement;
 use franka_rt::session::condition::{Axis, Condition, Quantity, contact, elapsed, force};
 use franka_rt::session::{Bindings, Goal, Guard, KeepOut, Lead, OnArrival, Target};
 use franka_tests::lockstep::{Lockstep, Part};
@@ -85,6 +86,27 @@ fn clearance_lead_and_deviation_allocate_and_free_nothing_where_they_bind() {
         lockstep.robot.push_end_effector(pull, 2);
     });
     assert_eq!((calls, bound), (0, [true; 3]));
+}
+
+#[test]
+fn the_speed_cap_allocates_and_frees_nothing_where_it_binds() {
+    let mut lockstep = Lockstep::ready();
+    let engaged = lockstep.engage_with(Engagement {
+        speed_cap: Some(0.1),
+        ..Engagement::default()
+    });
+    // Slowed on the way to a pose, and given up on the way over joints.
+    let below = Translation3::new(0.0, 0.0, -0.1) * lockstep.arm_pose();
+    let mut q: [f64; 7] = READY.into();
+    q[0] += 0.8;
+    let guards = [Guard::SpeedCap];
+    for target in [Target::Pose(below), Target::Joints(q)] {
+        let mut bound = [false];
+        let goal = lockstep.within(engaged, target, OnArrival::Hold);
+        goal.expect("in reach");
+        let calls = count(&mut lockstep, 3000, &guards, &mut bound, |_| {});
+        assert_eq!((calls, bound), (0, [true]));
+    }
 }
 
 /// As long as a condition may be, with every kind of operand.

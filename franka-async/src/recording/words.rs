@@ -126,6 +126,7 @@ fn guard(lapse: Lapse) -> Option<Guard> {
         Lapse::Displaced => Some(Guard::Deviation),
         Lapse::Blocked => Some(Guard::Clearance),
         Lapse::Team(_) => Some(Guard::Team),
+        Lapse::TooFast => Some(Guard::SpeedCap),
         _ => None,
     }
 }

@@ -93,6 +93,9 @@ class EngageOptions(SessionOptions, total=False):
     keep_out: Iterable[Plane | Box] | None
     """Regions that the arm keeps out of."""
 
+    speed_cap: float | None
+    """The most of any joint, the flange and the end effector, in m/s."""
+
     deadman: Deadman | None
     """While it is silent, and once it is gone, the arm brakes and holds."""
 

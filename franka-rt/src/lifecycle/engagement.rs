@@ -7,7 +7,7 @@ use super::goal_progress::Goals;
 use super::{Lifecycle, LifecyclePhase, MotionError};
 use crate::driver::Observer;
 use crate::law::Gains;
-use crate::session::check::{check_keep_out, check_silence};
+use crate::session::check::{check_keep_out, check_silence, check_speed_cap};
 use crate::session::{
     Backend, Budget, Chunk, DeadmanMonitor, Deviation, ForceCap, Goal, GoalError, GoalId, Leash,
     OnArrival, Target,
@@ -24,6 +24,9 @@ pub struct Engagement {
     /// What the arm keeps out of, in the place of the regions of [`Lifecycle::keep_out_of`]; up to
     /// [`KEEP_OUT_MAX`](crate::session::KEEP_OUT_MAX), base frame.
     pub keep_out: Option<Vec<Obstacle>>,
+    /// The greatest speed of any joint, the flange and the end effector, `[m/s]`: see
+    /// [`Guard::SpeedCap`](crate::session::Guard::SpeedCap).
+    pub speed_cap: Option<f64>,
     /// What turns setpoints into torques.
     pub backend: Backend,
     /// The observer of its cycles.
@@ -40,6 +43,9 @@ impl Engagement {
         }
         if let Some(regions) = &self.keep_out {
             check_keep_out(regions)?;
+        }
+        if let Some(cap) = self.speed_cap {
+            check_speed_cap(cap)?;
         }
         Ok(())
     }

@@ -290,6 +290,9 @@ impl Lifecycle {
                 // Checked where the session was asked for.
                 session = session.out_of(check_keep_out(&regions).unwrap_or(self.keep_out));
             }
+            if let Some(cap) = engagement.speed_cap {
+                session = session.no_faster_than(cap);
+            }
             if let Some(deadman) = engagement.deadman {
                 session = session.bound_to(deadman);
             }

@@ -195,6 +195,7 @@ impl Backend {
             | Guard::JointVelocity
             | Guard::PositionEnvelope
             | Guard::Clearance
+            | Guard::SpeedCap
             | Guard::Lead
             | Guard::Watchdog
             | Guard::Deadman

@@ -10,6 +10,7 @@ use franka_proto::{RobotState, Version};
 
 use crate::law::{GainError, Law};
 use crate::session::condition::ConditionError;
+use crate::session::guard::speed_cap;
 use crate::session::{
     Backend, Budget, Chunk, ForceCap, Goal, KeepOut, Leash, OnArrival, Settling, Target, Watchdog,
     approach,
@@ -328,6 +329,21 @@ pub(crate) fn check_keep_out(regions: &[Obstacle]) -> Result<KeepOut, GoalError>
         *slot = Some(*region);
     }
     Ok(checked)
+}
+
+/// Checks a speed cap, `[m/s]`.
+pub(crate) fn check_speed_cap(got: f64) -> Result<(), GoalError> {
+    let (least, most) = (speed_cap::LEAST, speed_cap::MOST);
+    if (least..=most).contains(&got) {
+        return Ok(());
+    }
+    Err(GoalError::Number {
+        what: "speed cap",
+        got,
+        unit: "m/s",
+        least,
+        most,
+    })
 }
 
 /// Checks the silence that a watchdog or a deadman bears.

@@ -179,7 +179,7 @@ impl Course {
         &mut self,
         model: &Model,
         ee: &EndEffector,
-        posture: &Posture,
+        (posture, speed_cap): (&Posture, Option<f64>),
         reference: &Reference,
         (arm, leash): (&Measured, &Leash),
         now: u64,
@@ -194,12 +194,19 @@ impl Course {
                     ..CourseStep::free(reference)
                 }
             }
-            Self::Chunk(chunk) => chunk.step(model, ee, posture, reference, now),
+            Self::Chunk(chunk) => chunk.step(model, ee, (posture, speed_cap), reference, now),
             Self::Pose(generator, drift) => {
                 let next = generator.step();
                 let budget = generator.budget();
-                let (reference, bounds) =
-                    kinematics::follow(model, ee, posture, drift, reference, &next, budget);
+                let (reference, bounds) = kinematics::follow(
+                    model,
+                    ee,
+                    (posture, speed_cap),
+                    drift,
+                    reference,
+                    &next,
+                    budget,
+                );
                 let tethered = if bounds.any() {
                     let reached = rigid(&model.pose(Frame::EndEffector, &reference.q, ee));
                     leash::tether(generator, &reached)

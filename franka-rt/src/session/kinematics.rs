@@ -6,6 +6,7 @@ use franka_model::{EndEffector, Frame, Jacobian, JointVector, Model, Twist, rota
 use nalgebra::Matrix6;
 
 use crate::session::guard::joint_bounds::{BoundsReached, Cause, OpenVelocities};
+use crate::session::guard::speed_cap;
 use crate::session::pose::MovingPose;
 use crate::session::reference::Reference;
 use crate::session::{Budget, rigid};
@@ -178,7 +179,7 @@ impl Drift {
 pub(super) fn follow(
     model: &Model,
     ee: &EndEffector,
-    posture: &Posture,
+    (posture, speed_cap): (&Posture, Option<f64>),
     drift: &mut Drift,
     reference: &Reference,
     pose: &MovingPose,
@@ -204,8 +205,13 @@ pub(super) fn follow(
     );
     let solution =
         DifferentialIk::smooth().solve(&jacobian, &twist, &free, &bounds, [Side::Free; 7]);
+    let slower = speed_cap
+        .and_then(|cap| speed_cap::share(cap, model, ee, &reference.q, &solution.velocity));
 
-    let mut held = BoundsReached::default();
+    let mut held = BoundsReached {
+        speed: slower.is_some(),
+        ..BoundsReached::default()
+    };
     for (side, open) in solution.active.into_iter().zip(&open) {
         let cause = match side {
             Side::Free => continue,
@@ -218,7 +224,10 @@ pub(super) fn follow(
             Cause::Acceleration => held.acceleration = true,
         }
     }
-    let dq = solution.velocity;
+    let dq = match slower {
+        Some(share) => bounds.clamp(&(solution.velocity * share)),
+        None => solution.velocity,
+    };
     let next = Reference {
         // The same rule as in a plan of the joints, which may have come before: the robot
         // differences positions, and would see a change of rule as half of the acceleration in one
@@ -265,7 +274,7 @@ mod tests {
             let (next, held) = follow(
                 model,
                 &ee,
-                &Posture::kept(READY),
+                (&Posture::kept(READY), None),
                 &mut drift,
                 &moving,
                 &pose,

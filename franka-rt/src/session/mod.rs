@@ -113,6 +113,7 @@ pub struct TargetSession {
     /// Where chunks come from.
     chunks: Option<ChunkReader>,
     keep_out: KeepOut,
+    speed_cap: Option<f64>,
     /// What follows a goal that is held and has to be given up.
     afterwards: OnArrival,
     /// Whether goals may be followed, as of the newest state.
@@ -137,6 +138,7 @@ impl TargetSession {
             version,
             chunks: None,
             keep_out: KeepOut::default(),
+            speed_cap: None,
             afterwards: OnArrival::ReportAndFinish,
             gate: Gate::Closed,
             known: Learned::default(),
@@ -172,6 +174,13 @@ impl TargetSession {
     #[must_use]
     pub fn out_of(mut self, regions: KeepOut) -> Self {
         self.keep_out = regions;
+        self
+    }
+
+    /// Keeps every point of the arm to this speed, `[m/s]`; by default it has none of its own.
+    #[must_use]
+    pub fn no_faster_than(mut self, speed_cap: f64) -> Self {
+        self.speed_cap = Some(speed_cap);
         self
     }
 
@@ -286,7 +295,7 @@ impl TargetSession {
                 self.afterwards,
                 state,
             )
-            .map(|active| active.knowing(self.known));
+            .map(|active| active.knowing(self.known).no_faster_than(self.speed_cap));
         }
         self.prepare_for(state.message_id);
         let Some(active) = &mut self.active else {

@@ -229,7 +229,7 @@ impl Route {
         &mut self,
         model: &Model,
         ee: &EndEffector,
-        posture: &Posture,
+        posture: (&Posture, Option<f64>),
         reference: &Reference,
         arm: &Measured,
         aim: &Aim,

@@ -73,6 +73,8 @@ pub enum Lapse {
     Blocked,
     /// The team that it is a member of has stopped.
     Team(TeamStop),
+    /// The arm was faster than the speed cap of its session.
+    TooFast,
 }
 
 impl Lapse {
@@ -80,7 +82,7 @@ impl Lapse {
     pub(super) fn is_final(self) -> bool {
         match self {
             Self::Silent { .. } => false,
-            Self::Deadman | Self::Displaced | Self::Blocked | Self::Team(_) => true,
+            Self::Deadman | Self::Displaced | Self::Blocked | Self::Team(_) | Self::TooFast => true,
         }
     }
 }
@@ -94,6 +96,7 @@ impl Lapse {
             Self::Displaced => "lapse-displaced",
             Self::Blocked => "lapse-blocked",
             Self::Team(_) => "lapse-team",
+            Self::TooFast => "lapse-too-fast",
         }
     }
 }
@@ -109,6 +112,7 @@ impl core::fmt::Display for Lapse {
                 "the way leads too near to the arm itself or to a region to keep out of"
             ),
             Self::Team(stop) => stop.fmt(f),
+            Self::TooFast => write!(f, "the arm moved faster than its speed cap"),
         }
     }
 }

@@ -6,6 +6,7 @@
 //! * `chunks`: the end of chunks.
 //! * `controllers`: every controller of the robot with every kind of setpoint, on arms that stick.
 //! * `corners`: orders that meet a cancelled goal, and sessions without their deadman.
+//! * `speed_cap`: the arm no faster than its cap.
 //! * `waiting`: sessions that are requested while the previous motion ends.
 
 mod backends;
@@ -14,6 +15,7 @@ mod controllers;
 mod corners;
 mod lapses;
 mod options;
+mod speed_cap;
 mod waiting;
 
 use std::time::Duration;

@@ -161,7 +161,7 @@ impl ChunkCourse {
         &mut self,
         model: &Model,
         ee: &EndEffector,
-        posture: &Posture,
+        (posture, speed_cap): (&Posture, Option<f64>),
         reference: &Reference,
         now: u64,
     ) -> CourseStep {
@@ -189,8 +189,15 @@ impl ChunkCourse {
                 let there = player.at(now);
                 *state = follow_pose(translation, rotation, state, &there);
                 let next = state.moving();
-                let (reference, bounds) =
-                    kinematics::follow(model, ee, posture, drift, reference, &next, &self.budget);
+                let (reference, bounds) = kinematics::follow(
+                    model,
+                    ee,
+                    (posture, speed_cap),
+                    drift,
+                    reference,
+                    &next,
+                    &self.budget,
+                );
                 let mut held = false;
                 if bounds.any() {
                     let reached = rigid(&model.pose(Frame::EndEffector, &reference.q, ee));

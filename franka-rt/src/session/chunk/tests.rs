@@ -76,7 +76,7 @@ impl Arm {
             let step = course.step(
                 self.model,
                 &ee,
-                &Posture::kept(READY),
+                (&Posture::kept(READY), None),
                 &self.reference,
                 self.now,
             );

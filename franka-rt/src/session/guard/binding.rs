@@ -45,6 +45,9 @@ pub enum Guard {
     /// A member of the team has a fault, or the team was stopped: the arm comes to rest, or rests,
     /// for that reason.
     Team,
+    /// On the way to a pose a point of the arm came to the session's speed cap and the joints were
+    /// slowed; or the arm was faster, and its goal given up for that.
+    SpeedCap,
 }
 
 /// A set of guards.
@@ -53,7 +56,7 @@ pub struct Bindings(u32);
 
 impl Guard {
     /// All guards.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Leash,
         Self::InverseKinematics,
         Self::TorqueClamp,
@@ -71,6 +74,7 @@ impl Guard {
         Self::PlanFailure,
         Self::Reaction,
         Self::Team,
+        Self::SpeedCap,
     ];
 }
 

@@ -38,6 +38,8 @@ pub(crate) struct BoundsReached {
     pub(crate) position: bool,
     /// Their acceleration or jerk.
     pub(crate) acceleration: bool,
+    /// The speed of a point of the arm.
+    pub(crate) speed: bool,
 }
 
 impl BoundsReached {

@@ -7,6 +7,7 @@
 //! | lead | `lead` |
 //! | clearance | `clearance` |
 //! | bounds of joints that follow a pose: velocity, position, acceleration | `joint_bounds` |
+//! | speed cap | `speed_cap` |
 //! | force cap | `force_cap` |
 //! | velocity barrier | `velocity_barrier` |
 //! | torque clamp | `torque_clamp` |
@@ -26,6 +27,7 @@ pub(super) mod force_cap;
 pub(super) mod joint_bounds;
 pub(super) mod lead;
 pub(super) mod leash;
+pub(super) mod speed_cap;
 pub(super) mod torque_clamp;
 pub(super) mod torque_rate;
 pub(super) mod velocity_barrier;

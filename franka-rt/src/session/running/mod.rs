@@ -90,6 +90,9 @@ pub(super) struct RunningSession {
     waits: bool,
     /// Whether the arm is held back from the reference of an object that is carried.
     lags: bool,
+    /// Greatest speed of any point of the arm, `[m/s]`, and whether the arm was faster.
+    speed_cap: Option<f64>,
+    too_fast: bool,
 }
 
 /// How the goal stands.
@@ -212,6 +215,8 @@ impl RunningSession {
             grasp: None,
             waits: false,
             lags: false,
+            speed_cap: None,
+            too_fast: false,
         };
         this.take_hold();
         this.set_out();
@@ -233,6 +238,12 @@ impl RunningSession {
         if let Drive::Torques(effort) = &mut self.drive {
             effort.know(known);
         }
+        self
+    }
+
+    /// Keeps every point of the arm to a speed, `[m/s]`.
+    pub(super) fn no_faster_than(mut self, speed_cap: Option<f64>) -> Self {
+        self.speed_cap = speed_cap;
         self
     }
 
@@ -262,6 +273,7 @@ impl RunningSession {
         let mut bindings = Bindings::default();
         bindings.set(Guard::PlanFailure, moved.is_err());
         bindings.set(Guard::Deviation, self.watch_deviation(model, leashed));
+        bindings.set(Guard::SpeedCap, self.watch_speed());
         self.react();
         if let Some(goal) = newer {
             self.take_up(goal, now);
@@ -309,7 +321,7 @@ impl RunningSession {
         let step = self.route.step(
             model,
             &self.ee,
-            &posture,
+            (&posture, self.speed_cap),
             &self.reference,
             &self.arm,
             aim,
@@ -320,6 +332,7 @@ impl RunningSession {
         bindings.set(Guard::InverseKinematics, bounds.acceleration);
         bindings.set(Guard::JointVelocity, bounds.velocity);
         bindings.set(Guard::PositionEnvelope, bounds.position);
+        bindings.set(Guard::SpeedCap, bounds.speed);
         let failed = self.route.take_failure();
         bindings.set(Guard::PlanFailure, step.failed || failed);
         step
@@ -351,6 +364,8 @@ impl RunningSession {
             object: hand * self.grasp.unwrap_or_default(),
             jacobian: dynamics.jacobian,
         };
+        let fastest = || model.fastest_point(&q, &dq, &self.hand);
+        self.too_fast = self.speed_cap.is_some_and(|cap| fastest() > cap);
         let Next { step, mut bindings } = self.next.take().unwrap_or_default();
         let anchored = self.reanchor(model, state);
         let step = match step {

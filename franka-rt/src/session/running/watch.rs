@@ -1,5 +1,5 @@
-//! The guards that draw a goal's target nearer or give the goal up: lead, deviation, watchdog and
-//! deadman.
+//! The guards that draw a goal's target nearer or give the goal up: lead, deviation, speed cap,
+//! watchdog and deadman.
 
 use core::time::Duration;
 
@@ -109,6 +109,15 @@ impl RunningSession {
             self.give_up(Lapse::Displaced);
         }
         exceeded
+    }
+
+    /// Gives up a goal on whose way the arm was faster than the cap. Returns whether it was.
+    pub(super) fn watch_speed(&mut self) -> bool {
+        let over = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_));
+        if self.too_fast && !over && self.heading() != Target::Rest {
+            self.give_up(Lapse::TooFast);
+        }
+        self.too_fast
     }
 
     /// Gives the goal up if the team has just stopped and the arm goes anywhere. One that was given
