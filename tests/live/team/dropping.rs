@@ -104,7 +104,8 @@ async fn the_future_of_an_object_may_be_dropped_at_every_poll() {
             assert!(robot.state().errors.is_empty());
         }
     }
-    assert!((3..60).contains(&dropped), "dropped {dropped} times");
+    // Before the first poll and after it; on a busy machine it may have arrived by the second.
+    assert!((2..60).contains(&dropped), "dropped {dropped} times");
     for outcome in grasp.move_to(object()).await {
         outcome.expect("it arrives");
     }
