@@ -46,10 +46,10 @@ impl Engage {
         self
     }
 
-    /// Keeps all joints, the flange and the end effector to this speed, `[m/s]`, 0.05 to 3; by
-    /// default there is only what goals ask for. On the way to a pose the reference is slowed to
-    /// 94 % of it. An arm that is faster, because its goal over joints or its chunk is, or because
-    /// something throws it, gives up its goal and is braked, as
+    /// Keeps all joints, the flange and the end effector to this speed, `[m/s]`, 0.1 to 3; by
+    /// default there is only what goals ask for. On the way to a pose the reference is slowed to 94
+    /// % of it, and 0.03 m/s below it at least. An arm that is faster all the same, because its
+    /// goal leads over joints, or because something throws it, gives up its goal and is braked, as
     /// [`Lapse::TooFast`](crate::error::Lapse::TooFast).
     /// [`GoalError::Number`](crate::error::GoalError::Number) refuses other numbers.
     pub fn speed_cap(mut self, speed: f64) -> Self {

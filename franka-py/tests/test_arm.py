@@ -310,12 +310,12 @@ def test_regions_are_kept_out_of(sim: Sim) -> None:
 
 def test_a_session_is_no_faster_than_its_cap(sim: Sim) -> None:
     async def main(robot: Robot) -> None:
-        async with robot.engage(speed_cap=0.1) as arm:
+        async with robot.engage(speed_cap=0.15) as arm:
             await arm.move_by([0.0, 0.0, -0.1], speed=1.0)
             turned = robot.state().q
             turned[0] += 0.4
             with pytest.raises(MotionError, match="faster than its speed cap"):
-                await arm.move_joints(turned, speed=1.0)
+                await arm.move_joints(turned, speed=1.5)
         with pytest.raises(MotionError, match="speed cap"):
             await robot.engage(speed_cap=0.01)
 

@@ -216,7 +216,8 @@ impl Course {
                 CourseStep {
                     reference,
                     bounds,
-                    held: tethered.unwrap_or(true),
+                    // One that is slowed gets on.
+                    held: tethered.unwrap_or(true) && !bounds.speed,
                     leashed: false,
                     failed: tethered.is_err(),
                 }

@@ -203,7 +203,7 @@ impl ChunkCourse {
                     let reached = rigid(&model.pose(Frame::EndEffector, &reference.q, ee));
                     if let Some(pose) = leash::tethered(&state.pose, &reached) {
                         state.pose = pose;
-                        held = true;
+                        held = !bounds.speed;
                     }
                 }
                 self.lag = state.lag(&there);

@@ -342,7 +342,9 @@ fn go(way: Timed<PoseState>, q: JointVector, budget: &Budget, model: &Model) -> 
     let mut farthest = 0.0_f64;
     let mut near = 0;
     for now in 1001..1000 + (4e3 * end) as u64 + 4000 {
-        reference = course.step(model, &ee, (&posture, None), &reference, now).reference;
+        reference = course
+            .step(model, &ee, (&posture, None), &reference, now)
+            .reference;
         // The nearest place of the way, from the last one on.
         while near + 1 < samples.len()
             && off(&reference.q, &samples[near + 1]) <= off(&reference.q, &samples[near])
