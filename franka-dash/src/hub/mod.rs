@@ -1,0 +1,216 @@
+//! What all viewers share: the robot, who may command it, and what happened.
+
+mod effects;
+mod watching;
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use franka_async::model::collision::Obstacle;
+use tokio::sync::{Semaphore, broadcast, watch};
+
+use crate::admission::Admission;
+use crate::authority::{Authority, Lost, Permissions, Refusal, Step, ViewerId};
+use crate::contact::Contact;
+use crate::fingers::Fingers;
+use crate::hold::{Hold, Settings};
+use crate::options::Options;
+use crate::plan::{Plan, Question};
+use crate::recording::Recordings;
+use crate::reply::{Level, News, Status};
+use crate::request::{Request, Tuning};
+use crate::simulated::Simulated;
+use crate::source::Source;
+
+/// What all viewers share.
+pub(crate) struct Hub {
+    pub(crate) source: Source,
+    pub(crate) admission: Admission,
+    pub(crate) permissions: Permissions,
+    pub(crate) news: broadcast::Sender<News>,
+    pub(crate) status: watch::Sender<Status>,
+    /// The number of the hold that goes on, and what its motion does, if that is planned.
+    pub(crate) heading: watch::Sender<Option<(u64, Plan)>>,
+    /// Where something touches the arm.
+    pub(crate) contact: watch::Sender<Option<Contact>>,
+    /// Regions that the arm is kept out of.
+    pub(crate) keep_out: Vec<Obstacle>,
+    /// The names of all robots of the server, if there are several.
+    pub(crate) siblings: Arc<[String]>,
+    /// One permit per viewer.
+    pub(crate) seats: Arc<Semaphore>,
+    pub(crate) simulated: Option<Simulated>,
+    pub(crate) fingers: Option<Fingers>,
+    pub(crate) recordings: Option<Recordings>,
+    command: Mutex<Command>,
+    stopping: AtomicBool,
+    viewers: AtomicU64,
+    start: Instant,
+}
+
+struct Command {
+    authority: Authority,
+    hold: Option<Hold>,
+    settings: watch::Sender<Settings>,
+}
+
+impl Hub {
+    /// Starts the tasks that end with the last handle. Needs a Tokio runtime.
+    pub(crate) fn start(source: Source, options: Options) -> Arc<Self> {
+        let Options {
+            admission,
+            motion,
+            simulated,
+            gripper,
+            recordings,
+            patience,
+            keep_out,
+            siblings,
+        } = options;
+        let connected = source.robot().is_some();
+        let permissions = Permissions {
+            motion: motion && connected,
+            disturbances: simulated.is_some(),
+            gripper: gripper.is_some(),
+            recording: recordings.is_some() && connected,
+            patience: match simulated {
+                Some(_) => patience,
+                None => Duration::ZERO,
+            },
+        };
+        let hub = Arc::new(Self {
+            admission,
+            permissions,
+            news: broadcast::Sender::new(NEWS),
+            status: watch::Sender::default(),
+            heading: watch::Sender::default(),
+            contact: watch::Sender::default(),
+            keep_out,
+            siblings,
+            seats: Arc::new(Semaphore::new(VIEWERS_MAX)),
+            simulated,
+            fingers: gripper.map(Fingers::new),
+            recordings: recordings.map(Recordings::new),
+            command: Mutex::new(Command {
+                authority: Authority::new(permissions),
+                hold: None,
+                settings: watch::Sender::default(),
+            }),
+            stopping: AtomicBool::new(false),
+            viewers: AtomicU64::new(0),
+            start: Instant::now(),
+            source,
+        });
+        watching::begin(&hub);
+        hub
+    }
+
+    /// Time since the start of the server.
+    pub(crate) fn now(&self) -> Duration {
+        self.start.elapsed()
+    }
+
+    pub(crate) fn now_ms(&self) -> u64 {
+        u64::try_from(self.now().as_millis()).unwrap_or(u64::MAX)
+    }
+
+    /// A number that no viewer had before.
+    pub(crate) fn next_viewer(&self) -> ViewerId {
+        self.viewers.fetch_add(1, Ordering::Relaxed) + 1
+    }
+
+    pub(crate) fn tell(&self, level: Level, text: String, detail: Option<String>) {
+        let news = News {
+            server_ms: self.now_ms(),
+            level,
+            text,
+            detail,
+        };
+        // There may be no viewer.
+        let _ = self.news.send(news);
+    }
+
+    /// Does what a viewer asks for, or returns why not; or returns what the viewer is to be told.
+    pub(crate) fn handle(
+        self: &Arc<Self>,
+        viewer: ViewerId,
+        round_trip: Option<Duration>,
+        request: Request,
+    ) -> Result<Option<Question>, Refusal> {
+        let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
+        let now = self.now();
+        let Step {
+            ended,
+            effect,
+            refusal,
+        } = command.authority.handle(now, viewer, round_trip, request);
+        self.end(&mut command, ended);
+        let question = effect.and_then(|effect| self.perform(&mut command, viewer, effect));
+        self.publish(&command);
+        refusal.map_or(Ok(question), Err)
+    }
+
+    /// A viewer has gone: what it held ends.
+    pub(crate) fn gone(&self, viewer: ViewerId) {
+        let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
+        let ended = command.authority.gone(viewer);
+        self.end(&mut command, ended);
+        self.publish(&command);
+    }
+
+    fn tick(&self) {
+        let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
+        let ended = command.authority.tick(self.now());
+        self.end(&mut command, ended);
+        self.publish(&command);
+    }
+
+    /// The motion of this hold has ended by itself.
+    fn motion_ended(&self, number: u64) {
+        let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
+        let holding = command.authority.status().holding;
+        command.authority.ended(number);
+        if holding && !command.authority.status().holding {
+            command.hold = None;
+        }
+        self.publish(&command);
+    }
+
+    /// Brakes, where a hold has ended.
+    fn end(&self, command: &mut Command, ended: Option<Lost>) {
+        let Some(lost) = ended else { return };
+        command.hold = None;
+        if !matches!(lost, Lost::LetGo) {
+            self.tell(Level::Warning, format!("Hold ended: {lost}"), None);
+        }
+    }
+
+    /// Shows all viewers what has changed. What a commander has set ends with its lease.
+    fn publish(&self, command: &Command) {
+        let authority = command.authority.status();
+        if authority.commander != self.status.borrow().authority.commander {
+            let settings = &command.settings;
+            settings.send_modify(|settings| settings.tuning = Tuning::default());
+        }
+        if let Some(fingers) = &self.fingers {
+            fingers.end_unless(authority.commander);
+        }
+        let newest = Status {
+            authority,
+            tuning: command.settings.borrow().tuning,
+            simulation: self.simulated.as_ref().map(Simulated::setting),
+        };
+        self.status.send_if_modified(|status| {
+            let changed = *status != newest;
+            *status = newest;
+            changed
+        });
+    }
+}
+
+/// Events that a viewer may lag behind before it misses some.
+const NEWS: usize = 64;
+
+/// Viewers at once.
+const VIEWERS_MAX: usize = 256;
