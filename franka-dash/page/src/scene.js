@@ -203,7 +203,7 @@ export class Scene extends EventTarget {
 
   /** What is drawn, for tests. */
   state() {
-    const { measured, goal } = this.#arms;
+    const { measured, reference, goal } = this.#arms;
     const at = (object) => object.getWorldPosition(new THREE.Vector3());
     return {
       endEffector: measured ? at(measured.links[9]).toArray() : null,
@@ -212,6 +212,7 @@ export class Scene extends EventTarget {
       contactShown: this.#contact.group.visible,
       meshes: measured?.hasMeshes ?? false,
       width: measured?.width ?? null,
+      reference: reference?.group.visible ? at(reference.links[9]).toArray() : null,
       ghost: goal?.group.visible ? at(goal.links[9]).toArray() : null,
       ahead: this.#ahead.count,
       behind: this.#behind.count,

@@ -38,6 +38,8 @@ export function simulator(connection, scene, strip) {
     const hit = strip.commands && event.button === 0 ? scene.pick(event) : null;
     if (!hit || document.getElementById("simulator-panel").hidden) return;
     event.stopImmediatePropagation();
+    // The focus stays: a button held by Enter is still held.
+    event.preventDefault();
     scene.controls.enabled = false;
     pointer = event;
     timer = setInterval(() => {

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, ensure};
 use franka_async::state::RobotMode;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::driver::{Browser, down, move_to, point, up};
 use crate::panels;
@@ -16,7 +16,7 @@ type Check = fn(&Browser, &Served) -> anyhow::Result<()>;
 
 /// All checks, one after the other.
 pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    let checks: [(&str, Check); 18] = [
+    let checks: [(&str, Check); 19] = [
         ("load", load),
         ("shows the robot", shows_the_robot),
         ("looks", looks),
@@ -31,6 +31,7 @@ pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
         ("lose the hold", lose_the_hold),
         ("keyboard", keyboard),
         ("push", push),
+        ("bend", bend),
         ("tune", panels::tune),
         ("network cut", panels::cut),
         ("reflex and recovery", reflex_and_recovery),
@@ -290,10 +291,7 @@ fn keyboard(page: &Browser, served: &Served) -> anyhow::Result<()> {
 /// Drags link 6: the robot feels it, and the page draws the force.
 fn push(page: &Browser, served: &Served) -> anyhow::Result<()> {
     take(page)?;
-    page.run("scrollTo(0, 0)")?;
-    let (x, y) = point(&page.state()?["links"][5])?;
-    page.pointer(&[move_to((x, y)), down()])?;
-    page.pointer(&[move_to((x, y - 150.0))])?;
+    drag(page, (0.0, -150.0))?;
     wait("the push", || {
         let force = served.robot.state().O_F_ext_hat_K;
         let newtons = force[..3].iter().map(|f| f * f).sum::<f64>().sqrt();
@@ -303,6 +301,53 @@ fn push(page: &Browser, served: &Served) -> anyhow::Result<()> {
     wait("the end of the push", || {
         Ok(page.state()?["forceShown"] == false)
     })
+}
+
+/// Presses on link 6 of the drawn arm, and drags it by so many pixels.
+pub(crate) fn drag(page: &Browser, (right, down_by): (f64, f64)) -> anyhow::Result<()> {
+    page.run("scrollTo(0, 0)")?;
+    let (x, y) = point(&page.state()?["links"][5])?;
+    page.pointer(&[move_to((x, y)), down()])?;
+    page.pointer(&[move_to((x + right, y + down_by))])
+}
+
+/// Begins to hold the arm where it is, by the keyboard: a pointer can push it meanwhile.
+pub(crate) fn hold_here(page: &Browser) -> anyhow::Result<()> {
+    let button = "document.querySelector(\"[data-jog='Hold here']\")";
+    page.run(&format!("{button}.focus({{preventScroll: true}})"))?;
+    page.key("keyDown", ENTER)
+}
+
+/// Pushes the arm while it is held, by less than its collision thresholds: it gives way, and the
+/// reference is drawn where the driver has it.
+fn bend(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    let apart = |a: &Value, b: &Value| {
+        let off = |i: usize| Some((a[i].as_f64()? - b[i].as_f64()?).powi(2));
+        (0..3).map(off).sum::<Option<f64>>().map(f64::sqrt)
+    };
+    let (mut bent, begin) = (false, Instant::now());
+    while !bent {
+        ensure!(begin.elapsed() < LONGEST, "each hold was cut short");
+        take(page)?;
+        hold_here(page)?;
+        drag(page, (0.0, -40.0))?;
+        let mut state = Value::Null;
+        let waited = wait("the arm to bend", || {
+            state = page.state()?;
+            let reference = served.robot.reference();
+            bent = reference.is_some_and(|it| {
+                let there = json!(it.pose.translation.vector.as_slice());
+                let drawn = &state["reference"];
+                apart(drawn, &there).is_some_and(|off| off < 1e-3)
+                    && apart(drawn, &state["endEffector"]).is_some_and(|off| off > 0.005)
+            });
+            Ok(bent || state["holding"] != true)
+        });
+        waited.with_context(|| format!("{:?}, {state}", served.robot.reference()))?;
+        page.pointer(&[up()])?;
+        page.key("keyUp", ENTER)?;
+    }
+    served.check_rest()
 }
 
 fn reflex_and_recovery(page: &Browser, served: &Served) -> anyhow::Result<()> {

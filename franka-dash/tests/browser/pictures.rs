@@ -4,8 +4,8 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::checks::{load, shows_the_robot, take};
-use crate::driver::{Browser, down, move_to, point, up};
+use crate::checks::{drag, load, shows_the_robot, take};
+use crate::driver::{Browser, up};
 use crate::served::{Served, wait};
 
 /// Takes pictures of the page with a hand that is pushed, `NAME-SIZE-SCHEME.png` each, and one of a
@@ -29,9 +29,7 @@ pub(crate) fn run(
                 "Emulation.setEmulatedMedia",
                 json!({"features": features}),
             )?;
-            let (x, y) = point(&page.state()?["links"][5])?;
-            page.pointer(&[move_to((x, y)), down()])?;
-            page.pointer(&[move_to((x + 45.0, y + 65.0))])?;
+            drag(page, (45.0, 65.0))?;
             wait("the force", || Ok(page.state()?["forceShown"] == true))?;
             page.picture(&folder.join(format!("{name}-{size}-{scheme}.png")))?;
             page.pointer(&[up()])?;
