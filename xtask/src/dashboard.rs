@@ -89,8 +89,23 @@ fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Runs the test of the page in a browser.
+/// Runs the tests of the page in a browser; with `FRANKA_THOROUGH=1` its film is recorded, too.
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let film = workspace.target().join("dashboard").join("film.png");
+    match env::var_os("FRANKA_THOROUGH") {
+        Some(_) => test(workspace, "", &film),
+        None => test(workspace, "the_page", &film),
+    }
+}
+
+/// Records the page's film, which the README shows.
+pub(crate) fn film(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let file = workspace.root().join("docs/src/dashboard.png");
+    test(workspace, "the_film", &file)
+}
+
+/// Runs those tests of the page whose names have `which`; the film goes to a file.
+fn test(workspace: &Workspace, which: &str, film: &Path) -> anyhow::Result<Outcome> {
     let browsers = ["chromium", "chromium-browser", "google-chrome"];
     let find_both = || find(&["chromedriver"]).zip(find(&browsers));
     let found = find_both().or_else(|| {
@@ -105,10 +120,11 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     // With the features of the step that runs all tests: what it has built is used again.
     test.args(["test", "--workspace", "--test=browser", "--features"]);
     test.arg(mujoco::features(workspace)?).arg("--");
-    test.args(["--ignored", "--nocapture"]);
+    test.args([which, "--ignored", "--nocapture"]);
     test.env("FRANKA_WEBDRIVER", driver);
     test.env("FRANKA_BROWSER", browser);
     test.env("FRANKA_PICTURES", workspace.target().join("dashboard"));
+    test.env("FRANKA_FILM", film);
     workspace.run(&mut test)?;
     Ok(Outcome::Passed)
 }

@@ -181,7 +181,8 @@ enum Task {
         #[arg(long, conflicts_with = "port")]
         build_only: bool,
     },
-    /// Draw the pictures of the book anew, from this code and simulated motions.
+    /// Draw the pictures of the book and the README anew, from this code and simulated motions; the
+    /// README's is a film of the dashboard, which takes a browser.
     Pictures,
     /// Fetch the native library that the simulator's feature `mujoco` links to.
     Mujoco,
@@ -302,7 +303,11 @@ fn run(task: Task) -> anyhow::Result<()> {
             dist::run(&workspace, &only, dist::Depth { twice, trial })
         }
         Task::Book { port, build_only } => book::serve(&workspace, (!build_only).then_some(port)),
-        Task::Pictures => workspace.run(&mut workspace.cargo_release_binary("pictures")),
+        Task::Pictures => {
+            workspace.run(&mut workspace.cargo_release_binary("pictures"))?;
+            println!("{:?}", dashboard::film(&workspace)?);
+            Ok(())
+        }
         Task::Mujoco => mujoco::provide(&workspace),
         Task::ReleaseCheck { verify, last } => {
             let outcome = release::check(&workspace, release::Depth { verify, last })?;

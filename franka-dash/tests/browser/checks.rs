@@ -375,4 +375,4 @@ const HANGS: u128 = PATIENCE.as_millis() + 500;
 const LONGEST: Duration = Duration::from_secs(60);
 
 /// The key, as WebDriver writes it.
-const ENTER: &str = "\u{e007}";
+pub(crate) const ENTER: &str = "\u{e007}";

@@ -129,12 +129,16 @@ impl Browser {
             .map(drop)
     }
 
-    pub(crate) fn picture(&self, path: &Path) -> anyhow::Result<()> {
+    /// What the window shows, as a PNG.
+    pub(crate) fn shot(&self) -> anyhow::Result<Vec<u8>> {
         let url = format!("{}/screenshot", self.session);
         let answer: Value = ureq::get(&url).call()?.body_mut().read_json()?;
         let encoded = answer["value"].as_str().context("a picture")?;
-        std::fs::write(path, BASE64_STANDARD.decode(encoded)?)?;
-        Ok(())
+        Ok(BASE64_STANDARD.decode(encoded)?)
+    }
+
+    pub(crate) fn picture(&self, path: &Path) -> anyhow::Result<()> {
+        Ok(std::fs::write(path, self.shot()?)?)
     }
 
     /// Fails if the page has logged an error.

@@ -1,15 +1,17 @@
 //! The page in a real browser, before simulated robots: what it shows is what the robot is, what a
 //! person does with it has its effect, and a hold that is lost in any way has the arm rest.
 
+mod animation;
 mod checks;
 mod driver;
+mod film;
 mod panels;
 mod pictures;
 mod served;
 mod several;
 mod targets;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 
@@ -19,7 +21,6 @@ use served::Served;
 #[test]
 #[ignore = "needs a browser: cargo xtask test --only dashboard"]
 fn the_page_shows_and_moves_simulated_robots() -> anyhow::Result<()> {
-    let variable = |name: &str| std::env::var(name).with_context(|| name.to_owned());
     let (driver, browser) = (variable("FRANKA_WEBDRIVER")?, variable("FRANKA_BROWSER")?);
     let folder = PathBuf::from(variable("FRANKA_PICTURES")?);
     std::fs::create_dir_all(&folder)?;
@@ -52,4 +53,21 @@ fn the_page_shows_and_moves_simulated_robots() -> anyhow::Result<()> {
     page.check_console()?;
     println!("pictures: {}", folder.display());
     Ok(())
+}
+
+#[test]
+#[ignore = "needs a browser: cargo xtask pictures"]
+fn the_film_of_the_readme_is_recorded() -> anyhow::Result<()> {
+    let (driver, browser) = (variable("FRANKA_WEBDRIVER")?, variable("FRANKA_BROWSER")?);
+    let driver = Driver::start(&driver)?;
+    // In its own time, slowly: a picture of the browser takes a while without a graphics card.
+    let sim = franka_sim::Sim::fr3().virtual_time(film::PATIENCE);
+    let fr3 = Served::new(sim, "film")?;
+    let page = Browser::open(&driver, &browser, (1440, 900))?;
+    film::record(&page, &fr3, Path::new(&variable("FRANKA_FILM")?))?;
+    page.check_console()
+}
+
+fn variable(name: &str) -> anyhow::Result<String> {
+    std::env::var(name).with_context(|| name.to_owned())
 }

@@ -41,7 +41,18 @@ pub(crate) fn run(
 
 /// Gives the page a size, pixels.
 pub(crate) fn resize(page: &Browser, width: u32, height: u32) -> anyhow::Result<()> {
-    let screen = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": false});
+    resize_scaled(page, width, height, 1.0)
+}
+
+/// [`resize`], with so many pixels of a picture to each of the page.
+pub(crate) fn resize_scaled(
+    page: &Browser,
+    width: u32,
+    height: u32,
+    scale: f64,
+) -> anyhow::Result<()> {
+    let screen =
+        json!({"width": width, "height": height, "deviceScaleFactor": scale, "mobile": false});
     tell(page, "Emulation.setDeviceMetricsOverride", screen)?;
     wait("the new size", || {
         Ok(page.run("return [innerWidth, innerHeight]")? == json!([width, height]))

@@ -23,8 +23,8 @@ pub(crate) struct Served {
     pub(crate) gripper: Gripper,
     /// Where recordings go.
     pub(crate) folder: PathBuf,
+    pub(crate) running: Arc<Running>,
     runtime: Runtime,
-    _running: Arc<Running>,
 }
 
 impl Served {
@@ -56,8 +56,8 @@ impl Served {
             robot,
             gripper,
             folder,
+            running,
             runtime,
-            _running: running,
         })
     }
 

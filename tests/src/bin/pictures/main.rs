@@ -1,4 +1,4 @@
-//! Draws the pictures of the book and of the README that show no measured robot.
+//! Draws the pictures of the book that show no measured robot.
 //!
 //! `cargo run --release -p franka-tests --bin pictures [DIRECTORY]`
 //!
@@ -8,13 +8,11 @@
 //! | [`guards`] | what a goal passes on its way to torques |
 //! | [`arm`] | the arm, and the frames of its links |
 //! | [`step`] | a target that steps, and the command that follows it |
-//! | [`moving`] | the arm as it follows a target that jumps, animated |
 
 mod arm;
 mod canvas;
 mod datagram;
 mod guards;
-mod moving;
 mod step;
 mod view;
 
@@ -38,12 +36,11 @@ fn main() -> anyhow::Result<()> {
 /// A picture's file, and what draws it.
 type Picture = (&'static str, fn() -> String);
 
-const PICTURES: [Picture; 5] = [
+const PICTURES: [Picture; 4] = [
     ("datagram.svg", datagram::draw),
     ("guards.svg", guards::draw),
     ("arm.svg", arm::draw),
     ("step.svg", step::draw),
-    ("moving.svg", moving::draw),
 ];
 
 #[cfg(test)]
