@@ -1,4 +1,4 @@
-//! The picture of the README: a target is placed, the arm goes there, and is pushed while it is held.
+//! The film of the README: a target is placed, the arm goes there, and is pushed while it is held.
 
 use std::path::Path;
 use std::time::Duration;
@@ -142,7 +142,7 @@ const LONGEST: usize = 200;
 /// How long the robot waits for a command on a busy machine.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(500);
 
-/// A speed that leaves room below the greatest, a nearer look, and a pointer, which shots do not have.
+/// A speed that leaves room below the greatest, a nearer look, and a pointer: shots have none.
 const PREPARE: &str = "\
     const speed = document.getElementById('speed'); \
     speed.value = 200; \
