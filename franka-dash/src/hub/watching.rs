@@ -1,5 +1,5 @@
-//! What is looked at while the server runs, whoever watches. These tasks end with the last handle of
-//! the hub.
+//! What is looked at while the server runs, whoever watches. These tasks end with the last handle
+//! of the hub.
 
 use std::sync::{Arc, Weak};
 use std::time::Duration;
