@@ -21,6 +21,9 @@ pub(crate) struct Lease {
     _permit: OwnedSemaphorePermit,
 }
 
+/// Greatest speed of any joint and of the hand, `[m/s]`: a person may be near.
+const SPEED_CAP: f64 = 0.25;
+
 type Following = Pin<Box<dyn Future<Output = Result<MotionReport, MotionError>> + Send>>;
 
 impl Lease {
@@ -33,7 +36,8 @@ impl Lease {
     ) -> Result<Self, MotionError> {
         let (deadman, monitor) = Deadman::new(silence);
         // After a lease that has just ended, this waits until the arm rests.
-        let arm = robot.engage(Engage::default().deadman(monitor)).await?;
+        let engage = Engage::default().speed_cap(SPEED_CAP).deadman(monitor);
+        let arm = robot.engage(engage).await?;
         deadman.keep_alive();
         let (targets, following) = follow(&arm);
         Ok(Self {
