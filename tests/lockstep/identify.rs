@@ -8,6 +8,7 @@ use franka_rt::session::{Goal, OnArrival};
 use franka_sim::Config;
 use franka_sim::arm::{Arm, Family};
 use franka_tests::lockstep::Lockstep;
+use franka_tests::thorough;
 use nalgebra::{Translation3, Vector3, Vector6};
 
 /// What the flange carries beside the hand: mass and centre.
@@ -115,7 +116,7 @@ fn agrees(found: &Estimate, truth: f64, deviations: f64) -> bool {
 
 #[test]
 fn realistic_arms_are_found_as_they_are_and_known_ones_lag_less_at_once() {
-    for seed in 0..12 {
+    for seed in 0..if thorough() { 12 } else { 4 } {
         let carries = seed % 4 > 1;
         let (mut lockstep, arm) = realistic(seed, carries);
         let found = identify(&mut lockstep, |_| {}).expect("nothing disturbs it");
@@ -146,7 +147,7 @@ fn realistic_arms_are_found_as_they_are_and_known_ones_lag_less_at_once() {
 #[test]
 fn bad_arms_are_found_roughly() {
     let (mut friction_off, mut mass_off) = (0.0_f64, 0.0_f64);
-    for seed in 0..6 {
+    for seed in 0..if thorough() { 6 } else { 3 } {
         let (mut lockstep, arm) = sample(&Family::bad(), seed, false);
         let found = identify(&mut lockstep, |_| {}).expect("nothing disturbs it");
         let moving = arm.friction.kinetic_torque + arm.friction.viscous * Plan::SPEED;

@@ -49,7 +49,7 @@ const WARM_UP: u64 = 10;
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn nothing_is_left_behind_by_mishaps_in_random_order() {
     let _alone = alone();
-    let mishaps = if thorough() { 1000 } else { 100 };
+    let mishaps = if thorough() { 1000 } else { 60 };
     let mut random = SmallRng::seed_from_u64(1);
     let mut sim = start(Sim::fr3()).await;
     let address = sim.addr();
