@@ -22,14 +22,20 @@
 //! * [`slot`], [`queue`], [`event_fd`], [`state_wakeups`], [`exchange`], [`sched`], [`stats`]: what
 //!   the loop is built of. [`stats`] says when a state is late.
 //!
+//! What has a socket or a thread is for Unix; all else builds everywhere, also for WebAssembly.
+//!
 //! This crate knows no async runtime, opens no TCP connection and reads no file but those that tell
 //! of a real-time kernel.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
+// What only the thread uses.
+#![cfg_attr(not(unix), allow(dead_code, unused_imports))]
 
 pub mod control;
 pub mod driver;
+#[cfg(unix)]
 pub mod event_fd;
+#[cfg(unix)]
 pub mod exchange;
 pub mod identify;
 pub mod law;
@@ -43,7 +49,9 @@ pub mod slot;
 pub mod state_wakeups;
 pub mod stats;
 pub mod supervision;
+#[cfg(unix)]
 mod sys;
 pub mod team;
+#[cfg(unix)]
 pub mod thread;
 pub mod together;

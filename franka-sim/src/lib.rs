@@ -36,7 +36,7 @@
 //! assert!((robot.state().O_F_ext_hat_K[2] - 20.0).abs() < 1.0);
 //! ```
 //!
-//! Over sockets a robot keeps the wall's millisecond, or the client's: [`Sim::virtual_time`].
+//! Over sockets, on Unix, a robot keeps the wall's millisecond, or the client's: [`Sim::virtual_time`].
 //!
 //! # Features
 //!
@@ -70,7 +70,7 @@
 
 pub mod arm;
 mod brake;
-#[cfg(feature = "command-line")]
+#[cfg(all(unix, feature = "command-line"))]
 pub mod command_line;
 pub mod config;
 mod connection;
@@ -85,6 +85,7 @@ mod noise;
 mod observer;
 pub mod plant;
 pub mod robot;
+#[cfg(unix)]
 pub mod serve;
 mod settings;
 mod signal;
@@ -96,4 +97,5 @@ pub use config::{Config, Tool, Unpublished};
 pub use end_effector::{Fingers, Hand, Suction, VacuumGripper};
 pub use network::Network;
 pub use robot::{Datagram, Robot, SessionError, Touch, TouchId};
+#[cfg(unix)]
 pub use serve::{Pace, Running, Service, Sim, SpeedError, Stopped};

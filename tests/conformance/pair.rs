@@ -3,6 +3,7 @@
 use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
 
+use franka_lockstep::{DriverStack, Outcome};
 use franka_model::{Model, RobotKind};
 use franka_proto::{
     Command as ServiceCommand, CommandId, MoveRequest, MoveStatus, Request, RobotCommand, Version,
@@ -12,7 +13,6 @@ use franka_rt::driver::{ControlLog, Program};
 use franka_rt::exchange::{self, Exchange, Reception};
 use franka_rt::lifecycle::{ControlError, MotionError};
 use franka_rt::session::GoalId;
-use franka_tests::lockstep::{DriverStack, Outcome};
 
 use crate::robot::ScriptedRobot;
 

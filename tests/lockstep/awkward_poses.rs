@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
+use franka_lockstep::{Lockstep, pose_of, self_distance};
 use franka_model::{EndEffector, JointVector, Model, READY, Wrench};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{
     GoalError, Guard, Lapse, OnArrival, SELF_STOP, STALL_TIMEOUT, Settling, Target,
 };
-use franka_tests::lockstep::{Lockstep, pose_of, self_distance};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};

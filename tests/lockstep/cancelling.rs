@@ -2,10 +2,10 @@
 //! first ones and in every fifth after them, thoroughly in every one. The harness checks every
 //! command against the limits, jerk included.
 
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_proto::RobotMode;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{Goal, GoalId, OnArrival, Target};
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::Translation3;
 
 /// The longest times from cancelling a goal until the arm rests, and until its motion has ended,

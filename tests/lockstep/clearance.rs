@@ -3,6 +3,7 @@
 
 use std::time::Duration;
 
+use franka_lockstep::{Lockstep, for_each_robot, self_distance};
 use franka_model::collision::{Obstacle, Shape};
 use franka_model::{JointVector, READY, RobotKind};
 use franka_otg::AxisLimits;
@@ -12,7 +13,6 @@ use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{
     Chunk, GoalId, Guard, KEEP_OUT_STOP, KeepOut, Lapse, OnArrival, SELF_STOP, Target,
 };
-use franka_tests::lockstep::{Lockstep, for_each_robot, self_distance};
 use nalgebra::{Isometry3, Translation3, Vector3};
 
 /// How far the distance may fall below the one to keep, `[m]`: the braking path is checked at two

@@ -2,6 +2,7 @@
 
 use std::sync::mpsc;
 
+use franka_lockstep::{Link, Lockstep, for_each_robot};
 use franka_model::{READY, Wrench};
 use franka_proto::{
     CollisionBehavior, MoveControllerMode, MoveStatus, Request, RobotError, RobotMode, Status,
@@ -10,7 +11,6 @@ use franka_rt::control::{Callback, Torques};
 use franka_rt::driver::{LINK_TIMEOUT, Program};
 use franka_rt::lifecycle::{CloseReason, MotionError};
 use franka_rt::session::{GoalError, Guard, OnArrival, Target};
-use franka_tests::lockstep::{Link, Lockstep, for_each_robot};
 use nalgebra::Translation3;
 
 fn moving(ready: &dyn Fn() -> Lockstep) -> (Lockstep, franka_rt::session::GoalId) {

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 
 use crate::diagnosis::begin;
 use franka_diagnosis::{Case, Diagnose};
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_model::collision::Body;
 use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind};
 use franka_proto::{CollisionBehavior, Request, RobotError, RobotMode};
@@ -13,7 +14,6 @@ use franka_rt::control::{Callback, JointVelocities};
 use franka_rt::lifecycle::MotionError;
 use franka_sim::{Arm, Config, Tool, Touch};
 use franka_tests::contacts::{Errors, Push, is_clear, pushes};
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Point3, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};

@@ -11,13 +11,13 @@
 //! M ddq + c = tau - friction + J' f    =>    f - Lambda (J ddq) = -Lambda J M^-1 (tau - friction - c)
 //! ```
 
+use franka_lockstep::{Lockstep, Outcome, for_each_robot};
 use franka_model::Load;
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{ForceCap, Goal, GoalId, Guard, Lapse, OnArrival, Target, Tolerance};
 use franka_sim::{Touch, TouchId};
-use franka_tests::lockstep::{Lockstep, Outcome, for_each_robot};
 use franka_tests::push::{ArmInertia, PUSH, STIFFNESS, hand};
 use franka_tests::thorough;
 use nalgebra::{Translation3, Vector3};

@@ -2,6 +2,7 @@
 
 use core::time::Duration;
 
+use franka_lockstep::Lockstep;
 use franka_model::{JointVector, RobotKind, Wrench};
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, NewMotion, Party, Tuning};
@@ -9,7 +10,6 @@ use franka_rt::session::{
     Deviation, Goal, GoalError, GoalId, Guard, Lapse, Leash, OnArrival, Settling, Target, Waypoint,
 };
 use franka_sim::Arm;
-use franka_tests::lockstep::Lockstep;
 use nalgebra::{Isometry3, Translation3};
 
 /// Runs the test on a realistic arm of each kind.

@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
+use franka_lockstep::{Lockstep, for_each_robot, pose_of, self_distance};
 use franka_model::{EndEffector, Model, READY, RobotKind};
 use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{
     Free, Goal, GoalError, OnArrival, OnTimeout, PoseError, SELF_STOP, Target, Watchdog,
 };
-use franka_tests::lockstep::{Lockstep, for_each_robot, pose_of, self_distance};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 fn assert_near(lockstep: &Lockstep, target: &Isometry3<f64>) {

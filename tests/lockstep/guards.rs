@@ -1,10 +1,10 @@
 //! The guards that act on targets: deviation and lead.
 
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_model::Wrench;
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::{MotionError, Tuning};
 use franka_rt::session::{Guard, Lapse, Lead, OnArrival, PoseError, Target};
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 /// A robot whose collision thresholds tolerate pushes.

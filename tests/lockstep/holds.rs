@@ -3,6 +3,7 @@
 
 use std::time::Duration;
 
+use franka_lockstep::Lockstep;
 use franka_model::{JointVector, Load, RobotKind};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::law::Gains;
@@ -10,7 +11,6 @@ use franka_rt::lifecycle::Engagement;
 use franka_rt::session::{Backend, Controller, Goal, OnArrival, Tolerance};
 use franka_sim::arm::{Arm, Family};
 use franka_sim::{Config, Touch};
-use franka_tests::lockstep::Lockstep;
 use franka_tests::push::{PUSH, STIFFNESS, hand};
 use franka_tests::thorough;
 use nalgebra::{Isometry3, Matrix3, Translation3, Vector3};

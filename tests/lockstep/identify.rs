@@ -1,5 +1,6 @@
 //! Identifying arms: what is found against what an arm is like, and what a later connection gains.
 
+use franka_lockstep::Lockstep;
 use franka_model::{Load, Model, RobotKind};
 use franka_proto::Request;
 use franka_rt::identify::{Estimate, Fit, FitError, Identified, Plan};
@@ -7,7 +8,6 @@ use franka_rt::lifecycle::Lifecycle;
 use franka_rt::session::{Goal, OnArrival};
 use franka_sim::Config;
 use franka_sim::arm::{Arm, Family};
-use franka_tests::lockstep::Lockstep;
 use franka_tests::thorough;
 use nalgebra::{Translation3, Vector3, Vector6};
 

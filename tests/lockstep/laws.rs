@@ -1,10 +1,10 @@
 //! Motions under each law, and the force with which they press.
 
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::law::{Gains, Law};
 use franka_rt::session::{ForceCap, Goal, Guard, OnArrival, PoseError, Target};
 use franka_sim::Touch;
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 use franka_tests::push::STIFFNESS;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 

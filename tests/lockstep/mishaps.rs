@@ -4,12 +4,12 @@
 
 use std::time::Duration;
 
+use franka_lockstep::{Link, Lockstep, Outcome, for_each_robot};
 use franka_proto::{RobotError, Version};
 use franka_rt::lifecycle::{MotionError, MotionReport};
 use franka_rt::session::Target;
 use franka_sim::Network;
 use franka_sim::network::Tally;
-use franka_tests::lockstep::{Link, Lockstep, Outcome, for_each_robot};
 use franka_tests::mishaps;
 
 /// Runs a motion of a bit more than a second over this network. Returns its outcome, and what

@@ -1,9 +1,9 @@
 //! Targets that move, and motions that pause on their way.
 
+use franka_lockstep::{Lockstep, Outcome};
 use franka_model::{READY, Twist};
 use franka_rt::session::{OnArrival, PoseError, Target};
 use franka_tests::bench::follow::{self, Lag, moved, realistic, twist};
-use franka_tests::lockstep::{Lockstep, Outcome};
 use nalgebra::{Isometry3, Translation3};
 
 #[test]

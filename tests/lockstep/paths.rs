@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use franka_lockstep::Lockstep;
 use franka_model::{Model, READY, RobotKind, Wrench, rotation};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::MotionError;
@@ -10,7 +11,6 @@ use franka_rt::session::{
 };
 use franka_sim::{Arm, Config};
 use franka_tests::bench::follow::realistic;
-use franka_tests::lockstep::Lockstep;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};

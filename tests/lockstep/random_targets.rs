@@ -1,10 +1,10 @@
 //! Random reachable targets, one after the other.
 
+use franka_lockstep::{Lockstep, pose_of, self_distance};
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, JointVector, RobotKind};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{Lapse, PoseError, SELF_STOP, Target};
-use franka_tests::lockstep::{Lockstep, pose_of, self_distance};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 

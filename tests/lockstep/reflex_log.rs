@@ -1,11 +1,11 @@
 //! A reflex caused by a control function, and the log that shows the cause.
 
 use crate::diagnosis::{begin, stepping};
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_proto::{Errors, RobotError};
 use franka_rt::control::{Callback, JointVelocities, Torques};
 use franka_rt::driver::{ControlLog, LogEntry};
 use franka_rt::lifecycle::ControlError;
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 /// Runs `callback` until a reflex ends it.
 fn provoke(lockstep: &mut Lockstep, callback: Callback) -> ControlError {

@@ -1,5 +1,6 @@
 //! Recorded motions that arms make again.
 
+use franka_lockstep::{Link, Lockstep};
 use franka_model::{Model, RobotKind};
 use franka_proto::RobotError;
 use franka_record::replay::{
@@ -10,7 +11,6 @@ use franka_record::{Cycle, Sample};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{GoalId, OnArrival, Target};
 use franka_sim::Arm;
-use franka_tests::lockstep::{Link, Lockstep};
 use nalgebra::Translation3;
 
 fn realistic(kind: RobotKind) -> Lockstep {

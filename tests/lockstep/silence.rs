@@ -3,10 +3,10 @@
 
 use std::time::Duration;
 
+use franka_lockstep::for_each_robot;
 use franka_rt::driver::{Driver, LINK_TIMEOUT, LinkTimeout};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::Target;
-use franka_tests::lockstep::for_each_robot;
 use nalgebra::Translation3;
 
 #[test]

@@ -9,6 +9,7 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use franka_lockstep::{Link, Lockstep};
 use franka_model::RobotKind;
 use franka_proto::{MoveControllerMode, Version};
 use franka_rt::control::{Callback, Finish, Torques};
@@ -16,7 +17,6 @@ use franka_rt::driver::Program;
 use franka_sim::Network;
 use franka_sim::network::Conditions;
 use franka_tests::cycle_counts::CycleCounts;
-use franka_tests::lockstep::{Link, Lockstep};
 
 /// Commands no torque to an FER for so many cycles, over `network`.
 fn communicate(network: Network, turnaround: Duration, cycles: u64) -> CycleCounts {

@@ -1,8 +1,8 @@
 //! Steps of 5 cm, the common benchmark of impedance controllers: final error, duration, and lag of
 //! the arm.
 
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_rt::session::{OnArrival, Target};
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Translation3, Vector3};
 
 /// The figures of one step.

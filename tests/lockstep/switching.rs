@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
+use franka_lockstep::Lockstep;
 use franka_model::{Model, READY, RobotKind, Wrench};
 use franka_rt::session::{Chunk, Free, GoalId, OnArrival, Target};
-use franka_tests::lockstep::Lockstep;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};

@@ -1,12 +1,12 @@
 //! A goal, a stop or a failure that comes while the arm moves, and how motions end.
 
+use franka_lockstep::Lockstep;
 use franka_model::READY;
 use franka_proto::{MoveControllerMode, RobotError, RobotMode};
 use franka_rt::control::{Callback, Finish, Next, Torques};
 use franka_rt::driver::{Activity, LINK_TIMEOUT, Program};
 use franka_rt::lifecycle::{CloseReason, MotionError, START_TIMEOUT};
 use franka_rt::session::{GoalId, OnArrival, PoseError, Target};
-use franka_tests::lockstep::Lockstep;
 use nalgebra::Translation3;
 
 fn ready_turned(joint: usize, by: f64) -> [f64; 7] {

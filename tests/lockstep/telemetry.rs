@@ -3,11 +3,11 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
+use franka_lockstep::{Link, Lockstep, Outcome};
 use franka_proto::{MoveControllerMode, Version};
 use franka_rt::control::{Callback, Finish, Torques};
 use franka_rt::driver::Program;
 use franka_rt::session::Target;
-use franka_tests::lockstep::{Link, Lockstep, Outcome};
 use nalgebra::Translation3;
 
 /// Runs until `goal` resolves, for at most `most` milliseconds. Returns the outcome, and the

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
+use franka_lockstep::{Lockstep, outcomes_of, turned};
 use franka_model::{READY, RobotKind};
 use franka_proto::{MoveControllerMode, Request, RobotMode, Version};
 use franka_rt::control::{
@@ -14,7 +15,6 @@ use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{Goal, GoalId, OnArrival, OnTimeout, Target, Watchdog};
 use franka_rt::together::{StartBarrier, StartFault, StartTicket};
-use franka_tests::lockstep::{Lockstep, outcomes_of, turned};
 use nalgebra::Translation3;
 
 /// An FR3 and an FER, in the order of their tickets. Their milliseconds alternate.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use franka_lockstep::{Lockstep, Part, Wander};
 use franka_proto::{MoveControllerMode, MoveRequest, RobotMode, RobotState, Version};
 use franka_rt::control::{
     AsynchronousPositions, AsynchronousTarget, Callback, CartesianPose, CartesianVelocities,
@@ -11,7 +12,6 @@ use franka_rt::control::{
 use franka_rt::driver::{ControlLog, Driver, MotionId, Order, Program};
 use franka_rt::session::{OnArrival, Target};
 use franka_rt::stats::{Arrival, CycleTimes};
-use franka_tests::lockstep::{Lockstep, Part, Wander};
 use nalgebra::Translation3;
 
 use crate::calls_during;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
+use franka_lockstep::{Guarded, Lockstep, Part, Workload};
 use franka_model::{READY, Wrench};
 use franka_proto::RobotMode;
 use franka_rt::driver::Observer;
@@ -15,7 +16,6 @@ use franka_rt::session::{
     Backend, Chunk, Deadman, Deviation, Fate, Free, Goal, GoalId, Guard, Leash, OnArrival,
     OnTimeout, Target, Watchdog, Waypoint,
 };
-use franka_tests::lockstep::{Guarded, Lockstep, Part, Workload};
 use nalgebra::Translation3;
 
 use crate::calls_during;

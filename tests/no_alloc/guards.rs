@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
+use franka_lockstep::{Lockstep, Part};
 use franka_model::collision::Obstacle;
 use franka_model::{READY, Wrench};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::Engagement;
 use franka_rt::session::condition::{Axis, Condition, Quantity, contact, elapsed, force};
 use franka_rt::session::{Bindings, Goal, Guard, KeepOut, Lead, OnArrival, Target};
-use franka_tests::lockstep::{Lockstep, Part};
 use nalgebra::Translation3;
 
 use super::calls_during;

@@ -1,11 +1,11 @@
 //! Two sessions of one team: joint motions, stops, and the end of one of them.
 
+use franka_lockstep::Lockstep;
 use franka_model::READY;
 use franka_rt::lifecycle::Engagement;
 use franka_rt::session::{ForceCap, Goal, GoalId, Guard, OnArrival, Target};
 use franka_rt::team::{Coordinator, team};
 use franka_sim::Touch;
-use franka_tests::lockstep::Lockstep;
 use nalgebra::{Isometry3, Translation3, Vector3};
 
 use crate::calls_during;

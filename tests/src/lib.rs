@@ -1,5 +1,4 @@
-//! What the cross-crate suites share: golden vectors, the lockstep harness and the measuring frame
-//! of the benchmarks.
+//! What the cross-crate suites share: golden vectors and the measuring frame of the benchmarks.
 //!
 //! | module | what it is |
 //! |---|---|
@@ -8,7 +7,6 @@
 //! | [`contacts`] | random pushes on a simulated arm, and what its torques tell of them |
 //! | [`cycle_counts`] | cycles, calls and success rates that a control function counts |
 //! | [`figures`] | figures of what was measured |
-//! | [`lockstep`] | driver, command session and simulated robot in one thread on virtual time |
 //! | [`mishaps`] | networks with one kind of fault each |
 //! | [`push`] | a hand that pushes an arm, and the inertia that it meets |
 //! | [`golden`] | the crates against stored vectors: wire bytes, model numbers, trajectories |
@@ -21,7 +19,6 @@ pub mod contacts;
 pub mod cycle_counts;
 pub mod figures;
 pub mod golden;
-pub mod lockstep;
 pub mod mishaps;
 pub mod push;
 

@@ -5,7 +5,7 @@ use franka_model::{EndEffector, JointVector, Load, Model, OperationalSpace, tran
 use franka_sim::Arm;
 use nalgebra::{SMatrix, Vector3};
 
-use crate::lockstep::Lockstep;
+use franka_lockstep::Lockstep;
 
 /// Velocity of the hand, `[m/s]`.
 pub const PACE: f64 = 0.25;

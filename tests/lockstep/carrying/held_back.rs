@@ -1,10 +1,10 @@
 //! What holds or stops one arm, and what becomes of the bar.
 
+use franka_lockstep::pose_of;
 use franka_model::{EndEffector, READY};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{GoalId, Lapse};
 use franka_rt::team::{MemberFault, TeamStop};
-use franka_tests::lockstep::pose_of;
 
 use super::{APART, CAP, Carriers, MOST, bases, pairs, raised};
 

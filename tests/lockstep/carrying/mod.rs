@@ -5,6 +5,7 @@ mod held_back;
 
 use std::any::Any;
 
+use franka_lockstep::{Lockstep, outcomes_of, pose_of};
 use franka_model::{EndEffector, Frame, Model, READY, RobotKind};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::{Engagement, MotionError};
@@ -13,7 +14,6 @@ use franka_rt::team::{Coordinator, team};
 use franka_sim::arm::Family;
 use franka_sim::plant::{Mount, Scene, SharedArm, shared_world};
 use franka_sim::{Arm, Config, Robot, Touch, TouchId};
-use franka_tests::lockstep::{Lockstep, outcomes_of, pose_of};
 use franka_tests::thorough;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 

@@ -2,13 +2,13 @@
 
 use super::{begin, diagnosis, found, limit, velocities};
 use franka_diagnosis::{Advice, Axis, Bound, Cause, Diagnose, Origin, Quantity, Subject};
+use franka_lockstep::for_each_robot;
 use franka_model::RobotKind;
 use franka_proto::{CollisionBehavior, Request, RobotError};
 use franka_rt::control::{Callback, CartesianVelocities, JointVelocities, Torques};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::Target;
 use franka_sim::Touch;
-use franka_tests::lockstep::for_each_robot;
 
 #[test]
 fn a_push_names_axis_force_and_threshold() {

@@ -2,9 +2,9 @@
 
 use super::{begin, diagnosis, found, stepping, velocities};
 use franka_diagnosis::{Advice, Bound, Cause, Diagnosis, Quantity, Subject};
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_proto::RobotError;
 use franka_rt::control::{Callback, Torques};
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 fn starving(lockstep: &mut Lockstep, lose: impl FnOnce(&mut Lockstep)) -> Diagnosis {
     let version = lockstep.client.version();

@@ -5,11 +5,11 @@ mod losses;
 mod steps;
 
 use franka_diagnosis::{Diagnose, Diagnosis, Origin, Quantity, Subject};
+use franka_lockstep::Lockstep;
 use franka_proto::{MoveControllerMode, RobotError};
 use franka_rt::control::{Callback, JointVelocities, Shaper};
 use franka_rt::driver::Program;
 use franka_rt::session::GoalId;
-use franka_tests::lockstep::Lockstep;
 
 /// Cycles before the fault: enough for a success rate over a hundred of them, and for a log that
 /// has wrapped around.

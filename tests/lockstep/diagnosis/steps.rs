@@ -2,11 +2,11 @@
 
 use super::{QUIET, begin, diagnosis, found, limit, stepping, velocities};
 use franka_diagnosis::{Advice, Axis, Cause, Origin, Quantity, Subject};
+use franka_lockstep::for_each_robot;
 use franka_proto::RobotError;
 use franka_rt::control::{
     Callback, CartesianPose, Finish, JointPositions, JointVelocities, Torques,
 };
-use franka_tests::lockstep::for_each_robot;
 
 #[test]
 fn a_step_in_torque_names_the_joint_the_rate_and_the_cycle() {

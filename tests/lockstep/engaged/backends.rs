@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::{turned, up};
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_model::{JointVector, READY, RobotKind, Wrench};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::driver::Observer;
@@ -13,7 +14,6 @@ use franka_rt::session::{
     Backend, ForceCap, Free, Goal, GoalError, GoalId, Guard, Lead, OnArrival, Setpoints, Target,
 };
 use franka_sim::Config;
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 /// Runs `test` for every controller of the robot with every kind of setpoint, on both robots, with

@@ -4,12 +4,12 @@
 use std::time::Duration;
 
 use super::{assert_stays, chunk, guarded, turned, turned_q, watched};
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_model::READY;
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{
     Backend, Chunk, ChunkError, Goal, GoalId, Lapse, OnArrival, OnTimeout, Setpoints, Target,
 };
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::Translation3;
 
 fn give(lockstep: &mut Lockstep, engaged: GoalId, goal: Goal, chunk: Chunk) -> GoalId {

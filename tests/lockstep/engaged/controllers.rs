@@ -3,6 +3,7 @@
 
 use std::time::Duration;
 
+use franka_lockstep::{Link, Lockstep};
 use franka_model::{JointVector, Model, READY, RobotKind, Wrench};
 use franka_proto::{CollisionBehavior, Errors, Request, RobotError, RobotMode};
 use franka_rt::lifecycle::{Engagement, MotionError, MotionReport};
@@ -12,7 +13,6 @@ use franka_rt::session::{
 };
 use franka_sim::arm::{Arm, Family};
 use franka_sim::{Config, Touch};
-use franka_tests::lockstep::{Link, Lockstep};
 use franka_tests::push::{PUSH, STIFFNESS, hand};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 

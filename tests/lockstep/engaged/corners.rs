@@ -4,10 +4,10 @@
 use std::time::Duration;
 
 use super::{chunk, guarded, turned, turned_q, watched};
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, Tuning};
 use franka_rt::session::{Budget, Free, GoalId, Lapse, OnArrival, OnTimeout, Target};
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 fn give_chunk(lockstep: &mut Lockstep, engaged: GoalId, from: f64, to: f64) -> GoalId {
     let goal = lockstep.goal(Target::Rest, OnArrival::Hold);

@@ -3,10 +3,10 @@
 use std::time::Duration;
 
 use super::{assert_stays, guarded, turned, watched};
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_model::{READY, Wrench};
 use franka_rt::lifecycle::{MotionError, Tuning};
 use franka_rt::session::{Free, GoalId, Guard, Lapse, OnArrival, OnTimeout, Target};
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 /// Runs a session whose stream times out, and returns it with the stream's outcome.
 fn silent_stream(

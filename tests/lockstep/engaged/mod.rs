@@ -20,13 +20,13 @@ mod waiting;
 
 use std::time::Duration;
 
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_model::{READY, Wrench};
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{
     Chunk, Deadman, Free, Goal, GoalError, GoalId, OnArrival, OnTimeout, PoseError, Target,
     Watchdog,
 };
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Isometry3, Translation3};
 
 fn up(lockstep: &Lockstep, metres: f64) -> Isometry3<f64> {

@@ -1,13 +1,13 @@
 //! Tuning of a session, and options that are refused.
 
 use super::{turned, up};
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_model::collision::Obstacle;
 use franka_model::{JointVector, RobotKind, Wrench};
 use franka_rt::law::{Gains, Law};
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
 use franka_rt::session::{ForceCap, Free, Goal, GoalError, Guard, Lapse, Leash, OnArrival, Target};
 use franka_sim::Arm;
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::Translation3;
 
 #[test]

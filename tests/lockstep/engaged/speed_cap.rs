@@ -1,11 +1,11 @@
 //! The speed cap of a session.
 
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_model::{EndEffector, JointVector, Model, RobotKind, Wrench, rotation, transform};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{Budget, GoalError, GoalId, Guard, Lapse, OnArrival, Target};
 use franka_sim::Arm;
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};

@@ -1,12 +1,12 @@
 //! Sessions that are requested while the previous motion ends.
 
 use super::{assert_stays, turned};
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_proto::MoveControllerMode;
 use franka_rt::control::{Callback, Torques};
 use franka_rt::driver::Program;
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{GoalId, OnArrival};
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 
 fn ask(lockstep: &mut Lockstep) -> Result<GoalId, MotionError> {
     lockstep.try_engage(Engagement::default())

@@ -1,10 +1,10 @@
 //! Connections that end, and robots that send nothing or invalid messages.
 
+use franka_lockstep::Outcome;
 use franka_proto::framing::Header;
 use franka_proto::{MoveStatus, RobotError};
 use franka_rt::driver::{Activity, LINK_TIMEOUT};
 use franka_rt::lifecycle::{CloseReason, END_TIMEOUT, MotionError, START_TIMEOUT};
-use franka_tests::lockstep::Outcome;
 
 use crate::faults::expect::Expect;
 use crate::faults::program::Misbehaviour;

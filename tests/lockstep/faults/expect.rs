@@ -1,8 +1,8 @@
 //! Expected outcomes of a motion, with the texts of the reference client where it has them.
 
+use franka_lockstep::Outcome;
 use franka_proto::{Errors, MoveStatus, RobotError, Status};
 use franka_rt::lifecycle::MotionError;
-use franka_tests::lockstep::Outcome;
 
 use crate::faults::trial::Trial;
 

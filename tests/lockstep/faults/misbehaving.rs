@@ -1,11 +1,11 @@
 //! Functions that panic, and invalid commands.
 
+use franka_lockstep::Lockstep;
 use franka_proto::MoveGeneratorMode;
 use franka_rt::control::{AsynchronousTarget, Shaper, WriteError};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{GoalError, OnArrival, Target};
 use franka_rt::shaping::{FilterFault, InvalidCommand, Signal};
-use franka_tests::lockstep::Lockstep;
 
 use crate::faults::expect::Expect;
 use crate::faults::program::{Misbehaviour, PANIC_MESSAGE};

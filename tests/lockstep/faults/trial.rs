@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use franka_lockstep::{Link, Lockstep, Outcome};
 use franka_model::READY;
 use franka_proto::{General, MoveGeneratorMode, MoveRequest, Request, RobotMode};
 use franka_rt::control::{
@@ -10,7 +11,6 @@ use franka_rt::control::{
 use franka_rt::driver::{Activity, Program};
 use franka_rt::session::{GoalId, OnArrival, Target};
 use franka_rt::slot::SlotWriter;
-use franka_tests::lockstep::{Link, Lockstep, Outcome};
 use nalgebra::{Isometry3, Translation3};
 
 use crate::faults::course;

@@ -1,9 +1,9 @@
 //! Reflexes, the user stop, and motions that the robot does not begin.
 
+use franka_lockstep::Lockstep;
 use franka_model::READY;
 use franka_proto::{MoveGeneratorMode, RobotError};
 use franka_rt::lifecycle::MotionError;
-use franka_tests::lockstep::Lockstep;
 
 use crate::faults::Matrix;
 use crate::faults::expect::Expect;

@@ -1,10 +1,10 @@
 //! Reactions under the robot's own controller, which presses with its own stiffness.
 
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_model::RobotKind;
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::condition::{elapsed, force_z};
 use franka_rt::session::{Backend, GoalError, GoalId, OnArrival, Target};
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::Translation3;
 
 use super::{MS, above, at, felt, goes_on, realistic, report, says_so, table, tolerate};

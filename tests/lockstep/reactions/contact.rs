@@ -1,12 +1,12 @@
 //! Guarded moves: down to a table of unknown height, and the hand of a person on the way.
 
+use franka_lockstep::Lockstep;
 use franka_model::RobotKind;
 use franka_rt::lifecycle::{MotionError, Party};
 use franka_rt::session::condition::{elapsed, force_z};
 use franka_rt::session::{OnArrival, Reaction};
 use franka_sim::arm::Family;
 use franka_sim::{Arm, Touch};
-use franka_tests::lockstep::Lockstep;
 use franka_tests::thorough;
 use nalgebra::{Translation3, Vector3};
 

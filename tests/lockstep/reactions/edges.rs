@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_proto::{CollisionBehavior, Request, RobotError, RobotMode};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::condition::{
     Axis, ConditionError, Quantity, contact, elapsed, force_x, force_z,
 };
 use franka_rt::session::{Free, Goal, GoalError, GoalId, OnArrival, Reaction, Target};
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::Translation3;
 
 use super::{MS, above, at, goes_on, reacted, report, says_so};

@@ -1,5 +1,6 @@
 //! Arms that touch nothing, whose friction shows in the robot's estimate.
 
+use franka_lockstep::Lockstep;
 use franka_model::RobotKind;
 use franka_rt::session::condition::{
     Condition, force, force_x, force_y, force_z, joint_torques, torque,
@@ -7,7 +8,6 @@ use franka_rt::session::condition::{
 use franka_rt::session::{GoalId, OnArrival};
 use franka_sim::Arm;
 use franka_sim::arm::Family;
-use franka_tests::lockstep::Lockstep;
 use franka_tests::thorough;
 use nalgebra::{Translation3, Vector3};
 

@@ -9,13 +9,13 @@ mod sessions;
 
 use std::time::Duration;
 
+use franka_lockstep::Lockstep;
 use franka_model::{Model, RobotKind};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::MotionReport;
 use franka_rt::session::{Budget, Goal, GoalId, Guard, OnArrival, Reacted, Reaction, Target};
 use franka_sim::arm::Family;
 use franka_sim::{Arm, Config, Touch, TouchId};
-use franka_tests::lockstep::Lockstep;
 use nalgebra::{Translation3, Vector3};
 
 const MS: Duration = Duration::from_millis(1);

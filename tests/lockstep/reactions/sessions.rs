@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use franka_lockstep::{Lockstep, for_each_robot};
 use franka_model::RobotKind;
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{Engagement, MotionError, Tuning};
@@ -10,7 +11,6 @@ use franka_rt::session::{
     Deadman, Free, Goal, GoalId, Lapse, Lead, OnArrival, OnTimeout, Target, Watchdog,
 };
 use franka_sim::Touch;
-use franka_tests::lockstep::{Lockstep, for_each_robot};
 use nalgebra::{Translation3, Vector3};
 
 use super::{MS, above, at, felt, goes_on, reacted, realistic, report, says_so, table};

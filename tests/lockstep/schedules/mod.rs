@@ -35,12 +35,12 @@ mod submission;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use franka_lockstep::{Lockstep, Outcome};
 use franka_model::RobotKind;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::Lapse;
 use franka_sim::Config;
 use franka_sim::arm::{Arm, Family};
-use franka_tests::lockstep::{Lockstep, Outcome};
 
 use motions::Motions;
 use sessions::Sessions;

@@ -1,11 +1,11 @@
 //! Motions that supersede one another, each with its own end.
 
+use franka_lockstep::Lockstep;
 use franka_model::{READY, Wrench};
 use franka_proto::{CollisionBehavior, Request, RobotError, RobotMode};
 use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{GoalId, OnArrival, Target};
-use franka_tests::lockstep::Lockstep;
 use nalgebra::{Isometry3, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};

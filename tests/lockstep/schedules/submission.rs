@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use franka_lockstep::{Lockstep, Outcome, pose_of};
 use franka_model::EndEffector;
 use franka_rt::driver::Record;
 use franka_rt::lifecycle::{MotionError, MotionReport};
@@ -9,7 +10,6 @@ use franka_rt::session::{
     GoalId, Guard, Lapse, OnArrival, OnTimeout, PoseError, Target, Tolerance, Watchdog,
 };
 use franka_sim::Tool;
-use franka_tests::lockstep::{Lockstep, Outcome, pose_of};
 
 use super::causes::Causes;
 

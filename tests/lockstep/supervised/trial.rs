@@ -3,12 +3,12 @@
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::time::Duration;
 
+use franka_lockstep::{Asked, Lockstep, Outcome, Supervised};
 use franka_model::{READY, RobotKind};
 use franka_proto::{Errors, RobotError, RobotMode};
 use franka_rt::lifecycle::{MotionError, Unready};
 use franka_rt::session::{GoalId, Target};
 use franka_rt::supervision::{Backoff, Condition, Policy};
-use franka_tests::lockstep::{Asked, Lockstep, Outcome, Supervised};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 

@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
+use franka_lockstep::{Lockstep, turned};
 use franka_model::READY;
 use franka_rt::lifecycle::{Engagement, MotionError, NewMotion};
 use franka_rt::session::condition::elapsed;
 use franka_rt::session::{Goal, GoalId, Lapse, OnArrival, OnTimeout, Target, Watchdog};
 use franka_rt::team::{Member, MemberFault, Passage, Round, team};
-use franka_tests::lockstep::{Lockstep, turned};
 
 use super::{Pair, stopped_by};
 

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use franka_lockstep::turned;
 use franka_model::READY;
 use franka_proto::RobotMode;
 use franka_rt::driver::Driver;
@@ -12,7 +13,6 @@ use franka_rt::session::{
 };
 use franka_rt::team::{MemberFault, team_tolerating};
 use franka_sim::Touch;
-use franka_tests::lockstep::turned;
 use nalgebra::{Translation3, Vector3};
 
 use super::{Pair, stopped_by};

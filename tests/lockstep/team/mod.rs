@@ -8,13 +8,13 @@ mod waiting;
 
 use std::time::Duration;
 
+use franka_lockstep::{Lockstep, outcomes_of, turned};
 use franka_model::{READY, RobotKind};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{Deadman, Goal, GoalId, Guard, Lapse, OnArrival, Target};
 use franka_rt::team::{Coordinator, Member, MemberFault, Round, TeamStop, team};
 use franka_sim::{Arm, Config};
-use franka_tests::lockstep::{Lockstep, outcomes_of, turned};
 
 /// An FR3 and an FER that stick and lag as real arms do, in one team.
 struct Pair {

@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
+use franka_lockstep::turned;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::condition::elapsed;
 use franka_rt::session::{Goal, Lapse, OnArrival};
 use franka_rt::team::TeamStop;
-use franka_tests::lockstep::turned;
 
 use super::Pair;
 

@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
+use franka_lockstep::{Lockstep, outcomes_of};
 use franka_model::Wrench;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::condition::elapsed;
 use franka_rt::session::{Goal, GoalId, Guard, Leash, OnArrival, Target};
 use franka_rt::team::MemberFault;
 use franka_sim::Touch;
-use franka_tests::lockstep::{Lockstep, outcomes_of};
 use nalgebra::{Isometry3, Translation3, Vector3};
 
 use super::{Pair, stopped_by};

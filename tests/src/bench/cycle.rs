@@ -12,7 +12,7 @@ use franka_rt::thread::cycle_feed;
 
 use super::timed;
 use crate::bench::{Benchmark, Statistic};
-use crate::lockstep::{Part, Wander};
+use franka_lockstep::{Part, Wander};
 
 /// Benchmarks: a state decoded, answered by target control and the answer encoded; the driver's
 /// work after that, and for the next state; and the first under a control function that does

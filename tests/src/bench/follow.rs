@@ -5,7 +5,7 @@ use franka_rt::session::{OnArrival, Target};
 use franka_sim::Arm;
 use nalgebra::{Isometry3, Translation3, Vector3};
 
-use crate::lockstep::Lockstep;
+use franka_lockstep::Lockstep;
 
 /// A robot with an arm like a real one.
 pub fn realistic() -> Lockstep {

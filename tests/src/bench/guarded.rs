@@ -9,7 +9,7 @@ use std::rc::Rc;
 use std::time::Instant;
 
 use super::{Benchmark, Statistic, Subject};
-use crate::lockstep::{Guarded, Part, Workload};
+use franka_lockstep::{Guarded, Part, Workload};
 
 /// Benchmarks of all kinds of goals mixed, of each kind, and of the longest cycle, as first
 /// measured and measured again.

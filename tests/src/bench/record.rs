@@ -11,7 +11,7 @@ use franka_rt::driver::Record;
 use franka_rt::thread::{CyclePublisher, cycle_feed};
 use franka_sim::{Arm, Config, Robot, Tool};
 
-use crate::lockstep::{Lockstep, Wander};
+use franka_lockstep::{Lockstep, Wander};
 
 /// What a recording of some length came to.
 #[derive(Clone, Debug, serde::Serialize)]

@@ -7,7 +7,7 @@ use franka_sim::{Config, Robot, Tool};
 use nix::time::{ClockId, clock_gettime};
 
 use crate::bench::{Benchmark, Statistic};
-use crate::lockstep::{Lockstep, Wander};
+use franka_lockstep::{Lockstep, Wander};
 
 /// Milliseconds of robot time in a sample, and samples in a round.
 const MILLISECONDS: u32 = 250;

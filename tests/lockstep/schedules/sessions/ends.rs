@@ -1,10 +1,10 @@
 //! The end of a session, the end of a schedule, and the recovery from a reflex.
 
+use franka_lockstep::Link;
 use franka_model::READY;
 use franka_proto::{Request, RobotMode};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{GoalId, Lapse, OnArrival, Target};
-use franka_tests::lockstep::Link;
 use rand::Rng;
 
 use super::super::submission::{Submission, Work};

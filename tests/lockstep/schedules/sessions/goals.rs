@@ -1,10 +1,10 @@
 //! Goals that are submitted, changed and cancelled.
 
+use franka_lockstep::set_in_motion;
 use franka_rt::lifecycle::{MotionError, NewMotion, Tuning};
 use franka_rt::session::{
     Backend, Budget, ForceCap, Free, Goal, GoalId, OnArrival, Target, Tolerance, Waypoint,
 };
-use franka_tests::lockstep::set_in_motion;
 use rand::Rng;
 
 use super::super::draw;

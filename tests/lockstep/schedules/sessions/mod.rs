@@ -10,11 +10,11 @@ mod streams;
 
 use std::time::Duration;
 
+use franka_lockstep::{Link, Lockstep};
 use franka_model::RobotKind;
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::lifecycle::Engagement;
 use franka_rt::session::{Backend, Deadman, GoalId, OnArrival};
-use franka_tests::lockstep::{Link, Lockstep};
 use nalgebra::Isometry3;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};

@@ -1,5 +1,6 @@
 //! The programme that every arm goes through, in virtual time.
 
+use franka_lockstep::{Link, Lockstep};
 use franka_model::{JointVector, Load, Model, RobotKind, Wrench};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::lifecycle::Engagement;
@@ -7,7 +8,6 @@ use franka_rt::session::{Backend, Free, Goal, GoalId, OnArrival, PoseError, Targ
 use franka_sim::arm::Arm;
 use franka_sim::{Config, Network, Touch};
 use franka_tests::figures::HighPass;
-use franka_tests::lockstep::{Link, Lockstep};
 use franka_tests::push::{ArmInertia, PUSH, STIFFNESS, hand};
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;

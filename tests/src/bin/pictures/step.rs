@@ -1,7 +1,7 @@
 //! A target that steps, and what the driver makes of it on a simulated arm.
 
+use franka_lockstep::Lockstep;
 use franka_rt::session::{OnArrival, Target};
-use franka_tests::lockstep::Lockstep;
 use nalgebra::{Isometry3, Translation3};
 use svg::Node as _;
 use svg::node::element::Group;

@@ -1,0 +1,139 @@
+//! Asking the operating system, and what it answers.
+
+use core::time::Duration;
+use std::net::{Ipv4Addr, UdpSocket};
+use std::os::fd::AsFd;
+
+use super::{
+    BUSY_POLL_MAX, Granted, Kernel, PREFAULT_MAX, Realtime, SchedError, Scheduling, stack,
+};
+use crate::sys;
+
+impl Scheduling {
+    /// Applies the options to the calling thread, touches its stack and blocks signals, so that no
+    /// handler of the process runs on it. The order is that of libfranka 0.21: scheduling first,
+    /// then the question after the kernel.
+    ///
+    /// Signals that report a fault of the thread itself (such as `SIGSEGV`) are not blocked.
+    /// Threads and processes that the thread starts later inherit the rest.
+    ///
+    /// # Errors
+    /// Under [`Realtime::Enforce`], the first request that was refused. Requests granted before it
+    /// stay granted. Under either, an option that is out of range: nothing is asked for then.
+    pub fn enter(&self) -> Result<Granted, SchedError> {
+        self.enter_on(Kernel::read)
+    }
+
+    /// [`Self::enter`] on a host with this kernel.
+    fn enter_on(&self, kernel: impl FnOnce() -> Kernel) -> Result<Granted, SchedError> {
+        self.check()?;
+        sys::block_signals();
+        let mut granted = Granted::default();
+        match self.set_fifo() {
+            Ok(priority) => granted.priority = Some(priority),
+            Err(error) => self.refused(error, &mut granted)?,
+        }
+        if self.realtime == Realtime::Enforce {
+            let kernel = kernel();
+            if !kernel.is_realtime() {
+                return Err(SchedError::KernelNotRealtime(kernel.into()));
+            }
+        }
+        if let Some(cpu) = self.cpu
+            && let Err(errno) = sys::pin_to(cpu)
+        {
+            self.refused(SchedError::Pin { cpu, errno }, &mut granted)?;
+        }
+        if self.lock_memory
+            && let Err(errno) = sys::lock_memory()
+        {
+            self.refused(SchedError::LockMemory(errno), &mut granted)?;
+        }
+        stack::touch(self.prefault_stack);
+        Ok(granted)
+    }
+
+    /// Applies the options to the socket that the thread receives from, and notes in `granted` what
+    /// came of it.
+    ///
+    /// # Errors
+    /// Under [`Realtime::Enforce`], [`SchedError::BusyPoll`] if that is refused.
+    pub fn tune(&self, socket: &impl AsFd, granted: &mut Granted) -> Result<(), SchedError> {
+        self.check()?;
+        let Some(duration) = self.busy_poll else {
+            return Ok(());
+        };
+        match sys::busy_poll(socket, duration) {
+            Ok(()) => granted.busy_poll = Some(duration),
+            Err(errno) => self.refused(SchedError::BusyPoll { duration, errno }, granted)?,
+        }
+        Ok(())
+    }
+
+    /// Size of the stack that the thread needs, in bytes.
+    pub(crate) fn stack_size(&self) -> usize {
+        stack::size(self.prefault_stack.min(PREFAULT_MAX))
+    }
+
+    /// Whether every option is in its range.
+    fn check(&self) -> Result<(), SchedError> {
+        let polled = Duration::from_micros(1)..=BUSY_POLL_MAX;
+        match self.busy_poll {
+            Some(got) if !polled.contains(&got) => Err(SchedError::BusyPollRange { got }),
+            _ if self.prefault_stack > PREFAULT_MAX => Err(SchedError::PrefaultRange {
+                got: self.prefault_stack,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether a thread of this process would be granted what is asked for, memory aside. Starts a
+    /// short-lived thread, so that the caller keeps its own scheduling; for asking before a robot
+    /// is contacted.
+    ///
+    /// # Errors
+    /// As [`Self::enter`] and [`Self::tune`]. A thread that cannot be started at all counts as
+    /// refused scheduling.
+    pub fn probe(&self) -> Result<Granted, SchedError> {
+        self.check()?;
+        let asked = Self {
+            lock_memory: false,
+            ..self.clone()
+        };
+        let probe = std::thread::Builder::new()
+            .name("franka-probe".into())
+            .stack_size(self.stack_size())
+            .spawn(move || {
+                let mut granted = asked.enter()?;
+                if let Ok(socket) = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)) {
+                    asked.tune(&socket, &mut granted)?;
+                }
+                Ok(granted)
+            })
+            .map_err(|error| {
+                SchedError::SetScheduling(error.raw_os_error().unwrap_or(libc::EAGAIN))
+            })?;
+        probe
+            .join()
+            .expect("asking the operating system does not panic")
+    }
+
+    fn set_fifo(&self) -> Result<i32, SchedError> {
+        let priority = match self.priority {
+            Some(priority) => priority,
+            None => sys::max_fifo_priority().map_err(SchedError::MaximumPriority)?,
+        };
+        sys::set_fifo(priority).map_err(SchedError::SetScheduling)?;
+        Ok(priority)
+    }
+
+    fn refused(&self, error: SchedError, granted: &mut Granted) -> Result<(), SchedError> {
+        match self.realtime {
+            Realtime::Enforce => Err(error),
+            Realtime::Ignore => {
+                granted.refusals.push(error);
+                Ok(())
+            }
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Refusals of the operating system.
+
+use core::time::Duration;
+
+use super::{BUSY_POLL_MAX, Kernel, PREFAULT_MAX};
+#[cfg(unix)]
+use crate::sys::error_text;
+
+/// Why the thread cannot run as asked. The numbers are errno values; the texts of the first three
+/// are libfranka's.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SchedError {
+    /// The system does not name a highest `SCHED_FIFO` priority.
+    #[error("libfranka: unable to get maximum possible thread priority: {}", error_text(*.0))]
+    MaximumPriority(i32),
+    /// The process may not use `SCHED_FIFO` at this priority; usually its `RLIMIT_RTPRIO` is too
+    /// low.
+    #[error("libfranka: unable to set realtime scheduling: {}", error_text(*.0))]
+    SetScheduling(i32),
+    /// Nothing shows that the kernel is a real-time one. Under [`Realtime::Enforce`] only.
+    /// libfranka's text, and then what was read.
+    #[error("libfranka: Running kernel does not have realtime capabilities. ({0})")]
+    KernelNotRealtime(Box<Kernel>),
+    /// The processor asked for does not exist or is not open to this process.
+    #[error("unable to run on processor {cpu}: {}", error_text(*.errno))]
+    Pin {
+        /// The processor asked for.
+        cpu: usize,
+        /// Why not.
+        errno: i32,
+    },
+    /// Memory cannot be locked; usually `RLIMIT_MEMLOCK` is too low.
+    #[error("unable to lock memory: {}", error_text(*.0))]
+    LockMemory(i32),
+    /// The socket is not polled; without `CAP_NET_ADMIN`, or with a kernel that cannot
+    /// (`ENOPROTOOPT`).
+    #[error("unable to poll the socket for {} us: {}", .duration.as_micros(), error_text(*.errno))]
+    BusyPoll {
+        /// What was asked for.
+        duration: Duration,
+        /// Why not.
+        errno: i32,
+    },
+    /// Caller: a busy poll this long leaves the thread no time. Under either [`Realtime`].
+    #[error("a busy poll of {} us is out of range: expected 1 to {} us", .got.as_micros(), BUSY_POLL_MAX.as_micros())]
+    BusyPollRange {
+        /// What was asked for.
+        got: Duration,
+    },
+    /// Caller: the stack to touch is larger than allowed. Under either [`Realtime`].
+    #[error("a stack of {got} bytes is out of range: expected at most {PREFAULT_MAX} bytes")]
+    PrefaultRange {
+        /// What was asked for, in bytes.
+        got: usize,
+    },
+}
+
+impl SchedError {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::MaximumPriority(_) => "sched-maximum-priority",
+            Self::SetScheduling(_) => "sched-set-scheduling",
+            Self::KernelNotRealtime(_) => "sched-kernel-not-realtime",
+            Self::Pin { .. } => "sched-pin",
+            Self::LockMemory(_) => "sched-lock-memory",
+            Self::BusyPoll { .. } => "sched-busy-poll",
+            Self::BusyPollRange { .. } => "sched-busy-poll-range",
+            Self::PrefaultRange { .. } => "sched-prefault-range",
+        }
+    }
+
+    /// Whether the caller asked for an option that is out of range, which no host grants.
+    pub fn is_misuse(&self) -> bool {
+        matches!(
+            self,
+            Self::BusyPollRange { .. } | Self::PrefaultRange { .. }
+        )
+    }
+}
+
+/// Where there is no thread to be refused anything.
+#[cfg(not(unix))]
+fn error_text(errno: i32) -> String {
+    format!("Unknown error {errno}")
+}
