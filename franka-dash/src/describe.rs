@@ -42,7 +42,7 @@ pub(crate) struct Hello {
     /// Name of the meshes of this arm.
     meshes: &'static str,
     /// Names of the guards, in the order of the bits of a state frame.
-    guards: Vec<&'static str>,
+    guards: Vec<String>,
     keep_out: Vec<Region>,
     /// The names of all robots of the server, if there are several.
     siblings: Vec<String>,
@@ -138,35 +138,10 @@ impl Hello {
                 RobotKind::Fer => "fer",
                 _ => "fr3",
             },
-            guards: Guard::ALL.map(name).into(),
+            guards: Guard::ALL.map(|guard| guard.to_string()).into(),
             keep_out: hub.keep_out.iter().map(Region::from).collect(),
             siblings: hub.siblings.to_vec(),
         }
-    }
-}
-
-/// What people call a guard.
-fn name(guard: Guard) -> &'static str {
-    match guard {
-        Guard::Leash => "leash",
-        Guard::InverseKinematics => "joint acceleration",
-        Guard::TorqueClamp => "torque clamp",
-        Guard::ForceCap => "force cap",
-        Guard::VelocityBarrier => "velocity limit",
-        Guard::TorqueRate => "torque rate",
-        Guard::Watchdog => "watchdog",
-        Guard::Deadman => "deadman",
-        Guard::Backstop => "setpoint limiter",
-        Guard::JointVelocity => "joint velocity",
-        Guard::PositionEnvelope => "joint range",
-        Guard::Clearance => "clearance",
-        Guard::Deviation => "deviation",
-        Guard::Lead => "lead",
-        Guard::PlanFailure => "no plan",
-        Guard::Reaction => "reaction",
-        Guard::Team => "team",
-        Guard::SpeedCap => "speed cap",
-        _ => "another guard",
     }
 }
 

@@ -67,6 +67,8 @@
 //!   [`Unpublished`]. None has been measured on a robot.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
+// What only the robot on sockets uses.
+#![cfg_attr(not(unix), allow(dead_code, unused_imports))]
 
 pub mod arm;
 mod brake;

@@ -78,6 +78,32 @@ impl Guard {
     ];
 }
 
+/// What people call it, such as `joint range`.
+impl core::fmt::Display for Guard {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.pad(match self {
+            Self::Leash => "leash",
+            Self::InverseKinematics => "joint acceleration",
+            Self::TorqueClamp => "torque clamp",
+            Self::ForceCap => "force cap",
+            Self::VelocityBarrier => "velocity limit",
+            Self::TorqueRate => "torque rate",
+            Self::Watchdog => "watchdog",
+            Self::Deadman => "deadman",
+            Self::Backstop => "setpoint limiter",
+            Self::JointVelocity => "joint velocity",
+            Self::PositionEnvelope => "joint range",
+            Self::Clearance => "clearance",
+            Self::Deviation => "deviation",
+            Self::Lead => "lead",
+            Self::PlanFailure => "no plan",
+            Self::Reaction => "reaction",
+            Self::Team => "team",
+            Self::SpeedCap => "speed cap",
+        })
+    }
+}
+
 impl Bindings {
     /// Adds `guard` where `binds`.
     pub(crate) fn set(&mut self, guard: Guard, binds: bool) {

@@ -1,0 +1,249 @@
+//! One arm, its driver, and a person who sets targets and pushes.
+
+use franka_lockstep::Lockstep;
+use franka_model::{EndEffector, JointVector, Model, RobotKind, transform};
+use franka_proto::{Request, RobotMode};
+use franka_rt::lifecycle::{Engagement, MotionError};
+use franka_rt::session::{Bindings, GoalId, OnArrival, Target};
+use franka_sim::arm::{Arm, Family};
+use franka_sim::{Config, Touch, TouchId};
+use nalgebra::{Isometry3, Vector3};
+
+/// The speed of manual reduced speed, `[m/s]`.
+const SPEED_CAP: f64 = 0.25;
+
+/// The most that a person pushes with, `[N]`.
+const PUSH_MAX: f64 = 200.0;
+
+/// An arm that goes to a target, and can be pushed, stopped and recovered.
+pub struct Playground {
+    lockstep: Lockstep,
+    seconds: f64,
+    phase: Phase,
+    target: Isometry3<f64>,
+    /// Whether the session has not been told of the target yet.
+    is_new: bool,
+    goal: Option<GoalId>,
+    push: Option<TouchId>,
+    obstacle: Option<TouchId>,
+    message: String,
+}
+
+/// What the arm does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum State {
+    /// Goes to its target, or holds it.
+    Following,
+    /// Begins to, or recovers.
+    Starting,
+    /// Stopped; [`Playground::recover`] leads on.
+    Stopped,
+}
+
+/// Where a session is.
+#[derive(Clone, Copy)]
+enum Phase {
+    Starting(GoalId),
+    Following(GoalId),
+    Stopped,
+    Recovering,
+}
+
+/// An arm as it is now; base frame, SI units.
+pub struct View {
+    /// Time since the start.
+    pub seconds: f64,
+    /// What the arm does.
+    pub state: State,
+    /// Measured joint positions.
+    pub q: [f64; 7],
+    /// Joint positions of the reference; of the arm where nothing controls it.
+    pub q_ref: [f64; 7],
+    /// Where the end effector is to go.
+    pub target: Isometry3<f64>,
+    /// Where it is measured.
+    pub end_effector: Isometry3<f64>,
+    /// The force that the robot estimates on it, as one that pushes it.
+    pub force: Vector3<f64>,
+    /// Speed of the fastest point of the arm.
+    pub speed: f64,
+    /// The guards that bound the newest command.
+    pub guards: Bindings,
+}
+
+impl Playground {
+    /// Returns an arm at rest in the ready pose with a session begun: one like real ones, of this
+    /// seed, or an ideal one.
+    pub fn new(kind: RobotKind, seed: Option<u64>) -> Self {
+        let mut lockstep = Lockstep::new(Config {
+            arm: Some(match seed {
+                Some(seed) => Arm::sample(kind, seed, &Family::realistic()),
+                None => Arm::ideal(kind),
+            }),
+            seed: seed.unwrap_or_default(),
+            ..Lockstep::config_of(kind)
+        });
+        let mut this = Self {
+            target: lockstep.arm_pose(),
+            phase: begin(&mut lockstep),
+            lockstep,
+            seconds: 0.0,
+            is_new: false,
+            goal: None,
+            push: None,
+            obstacle: None,
+            message: String::new(),
+        };
+        if matches!(this.phase, Phase::Stopped) {
+            this.message = "the robot takes no motion".into();
+        }
+        this
+    }
+
+    /// Lets time pass.
+    pub fn advance(&mut self, milliseconds: u32) {
+        for _ in 0..milliseconds {
+            self.lockstep.tick();
+            self.seconds += 0.001;
+            self.proceed();
+        }
+    }
+
+    /// Where the end effector is to go.
+    pub fn target(&mut self, pose: Isometry3<f64>) {
+        (self.target, self.is_new) = (pose, true);
+    }
+
+    /// Pushes the end effector until the next call, `[N]`, base frame.
+    pub fn push(&mut self, force: Vector3<f64>) {
+        self.push
+            .take()
+            .map(|push| self.lockstep.robot.release(push));
+        let size = force.norm();
+        if size > 0.0 && size.is_finite() {
+            let force = force * (PUSH_MAX / size).min(1.0);
+            self.push = Some(self.lockstep.robot.touch(Touch::force(force)));
+        }
+    }
+
+    /// Grips the end effector where it is, or lets it go.
+    pub fn block(&mut self, on: bool) {
+        let robot = &mut self.lockstep.robot;
+        self.obstacle.take().map(|obstacle| robot.release(obstacle));
+        if on {
+            self.obstacle = Some(robot.touch(Touch::hold()));
+        }
+    }
+
+    /// Has the robot recover, and begins a session that holds the arm where it is. Does nothing
+    /// while nothing has stopped the arm.
+    pub fn recover(&mut self) {
+        if matches!(self.phase, Phase::Stopped) {
+            self.lockstep.request(&Request::AutomaticErrorRecovery);
+            self.phase = Phase::Recovering;
+            self.message.clear();
+            self.target = self.lockstep.arm_pose();
+            (self.is_new, self.goal) = (false, None);
+        }
+    }
+
+    /// The newest thing to tell: why the arm stopped, or why a target is none.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
+    /// The arm as it is now.
+    pub fn view(&self) -> View {
+        let (state, record) = (&self.lockstep.client.state, &self.lockstep.client.record);
+        let [q, dq] = [state.q, state.dq].map(JointVector::from);
+        let end_effector = transform::isometry_from_array(&state.F_T_EE).unwrap_or_default();
+        let end_effector = EndEffector {
+            f_t_ee: transform::matrix(&end_effector),
+            ..EndEffector::default()
+        };
+        let state_now = match self.phase {
+            Phase::Following(_) => State::Following,
+            Phase::Starting(_) | Phase::Recovering => State::Starting,
+            Phase::Stopped => State::Stopped,
+        };
+        let [x, y, z, ..] = state.O_F_ext_hat_K;
+        View {
+            seconds: self.seconds,
+            state: state_now,
+            q: state.q,
+            q_ref: match state_now {
+                State::Following => record.q_ref,
+                _ => state.q,
+            },
+            target: self.target,
+            end_effector: self.lockstep.pose_at(&q),
+            // The estimate is what the arm presses with.
+            force: -Vector3::new(x, y, z),
+            speed: Model::fr3().fastest_point(&q, &dq, &end_effector),
+            guards: record.bindings,
+        }
+    }
+
+    /// What follows from the last millisecond.
+    fn proceed(&mut self) {
+        match self.phase {
+            Phase::Starting(session) | Phase::Following(session) => {
+                if let Some(outcome) = self.lockstep.client.outcome(session) {
+                    self.message = match outcome {
+                        Ok(_) => "the session has ended".into(),
+                        Err(error) => error.to_string(),
+                    };
+                    self.phase = Phase::Stopped;
+                } else if matches!(self.phase, Phase::Starting(_)) {
+                    if self.lockstep.client.record.goal == session.0 {
+                        self.phase = Phase::Following(session);
+                    }
+                } else {
+                    self.follow(session);
+                }
+            }
+            Phase::Recovering => match self.lockstep.client.state.robot_mode {
+                RobotMode::Idle => self.phase = begin(&mut self.lockstep),
+                RobotMode::UserStopped => self.phase = Phase::Stopped,
+                _ => {}
+            },
+            Phase::Stopped => {}
+        }
+    }
+
+    /// Passes a new target on, and tells of one that was given up.
+    fn follow(&mut self, session: GoalId) {
+        let ended = self
+            .goal
+            .and_then(|goal| self.lockstep.client.outcome(goal));
+        if let Some(ended) = ended {
+            match ended {
+                Err(MotionError::Superseded) | Ok(_) => {}
+                Err(error) => self.message = error.to_string(),
+            }
+            self.goal = None;
+        }
+        if std::mem::take(&mut self.is_new) {
+            let goal = Target::Pose(self.target);
+            match self.lockstep.within(session, goal, OnArrival::Hold) {
+                Ok(goal) => {
+                    self.goal = Some(goal);
+                    self.message.clear();
+                }
+                Err(error) => self.message = error.to_string(),
+            }
+        }
+    }
+}
+
+/// Begins a session under the cap.
+fn begin(lockstep: &mut Lockstep) -> Phase {
+    let engagement = Engagement {
+        speed_cap: Some(SPEED_CAP),
+        ..Engagement::default()
+    };
+    lockstep
+        .try_engage(engagement)
+        .map_or(Phase::Stopped, Phase::Starting)
+}
