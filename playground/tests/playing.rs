@@ -64,12 +64,14 @@ fn a_pushed_arm_gives_way_and_comes_back() {
         playground.advance(1500);
         let now = playground.view();
         let gone = distance(&playground);
-        // Friction hides much of it on an arm like a real one.
-        assert!(gone > 2e-3, "{gone}");
+        assert!(gone > 5e-3, "{gone}");
         assert!((8.0..20.0).contains(&now.force.y), "{}", now.force);
         assert_eq!(now.state, State::Following, "{}", playground.message());
         playground.push(Vector3::zeros());
-        until(&mut playground, |now| distance(now) < 2e-3);
+        // Friction holds it a little beside.
+        until(&mut playground, |now| {
+            distance(now) < 5e-3 && now.view().speed < 1e-3
+        });
     });
 }
 
