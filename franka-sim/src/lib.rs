@@ -36,7 +36,8 @@
 //! assert!((robot.state().O_F_ext_hat_K[2] - 20.0).abs() < 1.0);
 //! ```
 //!
-//! Over sockets, on Unix, a robot keeps the wall's millisecond, or the client's: [`Sim::virtual_time`].
+//! On Unix a robot over sockets keeps the wall's millisecond, or the client's:
+//! [`Sim::virtual_time`].
 //!
 //! # Features
 //!

@@ -31,12 +31,12 @@ struct Shown {
 
 thread_local! {
     static SHOWN: RefCell<Option<Shown>> = const { RefCell::new(None) };
-    static GUARDS: [CString; Guard::ALL.len()] = Guard::ALL.map(|guard| text(&guard.to_string()));
+    static GUARDS: Vec<CString> = Guard::ALL.iter().map(guard_text).collect();
 }
 
 /// Begins with a new arm at rest in the ready pose, in place of the one before: a Franka Research 3
-/// or, if `kind` is 1, a Franka Emika Robot; an ideal one or, if `realistic` is not 0, one like real
-/// ones, drawn from `seed`.
+/// or, if `kind` is 1, a Franka Emika Robot; an ideal one or, if `realistic` is not 0, one like
+/// real ones, drawn from `seed`.
 #[unsafe(no_mangle)]
 pub extern "C" fn start(kind: u32, realistic: u32, seed: u32) {
     let kind = match kind {
@@ -154,6 +154,10 @@ pub extern "C" fn guard_name(index: u32) -> *const u8 {
 
 fn with<T>(use_it: impl FnOnce(&mut Shown) -> T) -> Option<T> {
     SHOWN.with_borrow_mut(|shown| shown.as_mut().map(use_it))
+}
+
+fn guard_text(guard: &Guard) -> CString {
+    text(&guard.to_string())
 }
 
 fn text(text: &str) -> CString {

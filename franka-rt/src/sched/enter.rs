@@ -137,3 +137,38 @@ impl Scheduling {
         }
     }
 }
+
+#[cfg(all(test, target_os = "linux", not(franka_portable)))]
+mod tests;
+
+#[cfg(all(test, any(not(target_os = "linux"), franka_portable)))]
+mod portable_tests {
+    use super::*;
+
+    #[test]
+    fn elsewhere_than_on_linux_nothing_is_granted() {
+        let asked = Scheduling {
+            cpu: Some(0),
+            lock_memory: true,
+            busy_poll: Some(Duration::from_micros(50)),
+            ..Scheduling::default()
+        };
+        let refusal = asked.probe().expect_err("a robot takes a real-time thread");
+        let text = "libfranka: unable to get maximum possible thread priority: ";
+        assert!(refusal.to_string().starts_with(text), "{refusal}");
+        let ignored = Scheduling {
+            realtime: Realtime::Ignore,
+            ..asked
+        };
+        let granted = ignored.probe().expect("a simulated robot takes none");
+        assert_eq!((granted.priority, granted.busy_poll), (None, None));
+        let [
+            SchedError::MaximumPriority(_),
+            SchedError::Pin { cpu: 0, .. },
+            SchedError::BusyPoll { .. },
+        ] = &granted.refusals[..]
+        else {
+            panic!("{granted:?}")
+        };
+    }
+}
