@@ -88,8 +88,8 @@ pub enum MemberFault {
     Failed,
     /// Its session was dropped: the control thread has ended, or panicked.
     Gone,
-    /// Its goal was given up: the arm was displaced, its way is blocked, its deadman or its stream
-    /// of targets is silent.
+    /// Its goal was given up: the arm was displaced or too fast, its way is blocked, its deadman or
+    /// its stream of targets is silent.
     GivenUp,
     /// It did not reach its target.
     NotReached,
