@@ -5,7 +5,7 @@ use crate::cycle::CYCLE;
 use crate::error::{PlanError, Quantity};
 use crate::limits::Limits;
 use crate::plan::{Plan, PlanStart, Synchronisation};
-use crate::state::{State, check_finite};
+use crate::state::{AxisState, State, check_finite};
 
 /// Moves `N` axes to a target that may change at any time, inside limits of velocity, acceleration
 /// and jerk.
@@ -220,6 +220,36 @@ impl<const N: usize> Generator<N> {
         if self.heading != Heading::Rest {
             self.plan_stop();
         }
+    }
+
+    /// Takes the velocity down to `share` of it, from 0 to 1, and plans anew to the target if there
+    /// is one, else to rest. A motion on a straight line stays on it.
+    ///
+    /// The velocity of the output steps: the caller ensures that `share` is close to 1.
+    ///
+    /// # Errors
+    /// [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`]; the motion in progress goes on.
+    pub fn slow_down(&mut self, share: f64) -> Result<(), PlanError> {
+        let state = State {
+            velocity: self.state.velocity.map(|velocity| share * velocity),
+            ..self.state
+        };
+        let line = self.plan.line_at(self.elapsed());
+        let start = PlanStart {
+            state,
+            line: line.map(|(line, along)| {
+                let velocity = share * along.velocity;
+                (line, AxisState { velocity, ..along })
+            }),
+            limits: &self.limits,
+        };
+        match &self.heading {
+            Heading::Target(target) => self.plan.go_to(target, &start, self.synchronisation)?,
+            Heading::Rest => self.plan.stop(&start),
+        }
+        self.cycle = 0;
+        self.state = state;
+        Ok(())
     }
 
     /// Re-anchors the generator at `state` and plans anew: to the target if there is one, else to

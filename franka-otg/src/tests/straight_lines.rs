@@ -61,6 +61,28 @@ proptest! {
     }
 
     #[test]
+    fn a_motion_that_is_slowed_in_every_cycle_stays_on_its_line_and_arrives(
+        start in point(), way in point(), most in 0.05..0.5,
+    ) {
+        let limits = Limits::from_arrays([1.0, 0.8, 0.5], [5.0, 4.0, 6.0], [900.0, 800.0, 700.0]).unwrap();
+        let mut generator = Generator::new(State::at_rest(start), limits).unwrap();
+        let target = core::array::from_fn(|i| start[i] + way[i]);
+        generator.set_target(&target).unwrap();
+        let mut cycles = 0;
+        while !generator.is_done() {
+            let speed = norm(&generator.step().velocity);
+            if speed > most {
+                generator.slow_down(most / speed).unwrap();
+            }
+            let State { position, velocity, .. } = generator.state();
+            prop_assert!(norm(velocity) <= most * (1.0 + 1e-12));
+            prop_assert!(distance_from_line(&start, &target, position) <= 1e-13);
+            cycles += 1;
+            prop_assert!(cycles < 60_000, "it never arrives");
+        }
+    }
+
+    #[test]
     fn a_line_takes_no_longer_than_independent_axes_if_one_axis_binds(start in point(), target in point()) {
         let limits = Limits::from_arrays([1.0; 3], [5.0; 3], [1000.0; 3]).unwrap();
         let duration = |synchronisation| {

@@ -207,6 +207,9 @@ impl Course {
                     &next,
                     budget,
                 );
+                let slowed = bounds
+                    .speed
+                    .map_or(Ok(()), |share| generator.slow_down(share));
                 let tethered = if bounds.any() {
                     let reached = rigid(&model.pose(Frame::EndEffector, &reference.q, ee));
                     leash::tether(generator, &reached)
@@ -216,10 +219,9 @@ impl Course {
                 CourseStep {
                     reference,
                     bounds,
-                    // One that is slowed gets on.
-                    held: tethered.unwrap_or(true) && !bounds.speed,
+                    held: tethered.unwrap_or(true),
                     leashed: false,
-                    failed: tethered.is_err(),
+                    failed: slowed.and(tethered).is_err(),
                 }
             }
         }

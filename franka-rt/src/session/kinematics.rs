@@ -209,7 +209,7 @@ pub(super) fn follow(
         .and_then(|cap| speed_cap::share(cap, model, ee, &reference.q, &solution.velocity));
 
     let mut held = BoundsReached {
-        speed: slower.is_some(),
+        speed: slower,
         ..BoundsReached::default()
     };
     for (side, open) in solution.active.into_iter().zip(&open) {

@@ -157,6 +157,25 @@ impl PoseGenerator {
         self.begin_again(&start, target.after(self.time()), self.budget)
     }
 
+    /// Goes on at `share` of its velocity, on its line if it moves on one.
+    ///
+    /// # Errors
+    /// See [`Self::new`]; the motion in progress goes on.
+    pub(crate) fn slow_down(&mut self, share: f64) -> Result<(), PlanError> {
+        if self.twist == Twist::zeros() {
+            return self.axes.slow_down(share);
+        }
+        let now = self.state();
+        let start = PoseState {
+            twist: now.twist * share,
+            ..now
+        };
+        match self.target {
+            Some(target) => self.begin_again(&start, target.after(self.time()), self.budget),
+            None => self.stop_from(&start),
+        }
+    }
+
     /// Comes to rest within the budget, on its line if it moves on one.
     ///
     /// # Errors

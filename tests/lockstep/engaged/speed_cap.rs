@@ -6,7 +6,7 @@ use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{Budget, GoalError, GoalId, Guard, Lapse, OnArrival, Target};
 use franka_sim::Arm;
-use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
@@ -114,6 +114,36 @@ fn no_point_of_the_arm_is_faster_than_the_cap_on_the_way_to_a_pose() {
             assert!(too_fast <= 1 + cases / 20, "{too_fast} of {cases} given up");
         }
     }
+}
+
+#[test]
+fn a_hand_that_is_slowed_stays_on_its_straight_line() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = capped(&mut lockstep, 0.1);
+        let home = lockstep.reference_pose();
+        for (way, turn) in [([0.1, 0.3, -0.2], 0.4), ([-0.1, -0.3, 0.1], -0.5)] {
+            let moved = Translation3::from(Vector3::from(way)) * home;
+            let turn = UnitQuaternion::from_euler_angles(0.3 * turn, -0.5 * turn, turn);
+            let there = Isometry3::from_parts(moved.translation, turn * home.rotation);
+            let from = lockstep.reference_pose().translation.vector;
+            let line = there.translation.vector - from;
+            let mut goal = lockstep.goal(Target::Pose(there), OnArrival::ReportAndHold);
+            goal.budget = goal.budget.scaled(1.5);
+            let id = lockstep.submit_within(engaged, goal).expect("in reach");
+            let (mut aside, mut slowed) = (0.0_f64, 0);
+            while lockstep.client.outcome(id).is_none() {
+                lockstep.tick();
+                assert!(lockstep.now() < 60_000, "it never arrives");
+                let gone = lockstep.reference_pose().translation.vector - from;
+                aside = aside.max(gone.cross(&line).norm() / line.norm());
+                slowed += u32::from(lockstep.client.record.bindings.contains(Guard::SpeedCap));
+            }
+            lockstep.until_resolved(id, 1).expect("it arrives");
+            println!("{aside:.6} m aside, slowed for {slowed} ms");
+            assert!(slowed > 2000 && aside < 1e-4, "{aside} m, {slowed} ms");
+        }
+    });
 }
 
 /// What is not slowed is given up, and the session goes on.

@@ -198,12 +198,13 @@ impl ChunkCourse {
                     &next,
                     &self.budget,
                 );
+                state.twist *= bounds.speed.unwrap_or(1.0);
                 let mut held = false;
                 if bounds.any() {
                     let reached = rigid(&model.pose(Frame::EndEffector, &reference.q, ee));
                     if let Some(pose) = leash::tethered(&state.pose, &reached) {
                         state.pose = pose;
-                        held = !bounds.speed;
+                        held = true;
                     }
                 }
                 self.lag = state.lag(&there);

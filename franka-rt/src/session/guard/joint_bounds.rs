@@ -30,7 +30,7 @@ const POSITION_MARGIN: f64 = 0.05;
 pub(crate) const BRAKING: f64 = 1.2;
 
 /// What held joints back in a cycle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct BoundsReached {
     /// Their velocity.
     pub(crate) velocity: bool,
@@ -38,8 +38,8 @@ pub(crate) struct BoundsReached {
     pub(crate) position: bool,
     /// Their acceleration or jerk.
     pub(crate) acceleration: bool,
-    /// The speed of a point of the arm.
-    pub(crate) speed: bool,
+    /// The speed of a point of the arm: the share of their velocities that they kept.
+    pub(crate) speed: Option<f64>,
 }
 
 impl BoundsReached {

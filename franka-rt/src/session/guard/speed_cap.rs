@@ -1,8 +1,9 @@
 //! The speed cap: no joint, flange or end effector goes faster, wherever the arm is.
 //!
 //! On the way to a pose the reference keeps below it by a reserve: all its joints are slowed alike
-//! where one of its points would be faster, so that the hand stays on its way and comes later. From
-//! [`ONSET`] of that on, what is asked for is approached without a corner:
+//! where one of its points would be faster, and with them the pose that they follow, so that the
+//! hand stays on its line and comes later. From [`ONSET`] of that on, what is asked for is
+//! approached without a corner:
 //!
 //! ```text
 //! speed' = onset + (most - onset) (1 - exp(-(speed - onset) / (most - onset)))

@@ -332,7 +332,7 @@ impl RunningSession {
         bindings.set(Guard::InverseKinematics, bounds.acceleration);
         bindings.set(Guard::JointVelocity, bounds.velocity);
         bindings.set(Guard::PositionEnvelope, bounds.position);
-        bindings.set(Guard::SpeedCap, bounds.speed);
+        bindings.set(Guard::SpeedCap, bounds.speed.is_some());
         let failed = self.route.take_failure();
         bindings.set(Guard::PlanFailure, step.failed || failed);
         step
