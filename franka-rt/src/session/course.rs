@@ -8,6 +8,7 @@ use crate::session::aim::Aim;
 use crate::session::chunk::ChunkCourse;
 use crate::session::guard::joint_bounds::BoundsReached;
 use crate::session::guard::leash::{self, Leash};
+use crate::session::guard::speed_cap::SpeedCap;
 use crate::session::guide::Guide;
 use crate::session::joints::{JointGenerator, MovingJoints};
 use crate::session::kinematics::{self, Drift, Posture};
@@ -179,7 +180,7 @@ impl Course {
         &mut self,
         model: &Model,
         ee: &EndEffector,
-        (posture, speed_cap): (&Posture, Option<f64>),
+        (posture, speed_cap): (&Posture, Option<SpeedCap<'_>>),
         reference: &Reference,
         (arm, leash): (&Measured, &Leash),
         now: u64,

@@ -6,7 +6,7 @@ use franka_model::{EndEffector, Frame, Jacobian, JointVector, Model, Twist, rota
 use nalgebra::Matrix6;
 
 use crate::session::guard::joint_bounds::{BoundsReached, Cause, OpenVelocities};
-use crate::session::guard::speed_cap;
+use crate::session::guard::speed_cap::SpeedCap;
 use crate::session::pose::MovingPose;
 use crate::session::reference::Reference;
 use crate::session::{Budget, rigid};
@@ -179,7 +179,7 @@ impl Drift {
 pub(super) fn follow(
     model: &Model,
     ee: &EndEffector,
-    (posture, speed_cap): (&Posture, Option<f64>),
+    (posture, speed_cap): (&Posture, Option<SpeedCap<'_>>),
     drift: &mut Drift,
     reference: &Reference,
     pose: &MovingPose,
@@ -205,8 +205,8 @@ pub(super) fn follow(
     );
     let solution =
         DifferentialIk::smooth().solve(&jacobian, &twist, &free, &bounds, [Side::Free; 7]);
-    let slower = speed_cap
-        .and_then(|cap| speed_cap::share(cap, model, ee, &reference.q, &solution.velocity));
+    let slower =
+        speed_cap.and_then(|cap| cap.share(model, &reference.q, &solution.velocity, &jacobian));
 
     let mut held = BoundsReached {
         speed: slower,

@@ -6,6 +6,7 @@ use crate::session::aim::Aim;
 use crate::session::chunk::{ChunkCourse, ChunkStart};
 use crate::session::course::{self, Course};
 use crate::session::guard::clearance::{Ahead, Clearance};
+use crate::session::guard::speed_cap::SpeedCap;
 use crate::session::kinematics::Posture;
 use crate::session::reference::Reference;
 use crate::session::running::Measured;
@@ -229,7 +230,7 @@ impl Route {
         &mut self,
         model: &Model,
         ee: &EndEffector,
-        posture: (&Posture, Option<f64>),
+        posture: (&Posture, Option<SpeedCap<'_>>),
         reference: &Reference,
         arm: &Measured,
         aim: &Aim,

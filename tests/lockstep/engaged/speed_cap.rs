@@ -5,7 +5,7 @@ use franka_model::{EndEffector, JointVector, Model, RobotKind, Wrench, rotation,
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{Budget, GoalError, GoalId, Guard, Lapse, OnArrival, Target};
-use franka_sim::Arm;
+use franka_sim::{Arm, Tool};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -144,6 +144,36 @@ fn a_hand_that_is_slowed_stays_on_its_straight_line() {
             assert!(slowed > 2000 && aside < 1e-4, "{aside} m, {slowed} ms");
         }
     });
+}
+
+/// The object's frame rests at the flange, about which a long tool swings.
+#[test]
+fn the_hand_keeps_to_the_cap_where_an_object_in_it_leads() {
+    let mut tool = Tool::hand();
+    tool.f_t_ne[(2, 3)] = 0.3;
+    let mut lockstep = Lockstep::new(franka_sim::Config {
+        tool,
+        ..franka_sim::Config::default()
+    });
+    let engaged = capped(&mut lockstep, CAP);
+    let object = Isometry3::translation(0.0, 0.0, -0.3);
+    let there = lockstep.arm_pose() * object;
+    let turn = UnitQuaternion::from_euler_angles(0.5, 0.0, 0.4);
+    let there = Isometry3::from_parts(there.translation, turn * there.rotation);
+    let mut goal = lockstep.goal(Target::Pose(there), OnArrival::ReportAndHold);
+    goal.grasp = Some(object);
+    goal.budget.rotation.velocity = 1.5;
+    goal.budget.rotation.acceleration = 5.0;
+    let id = lockstep.submit_within(engaged, goal).expect("in reach");
+    let (mut most, mut bound) = (0.0_f64, false);
+    while lockstep.client.outcome(id).is_none() {
+        lockstep.tick();
+        assert!(lockstep.now() < 20_000, "it never arrives");
+        most = most.max(fastest(&lockstep)[1]);
+        bound |= lockstep.client.record.bindings.contains(Guard::SpeedCap);
+    }
+    lockstep.until_resolved(id, 1).expect("it arrives");
+    assert!(bound && most < CAP, "{most} m/s");
 }
 
 /// What is not slowed is given up, and the session goes on.

@@ -14,6 +14,7 @@ use super::value::{Chunk, Points};
 use crate::session::course::{CourseStep, limits_of_joint};
 use crate::session::guard::joint_bounds::BRAKING;
 use crate::session::guard::leash;
+use crate::session::guard::speed_cap::SpeedCap;
 use crate::session::kinematics::{self, Drift, Posture};
 use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
@@ -161,7 +162,7 @@ impl ChunkCourse {
         &mut self,
         model: &Model,
         ee: &EndEffector,
-        (posture, speed_cap): (&Posture, Option<f64>),
+        (posture, speed_cap): (&Posture, Option<SpeedCap<'_>>),
         reference: &Reference,
         now: u64,
     ) -> CourseStep {

@@ -12,7 +12,7 @@
 //! An arm that is faster than the cap all the same, on its way over joints or along a chunk, or
 //! because something throws it, gives up its goal and is braked.
 
-use franka_model::{EndEffector, JointVector, Model};
+use franka_model::{EndEffector, Jacobian, JointVector, Model};
 
 /// Share of the cap that the reference keeps on the way to a pose. The rest is for the arm, which
 /// swings about it.
@@ -31,38 +31,56 @@ pub(crate) const LEAST: f64 = 0.1;
 /// The greatest that is accepted, `[m/s]`: the robot's own limit of the end effector.
 pub(crate) const MOST: f64 = 3.0;
 
-/// Share of the velocities `dq`, `[rad/s]`, that joints at `q` may have under a cap, `[m/s]`;
-/// `None` if they may have all.
-pub(crate) fn share(
-    cap: f64,
-    model: &Model,
-    ee: &EndEffector,
-    q: &JointVector,
-    dq: &JointVector,
-) -> Option<f64> {
-    let most = (SHARE * cap).min(cap - RESERVE);
-    let onset = ONSET * most;
-    let speed = model.fastest_point(q, dq, ee);
-    if speed <= onset {
-        return None;
+/// The speed cap of a session.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpeedCap<'a> {
+    /// `[m/s]`
+    pub(crate) speed: f64,
+    /// As the robot's state has it.
+    pub(crate) hand: &'a EndEffector,
+}
+
+impl SpeedCap<'_> {
+    /// Share of the velocities `dq`, `[rad/s]`, that joints at `q` may have; `None` if they may
+    /// have all. `jacobian` is that of what follows a pose: the hand, or an object in it, which
+    /// keeps to the cap, too.
+    pub(crate) fn share(
+        self,
+        model: &Model,
+        q: &JointVector,
+        dq: &JointVector,
+        jacobian: &Jacobian,
+    ) -> Option<f64> {
+        let most = (SHARE * self.speed).min(self.speed - RESERVE);
+        let onset = ONSET * most;
+        let object = (jacobian.fixed_rows::<3>(0) * dq).norm();
+        let speed = model.fastest_point(q, dq, self.hand).max(object);
+        if speed <= onset {
+            return None;
+        }
+        let room = most - onset;
+        let kept = most - room * (-(speed - onset) / room).exp();
+        Some(kept / speed)
     }
-    let room = most - onset;
-    let kept = most - room * (-(speed - onset) / room).exp();
-    Some(kept / speed)
 }
 
 #[cfg(test)]
 mod tests {
-    use franka_model::READY;
+    use franka_model::{Frame, READY};
 
     use super::*;
 
     /// The speed that is kept of one, `[m/s]`, under a cap of 0.5 m/s.
     fn kept(speed: f64) -> f64 {
-        let (model, ee) = (Model::fr3(), EndEffector::default());
+        let (model, hand) = (Model::fr3(), EndEffector::default());
+        let jacobian = model.zero_jacobian(Frame::EndEffector, &READY, &hand);
         let along = JointVector::from([0.3, 0.2, 0.0, -0.4, 0.1, 0.3, 1.0]);
-        let dq = along * (speed / model.fastest_point(&READY, &along, &ee));
-        speed * share(0.5, model, &ee, &READY, &dq).unwrap_or(1.0)
+        let dq = along * (speed / model.fastest_point(&READY, &along, &hand));
+        let cap = SpeedCap {
+            speed: 0.5,
+            hand: &hand,
+        };
+        speed * cap.share(model, &READY, &dq, &jacobian).unwrap_or(1.0)
     }
 
     #[test]

@@ -31,6 +31,7 @@ use super::goal::{Goal, OnArrival, Target};
 use super::guard::clearance::{Clearance, KeepOut};
 use super::guard::deviation::Displacement;
 use super::guard::leash::{self, Held, Leash};
+use super::guard::speed_cap::SpeedCap;
 use super::guard::watchdog::OnTimeout;
 use super::guard::{Bindings, Guard};
 use super::kinematics::Posture;
@@ -318,10 +319,12 @@ impl RunningSession {
             Some(q) => Posture::asked(q.into()),
             None => Posture::kept(self.posture),
         };
+        let hand = &self.hand;
+        let speed_cap = self.speed_cap.map(|speed| SpeedCap { speed, hand });
         let step = self.route.step(
             model,
             &self.ee,
-            (&posture, self.speed_cap),
+            (&posture, speed_cap),
             &self.reference,
             &self.arm,
             aim,
