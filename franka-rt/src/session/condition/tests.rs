@@ -1,6 +1,6 @@
 use core::time::Duration;
 
-use franka_model::Jacobian;
+use franka_model::{Jacobian, JointVector};
 use franka_proto::RobotState;
 use nalgebra::Isometry3;
 use rand::rngs::SmallRng;
@@ -30,6 +30,7 @@ impl Arm {
             measured: Measured {
                 time: 1000,
                 q: q.into(),
+                dq: JointVector::zeros(),
                 pose: Isometry3::translation(0.3, -0.1, 0.5),
                 object: Isometry3::translation(0.3, -0.1, 0.5),
                 jacobian,

@@ -91,9 +91,8 @@ pub(super) struct RunningSession {
     waits: bool,
     /// Whether the arm is held back from the reference of an object that is carried.
     lags: bool,
-    /// Greatest speed of any point of the arm, `[m/s]`, and whether the arm was faster.
+    /// Greatest speed of any point of the arm, `[m/s]`.
     speed_cap: Option<f64>,
-    too_fast: bool,
 }
 
 /// How the goal stands.
@@ -140,6 +139,7 @@ pub(super) struct Measured {
     /// `message_id` of the state.
     pub(super) time: u64,
     pub(super) q: JointVector,
+    pub(super) dq: JointVector,
     /// `O_T_EE`.
     pub(super) pose: Isometry3<f64>,
     /// The pose of what goals lead somewhere: the object in the hand, or the same.
@@ -191,6 +191,7 @@ impl RunningSession {
             arm: Measured {
                 time: state.message_id,
                 q: measured,
+                dq: state.dq.into(),
                 pose: rigid(&pose),
                 object: rigid(&pose),
                 jacobian,
@@ -217,7 +218,6 @@ impl RunningSession {
             waits: false,
             lags: false,
             speed_cap: None,
-            too_fast: false,
         };
         this.take_hold();
         this.set_out();
@@ -274,7 +274,7 @@ impl RunningSession {
         let mut bindings = Bindings::default();
         bindings.set(Guard::PlanFailure, moved.is_err());
         bindings.set(Guard::Deviation, self.watch_deviation(model, leashed));
-        bindings.set(Guard::SpeedCap, self.watch_speed());
+        bindings.set(Guard::SpeedCap, self.watch_speed(model));
         self.react();
         if let Some(goal) = newer {
             self.take_up(goal, now);
@@ -363,12 +363,11 @@ impl RunningSession {
         self.arm = Measured {
             time: state.message_id,
             q,
+            dq,
             pose: hand,
             object: hand * self.grasp.unwrap_or_default(),
             jacobian: dynamics.jacobian,
         };
-        let fastest = || model.fastest_point(&q, &dq, &self.hand);
-        self.too_fast = self.speed_cap.is_some_and(|cap| fastest() > cap);
         let Next { step, mut bindings } = self.next.take().unwrap_or_default();
         let anchored = self.reanchor(model, state);
         let step = match step {

@@ -112,12 +112,15 @@ impl RunningSession {
     }
 
     /// Gives up a goal on whose way the arm was faster than the cap. Returns whether it was.
-    pub(super) fn watch_speed(&mut self) -> bool {
+    pub(super) fn watch_speed(&mut self, model: &Model) -> bool {
+        let arm = &self.arm;
+        let fastest = || model.fastest_point(&arm.q, &arm.dq, &self.hand);
+        let too_fast = self.speed_cap.is_some_and(|cap| fastest() > cap);
         let over = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_));
-        if self.too_fast && !over && self.heading() != Target::Rest {
+        if too_fast && !over && self.heading() != Target::Rest {
             self.give_up(Lapse::TooFast);
         }
-        self.too_fast
+        too_fast
     }
 
     /// Gives the goal up if the team has just stopped and the arm goes anywhere. One that was given
