@@ -2,7 +2,7 @@
 
 const LIT_MS = 1000;
 /** Those that a motion of the page can meet; others light up, too, once they bind. */
-const ALWAYS = ["force cap", "clearance", "joint range", "joint velocity", "velocity limit", "leash", "deviation", "deadman"];
+const ALWAYS = ["force cap", "speed cap", "clearance", "joint range", "joint velocity", "velocity limit", "leash", "deviation", "deadman"];
 
 export class Guards {
   #names = [];
