@@ -60,9 +60,10 @@ pub(crate) struct Team {
 #[pymethods]
 impl Team {
     /// Begins a session for each robot, as `Robot.engage` does, with the same options for all:
-    /// `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture`; returns a `Team`.
-    /// A robot that is silent for `silence` seconds brakes the others. Raises `MotionError` of the
-    /// first arm that is not engaged; the others are then let go. Cancelling ends all sessions.
+    /// `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture`, `speed_cap`;
+    /// returns a `Team`. A robot that is silent for `silence` seconds brakes the others. Raises
+    /// `MotionError` of the first arm that is not engaged; the others are then let go. Cancelling
+    /// ends all sessions.
     #[staticmethod]
     #[pyo3(signature = (*robots, silence = SILENCE.as_secs_f64(), **options))]
     fn engage(
@@ -76,8 +77,11 @@ impl Team {
             let robot = robot.cast::<Robot>()?.get().connected()?;
             let mut keywords = Keywords::new("Team.engage", options)?;
             let common = Options::of_session(&mut keywords, robot.model())?;
+            let mut engage = with_options!(Engage::default(), common, session);
+            if let Some(cap) = keywords.take("speed_cap")? {
+                engage = engage.speed_cap(cap.extract()?);
+            }
             keywords.end()?;
-            let engage = with_options!(Engage::default(), common, session);
             engaged.push((robot, engage));
         }
         if !(2..=MEMBERS_MAX.min(4)).contains(&engaged.len()) {

@@ -96,7 +96,7 @@ def test_robots_in_step_have_the_same_time() -> None:
 
 def test_the_fault_of_one_brakes_the_other_and_is_the_cause(fr3: Robot, sim_fr3: Sim, fer: Robot) -> None:
     async def main() -> None:
-        team = await Team.engage(fr3, fer, silence=SILENCE)
+        team = await Team.engage(fr3, fer, silence=SILENCE, speed_cap=1.0)
         moving = asyncio.ensure_future(team.move_to([up(fr3, 0.1), up(fer, 0.1)], speed=0.1))
         await moves((fr3, fer), moving)
         sim_fr3.trip("cartesian_reflex")

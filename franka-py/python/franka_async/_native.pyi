@@ -13,7 +13,7 @@ from .errors import ControlError
 from .explanation import Approach, Contact, Moment, Peak
 from .goal import Budget, Chunk, Controller, Destination, Gains, Joints, Margin, Target, Waypoint
 from .motion import MotionReport, Progress, Reference
-from .options import EngageOptions, FollowOptions, GoalOptions, MotionOptions, RecordOptions, SessionOptions, SimOptions, TuneOptions
+from .options import EngageOptions, FollowOptions, GoalOptions, MotionOptions, RecordOptions, SimOptions, TeamOptions, TuneOptions
 from .otg import Synchronisation
 from .recording import Episode, RecordedEvent, RecordedRobot, RecordStatus, Recovery, ReplayReport
 from .settings import VirtualWall
@@ -1294,7 +1294,7 @@ class Team:
     """Two to four arms as one: motions that begin together, one stop."""
 
     @staticmethod
-    def engage(*robots: Robot, silence: float = ..., **options: Unpack[SessionOptions]) -> Operation[Team]: ...
+    def engage(*robots: Robot, silence: float = ..., **options: Unpack[TeamOptions]) -> Operation[Team]: ...
     @property
     def arms(self) -> list[Arm]: ...
     def move_to(

@@ -21,6 +21,7 @@ __all__ = [
     "RecordOptions",
     "SessionOptions",
     "SimOptions",
+    "TeamOptions",
     "TuneOptions",
 ]
 
@@ -87,14 +88,18 @@ class FollowOptions(GoalOptions, total=False):
     """What happens when no target has come for so many seconds."""
 
 
-class EngageOptions(SessionOptions, total=False):
+class TeamOptions(SessionOptions, total=False):
+    """Options of the session of several robots, for each of them."""
+
+    speed_cap: float | None
+    """The most of any joint, the flange and the end effector, in m/s."""
+
+
+class EngageOptions(TeamOptions, total=False):
     """Options of a session."""
 
     keep_out: Iterable[Plane | Box] | None
     """Regions that the arm keeps out of."""
-
-    speed_cap: float | None
-    """The most of any joint, the flange and the end effector, in m/s."""
 
     deadman: Deadman | None
     """While it is silent, and once it is gone, the arm brakes and holds."""

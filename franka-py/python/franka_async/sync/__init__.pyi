@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from typing_extensions import Unpack
 from ..goal import Budget, Chunk, Controller, Destination, Gains, Joints, Margin, Target, Waypoint
 from ..motion import MotionReport, Reference
-from ..options import EngageOptions, FollowOptions, GoalOptions, MotionOptions, RecordOptions, SessionOptions, TuneOptions
+from ..options import EngageOptions, FollowOptions, GoalOptions, MotionOptions, RecordOptions, TeamOptions, TuneOptions
 from ..recording import RecordStatus, ReplayReport
 from ..settings import VirtualWall
 from ..streams import Reading, Stream
@@ -394,7 +394,7 @@ class Team:
     """Two to four arms as one: motions that begin together, one stop."""
 
     @staticmethod
-    def engage(*robots: Robot, silence: float=..., **options: Unpack[SessionOptions]) -> Team:
+    def engage(*robots: Robot, silence: float=..., **options: Unpack[TeamOptions]) -> Team:
         ...
 
     @property
