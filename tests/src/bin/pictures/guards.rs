@@ -6,13 +6,18 @@ use svg::node::element::Group;
 use crate::canvas::{BLUE, GREY, INK, ORANGE, arrow, centred, file, labelled, line, paper, text};
 
 /// What is passed, what it is for, and whether it is a guard, which acts only where it binds.
-const STAGES: [(&str, &str, bool); 12] = [
+const STAGES: [(&str, &str, bool); 13] = [
     (
         "watchdog, deadman, lead",
         "a program that is silent or gone; a target that is far away",
         true,
     ),
     ("course", "jerk-limited motion to the target", false),
+    (
+        "speed cap",
+        "joints, flange and end effector on the way to a pose",
+        true,
+    ),
     (
         "clearance",
         "the arm's distance to itself and to regions to keep out of",
@@ -102,7 +107,7 @@ pub(crate) fn draw() -> String {
         .add(span(24.0, 0, STAGES.len(), "goals"))
         .add(span(
             64.0,
-            10,
+            11,
             STAGES.len(),
             "a control function, with limiter",
         ));
