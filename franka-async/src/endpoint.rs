@@ -149,6 +149,9 @@ impl FromStr for Endpoint {
     type Err = EndpointError;
 
     fn from_str(text: &str) -> Result<Self, EndpointError> {
+        if text.contains("://") {
+            return Err(EndpointError::Name { name: text.into() });
+        }
         let (host, port) = if let Some(rest) = text.strip_prefix('[') {
             let brackets = || EndpointError::Brackets { text: text.into() };
             let (inside, after) = rest.split_once(']').ok_or_else(brackets)?;
@@ -349,7 +352,11 @@ mod tests {
             ),
             (
                 "http://robot.lan:80",
-                "`http://robot.lan:80` is not an IP address",
+                "`http://robot.lan:80` is not a host name: expected letters",
+            ),
+            (
+                "http://172.16.0.2/",
+                "`http://172.16.0.2/` is not a host name: expected letters",
             ),
             ("[robot.lan]:1337", "`robot.lan` is not an IP address"),
             (
