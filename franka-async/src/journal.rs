@@ -18,7 +18,7 @@ use franka_proto::{Request, gripper, vacuum};
 use franka_record::EventKind;
 use franka_rt::driver::Program;
 use franka_rt::lifecycle::{NewMotion, Outcome};
-use franka_rt::session::{Goal, GoalId, OnArrival};
+use franka_rt::session::{Goal, GoalId, OnArrival, Target};
 use franka_rt::supervision::Event;
 use franka_rt::thread::{AttachError, CycleFeed, CycleReader};
 
@@ -275,6 +275,8 @@ impl Given {
             NewMotion::Goal { goal, .. } => {
                 let kind = match goal.on_arrival {
                     _ if path.is_some() => "move_through",
+                    _ if matches!(goal.target, Target::Rest) => "hold",
+                    _ if matches!(goal.target, Target::Guide(_)) => "guide",
                     _ if set => "set",
                     OnArrival::Hold => "follow",
                     OnArrival::ReportAndHold | OnArrival::ReportAndFinish => "move_to",
