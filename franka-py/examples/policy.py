@@ -30,7 +30,7 @@ async def main(address: str) -> None:
         # The control thread brakes the arm if no target comes for a second, whatever Python is busy with.
         report = await robot.follow(targets, watchdog=(1.0, "brake"))
         await deciding
-        print(f"followed for {report.duration:.1f} s, {report.overruns} commands were late")
+        print(f"followed for {report.duration:.1f} s, {report.lost_states} states were lost")
 
 
 if __name__ == "__main__":
