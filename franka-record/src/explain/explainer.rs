@@ -9,7 +9,7 @@ use franka_model::{JointVector, Model};
 use franka_proto::{Errors, RobotState};
 use franka_rt::driver::Record;
 
-use super::timeline::Timeline;
+use super::timeline::{AFTER, Timeline};
 use super::{Cause, Explanation, Lost, Margins, MomentKind, Peaks, Trace, place};
 use crate::recording::RecordingError;
 use crate::{Cycle, Event, EventKind, HostTime};
@@ -62,6 +62,9 @@ struct Ended {
     errors: Errors,
     window: VecDeque<Trace>,
     tared: f64,
+    /// Until the arm rested.
+    margins: Margins,
+    peaks: Peaks,
 }
 
 impl<'a> Explainer<'a> {
@@ -194,7 +197,15 @@ impl Run {
                 errors,
                 window: self.window.clone(),
                 tared: self.tare.learned(),
+                margins: self.margins,
+                peaks: self.peaks,
             });
+            self.timeline.ended(state.message_id);
+        }
+        if let Some(ended) = &mut self.ended
+            && state.message_id.saturating_sub(ended.time) <= AFTER
+        {
+            (ended.margins, ended.peaks) = (self.margins, self.peaks);
         }
     }
 
@@ -205,6 +216,8 @@ impl Run {
             errors: Errors::NONE,
             window: self.window,
             tared: self.tare.learned(),
+            margins: self.margins,
+            peaks: self.peaks,
         });
         let traces: Vec<_> = ended.window.into();
         let contact = place::of(model, self.has_hand, &traces, ended.tared);
@@ -231,8 +244,8 @@ impl Run {
             cause,
             timeline,
             moments_left_out,
-            margins: self.margins,
-            peaks: self.peaks,
+            margins: ended.margins,
+            peaks: ended.peaks,
             contact,
             lost: Lost {
                 in_last_second: traces.iter().skip(1).map(|trace| trace.lost).sum(),

@@ -82,13 +82,14 @@ pub struct Explanation {
     pub end: u64,
     /// Why the robot stopped; `None` if it did not.
     pub cause: Option<Cause>,
-    /// What changed, oldest first, [`MOMENTS_MAX`] at most.
+    /// What changed, oldest first, [`MOMENTS_MAX`] at most: until the end and half a second after
+    /// it.
     pub timeline: Vec<Moment>,
     /// Changes for which the timeline had no room.
     pub moments_left_out: u64,
-    /// The nearest approach to each limit.
+    /// The nearest approach to each limit, until half a second after the end.
     pub margins: Margins,
-    /// The largest values.
+    /// The largest values, until half a second after the end.
     pub peaks: Peaks,
     /// Where something touched the arm as the motion ended; `None` without cycles.
     pub contact: Option<Place>,

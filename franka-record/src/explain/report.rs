@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::place::name;
-use super::{Approach, Explanation, Peak, Place};
+use super::{Approach, Explanation, Moment, MomentKind, Peak, Place};
 
 impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -28,7 +28,12 @@ impl fmt::Display for Explanation {
             }
             None => writeln!(f, "\nThe robot did not stop by itself.")?,
         }
-        if let Some(place) = &self.contact {
+        // Without a stop or a contact that the robot noticed, the estimate is of an untouched arm.
+        let touched =
+            |moment: &Moment| matches!(moment.kind, MomentKind::Contact | MomentKind::Collision);
+        if let Some(place) = &self.contact
+            && (self.cause.is_some() || self.timeline.iter().any(touched))
+        {
             writeln!(f, "\nWhat touched the arm")?;
             write!(f, "{place}")?;
         }
@@ -36,7 +41,7 @@ impl fmt::Display for Explanation {
         let shown = self.timeline.len().saturating_sub(SHOWN);
         let left_out = self.moments_left_out + shown as u64;
         if left_out > 0 {
-            writeln!(f, "  ({left_out} earlier)")?;
+            writeln!(f, "  ({left_out} more are left out)")?;
         }
         for moment in &self.timeline[shown..] {
             let before = self.end as i128 - i128::from(moment.time);

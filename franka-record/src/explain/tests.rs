@@ -79,6 +79,55 @@ fn first_edges_come_in_their_order_and_once() {
 }
 
 #[test]
+fn motions_after_the_stop_do_not_hide_it() {
+    let later = (3001..=60_000).map(|time| {
+        let mut state = state(time);
+        state.reflex_reason = RobotError::JointReflex.into();
+        state.tau_ext_hat_filtered[4] = -1e-3 * time as f64;
+        state
+    });
+    let mut explainer = Explainer::new(Model::fr3());
+    for state in hit().into_iter().chain(later) {
+        explainer.push_state(&state);
+    }
+    for number in 1..=600 {
+        let note = Note {
+            text: format!("chunk {number}"),
+            ..Note::default()
+        };
+        explainer.push_event(&Event {
+            time: HostTime::default(),
+            robot_time: 100 * number,
+            kind: EventKind::Note(note),
+        });
+    }
+    let explanation = explainer.finish();
+    let times = explanation.timeline.iter().map(|moment| moment.time);
+    assert_eq!((explanation.end, times.max()), (2500, Some(3000)));
+    assert_eq!(explanation.moments_left_out, 572);
+    let peak = explanation.peaks.external_torque.expect("a hit");
+    assert_eq!(peak.joint, Some(2));
+    assert!(
+        explanation
+            .to_string()
+            .contains("     -20  contact of joint 2")
+    );
+}
+
+#[test]
+fn an_arm_that_nothing_touches_is_not_said_to_be_touched() {
+    let untouched = (1..=2000).map(|time| {
+        let mut state = state(time);
+        state.dq[0] = 0.1;
+        state.tau_ext_hat_filtered[1] = if time > 1990 { 3.0 } else { 0.0 };
+        state
+    });
+    let text = explained(untouched).to_string();
+    assert!(text.contains("did not stop"), "{text}");
+    assert!(!text.contains("touche"), "{text}");
+}
+
+#[test]
 fn a_stop_before_the_first_cycle_is_none_of_these() {
     let explanation = explained(hit().into_iter().skip(2600));
     assert_eq!((&explanation.cause, explanation.end), (&None, 3000));
@@ -256,8 +305,9 @@ fn nothing_and_odd_numbers_are_taken() {
     };
     let explanation = explained([odd, again, late]);
     assert_eq!(explanation.cycles, 2);
-    let text = explanation.to_string();
-    assert!(text.contains("not finite"), "{text}");
+    let place = explanation.contact.as_ref().expect("cycles");
+    let unknown = place.unknown.as_deref().expect("no contact");
+    assert!(unknown.contains("not finite"), "{unknown}");
     assert!(explanation.figure().ends_with("</svg>"));
 }
 

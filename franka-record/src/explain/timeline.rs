@@ -1,5 +1,7 @@
 //! What changed from cycle to cycle.
 
+use core::mem;
+
 use franka_proto::{Errors, RobotMode, RobotState};
 use franka_rt::driver::Record;
 use franka_rt::session::Guard;
@@ -59,6 +61,8 @@ pub(super) struct Timeline {
     last_loss: Option<u64>,
     /// Whether goals are told by events.
     has_goals: bool,
+    /// The newest end of a motion.
+    end: Option<u64>,
 }
 
 impl Timeline {
@@ -146,7 +150,16 @@ impl Timeline {
         }
     }
 
+    /// The robot has ended a motion: events long after it are left out.
+    pub(super) fn ended(&mut self, time: u64) {
+        self.end = Some(time);
+    }
+
     pub(super) fn event(&mut self, event: &Event) {
+        if self.is_after(event.robot_time) {
+            self.left_out += 1;
+            return;
+        }
         let kind = match &event.kind {
             EventKind::Goal(_) | EventKind::Outcome(_) => MomentKind::Goal,
             EventKind::LinkLost { .. } | EventKind::LinkRestored { .. } => MomentKind::Loss,
@@ -171,12 +184,21 @@ impl Timeline {
         self.moments.push(Moment { time, kind, text });
     }
 
-    /// The newest moments, oldest first, and how many there were besides.
+    /// The moments before the end and shortly after it, oldest first, and how many there were
+    /// besides.
     pub(super) fn finish(mut self) -> (Vec<Moment>, u64) {
-        self.moments.sort_by_key(|moment| moment.time);
-        let surplus = self.moments.len().saturating_sub(MOMENTS_MAX);
-        self.moments.drain(..surplus);
-        (self.moments, self.left_out + surplus as u64)
+        let all = self.moments.len();
+        let mut moments = mem::take(&mut self.moments);
+        moments.retain(|moment| !self.is_after(moment.time));
+        moments.sort_by_key(|moment| moment.time);
+        let surplus = moments.len().saturating_sub(MOMENTS_MAX);
+        moments.drain(..surplus);
+        let left_out = (all - moments.len()) as u64;
+        (moments, self.left_out + left_out)
+    }
+
+    fn is_after(&self, time: u64) -> bool {
+        self.end.is_some_and(|end| time.saturating_sub(end) > AFTER)
     }
 }
 
@@ -185,6 +207,9 @@ fn appears(last: &mut Option<u64>, now: u64) -> bool {
     let before = last.replace(now);
     before.is_none_or(|before| now > before + PAUSE)
 }
+
+/// How long after the end of a motion what happened still belongs to it, `[ms]`: the arm brakes.
+pub(super) const AFTER: u64 = 500;
 
 /// `[ms]`
 const PAUSE: u64 = 200;
