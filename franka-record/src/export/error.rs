@@ -34,8 +34,10 @@ pub enum ExportError {
         source: ::parquet::errors::ParquetError,
     },
     /// The samples of an episode do not make one.
-    #[error("episode {task:?}: {why}")]
+    #[error("episode {index} ({task:?}): {why}")]
     Episode {
+        /// Its number in the dataset, from 0.
+        index: u64,
         /// Its task.
         task: String,
         /// What is wrong with it.

@@ -214,12 +214,30 @@ fn episodes_are_added_to_a_dataset_that_is_there() {
 }
 
 #[test]
+fn cycles_before_and_after_the_motion_of_an_episode_are_left_out() {
+    let root = folder("around");
+    let samples = (0..300).map(|millisecond| {
+        let mut sample = sample(millisecond);
+        if !(60..=210).contains(&millisecond) {
+            (sample.q_ref, sample.pose_ref) = (None, None);
+        }
+        sample
+    });
+    let mut dataset = Dataset::create(&root, options()).unwrap();
+    assert_eq!(dataset.add_episode("pick", None, samples).unwrap(), 4);
+    dataset.finish().unwrap();
+    let rows = rows(&root, "data/chunk-000/file-000.parquet");
+    let state = numbers(&rows[0], "observation.state");
+    assert!(near(state[1], sample(60).q[1]), "{state:?}");
+}
+
+#[test]
 fn what_makes_no_episode_or_no_dataset_is_refused_with_what_was_expected() {
     let root = folder("refused");
     let refused = |result: Result<u64, ExportError>| result.unwrap_err().to_string();
     let mut dataset = Dataset::create(&root, options()).unwrap();
     let mut add = |samples: Vec<Sample>| refused(dataset.add_episode("pick", None, samples));
-    assert_eq!(add(vec![]), "episode \"pick\": there is no cycle in it");
+    assert_eq!(add(vec![]), "episode 0 (\"pick\"): there is no cycle in it");
     let gap = (0..10).chain(100..200).map(sample).collect();
     assert!(add(gap).contains("no cycle for 91 ms after 5009 ms"));
     assert!(add(vec![sample(7), sample(7)]).contains("from 5007 ms back to 5007 ms"));
@@ -229,7 +247,9 @@ fn what_makes_no_episode_or_no_dataset_is_refused_with_what_was_expected() {
         samples
     };
     assert!(add(without(|it| it.width = None)).contains("no gripper"));
-    assert!(add(without(|it| it.q_ref = None)).contains("Action::Measured"));
+    assert!(add(without(|it| it.q_ref = None)).contains("told the arm where to be at 5050 ms"));
+    let free = |it: Sample| Sample { q_ref: None, ..it };
+    assert!(add(vec![free(sample(3))]).contains("at 5003 ms"));
     assert!(refused(dataset.add_episode(" ", None, [sample(0)])).contains("needs a text"));
     let nothing = dataset.finish().unwrap_err().to_string();
     assert!(nothing.contains("no episode was added"), "{nothing}");

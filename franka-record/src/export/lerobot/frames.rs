@@ -31,7 +31,8 @@ struct Moment {
 
 impl Frames {
     /// Frames of a dataset with this rate, the first of them at the first sample. The action of a
-    /// frame is where the arm was to be at the next one.
+    /// frame is where the arm was to be at the next one. Where that is the reference, samples
+    /// before the first and after the last that have one are left out.
     ///
     /// # Errors
     /// Why the samples make no episode.
@@ -41,7 +42,10 @@ impl Frames {
         gripper: bool,
         action: Action,
     ) -> Result<Self, String> {
-        let (at_frames, last) = resampled(samples, fps)?;
+        let (at_frames, last) = match action {
+            Action::Measured => resampled(samples, fps)?,
+            Action::Reference => resampled(commanded(samples)?, fps)?,
+        };
         let states = at_frames.iter().map(measured);
         let state = rows(states, gripper, None)?;
         let next = at_frames.iter().skip(1).chain([&last]);
@@ -70,11 +74,26 @@ fn measured(sample: &Sample) -> Result<Moment, String> {
     })
 }
 
+/// The samples from the first to the last that have a reference.
+fn commanded(samples: impl IntoIterator<Item = Sample>) -> Result<Vec<Sample>, String> {
+    let is_free = |sample: &Sample| sample.q_ref.is_none() || sample.pose_ref.is_none();
+    let mut samples: Vec<_> = samples.into_iter().collect();
+    let first = samples.iter().position(|sample| !is_free(sample));
+    match (first, samples.first()) {
+        (None, Some(sample)) => return Err(uncontrolled(sample)),
+        (begin, _) => drop(samples.drain(..begin.unwrap_or(0))),
+    }
+    while samples.last().is_some_and(is_free) {
+        samples.pop();
+    }
+    Ok(samples)
+}
+
 fn uncontrolled(sample: &Sample) -> String {
     let time = sample.time;
     format!(
-        "nothing told the arm where to be at {time} ms of the robot's clock: \
-         Action::Measured takes where it was"
+        "nothing told the arm where to be at {time} ms of the robot's clock: engage it for the \
+         whole episode, or take where it was (the action `measured`)"
     )
 }
 

@@ -204,7 +204,9 @@ impl Dataset {
         success: Option<bool>,
         samples: impl IntoIterator<Item = Sample>,
     ) -> Result<u64, ExportError> {
+        let index = self.contents.episodes;
         let refused = |why: String| ExportError::Episode {
+            index,
             task: task.to_owned(),
             why,
         };
