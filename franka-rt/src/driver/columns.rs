@@ -144,12 +144,21 @@ macro_rules! accelerometers {
 
 /// A column of the control thread's record.
 macro_rules! cycle {
-    ($name:literal, $shape:expr, $unit:literal, $kind:expr, $read:expr) => {
+    ($name:expr, $shape:expr, $unit:expr, $kind:expr, $read:expr) => {
         column($name, $shape, $unit, $kind, ColumnSource::Record($read))
     };
 }
 
-static COLUMNS: [Column; 65] = [
+/// Whether a guard binds.
+macro_rules! binds {
+    ($name:literal, $guard:ident) => {
+        cycle!($name, &[], "", ColumnKind::Flag, |cycle, row| {
+            row.push(f64::from(cycle.bindings.contains(Guard::$guard)));
+        })
+    };
+}
+
+static COLUMNS: [Column; 77] = [
     vector!(q, 7, "rad"),
     vector!(q_d, 7, "rad"),
     vector!(dq, 7, "rad/s"),
@@ -280,49 +289,25 @@ static COLUMNS: [Column; 65] = [
         ColumnKind::Name(&ACTIVITIES),
         |cycle, row| row.push(cycle.activity as u8 as f64)
     ),
-    cycle!(
-        "leash_binds",
-        &[],
-        "",
-        ColumnKind::Flag,
-        |cycle, row| binds(cycle, row, Guard::Leash)
-    ),
-    cycle!(
-        "force_cap_binds",
-        &[],
-        "",
-        ColumnKind::Flag,
-        |cycle, row| binds(cycle, row, Guard::ForceCap)
-    ),
-    cycle!(
-        "torque_clamp_binds",
-        &[],
-        "",
-        ColumnKind::Flag,
-        |cycle, row| { binds(cycle, row, Guard::TorqueClamp) }
-    ),
-    cycle!("velocity_binds", &[], "", ColumnKind::Flag, |cycle, row| {
-        binds(cycle, row, Guard::JointVelocity)
-    }),
-    cycle!(
-        "position_envelope_binds",
-        &[],
-        "",
-        ColumnKind::Flag,
-        |cycle, row| binds(cycle, row, Guard::PositionEnvelope)
-    ),
-    cycle!(
-        "clearance_binds",
-        &[],
-        "",
-        ColumnKind::Flag,
-        |cycle, row| binds(cycle, row, Guard::Clearance)
-    ),
+    binds!("leash_binds", Leash),
+    binds!("force_cap_binds", ForceCap),
+    binds!("torque_clamp_binds", TorqueClamp),
+    binds!("velocity_binds", JointVelocity),
+    binds!("position_envelope_binds", PositionEnvelope),
+    binds!("clearance_binds", Clearance),
+    binds!("inverse_kinematics_binds", InverseKinematics),
+    binds!("velocity_barrier_binds", VelocityBarrier),
+    binds!("torque_rate_binds", TorqueRate),
+    binds!("watchdog_binds", Watchdog),
+    binds!("deadman_binds", Deadman),
+    binds!("backstop_binds", Backstop),
+    binds!("deviation_binds", Deviation),
+    binds!("lead_binds", Lead),
+    binds!("plan_failure_binds", PlanFailure),
+    binds!("reaction_binds", Reaction),
+    binds!("team_binds", Team),
+    binds!("speed_cap_binds", SpeedCap),
 ];
-
-fn binds(cycle: &Record, row: &mut Vec<f64>, guard: Guard) {
-    row.push(f64::from(cycle.bindings.contains(guard)));
-}
 
 /// Names of [`RobotMode`], by their bytes.
 const MODES: [&str; RobotMode::ALL.len()] = [
