@@ -149,6 +149,22 @@ macro_rules! cycle {
     };
 }
 
+/// Of the reference, which is zero throughout where there is none.
+macro_rules! reference {
+    ($name:ident, $unit:literal) => {
+        cycle!(
+            stringify!($name),
+            &[7],
+            concat!($unit, ", not a number without a reference"),
+            ColumnKind::Float,
+            |cycle, row| row.extend(match cycle.q_ref == [0.0; 7] {
+                true => [f64::NAN; 7],
+                false => cycle.$name,
+            })
+        )
+    };
+}
+
 /// Whether a guard binds.
 macro_rules! binds {
     ($name:literal, $guard:ident) => {
@@ -226,8 +242,7 @@ static COLUMNS: [Column; 77] = [
             row.extend(RobotError::ALL.map(|error| f64::from(state.reflex_reason.contains(error))));
         }),
     ),
-    cycle!("q_ref", &[7], "rad", ColumnKind::Float, |cycle, row| row
-        .extend_from_slice(&cycle.q_ref)),
+    reference!(q_ref, "rad"),
     cycle!(
         "q_target",
         &[7],
@@ -235,15 +250,8 @@ static COLUMNS: [Column; 77] = [
         ColumnKind::Float,
         |cycle, row| row.extend(cycle.q_target.unwrap_or([f64::NAN; 7]))
     ),
-    cycle!("dq_ref", &[7], "rad/s", ColumnKind::Float, |cycle, row| row
-        .extend_from_slice(&cycle.dq_ref)),
-    cycle!(
-        "ddq_ref",
-        &[7],
-        "rad/s^2",
-        ColumnKind::Float,
-        |cycle, row| row.extend_from_slice(&cycle.ddq_ref)
-    ),
+    reference!(dq_ref, "rad/s"),
+    reference!(ddq_ref, "rad/s^2"),
     cycle!("tau_c", &[7], "N m", ColumnKind::Float, |cycle, row| row
         .extend_from_slice(&cycle.tau_c)),
     cycle!(
