@@ -38,6 +38,12 @@ def test_the_program_of_the_how_to_runs(capsys: pytest.CaptureFixture[str]) -> N
     assert "arrived after " in capsys.readouterr().out
 
 
+def test_chunks_are_followed(capsys: pytest.CaptureFixture[str]) -> None:
+    run("how-to/chunks.md")
+    [line] = capsys.readouterr().out.splitlines()
+    assert float(line.split(" mm")[0]) < 20.0
+
+
 @pytest.mark.parametrize("name", ["careful", "touch", "follow_policy"])
 def test_the_functions_of_the_chapter_run(chapter: dict[str, Any], live: Sim, name: str) -> None:
     function: Callable[[Robot], Awaitable[None]] = chapter[name]
