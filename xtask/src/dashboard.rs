@@ -20,10 +20,10 @@ pub(crate) fn assets(workspace: &Workspace) -> anyhow::Result<()> {
 /// Fails if the files in `franka-dash/page/dist` are not those that [`assets`] makes.
 pub(crate) fn check_assets(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let page = page(workspace);
-    if find(&["npm"]).is_none() {
+    if !has_npm() {
         return Outcome::without("no npm".to_owned());
     }
-    let made = workspace.target().join("dashboard-page").join("dist");
+    let made = work(workspace).join("dist");
     make(workspace, &made)?;
     for name in MADE {
         let read = |directory: &Path| {
@@ -38,48 +38,69 @@ pub(crate) fn check_assets(workspace: &Workspace) -> anyhow::Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-fn page(workspace: &Workspace) -> PathBuf {
+/// Whether [`bundle`] can run.
+pub(crate) fn has_npm() -> bool {
+    find(&["npm"]).is_some()
+}
+
+pub(crate) fn page(workspace: &Workspace) -> PathBuf {
     workspace.root().join("franka-dash").join("page")
 }
 
 /// What is made.
 const MADE: [&str; 3] = ["dash.js", "dash.css", "licenses.txt"];
 
-/// Makes the files of the page in `dist`. Needs npm, which checks the packages against the hashes
-/// of the lock file; none of their scripts runs.
+/// Makes the files of the page in `dist`.
 fn make(workspace: &Workspace, dist: &Path) -> anyhow::Result<()> {
-    let page = page(workspace);
-    let work = workspace.target().join("dashboard-page");
+    let entry = page(workspace).join("src").join("main.js");
+    bundle(workspace, &entry, &dist.join("dash.js"), "esm")?;
+    Ok(fs::write(dist.join("licenses.txt"), licences(workspace)?)?)
+}
+
+/// Puts a module, all that it imports, and their styles beside it, in one file each. Needs npm,
+/// which checks the packages against the hashes of the lock file; none of their scripts runs.
+pub(crate) fn bundle(
+    workspace: &Workspace,
+    entry: &Path,
+    output: &Path,
+    format: &str,
+) -> anyhow::Result<()> {
+    let work = work(workspace);
     for name in ["package.json", "package-lock.json"] {
-        copy(&page.join(name), &work.join(name))?;
-    }
-    // Files that no longer exist would do no harm: only what is imported counts.
-    let sources = page.join("src");
-    for entry in fs::read_dir(&sources)? {
-        let name = entry?.file_name();
-        copy(&sources.join(&name), &work.join("src").join(&name))?;
+        copy(&page(workspace).join(name), &work.join(name))?;
     }
     let mut npm = workspace.program("npm");
     npm.args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]);
     npm.arg("--prefer-offline");
     workspace.run(npm.current_dir(&work))?;
-    let mut esbuild = workspace.program(work.join("node_modules/.bin/esbuild"));
-    esbuild.args(["src/main.js", "--bundle", "--format=esm", "--minify"]);
+    let packages = work.join("node_modules");
+    let mut esbuild = workspace.program(packages.join(".bin/esbuild"));
+    esbuild.arg(entry).args(["--bundle", "--minify"]);
     esbuild.args(["--legal-comments=eof", "--log-level=warning"]);
-    esbuild.arg(format!("--outfile={}", dist.join("dash.js").display()));
-    workspace.run(esbuild.current_dir(&work))?;
+    esbuild.arg(format!("--format={format}"));
+    esbuild.arg(format!("--outfile={}", output.display()));
+    workspace.run(esbuild.env("NODE_PATH", packages))
+}
+
+/// The licences of what [`bundle`] adds, and of the meshes.
+pub(crate) fn licences(workspace: &Workspace) -> anyhow::Result<String> {
+    let packages = work(workspace).join("node_modules");
+    let meshes = page(workspace).join("meshes");
     let mut licences = String::new();
     for package in ["three", "uplot"] {
-        let package_directory = work.join("node_modules").join(package);
-        let text = fs::read_to_string(package_directory.join("LICENSE"))?;
+        let text = fs::read_to_string(packages.join(package).join("LICENSE"))?;
         licences += &format!("{package}\n\n{text}\n");
     }
     for name in ["NOTICE", "LICENSE-franka_description", "LICENSE"] {
-        let text = fs::read_to_string(page.join("meshes").join(name))?;
+        let text = fs::read_to_string(meshes.join(name))?;
         licences += &format!("meshes of the links: {name}\n\n{text}\n");
     }
-    fs::write(dist.join("licenses.txt"), licences)?;
-    Ok(())
+    Ok(licences)
+}
+
+/// Where the packages are installed.
+fn work(workspace: &Workspace) -> PathBuf {
+    workspace.target().join("dashboard-page")
 }
 
 fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
