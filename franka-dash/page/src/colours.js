@@ -1,4 +1,4 @@
-// Colours of what is drawn in the scene, on either ground; the legend has the same in style.css.
+// Colours of what is drawn in the scene, on either ground; the legend has the same in base.css.
 
 export const COLOURS = {
   measured: 0x7d93b5,

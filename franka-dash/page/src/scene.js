@@ -26,6 +26,7 @@ export class Scene extends EventTarget {
   #looks = "meshes";
   #force = new Arrow(COLOURS.force);
   #contact = new Contact();
+  #pull = new Arrow(COLOURS.contact);
   #regions = new Regions();
   #behind = new Trail(COLOURS.behind, { dashed: false });
   #ahead = new Trail(COLOURS.goal, { dashed: true });
@@ -52,7 +53,7 @@ export class Scene extends EventTarget {
     const sun = new THREE.DirectionalLight(0xffffff, 1.8);
     sun.position.set(1.5, -1, 3);
     this.#scene.add(sun, this.gizmo.group);
-    for (const mark of [this.#force, this.#contact, this.#regions, this.#behind, this.#ahead]) {
+    for (const mark of [this.#force, this.#contact, this.#pull, this.#regions, this.#behind, this.#ahead]) {
       this.#scene.add(mark.group);
     }
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.#colour());
@@ -132,6 +133,12 @@ export class Scene extends EventTarget {
     this.redraw();
   }
 
+  /** Shows how the arm is pulled: from a place to where the pointer has it; nothing for null. */
+  showPull(place, way) {
+    this.#pull.set(place, way, way?.length() ?? 0);
+    this.redraw();
+  }
+
   /** Shows what a motion would do; nothing for null. */
   preview(way) {
     this.#goal = way;
@@ -181,10 +188,13 @@ export class Scene extends EventTarget {
     return ray;
   }
 
-  /** The link under a pointer, 1 to 7, and where it is touched in its axes; null if none is. */
-  pick(event) {
+  /**
+   * The link under a pointer, 1 to 7, and where it is touched in its axes; null if none is. A handle
+   * under the pointer goes first, unless it is `before` it.
+   */
+  pick(event, { before = false } = {}) {
     const { measured } = this.#arms;
-    if (!measured || this.gizmo.isUnder(event)) return null;
+    if (!measured || (!before && this.gizmo.isUnder(event))) return null;
     const hit = measured.hit(this.#ray(event));
     if (!hit || hit.link === 0) return null;
     // The tool is pushed at link 7.
@@ -209,6 +219,7 @@ export class Scene extends EventTarget {
       endEffector: measured ? at(measured.links[9]).toArray() : null,
       links: [1, 2, 3, 4, 5, 6, 7].map((link) => (measured ? this.onPage(at(measured.links[link])) : null)),
       forceShown: this.#force.group.visible,
+      pullShown: this.#pull.group.visible,
       contactShown: this.#contact.group.visible,
       meshes: measured?.hasMeshes ?? false,
       width: measured?.width ?? null,
