@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! docs/src ── mdBook ──> target/book ── lychee: links
-//! cargo doc ──> target/book/rust      pdoc ──> target/book/python
+//! cargo doc ──> target/book/rust      pdoc ──> target/book/python      playground
 //! ```
 
 use std::fs;
@@ -16,9 +16,10 @@ use clap::Subcommand as _;
 use crate::Task;
 use crate::names;
 use crate::package;
+use crate::playground;
 use crate::python::{NEWEST, Python};
 use crate::step::Outcome;
-use crate::workspace::Workspace;
+use crate::workspace::{Workspace, copy_directory};
 
 /// The step of `cargo xtask test`: every page is in the summary, every Rust program is compiled by
 /// a test, and no link leads nowhere.
@@ -34,6 +35,7 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     };
     let book = build(workspace, &tools)?;
     println!("{} pages", pages.len());
+    playground::leave_out(&book, "only the links were checked")?;
     links(workspace, &tools, &book, &REFERENCES)
 }
 
@@ -45,6 +47,7 @@ pub(crate) fn serve(workspace: &Workspace, port: Option<u16>) -> anyhow::Result<
         Err(why) => bail!("{why}"),
     };
     let book = build(workspace, &tools)?;
+    playground::add(workspace, &book)?;
     // Cargo leaves pages of names that no longer exist.
     remove(&workspace.target().join("doc"))?;
     let mut rust = workspace.cargo();
@@ -57,7 +60,7 @@ pub(crate) fn serve(workspace: &Workspace, port: Option<u16>) -> anyhow::Result<
     );
     rust.args(["--package=franka-async", "--package=franka-sim"]);
     workspace.run(&mut rust)?;
-    copy(&workspace.target().join("doc"), &book.join("rust"))?;
+    copy_directory(&workspace.target().join("doc"), &book.join("rust"))?;
     let missing: &[&str] = match package::prepare(workspace)? {
         Ok(interpreter) => {
             let mut python = package::module(workspace, &interpreter, "pdoc");
@@ -233,21 +236,6 @@ fn remove(directory: &Path) -> anyhow::Result<()> {
         }
         _ => Ok(()),
     }
-}
-
-/// Copies a directory and all that is in it.
-fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
-    fs::create_dir_all(to)?;
-    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
-        let entry = entry?;
-        let target = to.join(entry.file_name());
-        if entry.file_type()?.is_dir() {
-            copy(&entry.path(), &target)?;
-        } else {
-            fs::copy(entry.path(), target)?;
-        }
-    }
-    Ok(())
 }
 
 /// Where the references are, which are built by `cargo xtask book` only.

@@ -48,6 +48,7 @@ mod package;
 mod page;
 mod peer_pages;
 mod peers;
+mod playground;
 mod python;
 mod realtime;
 mod recordings;
@@ -172,7 +173,8 @@ enum Task {
         #[arg(long = "try")]
         trial: bool,
     },
-    /// Build the book with the references of Rust and Python beside it, and serve it.
+    /// Build the book with the references of Rust and Python beside it and its playground, and
+    /// serve it.
     Book {
         /// Port on this computer.
         #[arg(long, default_value_t = 3000)]
