@@ -11,8 +11,8 @@ use crate::ours::Ours;
 use crate::step::{Outcome, Steps};
 use crate::workspace::Workspace;
 use crate::{
-    book, circles, commands, cross, dashboard, mujoco, names, package, peer_pages, peers, realtime,
-    recordings, reference_pages, release, texts, tidy,
+    book, circles, commands, cross, dashboard, mujoco, names, package, peer_pages, peers,
+    playground, realtime, recordings, reference_pages, release, texts, tidy,
 };
 
 /// A step that can be chosen with `--only`.
@@ -54,6 +54,8 @@ pub(crate) enum Check {
     Assets,
     /// The dashboard's page in a real browser.
     Dashboard,
+    /// The book's playground in a real browser.
+    Playground,
     /// What is portable, for other systems and machines.
     Targets,
 }
@@ -96,6 +98,7 @@ impl Check {
             Self::Recordings => ("recordings", "recordings read by the standard reader"),
             Self::Assets => ("assets", "the dashboard's files are what its sources make"),
             Self::Dashboard => ("dashboard", "the dashboard's page in a real browser"),
+            Self::Playground => ("playground", "the book's playground in a real browser"),
         }
     }
 
@@ -157,6 +160,7 @@ impl Check {
             Self::Recordings => return recordings::run(workspace),
             Self::Assets => return dashboard::check_assets(workspace),
             Self::Dashboard => return dashboard::run(workspace),
+            Self::Playground => return playground::check(workspace),
         }
         Ok(Outcome::Passed)
     }

@@ -1,4 +1,4 @@
-//! The dashboard's page: its files made from pinned packages, and the page in a real browser.
+//! The dashboard's page: its files made from pinned packages, and pages in a real browser.
 
 use std::env;
 use std::ffi::OsStr;
@@ -113,20 +113,24 @@ fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
 /// Runs the tests of the page in a browser; with `FRANKA_THOROUGH=1` its film is recorded, too.
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let film = workspace.target().join("dashboard").join("film.png");
-    match env::var_os("FRANKA_THOROUGH") {
-        Some(_) => test(workspace, "", &film),
-        None => test(workspace, "the_page", &film),
-    }
+    let all = ["the_page", "the_film"];
+    let is_thorough = env::var_os("FRANKA_THOROUGH").is_some();
+    let which = if is_thorough { &all[..] } else { &all[..1] };
+    browse(workspace, which, &[("FRANKA_FILM", &film)])
 }
 
 /// Records the page's film, which the README shows.
 pub(crate) fn film(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let file = workspace.root().join("docs/src/dashboard.png");
-    test(workspace, "the_film", &file)
+    browse(workspace, &["the_film"], &[("FRANKA_FILM", &file)])
 }
 
-/// Runs those tests of the page whose names have `which`; the film goes to a file.
-fn test(workspace: &Workspace, which: &str, film: &Path) -> anyhow::Result<Outcome> {
+/// Runs those tests in a browser whose names have one of `which`, with variables for them.
+pub(crate) fn browse(
+    workspace: &Workspace,
+    which: &[&str],
+    variables: &[(&str, &Path)],
+) -> anyhow::Result<Outcome> {
     let browsers = ["chromium", "chromium-browser", "google-chrome"];
     let find_both = || find(&["chromedriver"]).zip(find(&browsers));
     let found = find_both().or_else(|| {
@@ -141,11 +145,11 @@ fn test(workspace: &Workspace, which: &str, film: &Path) -> anyhow::Result<Outco
     // With the features of the step that runs all tests: what it has built is used again.
     test.args(["test", "--workspace", "--test=browser", "--features"]);
     test.arg(mujoco::features(workspace)?).arg("--");
-    test.args([which, "--ignored", "--nocapture"]);
+    test.args(which).args(["--ignored", "--nocapture"]);
     test.env("FRANKA_WEBDRIVER", driver);
     test.env("FRANKA_BROWSER", browser);
     test.env("FRANKA_PICTURES", workspace.target().join("dashboard"));
-    test.env("FRANKA_FILM", film);
+    test.envs(variables.iter().copied());
     workspace.run(&mut test)?;
     Ok(Outcome::Passed)
 }

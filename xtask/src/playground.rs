@@ -11,6 +11,7 @@ use std::path::Path;
 
 use crate::cross;
 use crate::dashboard;
+use crate::step::Outcome;
 use crate::workspace::{Workspace, copy_directory};
 
 /// Adds the playground to a built book, or a page in its place that says what it takes.
@@ -37,6 +38,20 @@ pub(crate) fn leave_out(book: &Path, why: &str) -> anyhow::Result<()> {
              <p>This copy of the book was built without the playground: {why}.</p>\n"
         ),
     )?)
+}
+
+/// The step `playground`: built, and used in a real browser.
+pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    if let Some(why) = lacks()? {
+        return Ok(Outcome::Skipped(why));
+    }
+    let folder = workspace.target().join("playground");
+    build(workspace, &folder)?;
+    dashboard::browse(
+        workspace,
+        &["the_playground"],
+        &[("FRANKA_PLAYGROUND", &folder)],
+    )
 }
 
 /// What is missing here to build it, if anything.

@@ -7,6 +7,7 @@ mod driver;
 mod film;
 mod panels;
 mod pictures;
+mod playground;
 mod served;
 mod several;
 mod targets;
@@ -65,6 +66,19 @@ fn the_film_of_the_readme_is_recorded() -> anyhow::Result<()> {
     let fr3 = Served::new(sim, "film")?;
     let page = Browser::open(&driver, &browser, (1440, 900))?;
     film::record(&page, &fr3, Path::new(&variable("FRANKA_FILM")?))?;
+    page.check_console()
+}
+
+#[test]
+#[ignore = "needs a browser: cargo xtask test --only playground"]
+fn the_playground_of_the_book_aims_gives_way_stops_and_recovers() -> anyhow::Result<()> {
+    let (driver, browser) = (variable("FRANKA_WEBDRIVER")?, variable("FRANKA_BROWSER")?);
+    let pictures = PathBuf::from(variable("FRANKA_PICTURES")?);
+    std::fs::create_dir_all(&pictures)?;
+    let driver = Driver::start(&driver)?;
+    let page = Browser::open(&driver, &browser, (750, 560))?;
+    let built = PathBuf::from(variable("FRANKA_PLAYGROUND")?);
+    playground::run(&page, built, &pictures)?;
     page.check_console()
 }
 
