@@ -112,8 +112,9 @@ impl Host for System {
 
     fn free_disk(&self) -> Result<u64, Unread> {
         let free = statvfs(".").map(|disk| {
+            // Each of them is as wide as the system wants it.
             let (blocks, size) = (disk.blocks_available(), disk.fragment_size());
-            blocks.saturating_mul(size)
+            u64::try_from(u128::from(blocks) * u128::from(size)).unwrap_or(u64::MAX)
         });
         free.map_err(|error| Unread::new("the current directory", &error.into()))
     }
