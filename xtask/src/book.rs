@@ -17,7 +17,7 @@ use crate::Task;
 use crate::names;
 use crate::package;
 use crate::playground;
-use crate::python::{NEWEST, Python};
+use crate::python::{NEWEST, OLDEST, Python};
 use crate::step::Outcome;
 use crate::workspace::{Workspace, copy_directory};
 
@@ -96,7 +96,7 @@ struct Tools {
 impl Tools {
     /// Installs them, or says what is missing for that.
     fn find(workspace: &Workspace) -> anyhow::Result<Result<Self, String>> {
-        let python = match Python::find(package::OLDEST..=NEWEST) {
+        let python = match Python::find(OLDEST..=NEWEST) {
             Ok(python) => python,
             Err(why) => return Ok(Err(why)),
         };

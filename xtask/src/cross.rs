@@ -8,6 +8,7 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context as _, ensure};
 
+use crate::python::{NEWEST, OLDEST, Python};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
@@ -41,23 +42,31 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let (there, missing): (Vec<_>, Vec<_>) = TARGETS
         .into_iter()
         .partition(|(target, _)| lacks(target, &sysroot).is_none());
-    for (target, packages) in &there {
-        let mut check = workspace.cargo();
-        check.args(["check", "--locked", "--target", target]);
-        check.args(packages.iter().map(|name| format!("--package={name}")));
-        workspace.run(&mut check)?;
-    }
     let missing: Vec<&str> = missing.iter().map(|(target, _)| *target).collect();
-    let missing = missing.join(" ");
-    Ok(match (there.is_empty(), missing.is_empty()) {
-        (_, true) => Outcome::Passed,
-        (true, _) => Outcome::Skipped(format!("not installed: `rustup target add {missing}`")),
-        (false, _) => Outcome::Partly(format!("not installed: `rustup target add {missing}`")),
+    let missing = format!("not installed: `rustup target add {}`", missing.join(" "));
+    if there.is_empty() {
+        return Ok(Outcome::Skipped(missing));
+    }
+    let path = match zig(workspace)? {
+        Ok(path) => path,
+        Err(why) => return Outcome::without(why),
+    };
+    for (target, what) in &there {
+        // What is in C is compiled by zig.
+        let mut check = workspace.program("cargo-zigbuild");
+        check
+            .args(["check", "--locked", "--target", target])
+            .args(*what);
+        workspace.run(check.env("PATH", &path))?;
+    }
+    Ok(match there.len() == TARGETS.len() {
+        true => Outcome::Passed,
+        false => Outcome::Partly(missing),
     })
 }
 
-/// Other systems that programs are developed on, and other machines that they run on, with the
-/// packages that are for them. None of these needs a compiler for C.
+/// Other systems that programs are developed on, and other machines that they run on, with what is
+/// for them.
 const TARGETS: [(&str, &[&str]); 4] = [
     ("aarch64-apple-darwin", UNIX),
     ("aarch64-unknown-linux-gnu", UNIX),
@@ -65,11 +74,23 @@ const TARGETS: [(&str, &[&str]); 4] = [
     ("x86_64-pc-windows-msvc", ANYWHERE),
 ];
 
-/// Driver, simulator, dashboard and doctor.
-const UNIX: &[&str] = &["franka-dash", "franka-doctor"];
+/// Driver, simulator, dashboard, doctor, the program `franka`, the Python package and the first
+/// example.
+const UNIX: &[&str] = &[
+    "--package=franka-cli",
+    "--package=franka-py",
+    "--package=franka-examples",
+    "--lib",
+    "--bins",
+    "--example=quickstart",
+];
 
 /// What needs no Unix: the driver does.
-const ANYWHERE: &[&str] = &["franka-proto", "franka-model", "franka-otg"];
+const ANYWHERE: &[&str] = &[
+    "--package=franka-proto",
+    "--package=franka-model",
+    "--package=franka-otg",
+];
 
 /// The architecture of a target.
 pub(crate) fn architecture(target: &str) -> &str {
@@ -95,6 +116,18 @@ pub(crate) fn is_installed(program: &str) -> bool {
         .stdout(Stdio::null())
         .stderr(Stdio::null());
     command.status().is_ok_and(|status| status.success())
+}
+
+/// The value of `PATH` with which Cargo finds zig and what builds by it, or what is missing to
+/// install them.
+pub(crate) fn zig(workspace: &Workspace) -> anyhow::Result<Result<OsString, String>> {
+    let python = match Python::find(OLDEST..=NEWEST) {
+        Ok(python) => python,
+        Err(why) => return Ok(Err(why)),
+    };
+    let requirements = workspace.root().join("franka-cli/dist/build.txt");
+    let interpreter = python.environment(workspace, "python-dist", &requirements)?;
+    path_with(&interpreter).map(Ok)
 }
 
 /// The value of `PATH` with which the programs of a virtual environment go first: what builds by

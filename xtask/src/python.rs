@@ -119,6 +119,9 @@ fn text(versions: &RangeInclusive<Version>) -> String {
     }
 }
 
+/// The oldest Python that the wheel and the tools of the steps are for.
+pub(crate) const OLDEST: Version = (3, 10);
+
 /// Newer than any Python 3.
 pub(crate) const NEWEST: Version = (3, u32::MAX);
 

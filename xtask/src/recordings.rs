@@ -1,7 +1,7 @@
 //! Recordings and datasets, read by the standard readers in Python.
 
 use crate::mujoco;
-use crate::python::{NEWEST, Python, Version};
+use crate::python::{NEWEST, OLDEST, Python};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
@@ -24,6 +24,3 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     workspace.run(test.env("FRANKA_RECORD_PYTHON", interpreter))?;
     Ok(Outcome::Passed)
 }
-
-/// The oldest Python that the packages have wheels for.
-const OLDEST: Version = (3, 10);

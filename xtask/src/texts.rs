@@ -1,8 +1,7 @@
 //! What is not Rust: the spelling of everything, the workflows, what dependencies may be.
 
 use crate::cross::is_installed;
-use crate::package::OLDEST;
-use crate::python::{NEWEST, Python};
+use crate::python::{NEWEST, OLDEST, Python};
 use crate::realtime::succeeds;
 use crate::step::Outcome;
 use crate::workspace::Workspace;

@@ -37,9 +37,7 @@ use anyhow::{Context as _, ensure};
 use sha2::{Digest as _, Sha256};
 use toml_edit::DocumentMut;
 
-use crate::cross::{architecture, lacks, path_with, sysroot};
-use crate::package::OLDEST;
-use crate::python::{NEWEST, Python};
+use crate::cross::{architecture, lacks, sysroot, zig};
 use crate::release;
 use crate::step::is_ci;
 use crate::workspace::Workspace;
@@ -211,12 +209,10 @@ impl Machine {
         if let Some(why) = lacks(self.target, &sysroot) {
             return Ok(Err(why));
         }
-        let python = match Python::find(OLDEST..=NEWEST) {
-            Ok(python) => python,
+        let path = match zig(workspace)? {
+            Ok(path) => path,
             Err(why) => return Ok(Err(why)),
         };
-        let requirements = workspace.root().join("franka-cli/dist/build.txt");
-        let interpreter = python.environment(workspace, "python-dist", &requirements)?;
         let target = match directory {
             "" => workspace.target().to_owned(),
             directory => workspace.target().join(directory),
@@ -228,7 +224,7 @@ impl Machine {
             "" => self.target.to_owned(),
             glibc => format!("{}.{glibc}", self.target),
         });
-        build.env("PATH", path_with(&interpreter)?);
+        build.env("PATH", path);
         build.env("CARGO_TARGET_DIR", &target);
         build.env("SOURCE_DATE_EPOCH", release.epoch.to_string());
         // Panics and debug information name files as they are in the repository. The last one that

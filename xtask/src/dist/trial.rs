@@ -23,8 +23,8 @@ use flate2::read::GzDecoder;
 use super::program::{Running, moves};
 use super::{Machine, Release, debian};
 use crate::cross::is_installed;
-use crate::package::{OLDEST, wheels};
-use crate::python::{NEWEST, Python};
+use crate::package::wheels;
+use crate::python::{NEWEST, OLDEST, Python};
 use crate::workspace::Workspace;
 
 /// Tries archive and package of a program for this machine, which are in `artefacts`, and crates

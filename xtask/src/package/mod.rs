@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::thread;
 
-use crate::python::{NEWEST, Python, Version};
+use crate::python::{NEWEST, OLDEST, Python, Version};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
@@ -116,9 +116,6 @@ pub(crate) fn module(workspace: &Workspace, interpreter: &Path, name: &str) -> C
 pub(crate) fn directory(workspace: &Workspace) -> PathBuf {
     workspace.root().join("franka-py")
 }
-
-/// The oldest Python that the wheel is for.
-pub(crate) const OLDEST: Version = (3, 10);
 
 /// The newest Python that all packages have wheels for which the package is measured with.
 const NEWEST_OF_ALL: Version = (3, 12);

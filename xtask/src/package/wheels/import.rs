@@ -7,8 +7,8 @@ use anyhow::ensure;
 
 use super::Platform;
 use crate::cross::{architecture, emulator, is_installed};
-use crate::package::{OLDEST, directory, module};
-use crate::python::{NEWEST, Python};
+use crate::package::{directory, module};
+use crate::python::{NEWEST, OLDEST, Python};
 use crate::workspace::Workspace;
 
 /// What became of importing a wheel.

@@ -21,8 +21,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail, ensure};
 
 use crate::cross::{architecture, lacks, path_with, sysroot};
-use crate::package::{OLDEST, directory, module};
-use crate::python::{NEWEST, Python};
+use crate::package::{directory, module};
+use crate::python::{NEWEST, OLDEST, Python};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 use import::{Imported, import, import_here};
