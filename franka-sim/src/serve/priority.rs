@@ -6,15 +6,22 @@
 /// What the host has against it, in practice that the user has no right to one.
 #[cfg(target_os = "linux")]
 pub(super) fn raise() -> std::io::Result<()> {
-    let parameters = libc::sched_param {
-        sched_priority: PRIORITY,
-    };
-    // SAFETY: 0 is the calling thread, and the pointer is to a live value, which is only read.
-    let result = unsafe { libc::sched_setscheduler(0, libc::SCHED_FIFO, &raw const parameters) };
-    if result == 0 {
-        Ok(())
-    } else {
-        Err(std::io::Error::last_os_error())
+    // SAFETY: `sched_param` is a C struct of integers, for which all zeros is a valid value. musl
+    // has further fields than the priority, so a literal would not build everywhere.
+    let mut parameters: libc::sched_param = unsafe { std::mem::zeroed() };
+    parameters.sched_priority = PRIORITY;
+    // musl refuses `sched_setscheduler` always.
+    // SAFETY: `pthread_self` is the valid id of the calling thread, and the pointer is to a live
+    // value, which is only read.
+    match unsafe {
+        libc::pthread_setschedparam(
+            libc::pthread_self(),
+            libc::SCHED_FIFO,
+            &raw const parameters,
+        )
+    } {
+        0 => Ok(()),
+        errno => Err(std::io::Error::from_raw_os_error(errno)),
     }
 }
 
