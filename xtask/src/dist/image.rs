@@ -46,7 +46,9 @@ pub(super) fn image(release: &Release, parts: &[Part]) -> anyhow::Result<Vec<u8>
     }
     let index = json!({"schemaVersion": 2, "mediaType": INDEX, "manifests": manifests});
     let mut image = blobs.add_json(INDEX, &index)?;
-    image["annotations"] = json!({"org.opencontainers.image.ref.name": release.version});
+    // A version alone is taken for the name of the image by podman.
+    let name = format!("franka:{}", release.version);
+    image["annotations"] = json!({"org.opencontainers.image.ref.name": name});
     let top = json!({"schemaVersion": 2, "mediaType": INDEX, "manifests": [image]});
     blobs
         .entries
