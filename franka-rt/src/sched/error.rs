@@ -18,7 +18,8 @@ pub enum SchedError {
     /// low.
     #[error("libfranka: unable to set realtime scheduling: {}", error_text(*.0))]
     SetScheduling(i32),
-    /// Nothing shows that the kernel is a real-time one. Under [`Realtime::Enforce`] only.
+    /// Nothing shows that the kernel is a real-time one. Under
+    /// [`Realtime::Enforce`](super::Realtime::Enforce) only.
     /// libfranka's text, and then what was read.
     #[error("libfranka: Running kernel does not have realtime capabilities. ({0})")]
     KernelNotRealtime(Box<Kernel>),
@@ -42,13 +43,15 @@ pub enum SchedError {
         /// Why not.
         errno: i32,
     },
-    /// Caller: a busy poll this long leaves the thread no time. Under either [`Realtime`].
+    /// Caller: a busy poll this long leaves the thread no time. Under either
+    /// [`Realtime`](super::Realtime).
     #[error("a busy poll of {} us is out of range: expected 1 to {} us", .got.as_micros(), BUSY_POLL_MAX.as_micros())]
     BusyPollRange {
         /// What was asked for.
         got: Duration,
     },
-    /// Caller: the stack to touch is larger than allowed. Under either [`Realtime`].
+    /// Caller: the stack to touch is larger than allowed. Under either
+    /// [`Realtime`](super::Realtime).
     #[error("a stack of {got} bytes is out of range: expected at most {PREFAULT_MAX} bytes")]
     PrefaultRange {
         /// What was asked for, in bytes.
