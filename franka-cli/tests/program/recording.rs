@@ -104,14 +104,17 @@ fn episodes_become_a_dataset() {
         };
         runtime.block_on(recorded).expect("recorded");
         let export = ["export", "run.mcap", "--lerobot", "data", "--fps", "20"];
-        // Nothing leads the arm before and after its motions.
-        home.run(&export).failed(1, &["--measured"]);
+        // Nothing leads the arm before and after its motions: those frames are left out.
+        let led = home.run(&[&export[..], &["--json"]].concat()).json();
         std::fs::remove_dir_all(home.path("data")).expect("deleted");
         let export = [&export[..], &["--measured"]].concat();
         let json = home.run(&[&export[..], &["--json"]].concat()).json();
         assert_eq!(json["episodes"], 2, "{json}");
         let frames = json["frames"].as_u64().expect("a count");
         assert!(frames > 10, "{json}");
+        assert_eq!(led["episodes"], 2, "{led}");
+        let led = led["frames"].as_u64().expect("a count");
+        assert!((5..=frames).contains(&led), "{led} of {frames}");
         // They are added to the dataset that is there.
         let text = home.run(&export).done();
         assert_eq!(text.trim(), format!("2 episodes, {frames} frames"));
