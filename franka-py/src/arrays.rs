@@ -5,7 +5,7 @@ use franka_async::Pose;
 use franka_async::nalgebra::{Matrix4, SMatrix};
 use franka_async::pose;
 use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLikeDyn, PyUntypedArrayMethods};
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyException, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 /// The numbers of an argument, with its shape. Row-major, whatever the order in memory.
@@ -18,11 +18,16 @@ impl Numbers {
     /// Reads a number, a list (of lists) or an array, of the argument called `name`.
     ///
     /// # Errors
-    /// `TypeError` if it is anything else.
+    /// `TypeError` if it is anything else; an interrupt that comes meanwhile, as it is.
     pub(crate) fn read(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let array: PyArrayLikeDyn<'_, f64, AllowTypeChange> = argument
-            .extract()
-            .map_err(|cause| PyTypeError::new_err(format!("{name} holds no numbers: {cause}")))?;
+        let array: PyArrayLikeDyn<'_, f64, AllowTypeChange> =
+            argument.extract().map_err(|cause: PyErr| {
+                // Ctrl-C may come while numpy reads the argument.
+                if !cause.is_instance_of::<PyException>(argument.py()) {
+                    return cause;
+                }
+                PyTypeError::new_err(format!("{name} holds no numbers: {cause}"))
+            })?;
         let shape = array.shape().to_vec();
         let values = match array.as_slice() {
             Ok(values) if array.is_c_contiguous() => values.to_vec(),

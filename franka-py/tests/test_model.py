@@ -224,6 +224,15 @@ def test_what_holds_no_numbers_is_a_type_error() -> None:
         Model.fr3().pose("ee", [[0.0] * 7, [0.0] * 6])
 
 
+def test_an_interrupt_while_numbers_are_read_is_passed_on() -> None:
+    class Interrupted:
+        def __array__(self, dtype: Any = None, copy: Any = None) -> np.ndarray[Any, Any]:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        Model.fr3().pose("ee", Interrupted())
+
+
 def test_a_batch_leaves_the_interpreter_to_others() -> None:
     ticks, over = [0], threading.Event()
 
