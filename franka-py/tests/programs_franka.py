@@ -122,6 +122,8 @@ def follow(f: Any, address: str, outcome: Any) -> None:
         followed = until(lambda: abs(targets.target()[2] - begin[2] - 0.02) < 1e-9)
         outcome.note("followed", followed)
         targets.follow([begin[:3]] * 1000, dt=0.01)
+        # A thread of the original sets the first point, when it gets to run.
+        outcome.note("back", until(lambda: abs(targets.target()[2] - begin[2]) < 1e-9))
         targets.move_by([0.0, 0.0, 0.01])
         time.sleep(0.05)
         outcome.note("taken over", targets.target() - begin)
