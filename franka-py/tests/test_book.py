@@ -38,6 +38,11 @@ def test_the_program_of_the_how_to_runs(capsys: pytest.CaptureFixture[str]) -> N
     assert "arrived after " in capsys.readouterr().out
 
 
+def test_the_model_gives_the_pose_of_the_flange() -> None:
+    height = run("python-computing.md")["flange"][2, 3]
+    assert height == pytest.approx(0.59, abs=0.01)
+
+
 def test_chunks_are_followed(capsys: pytest.CaptureFixture[str]) -> None:
     run("how-to/chunks.md")
     [line] = capsys.readouterr().out.splitlines()

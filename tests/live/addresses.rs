@@ -125,7 +125,7 @@ async fn what_names_no_robot_is_refused_before_anything_is_sent() {
             matches!(error, ConnectError::Endpoint(_)),
             "{endpoint}: {error}"
         );
-        assert_eq!(error.party(), Party::Caller, "{error}");
+        assert_eq!(error.party().to_string(), "caller", "{error}");
     }
     let error = connect("no-such-robot.invalid").await;
     let timely = matches!(error, ConnectError::Network { .. } | ConnectError::Timeout);

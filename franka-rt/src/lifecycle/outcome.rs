@@ -1,6 +1,7 @@
 //! How a motion ended: the value that its future resolves with. Why the robot ended it:
 //! `franka_diagnosis`.
 
+use core::fmt;
 use core::time::Duration;
 use std::sync::Arc;
 
@@ -352,6 +353,19 @@ pub enum Party {
     /// In the code of one side: the other side does not keep to the protocol, or is of another
     /// version.
     Peer,
+}
+
+/// One word, such as `caller`.
+impl fmt::Display for Party {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Caller => "caller",
+            Self::Robot => "robot",
+            Self::Link => "link",
+            Self::Host => "host",
+            Self::Peer => "peer",
+        })
+    }
 }
 
 /// How far a motion had come when the robot ended it.
