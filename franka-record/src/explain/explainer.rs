@@ -220,7 +220,8 @@ impl Run {
             peaks: self.peaks,
         });
         let traces: Vec<_> = ended.window.into();
-        let contact = place::of(model, self.has_hand, &traces, ended.tared);
+        let noticed = self.timeline.noticed();
+        let contact = place::of(model, self.has_hand, &traces, ended.tared, noticed);
         let (timeline, moments_left_out) = self.timeline.finish();
         let cause = stopped.then(|| {
             // One that is older is of another motion.

@@ -21,6 +21,9 @@ pub struct Place {
     pub tared: f64,
     /// Whether the flange was taken to carry a Hand.
     pub has_hand: bool,
+    /// Whether the robot itself noticed a contact or collision in the last 100 ms, or since the
+    /// end. Without that and without a stop, the estimate is of an untouched arm.
+    pub noticed: bool,
     /// The contact, as far as the torques tell.
     pub contact: Option<Placed>,
     /// Why the body is not known for sure, or nothing is; `None` if it is known.
@@ -74,8 +77,14 @@ pub(super) fn shape(model: &Model, has_hand: bool) -> Shape<'static> {
     if has_hand { shape.with_hand() } else { shape }
 }
 
-/// The contact at the end of `traces`.
-pub(super) fn of(model: &Model, has_hand: bool, traces: &[Trace], tared: f64) -> Option<Place> {
+/// The contact at the end of `traces`, before which the robot last noticed one at `noticed`.
+pub(super) fn of(
+    model: &Model,
+    has_hand: bool,
+    traces: &[Trace],
+    tared: f64,
+    noticed: Option<u64>,
+) -> Option<Place> {
     let end = traces.last()?.time;
     let near = traces.iter().filter(|trace| end - trace.time < NEAR_END);
     let strength = |trace: &&Trace| -> f64 {
@@ -105,6 +114,7 @@ pub(super) fn of(model: &Model, has_hand: bool, traces: &[Trace], tared: f64) ->
         torque: at.external,
         tared,
         has_hand,
+        noticed: noticed.is_some_and(|time| end.saturating_sub(time) < NEAR_END),
         contact,
         unknown,
     })

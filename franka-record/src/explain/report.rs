@@ -3,7 +3,7 @@
 use core::fmt;
 
 use super::place::name;
-use super::{Approach, Explanation, Moment, MomentKind, Peak, Place};
+use super::{Approach, Explanation, Peak, Place};
 
 impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -28,11 +28,8 @@ impl fmt::Display for Explanation {
             }
             None => writeln!(f, "\nThe robot did not stop by itself.")?,
         }
-        // Without a stop or a contact that the robot noticed, the estimate is of an untouched arm.
-        let touched =
-            |moment: &Moment| matches!(moment.kind, MomentKind::Contact | MomentKind::Collision);
         if let Some(place) = &self.contact
-            && (self.cause.is_some() || self.timeline.iter().any(touched))
+            && (self.cause.is_some() || place.noticed)
         {
             writeln!(f, "\nWhat touched the arm")?;
             write!(f, "{place}")?;

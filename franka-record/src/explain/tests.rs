@@ -128,6 +128,29 @@ fn an_arm_that_nothing_touches_is_not_said_to_be_touched() {
 }
 
 #[test]
+fn a_contact_that_was_over_before_the_end_is_not_said_to_touch() {
+    let text = |since: u64, until: u64| {
+        let touched = (1..=2000).map(|time| {
+            let mut state = state(time);
+            state.dq[0] = 0.1;
+            if (since..until).contains(&time) {
+                state.joint_contact[1] = 1.0;
+                state.tau_ext_hat_filtered[1] = 22.0;
+            } else if time > 1990 {
+                state.tau_ext_hat_filtered[1] = 3.0;
+            }
+            state
+        });
+        explained(touched).to_string()
+    };
+    let over = text(500, 600);
+    assert!(over.contains("contact of joint 2"), "{over}");
+    assert!(!over.contains("touche"), "{over}");
+    let lasting = text(500, 2001);
+    assert!(lasting.contains("What touched the arm"), "{lasting}");
+}
+
+#[test]
 fn a_stop_before_the_first_cycle_is_none_of_these() {
     let explanation = explained(hit().into_iter().skip(2600));
     assert_eq!((&explanation.cause, explanation.end), (&None, 3000));

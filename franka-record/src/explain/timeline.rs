@@ -184,6 +184,12 @@ impl Timeline {
         self.moments.push(Moment { time, kind, text });
     }
 
+    /// When the robot last noticed a contact or collision.
+    pub(super) fn noticed(&self) -> Option<u64> {
+        let flags = self.contacts.iter().chain(&self.collisions);
+        flags.copied().flatten().max()
+    }
+
     /// The moments before the end and shortly after it, oldest first, and how many there were
     /// besides.
     pub(super) fn finish(mut self) -> (Vec<Moment>, u64) {
