@@ -297,7 +297,7 @@ fn events_tell_goals_and_the_diagnosis() {
         .filter(|moment| moment.kind == MomentKind::Goal)
         .map(|moment| moment.text.as_str())
         .collect();
-    assert_eq!(goals, ["move_to", "reflex: reflex"]);
+    assert_eq!(goals, ["goal 7: move_to", "goal 7: reflex: reflex"]);
     let cause = explanation.cause.as_ref().expect("a reflex");
     assert_eq!(cause.text, "joint 2: external torque");
     let error = explanation.peaks.following_error.expect("a reference");

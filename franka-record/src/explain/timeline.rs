@@ -7,6 +7,7 @@ use franka_rt::driver::Record;
 use franka_rt::session::Guard;
 
 use super::MOMENTS_MAX;
+use crate::event::{Goal, Outcome};
 use crate::{Event, EventKind};
 
 /// Something that happened, and when.
@@ -172,7 +173,17 @@ impl Timeline {
             self.moments
                 .retain(|moment| moment.kind != MomentKind::Goal);
         }
-        self.add(event.robot_time, kind, event.kind.to_string());
+        // Which goal ended is in no other word of the text.
+        let text = match &event.kind {
+            EventKind::Goal(Goal { number, .. })
+            | EventKind::Outcome(Outcome { goal: number, .. })
+                if *number > 0 =>
+            {
+                format!("goal {number}: {}", event.kind)
+            }
+            kind => kind.to_string(),
+        };
+        self.add(event.robot_time, kind, text);
     }
 
     pub(super) fn add(&mut self, time: u64, kind: MomentKind, text: String) {
