@@ -122,15 +122,21 @@ pub(crate) fn pose_of(name: &str, shape: &[usize], values: &[f64]) -> PyResult<O
         }
         [7] => {
             let [x, y, z, quaternion @ ..] = <[f64; 7]>::try_from(values).expect("seven numbers");
-            let pose = pose::from_xyzw([x, y, z], quaternion).ok_or_else(|| {
-                let text =
-                    format!("{name} has the quaternion {quaternion:?}, which has no direction");
-                PyValueError::new_err(text)
-            });
-            pose.map(Some)
+            from_xyzw(name, [x, y, z], quaternion).map(Some)
         }
         _ => Ok(None),
     }
+}
+
+/// The pose of this position and quaternion `x y z w`, of any length but zero.
+///
+/// # Errors
+/// `ValueError`.
+pub(crate) fn from_xyzw(name: &str, position: [f64; 3], quaternion: [f64; 4]) -> PyResult<Pose> {
+    pose::from_xyzw(position, quaternion).ok_or_else(|| {
+        let text = format!("{name} has the quaternion {quaternion:?}, which has no direction");
+        PyValueError::new_err(text)
+    })
 }
 
 /// Reads a pose as [`pose`] does, but takes a `(4, 4)` matrix as it is.

@@ -2,12 +2,14 @@
 
 use franka_async::goal::{Destination, Target, Waypoint};
 use franka_async::nalgebra::{Matrix4, Translation3, UnitQuaternion, Vector3};
-use franka_async::{Offset, Pose, pose};
-use pyo3::exceptions::PyValueError;
+use franka_async::{Offset, Pose};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyAny, PySequence};
 
-use crate::arrays::{Numbers, array, pose_array, pose_of, unexpected_shape, vector};
+use crate::arrays::{
+    Numbers, array, check_finite, from_xyzw, pose_array, pose_of, unexpected_shape, vector,
+};
 
 /// Reads a destination of the end effector or the joints from the argument called `name`: what
 /// `franka_async.goal.Destination` describes.
@@ -28,7 +30,7 @@ pub(crate) fn destination(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<D
     match *numbers.shape {
         [3] => Ok(Destination::position(vector::<3>(name, argument)?)),
         [4] | [3, 3] => Ok(Destination::orientation(orientation(name, &numbers)?)),
-        _ => match pose_of(name, &numbers.shape, &numbers.values)? {
+        _ => match place(name, &numbers)? {
             Some(pose) => Ok(pose.into()),
             None => {
                 let also = "a position (3,), a quaternion (4,) or a rotation matrix (3, 3)";
@@ -47,17 +49,41 @@ pub(crate) fn destination(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<D
 pub(crate) fn target(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Target> {
     match composed(name, argument)? {
         Some(target) => Ok(target),
-        None => Ok(whole_pose(name, argument)?.into()),
+        None => match whole_pose(name, argument) {
+            Err(_) if is(argument, "Offset")? => Err(PyTypeError::new_err(format!(
+                "{name} is an Offset, expected a whole pose or Joints: turn it into a pose, \
+                 robot.pose() @ way"
+            ))),
+            pose => Ok(pose?.into()),
+        },
     }
 }
 
 const SHAPES: &str = "a pose (4, 4) or (7,), x y z and a quaternion x y z w";
 
 fn whole_pose(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Pose> {
-    let Numbers { shape, values } = Numbers::read(name, argument)?;
-    let pose = pose_of(name, &shape, &values)?;
-    pose.ok_or_else(|| unexpected_shape(name, &shape, SHAPES))
+    let numbers = Numbers::read(name, argument)?;
+    place(name, &numbers)?.ok_or_else(|| unexpected_shape(name, &numbers.shape, SHAPES))
 }
+
+/// As [`pose_of`], but of seven numbers the last four have to be about as long as a quaternion:
+/// joint positions given by mistake are no place to go to.
+fn place(name: &str, numbers: &Numbers) -> PyResult<Option<Pose>> {
+    if let ([7], [_, _, _, quaternion @ ..]) = (&*numbers.shape, &*numbers.values) {
+        let length = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if (length - 1.0).abs() > LENGTH_OFF {
+            let text = format!(
+                "{name} has a quaternion of length {length:.3} after its position, expected 1; \
+                 joint positions are Joints(q), or go to move_joints"
+            );
+            return Err(PyValueError::new_err(text));
+        }
+    }
+    pose_of(name, &numbers.shape, &numbers.values)
+}
+
+/// How far a quaternion's length may be from 1: its numbers may be rounded.
+const LENGTH_OFF: f64 = 0.1;
 
 /// A target that is `Joints` or a pair.
 fn composed(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Option<Target>> {
@@ -102,27 +128,23 @@ fn placed(
 ) -> PyResult<Pose> {
     let position = vector(&format!("the position of {name}"), position)?;
     let quaternion = vector(&format!("the quaternion of {name}"), quaternion)?;
-    pose::from_xyzw(position, quaternion).ok_or_else(|| {
-        let text = format!("{name} has the quaternion {quaternion:?}, which has no direction");
-        PyValueError::new_err(text)
-    })
+    from_xyzw(name, position, quaternion)
 }
 
 /// The orientation of a quaternion `x y z w` or a rotation matrix.
 fn orientation(name: &str, numbers: &Numbers) -> PyResult<UnitQuaternion<f64>> {
     let values = &numbers.values;
-    let (shape, values) = match **values {
-        [x, y, z, w] => (vec![7], vec![0.0, 0.0, 0.0, x, y, z, w]),
-        _ => {
-            let matrix = Matrix4::from_fn(|i, j| match (i, j) {
-                (0..3, 0..3) => values[3 * i + j],
-                (3, 3) => 1.0,
-                _ => 0.0,
-            });
-            (vec![4, 4], matrix.transpose().as_slice().to_vec())
-        }
-    };
-    let pose = pose_of(name, &shape, &values)?.expect("one of its shapes");
+    if let Ok(quaternion) = <[f64; 4]>::try_from(&values[..]) {
+        check_finite(name, &quaternion)?;
+        return Ok(from_xyzw(name, [0.0; 3], quaternion)?.rotation);
+    }
+    let matrix = Matrix4::from_fn(|i, j| match (i, j) {
+        (0..3, 0..3) => values[3 * i + j],
+        (3, 3) => 1.0,
+        _ => 0.0,
+    });
+    let values = matrix.transpose();
+    let pose = pose_of(name, &[4, 4], values.as_slice())?.expect("its shape");
     Ok(pose.rotation)
 }
 

@@ -11,17 +11,17 @@ from typing import Any
 import pytest
 from conftest import begun, connection
 
-from franka_async import Robot, Sim
+from franka_async import Robot, Sim, sync
 
 BOOK = Path(__file__).parents[2] / "docs" / "src"
 
 
-def run(page: str) -> dict[str, Any]:
-    """What the programs of a page define, after all of them have run."""
+def run(page: str, skipped: int = 0) -> dict[str, Any]:
+    """What the programs of a page define, after all of them have run but for the first ones."""
     programs = re.findall(r"^```python\n(.*?)^```", (BOOK / page).read_text(), re.MULTILINE | re.DOTALL)
     assert programs
     names: dict[str, Any] = {}
-    for program in programs:
+    for program in programs[skipped:]:
         # On a machine that is busy commands and targets come late: they are waited for.
         program = program.replace("Sim.fr3()", "Sim.fr3(patience=0.25)")
         exec(program.replace("watchdog=(0.5, ", "watchdog=(60.0, "), names)
@@ -58,6 +58,16 @@ def test_the_functions_of_the_chapter_run(chapter: dict[str, Any], live: Sim, na
             await function(robot)
 
     asyncio.run(main())
+
+
+def test_the_functions_of_the_page_on_franky_run(live: Sim) -> None:
+    chapter = run("from-franky.md", skipped=1)  # the first is a table of both packages
+    with sync.Robot(live.address, realtime="ignore") as robot:
+        chapter["waypoints"](robot)
+        chapter["until_contact"](robot)
+        start = robot.pose()
+        chapter["at_velocity"](robot, [0.0, 0.05, 0.0, 0.0, 0.0, 0.0], 0.5)
+        assert robot.pose()[1, 3] > start[1, 3] + 0.005
 
 
 def test_a_reflex_is_explained_and_recovered_from(

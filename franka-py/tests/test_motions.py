@@ -73,6 +73,13 @@ def test_a_pose_is_said_in_many_ways(robot: Robot) -> None:
         assert_near(robot, expected)
 
 
+def test_an_offset_where_only_a_place_can_be_is_a_type_error(robot: Robot) -> None:
+    with pytest.raises(TypeError, match="waypoint 1 is an Offset, expected a whole pose"):
+        robot.move_through([Offset([0.0, 0.0, 0.02])])
+    with pytest.raises(TypeError, match="target is an Offset"):
+        force_z(8.0).then(Offset([0.0, 0.0, 0.02]))
+
+
 def test_joints_go_where_they_are_told(robot: Robot) -> None:
     q = robot.state().q + 0.05
     robot.move_joints(q).wait()
@@ -101,7 +108,9 @@ def test_an_offset_is_along_the_axes_that_are_named(robot: Robot) -> None:
         ([0.1, 0.2], r"target has the shape \[2\], expected a pose \(4, 4\)"),
         ([[1.0, 2.0]], r"shape \[1, 2\]"),
         ([np.nan, 0.0, 0.5], "finite"),
-        ([0.3, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0], "no direction"),
+        ([0.3, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0], "length 0.000 after its position, expected 1"),
+        ([0.4, 0.0, 0.3, -2.4, 0.0, 1.6, 0.8], "joint positions are Joints"),
+        ([0.0, 0.0, 0.0, 0.0], "no direction"),
         (np.full((4, 4), 2.0), "not a rigid transformation"),
         (([0.3, 0.0, 0.5], [1.0, 2.0]), "second of the pair"),
     ],
