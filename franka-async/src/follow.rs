@@ -187,7 +187,10 @@ impl Follow {
             });
             // Not taken, or no answer: the goal is over, and the motion itself says why.
             if let Ok(Err(error)) = answer.await {
-                robot.send(Input::Cancel { goal: moving.id() });
+                robot.send(Input::Cancel {
+                    goal: moving.id(),
+                    refused: Some(error),
+                });
                 // Braked first: once the error is returned, the arm rests.
                 return match moving.await {
                     Err(MotionError::Stopped) | Ok(_) => Err(error.into()),

@@ -56,6 +56,8 @@ pub(crate) enum Input {
     },
     Cancel {
         goal: GoalId,
+        /// The target for which it is taken back, as it was refused.
+        refused: Option<GoalError>,
     },
     Stop {
         goal: GoalId,

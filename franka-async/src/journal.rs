@@ -211,7 +211,10 @@ impl Journal {
                 let what = if *paused { "paused" } else { "let go on" };
                 Some(What::Remark(format!("goal {} is {what}", goal.0)))
             }
-            Input::Cancel { goal } => Some(What::Remark(format!("goal {} is taken back", goal.0))),
+            Input::Cancel { goal, refused } => Some(What::Remark(match refused {
+                Some(error) => format!("goal {} stops, a target is refused: {error}", goal.0),
+                None => format!("goal {} is taken back", goal.0),
+            })),
             Input::Disengage { id } => Some(What::Remark(format!("session {} is to end", id.0))),
             Input::Stop { .. } => Some(What::Remark("a stop is asked for".into())),
             Input::Shutdown { .. } => Some(What::Remark("a shutdown is asked for".into())),

@@ -340,7 +340,10 @@ impl Robot {
 
     /// Cancels what was begun under this name.
     pub(crate) fn cancel(&self, goal: GoalId) {
-        self.send(Input::Cancel { goal });
+        self.send(Input::Cancel {
+            goal,
+            refused: None,
+        });
     }
 
     /// Sends to the bridge of the newest connection, or to the motion that waits for one.

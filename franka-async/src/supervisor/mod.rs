@@ -354,7 +354,7 @@ impl Inner {
                 }
                 _ => Input::Pause { goal, paused },
             },
-            Input::Cancel { goal } if self.core.withdraw(goal) => {
+            Input::Cancel { goal, .. } if self.core.withdraw(goal) => {
                 if let Some(Waiting {
                     motion, replies, ..
                 }) = self.waiting.take()

@@ -9,15 +9,16 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 
-use franka_async::Pose;
 use franka_async::control::JointVelocities;
 use franka_async::diagnosis::Diagnose;
 use franka_async::recording::{BlackBox, RecordOptions, RecordStatus, Recorder, Track, TrackError};
 use franka_async::settings::CollisionBehavior;
 use franka_async::state::RobotState;
+use franka_async::{MotionError, Pose};
 use franka_record::event::{Ending, Target};
 use franka_record::{Cycle, Event, EventKind, Recording};
 use franka_sim::{Sim, Tool};
+use tokio::sync::watch;
 
 use crate::{alone, at_the_clients_pace, long_way, simulated, under_way};
 
@@ -227,6 +228,30 @@ async fn a_reflex_is_recorded_with_its_diagnosis_and_fills_a_black_box() {
     let name = incident.file_name().unwrap().to_string_lossy();
     assert!(name.ends_with("-fr3-reflex.mcap"), "{name}");
     assert!(Recording::open(incident).unwrap().span().is_some());
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_target_of_a_stream_that_is_refused_is_told() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let folder = Folder::new();
+    let recorder = folder.recorder();
+    recorder.attach(&robot, roomy()).await.unwrap();
+    let (targets, newest) = watch::channel(robot.pose());
+    let following = tokio::spawn(robot.follow(newest).into_future());
+    under_way(&robot).await;
+    targets.send_replace(Pose::translation(2.0, 0.0, 0.5));
+    let refused = following.await.unwrap().unwrap_err();
+    assert!(matches!(refused, MotionError::Goal(_)), "{refused}");
+    finish(recorder);
+    robot.shutdown().await;
+
+    let (_, events) = folder.read("");
+    let told = |event: &&Event| match &event.kind {
+        EventKind::Note(note) => note.text.ends_with(&refused.to_string()),
+        _ => false,
+    };
+    assert_eq!(events.iter().filter(told).count(), 1, "{events:?}");
 }
 
 #[tokio::test(flavor = "multi_thread")]
