@@ -77,6 +77,9 @@ mod programs {
     #[doc = include_str!("../../docs/src/gripper.md")]
     struct Gripper;
 
+    #[doc = include_str!("../../docs/src/guards.md")]
+    struct Guards;
+
     #[doc = include_str!("../../docs/src/from-libfranka.md")]
     struct FromLibfranka;
 
