@@ -197,6 +197,7 @@ def test_a_report_has_what_happened(robot: Robot) -> None:
     same: MotionReport = pickle.loads(pickle.dumps(report))
     assert same == report and report != robot.move_by([0.0, 0.0, -0.02]).wait()
     assert repr(report).startswith("MotionReport(duration=")
+    assert str(report).startswith(f"arrived after {report.duration:.2f} s, ") and str(report).endswith("target; 0 states lost")
 
 
 def test_a_path_goes_through_its_waypoints(robot: Robot) -> None:

@@ -148,6 +148,13 @@ class MotionReport(Value):
     turnaround: Quantiles | None
     """Times from the receipt of a state to the departure of its command."""
 
+    def __str__(self) -> str:
+        """One line for people; ``repr`` has all."""
+        how = "arrived" if self.reacted is None else "reacted"
+        off = self.final_error
+        where = "" if off is None else f", {1e3 * off.translation:.1f} mm and {1e3 * off.rotation:.1f} mrad from the target"
+        return f"{how} after {self.duration:.2f} s{where}; {self.lost_states} states lost"
+
 
 @dataclass(frozen=True)
 class Progress:
