@@ -66,7 +66,7 @@ def test_the_functions_of_the_page_on_franky_run(live: Sim) -> None:
         chapter["waypoints"](robot)
         chapter["until_contact"](robot)
         start = robot.pose()
-        chapter["at_velocity"](robot, [0.0, 0.05, 0.0, 0.0, 0.0, 0.0], 0.5)
+        chapter["at_velocity"](robot, [0.0, 0.05, 0.0, 0.0, 0.0, 0.0], 1.5)
         assert robot.pose()[1, 3] > start[1, 3] + 0.005
 
 
