@@ -79,7 +79,7 @@ impl<'a> Evidence<'a> {
         self.entries.windows(2).filter_map(|pair| {
             let (before, command) = (&pair[0].state, &pair[1].command);
             let answers = command.message_id == before.message_id && before.motion_running();
-            (answers && !is_lost(before, &pair[1].state)).then_some(Sample {
+            (answers && !is_lost(before, &pair[1].state, 0)).then_some(Sample {
                 before,
                 command,
                 first: pair[0].command.message_id == 0,
@@ -151,16 +151,15 @@ impl Reading {
     }
 }
 
-/// Whether the command between two states in a row did not reach the robot in time, by the success
-/// rate that it reports. The state that shows the end of the motion does not tell.
-pub(super) fn is_lost(before: &RobotState, after: &RobotState) -> bool {
-    let (rate, rate_after) = (
-        before.control_command_success_rate,
-        after.control_command_success_rate,
-    );
-    after.message_id == before.message_id + 1
+/// Whether the command between two states did not reach the robot in time, by the success rate that
+/// it reports, where only the `skipped` states between them were not answered. The state that shows
+/// the end of the motion does not tell.
+pub(super) fn is_lost(before: &RobotState, after: &RobotState, skipped: u64) -> bool {
+    // The rate is that of the last hundred cycles.
+    let rate = before.control_command_success_rate - skipped as f64 / 100.0;
+    after.message_id == before.message_id + 1 + skipped
         && after.motion_running()
-        && rate_after < rate - SAME_RATE
+        && after.control_command_success_rate < rate - SAME_RATE
 }
 
 /// The velocity of every joint against what is allowed at `q`.

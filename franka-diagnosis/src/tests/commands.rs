@@ -138,6 +138,44 @@ fn commands_that_left_too_late_are_told_from_the_counts() {
 }
 
 #[test]
+fn states_that_a_slow_function_skips_are_not_lost() {
+    let mut story = Story::of(Model::fr3(), Generator::None);
+    // Each call takes 3 ms: the robot waits in vain for three commands, two states are skipped.
+    let slow = |state: &mut franka_proto::RobotState| state.message_id += 2;
+    for call in 1..=6_u32 {
+        let rate = 1.0 - f64::from(3 * call) / 100.0;
+        story.go(
+            |_, _| {},
+            |state| {
+                slow(state);
+                state.control_command_success_rate = rate;
+            },
+        );
+    }
+    let mut counts = MotionStatistics::default();
+    counts.skipped_states = 14;
+    counts.overruns = 7;
+    counts.worst_turnaround = Duration::from_millis(3);
+    let errors = [E::CommunicationConstraintsViolation];
+    let diagnosis = story.stop_counted(Some(&counts), &errors, |_, _| {}, slow);
+    let [
+        Cause::LateCommands { count: 7, .. },
+        Cause::LostPackets {
+            states: 0,
+            commands: 7,
+            unanswered: 14,
+            longest_run: 21,
+            ..
+        },
+    ] = diagnosis.causes[..]
+    else {
+        panic!("{:?}", diagnosis.causes)
+    };
+    assert_eq!(finding(&diagnosis).value, 21.0);
+    assert_eq!(diagnosis.advice[0], Advice::Host);
+}
+
+#[test]
 fn a_jerk_that_is_too_large_comes_before_an_acceleration_that_nearly_is() {
     let mut story = Story::of(Model::fr3(), Generator::JointVelocity);
     story.entries.last_mut().unwrap().state.ddq_d[0] = -9.0;
