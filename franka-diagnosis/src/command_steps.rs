@@ -208,12 +208,12 @@ pub(super) fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Opt
 }
 
 /// The largest step of the commanded torques before a cycle, if it takes more than half of what is
-/// allowed.
+/// allowed. What takes all of it and no more comes from the limiter, which spreads a step so.
 pub(super) fn torque_step(evidence: &Evidence<'_>, before: u64) -> Option<Cause> {
     let readings = commanded::torque_readings(evidence);
     let largest = readings
         .iter()
-        .filter(|reading| reading.cycle < before)
+        .filter(|reading| reading.cycle < before && (reading.score - 1.0).abs() > LIMITED)
         .max_by(|a, b| a.score.total_cmp(&b.score))?;
     (largest.score > 0.5).then_some(Cause::TargetStep {
         subject: largest.subject,
@@ -230,6 +230,9 @@ fn component<const N: usize>(motion: &Derivatives<N>, index: usize) -> Derivativ
         jerk: nalgebra::vector![motion.jerk[index]],
     }
 }
+
+/// What the limiter lets pass is nearer than this to what is allowed, as a share of it.
+const LIMITED: f64 = 2e-3;
 
 /// An offset that no robot minds, `[rad]` or `[m]`: how far off a first command may be is not
 /// published, but clients begin at measured positions, too.

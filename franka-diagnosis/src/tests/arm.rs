@@ -52,6 +52,24 @@ fn a_step_in_torque_that_was_allowed_is_still_named() {
 }
 
 #[test]
+fn a_torque_that_the_limiter_ramps_is_no_step() {
+    let mut story = torques();
+    for cycle in 1..=9_u32 {
+        story.go(
+            |_, command| command.tau_J_d[5] = f64::from(cycle) * 0.999_999,
+            |_| {},
+        );
+    }
+    let fast = |state: &mut franka_proto::RobotState| state.dq[5] = 4.5;
+    let keep = |before: &franka_proto::RobotState, command: &mut franka_proto::RobotCommand| {
+        command.tau_J_d = before.tau_J_d;
+    };
+    let diagnosis = story.stop(&[E::JointVelocityViolation], keep, fast);
+    assert_eq!(diagnosis.causes, []);
+    assert_eq!(diagnosis.advice, [Advice::SlowDown]);
+}
+
+#[test]
 fn a_collision_is_the_flagged_axis_not_the_strongest() {
     let mut story = torques();
     for (force, contact) in [(5.0, 0.0), (12.0, 1.0), (19.0, 1.0)] {
