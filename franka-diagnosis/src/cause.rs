@@ -70,7 +70,7 @@ pub enum Cause {
     },
     /// The estimate of an external force or torque was above the lower threshold.
     Contact {
-        /// The joint, or the axis of the stiffness frame.
+        /// The joint, or the axis of the base frame.
         subject: Subject,
         /// The largest estimate in these cycles: `[N·m]` of a joint or a rotation, `[N]` of a
         /// translation. Positive is what the robot does to its surroundings.

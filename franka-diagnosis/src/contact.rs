@@ -6,7 +6,8 @@ use super::cause::Cause;
 use super::evidence::Evidence;
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// The joints, or the axes of the stiffness frame.
+/// The joints, or the axes of the base at the stiffness frame. The vendor does not say which axes
+/// the flags are of; the simulator takes the same ones.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sense {
     Joints,
@@ -19,7 +20,7 @@ impl Sense {
     fn load(self, state: &RobotState) -> &[f64] {
         match self {
             Self::Joints => &state.tau_ext_hat_filtered,
-            Self::Axes => &state.K_F_ext_hat_K,
+            Self::Axes => &state.O_F_ext_hat_K,
         }
     }
 

@@ -24,7 +24,7 @@ pub enum Subject {
     Arm,
 }
 
-/// An axis of a frame: of the base frame, and for contacts of the stiffness frame.
+/// An axis of the base frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Axis {

@@ -76,7 +76,7 @@ fn a_collision_is_the_flagged_axis_not_the_strongest() {
         story.go(
             |_, _| {},
             |state| {
-                state.K_F_ext_hat_K = [30.0, 0.0, -force, 0.0, 0.0, 0.0];
+                state.O_F_ext_hat_K = [30.0, 0.0, -force, 0.0, 0.0, 0.0];
                 state.cartesian_contact[2] = contact;
             },
         );
@@ -85,7 +85,7 @@ fn a_collision_is_the_flagged_axis_not_the_strongest() {
         &[E::CartesianReflex],
         |_, _| {},
         |state| {
-            state.K_F_ext_hat_K[2] = -21.0;
+            state.O_F_ext_hat_K[2] = -21.0;
             state.cartesian_collision[2] = 1.0;
         },
     );

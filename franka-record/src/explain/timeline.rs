@@ -116,7 +116,7 @@ impl Timeline {
         };
         let load = |i: usize| match i {
             0..7 => state.tau_ext_hat_filtered[i],
-            _ => state.K_F_ext_hat_K[i - 7],
+            _ => state.O_F_ext_hat_K[i - 7],
         };
         let contacts = flags(&state.joint_contact, &state.cartesian_contact);
         let collisions = flags(&state.joint_collision, &state.cartesian_collision);
@@ -231,7 +231,7 @@ pub(super) const AFTER: u64 = 500;
 /// `[ms]`
 const PAUSE: u64 = 200;
 
-/// Joints, and axes of the stiffness frame.
+/// Joints, and axes of the base at the stiffness frame.
 const AXES: usize = 13;
 
 const NAMES: [(&str, &str); AXES] = [
