@@ -147,13 +147,13 @@ impl fmt::Display for Cause {
             } => {
                 write!(f, "lost packets:")?;
                 let mut comma = "";
-                for (count, what) in [
-                    (states, "states did not arrive"),
-                    (commands, "commands did not reach the robot in time"),
-                    (unanswered, "states were not answered"),
+                for (count, what, end) in [
+                    (states, "state", " did not arrive"),
+                    (commands, "command", " did not reach the robot in time"),
+                    (unanswered, "state", " got no answer"),
                 ] {
                     if count > 0 {
-                        write!(f, "{comma} {count} {what}")?;
+                        write!(f, "{comma} {}{end}", Count(count, what))?;
                         comma = ",";
                     }
                 }
@@ -168,7 +168,8 @@ impl fmt::Display for Cause {
                 worst_turnaround,
             } => write!(
                 f,
-                "{count} commands that left this computer too late, up to {} ms after their state",
+                "{} left this computer too late, up to {} ms after the state",
+                Count(count, "command"),
                 Digits(worst_turnaround.as_secs_f64() * 1e3)
             ),
             Self::Contact {
@@ -218,6 +219,16 @@ impl fmt::Display for Cause {
                 )
             }
         }
+    }
+}
+
+/// So many of something.
+struct Count(u64, &'static str);
+
+impl fmt::Display for Count {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let &Self(count, what) = self;
+        write!(f, "{count} {what}{}", if count == 1 { "" } else { "s" })
     }
 }
 

@@ -132,7 +132,7 @@ fn commands_that_left_too_late_are_told_from_the_counts() {
     let [late, Cause::LostPackets { commands: 20, .. }] = diagnosis.causes[..] else {
         panic!("{:?}", diagnosis.causes)
     };
-    let text = "20 commands that left this computer too late, up to 1.8 ms after their state";
+    let text = "20 commands left this computer too late, up to 1.8 ms after the state";
     assert_eq!(late.to_string(), text);
     assert_eq!(diagnosis.advice, [Advice::Host, Advice::Network]);
 }
