@@ -185,7 +185,13 @@ impl Place {
         let gripper = Gripper::connect(self.hand.clone()).await;
         gripper.map_err(|error| {
             let seen = seen!(error);
-            self.no_connection("Hand", seen, error.into()).into()
+            // Not the address of the robot beside it.
+            let listed = self.listed.as_ref().map(|_| self.hand.to_string());
+            let hand = Self {
+                listed,
+                ..self.clone()
+            };
+            hand.no_connection("Hand", seen, error.into()).into()
         })
     }
 
