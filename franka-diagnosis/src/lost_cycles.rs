@@ -30,7 +30,7 @@ impl Losses {
                 .last_running()
                 .map_or(0.0, |state| state.control_command_success_rate),
         };
-        // What is not in the log has not arrived, unless the counts of the whole motion know better.
+        // What is not in the log has not arrived, unless the counts of the motion know better.
         let skips = evidence
             .statistics
             .is_some_and(|counts| counts.lost_states == 0 && counts.skipped_states > 0);
