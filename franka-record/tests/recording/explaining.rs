@@ -78,7 +78,7 @@ fn a_recording_is_explained_as_its_cycles_are() {
     let goals = explanation.timeline.iter();
     let goals = goals.filter(|moment| moment.kind == MomentKind::Goal);
     let goals: Vec<_> = goals.map(|it| (it.time, it.text.as_str())).collect();
-    assert_eq!(goals, [(1500, "move_to"), (2025, "reflex")]);
+    assert_eq!(goals, [(1500, "goal 1: move_to"), (2025, "goal 1: reflex")]);
     let torque = |explanation: &Explanation| explanation.margins.torque.unwrap();
     let (torque, expected) = (torque(&explanation), torque(&expected));
     assert_eq!((torque.joint, torque.time), (expected.joint, expected.time));
