@@ -3,6 +3,8 @@
 set -euo pipefail
 
 log="$RUNNER_TEMP/franka-sim.log"
+# In an old log a simulator listens already.
+: > "$log"
 read -ra options <<< "$OPTIONS"
 "$FRANKA" sim --robot "$ROBOT" "${options[@]}" > "$log" 2>&1 &
 simulator=$!
