@@ -79,7 +79,12 @@ impl Bridge {
             Input::Disengage { id } => self.lifecycle.disengage(id),
             Input::Close { goal } => self.lifecycle.close(goal),
             Input::Pause { goal, paused } => self.lifecycle.pause(goal, paused),
-            Input::Cancel { goal, .. } => self.lifecycle.cancel(goal, now),
+            Input::Cancel { goal, refused } => {
+                if let Some(error) = refused {
+                    tracing::info!(goal = goal.0, %error, "a target is refused: the motion stops");
+                }
+                self.lifecycle.cancel(goal, now);
+            }
             Input::Stop { goal, ended } => {
                 if self.lifecycle.stop(goal, now) {
                     let ended = EndReply::One(ended);
