@@ -75,9 +75,9 @@ def test_a_pose_is_said_in_many_ways(robot: Robot) -> None:
 
 def test_an_offset_where_only_a_place_can_be_is_a_type_error(robot: Robot) -> None:
     with pytest.raises(TypeError, match="waypoint 1 is an Offset, expected a whole pose"):
-        robot.move_through([Offset([0.0, 0.0, 0.02])])
+        robot.move_through([Offset([0.0, 0.0, 0.02])])  # type: ignore[list-item]
     with pytest.raises(TypeError, match="target is an Offset"):
-        force_z(8.0).then(Offset([0.0, 0.0, 0.02]))
+        force_z(8.0).then(Offset([0.0, 0.0, 0.02]))  # type: ignore[arg-type]
 
 
 def test_joints_go_where_they_are_told(robot: Robot) -> None:
