@@ -72,8 +72,13 @@ impl Terminal {
         until(&format!("{text:?}"), || self.shown().contains(text));
     }
 
-    /// The address of the robot that a tap or a player has shown.
+    /// The address of the robot that a tap or a player shows, once the whole of it has come.
     pub(crate) fn address(&self) -> String {
+        until("an address and what follows it", || {
+            let shown = self.shown();
+            let rest = shown.split_once("robot at ");
+            rest.is_some_and(|(_, rest)| rest.contains([',', '\r', '\n']))
+        });
         robot_address(&self.shown())
     }
 
