@@ -61,10 +61,7 @@ pub(crate) struct Place {
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.listed {
-            Some(address) => write!(f, "{} ({address})", self.name),
-            None => f.write_str(&self.name),
-        }
+        f.write_str(&self.with(self.listed.as_ref()))
     }
 }
 
@@ -142,6 +139,14 @@ impl Which {
 }
 
 impl Place {
+    /// What a device of this robot is called: the robot's name, if it has one with this address.
+    fn with(&self, address: Option<impl fmt::Display>) -> String {
+        match address {
+            Some(address) => format!("{} ({address})", self.name),
+            None => self.name.clone(),
+        }
+    }
+
     /// As the user has it.
     pub(crate) fn name(&self) -> &str {
         &self.name
@@ -176,7 +181,8 @@ impl Place {
         let robot = options(builder).connect().await;
         robot.map_err(|error| {
             let seen = seen!(error);
-            (seen, self.no_connection("robot", seen, error.into()))
+            let robot = ("robot", self.to_string());
+            (seen, self.no_connection(robot, seen, error.into()))
         })
     }
 
@@ -185,41 +191,36 @@ impl Place {
         let gripper = Gripper::connect(self.hand.clone()).await;
         gripper.map_err(|error| {
             let seen = seen!(error);
-            // Not the address of the robot beside it.
-            let listed = self.listed.as_ref().map(|_| self.hand.to_string());
-            let hand = Self {
-                listed,
-                ..self.clone()
-            };
-            hand.no_connection("Hand", seen, error.into()).into()
+            let at = self.with(self.is_listed().then_some(&self.hand));
+            self.no_connection(("Hand", at), seen, error.into()).into()
         })
     }
 
-    fn no_connection(&self, device: &str, seen: Seen, error: Error) -> Failure {
+    fn no_connection(&self, (device, at): (&str, String), seen: Seen, error: Error) -> Failure {
         let host = self.name.as_str();
         let failure = match seen {
             Seen::Refused => Failure::new(
                 Ending::NoRobot,
-                format!("no {device} at {self}: the connection was refused"),
+                format!("no {device} at {at}: the connection was refused"),
             )
             .advice(
                 "Is it the right address, and is FCI activated in Desk? franka doctor asks Desk for the reason. For a simulator: does `franka sim` run?",
             ),
             Seen::Silent => Failure::new(
                 Ending::NoRobot,
-                format!("no {device} answers at {self}"),
+                format!("no {device} answers at {at}"),
             )
             .advice("Look at the cable, at the address, and at the network settings of this computer."),
             Seen::Closed => Failure::new(
                 Ending::Taken,
                 format!(
-                    "the {device} at {self} closed the connection at once: most likely somebody else is connected"
+                    "the {device} at {at} closed the connection at once: most likely somebody else is connected"
                 ),
             )
             .advice("A robot takes one client at a time. End the other program, then try again."),
             Seen::NoState => Failure::new(
                 Ending::NoRobot,
-                format!("the {device} at {self} answers, but no state of it arrives"),
+                format!("the {device} at {at} answers, but no state of it arrives"),
             )
             .advice("A firewall that stops UDP is the usual cause."),
             Seen::Realtime => Failure::new(Ending::Host, error.to_string()).advice(
@@ -232,7 +233,7 @@ impl Place {
             )
             .advice(format!("No robot is called `{host}` either: see franka robots.")),
             Seen::Other => {
-                let message = format!("no connection to the {device} at {self}: {error}");
+                let message = format!("no connection to the {device} at {at}: {error}");
                 Failure::new(Ending::NoRobot, message)
             }
         };

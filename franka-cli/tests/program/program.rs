@@ -144,12 +144,11 @@ impl Drop for Started {
     }
 }
 
-/// The first address of a robot in what a tap or a player says.
-#[track_caller]
-pub(crate) fn robot_address(text: &str) -> String {
-    let (_, rest) = text.split_once("robot at ").expect("an address");
-    let end = rest.find([',', '\r', '\n']).expect("more than an address");
-    rest[..end].to_owned()
+/// The first address of a robot in what a tap or a player says, if the whole of it is there.
+pub(crate) fn robot_address(text: &str) -> Option<String> {
+    let (_, rest) = text.split_once("robot at ")?;
+    let end = rest.find([',', '\r', '\n'])?;
+    Some(rest[..end].to_owned())
 }
 
 /// Waits until something is so; the limit is for a program that hangs.

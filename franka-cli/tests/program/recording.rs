@@ -235,5 +235,5 @@ fn address(program: &mut crate::program::Started) -> String {
         err.read_exact(&mut byte).expect("a line");
         line.push(byte[0]);
     }
-    robot_address(&String::from_utf8(line).expect("text"))
+    robot_address(&String::from_utf8(line).expect("text")).expect("an address")
 }

@@ -72,14 +72,14 @@ impl Terminal {
         until(&format!("{text:?}"), || self.shown().contains(text));
     }
 
-    /// The address of the robot that a tap or a player shows, once the whole of it has come.
+    /// Waits for the address of the robot that a tap or a player shows.
     pub(crate) fn address(&self) -> String {
-        until("an address and what follows it", || {
-            let shown = self.shown();
-            let rest = shown.split_once("robot at ");
-            rest.is_some_and(|(_, rest)| rest.contains([',', '\r', '\n']))
+        let mut address = None;
+        until("an address", || {
+            address = robot_address(&self.shown());
+            address.is_some()
         });
-        robot_address(&self.shown())
+        address.expect("it has come")
     }
 
     pub(crate) fn types(&mut self, text: &str) {
