@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 use super::cause::Cause;
 use super::commanded::{self, Derivatives, Which};
-use super::evidence::{Evidence, Sample};
+use super::evidence::{Evidence, Reading, Sample};
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
 /// How far the first command is from where the robot was; for the errors that say so.
@@ -208,12 +208,19 @@ pub(super) fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Opt
 }
 
 /// The largest step of the commanded torques before a cycle, if it takes more than half of what is
-/// allowed. What takes all of it and no more comes from the limiter, which spreads a step so.
+/// allowed. What takes all of it and no more comes from the limiter, which spreads a step so, and
+/// what follows is the rest of that step.
 pub(super) fn torque_step(evidence: &Evidence<'_>, before: u64) -> Option<Cause> {
     let readings = commanded::torque_readings(evidence);
-    let largest = readings
-        .iter()
-        .filter(|reading| reading.cycle < before && (reading.score - 1.0).abs() > LIMITED)
+    let limited = |reading: &Reading| (reading.score - 1.0).abs() < LIMITED;
+    let spread = |i: usize| {
+        let is_rest = |previous: &Reading| limited(previous) && readings[i].score < 1.0;
+        // Each cycle has a reading of every joint.
+        limited(&readings[i]) || i.checked_sub(7).is_some_and(|i| is_rest(&readings[i]))
+    };
+    let largest = (0..readings.len())
+        .filter(|&i| readings[i].cycle < before && !spread(i))
+        .map(|i| &readings[i])
         .max_by(|a, b| a.score.total_cmp(&b.score))?;
     (largest.score > 0.5).then_some(Cause::TargetStep {
         subject: largest.subject,
