@@ -3,7 +3,7 @@
 set -euo pipefail
 
 log="$RUNNER_TEMP/franka-sim.log"
-# In an old log a simulator listens already.
+# An old log would say that the simulator listens.
 : > "$log"
 read -ra options <<< "$OPTIONS"
 "$FRANKA" sim --robot "$ROBOT" "${options[@]}" > "$log" 2>&1 &
