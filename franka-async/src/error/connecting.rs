@@ -76,7 +76,7 @@ pub enum ConnectError<P: Protocol = Version> {
     IncompatibleVersion(#[from] IncompatibleVersion<P>),
     /// The connection ended during the handshake. The party that can act on it depends on the
     /// reason.
-    #[error("{reason}")]
+    #[error("{reason}{}", likely(.reason))]
     ConnectionClosed {
         /// What ended it.
         reason: CloseReason,
@@ -168,6 +168,18 @@ pub struct Attempt<P: Protocol = Version> {
     pub address: SocketAddr,
     /// What went wrong.
     pub error: ConnectError<P>,
+}
+
+/// What usually ends a connection before the robot has answered.
+fn likely(reason: &CloseReason) -> &'static str {
+    match reason {
+        CloseReason::ClosedByPeer
+        | CloseReason::Io {
+            kind: io::ErrorKind::ConnectionReset,
+            ..
+        } => " (before it answered: another client may be connected)",
+        _ => "",
+    }
 }
 
 fn list<P: Protocol>(attempts: &[Attempt<P>]) -> String {
