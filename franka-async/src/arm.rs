@@ -36,9 +36,10 @@ impl Engage {
     goal_options!();
 
     /// Keeps the arm out of these regions, base frame, none by default. The reference slows down on
-    /// the way to one and stops [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) before it, and a goal
-    /// that this blocks is given up as [`Lapse::Blocked`](crate::error::Lapse::Blocked); an arm
-    /// that stands in a region may leave it. Links and the Franka Hand are kept out, no other tool.
+    /// the way to one and stops [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) before it. A goal
+    /// that this blocks is given up as [`Lapse::Blocked`](crate::error::Lapse::Blocked), while a
+    /// stream goes on and waits for other targets; an arm that stands in a region may leave it.
+    /// Links and the Franka Hand are kept out, no other tool.
     /// [`GoalError::KeepOut`](crate::error::GoalError::KeepOut) refuses more than
     /// [`KEEP_OUT_MAX`](crate::goal::KEEP_OUT_MAX) regions, non-finite numbers and negative sides.
     pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {

@@ -225,3 +225,25 @@ fn a_gentler_goal_that_takes_over_comes_no_nearer() {
         }
     });
 }
+
+#[test]
+fn a_stream_waits_before_a_region_for_a_target_that_it_can_reach() {
+    for_each_robot(|ready| {
+        let (mut lockstep, engaged, margin) = above_a_table(ready);
+        let start = lockstep.arm_pose();
+        let below = Translation3::new(0.0, 0.0, -0.2) * start;
+        let stream = lockstep.within(engaged, below.into(), OnArrival::Hold);
+        let stream = stream.expect("a goal");
+        lockstep.run(8000);
+        let record = &lockstep.client.record;
+        let speed = JointVector::from(record.dq_ref).amax();
+        assert!(record.bindings.contains(Guard::Clearance) && speed < 1e-3);
+        assert!((-CURVE..0.01).contains(&margin(&lockstep)));
+        assert_eq!(lockstep.client.outcome(stream), None);
+
+        let up = lockstep.within(engaged, start.into(), OnArrival::ReportAndHold);
+        lockstep
+            .until_resolved(up.expect("a goal"), 10_000)
+            .expect("a way out");
+    });
+}
