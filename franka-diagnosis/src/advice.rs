@@ -68,11 +68,11 @@ impl Advice {
                 "a direct cable to the robot, nothing else on it, and no power saving of the network card"
             }
             (Self::Host, Function) => {
-                "Realtime::Enforce, a processor of its own for the control thread, and less work in the control function"
+                "less work in the control function, Realtime::Enforce, and a processor of its own for the control thread"
             }
             (Self::Host, Active) => {
-                "Realtime::Enforce, a processor of its own for the thread that writes, and less work between reading and \
-                 writing"
+                "less work between reading and writing, Realtime::Enforce, and a processor of its own for the thread that \
+                 writes"
             }
             (Self::Host, Goals | Asynchronous) => {
                 "Realtime::Enforce, and a processor of its own for the control thread"

@@ -3,6 +3,8 @@
 use core::fmt;
 use core::time::Duration;
 
+use franka_model::CYCLE;
+
 use super::finding::{Digits, Quantity, Subject};
 
 /// Something in the log that led up to the end of a motion. Cycles are the `message_id`s of states.
@@ -65,7 +67,7 @@ pub enum Cause {
     LateCommands {
         /// How many.
         count: u64,
-        /// Longest time from a state to its command.
+        /// Longest time from when the thread had a state to its command.
         worst_turnaround: Duration,
     },
     /// The estimate of an external force or torque was above the lower threshold.
@@ -166,12 +168,21 @@ impl fmt::Display for Cause {
             Self::LateCommands {
                 count,
                 worst_turnaround,
-            } => write!(
-                f,
-                "{} left this computer too late, up to {} ms after the state",
-                Count(count, "command"),
-                Digits(worst_turnaround.as_secs_f64() * 1e3)
-            ),
+            } => {
+                write!(
+                    f,
+                    "{} left this computer too late: ",
+                    Count(count, "command")
+                )?;
+                let longest = Digits(worst_turnaround.as_secs_f64() * 1e3);
+                match worst_turnaround.as_secs_f64() > CYCLE {
+                    true => write!(f, "the answer to a state took up to {longest} ms"),
+                    false => write!(
+                        f,
+                        "it had states late, and answered each within {longest} ms"
+                    ),
+                }
+            }
             Self::Contact {
                 subject,
                 value,

@@ -208,18 +208,19 @@ pub(super) fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Opt
 }
 
 /// The largest step of the commanded torques before a cycle, if it takes more than half of what is
-/// allowed. What takes all of it and no more comes from the limiter, which spreads a step so, and
-/// what follows is the rest of that step.
+/// allowed. A torque that changes about as fast in the cycle beside is on a ramp; what takes all of
+/// what is allowed and no more comes from the limiter, which makes ramps of steps.
 pub(super) fn torque_step(evidence: &Evidence<'_>, before: u64) -> Option<Cause> {
     let readings = commanded::torque_readings(evidence);
-    let limited = |reading: &Reading| (reading.score - 1.0).abs() < LIMITED;
-    let spread = |i: usize| {
-        let is_rest = |previous: &Reading| limited(previous) && readings[i].score < 1.0;
-        // Each cycle has a reading of every joint.
-        limited(&readings[i]) || i.checked_sub(7).is_some_and(|i| is_rest(&readings[i]))
+    let is_limited = |reading: &Reading| (reading.score - 1.0).abs() < LIMITED;
+    // Each cycle has a reading of every joint.
+    let beside = |i: usize| [i.checked_sub(7), i.checked_add(7)].into_iter().flatten();
+    let is_ramp = |i: usize| {
+        let goes_on = |other: &Reading| other.value / readings[i].value > RAMP;
+        beside(i).any(|other| readings.get(other).is_some_and(goes_on))
     };
     let largest = (0..readings.len())
-        .filter(|&i| readings[i].cycle < before && !spread(i))
+        .filter(|&i| readings[i].cycle < before && !is_limited(&readings[i]) && !is_ramp(i))
         .map(|i| &readings[i])
         .max_by(|a, b| a.score.total_cmp(&b.score))?;
     (largest.score > 0.5).then_some(Cause::TargetStep {
@@ -240,6 +241,9 @@ fn component<const N: usize>(motion: &Derivatives<N>, index: usize) -> Derivativ
 
 /// What the limiter lets pass is nearer than this to what is allowed, as a share of it.
 const LIMITED: f64 = 2e-3;
+
+/// A torque is on a ramp where the cycle beside has this share of its change.
+const RAMP: f64 = 0.9;
 
 /// An offset that no robot minds, `[rad]` or `[m]`: how far off a first command may be is not
 /// published, but clients begin at measured positions, too.

@@ -197,6 +197,12 @@ impl Explanation {
         self.0.lost.states
     }
 
+    /// How many commands left after the next state was due.
+    #[getter]
+    fn late(&self) -> u64 {
+        self.0.late.commands
+    }
+
     /// The last second before the end as an SVG image: what touched the arm, velocities and torques
     /// against their limits, what happened when, and where on the arm the contact was. It has no
     /// background, and colours that can be told apart on white and on black.

@@ -8,9 +8,10 @@ use franka_model::contact::Tare;
 use franka_model::{JointVector, Model};
 use franka_proto::{Errors, RobotState};
 use franka_rt::driver::Record;
+use franka_rt::stats::Slack;
 
 use super::timeline::{AFTER, Timeline};
-use super::{Cause, Explanation, Lost, Margins, MomentKind, Peaks, Trace, place};
+use super::{Cause, Explanation, Late, Lost, Margins, MomentKind, Peaks, Trace, place};
 use crate::recording::RecordingError;
 use crate::{Cycle, Event, EventKind, HostTime};
 
@@ -35,6 +36,7 @@ struct Run {
     margins: Margins,
     peaks: Peaks,
     lost: Lost,
+    late: Late,
     /// Of the newest cycles, until the end.
     window: VecDeque<Trace>,
     /// Of the newest cycle: why the last motion was ended.
@@ -166,6 +168,15 @@ impl Run {
                 self.lost.most_at = self.last;
             }
         }
+        if let Some(record) = record
+            && let Some(overrun) = record.slack.and_then(Slack::overrun)
+        {
+            self.late.commands += 1;
+            if overrun > self.late.most {
+                (self.late.most, self.late.at) = (overrun, time);
+                self.late.turnaround = record.turnaround;
+            }
+        }
         self.has_hand = state.m_ee > BARE;
         let dq = JointVector::from(state.dq);
         let torque = -JointVector::from(state.tau_ext_hat_filtered);
@@ -252,6 +263,7 @@ impl Run {
                 in_last_second: traces.iter().skip(1).map(|trace| trace.lost).sum(),
                 ..self.lost
             },
+            late: self.late,
             last_second: traces,
         }
     }

@@ -49,6 +49,8 @@ mod sketch;
 mod tests;
 mod timeline;
 
+use core::time::Duration;
+
 use franka_diagnosis::{Case, Diagnosis};
 use franka_model::{Model, RobotKind};
 use franka_proto::Errors;
@@ -95,6 +97,8 @@ pub struct Explanation {
     pub contact: Option<Place>,
     /// States that were lost.
     pub lost: Lost,
+    /// Commands that left after the next state was due.
+    pub late: Late,
     /// The cycles before the end, for the figure.
     pub last_second: Vec<Trace>,
 }
@@ -124,6 +128,21 @@ pub struct Lost {
     pub most_at: u64,
     /// In the second before the end.
     pub in_last_second: u64,
+}
+
+/// Commands that left this computer too late, where it is known when they did: in recordings of a
+/// robot, not in logs and not under active control.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Late {
+    /// How many.
+    pub commands: u64,
+    /// The most by which one left after the next state was due.
+    pub most: Duration,
+    /// Which state that one answers.
+    pub at: u64,
+    /// From when its state was there to when it left.
+    pub turnaround: Duration,
 }
 
 /// One cycle of the last second.

@@ -1,6 +1,7 @@
 //! An explanation as text.
 
 use core::fmt;
+use core::time::Duration;
 
 use super::place::name;
 use super::{Approach, Explanation, Peak, Place};
@@ -71,7 +72,7 @@ impl fmt::Display for Explanation {
         }
         let lost = &self.lost;
         if lost.states == 0 {
-            writeln!(f, "\nNo state was lost.")
+            writeln!(f, "\nNo state was lost.")?;
         } else {
             writeln!(
                 f,
@@ -80,8 +81,22 @@ impl fmt::Display for Explanation {
                 lost.in_last_second,
                 lost.most_in_a_row,
                 self.before(lost.most_at)
-            )
+            )?;
         }
+        let late = &self.late;
+        if late.commands == 0 {
+            return Ok(());
+        }
+        let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
+        writeln!(
+            f,
+            "{} commands left after the next state was due, at most {:.3} ms after, {}: {:.3} ms after this computer \
+             had its state",
+            late.commands,
+            milliseconds(late.most),
+            self.before(late.at),
+            milliseconds(late.turnaround)
+        )
     }
 }
 

@@ -5,6 +5,7 @@ use crate::event::{Ending, Goal, Note, Outcome};
 use crate::{EventKind, HostTime};
 use franka_proto::{RobotError, RobotMode, RobotState};
 use franka_rt::driver::Record;
+use franka_rt::stats::Slack;
 
 fn state(message_id: u64) -> RobotState {
     RobotState {
@@ -254,6 +255,10 @@ fn events_tell_goals_and_the_diagnosis() {
         record.goal = 7;
         record.q_ref = state.q;
         record.q_ref[2] += 0.02;
+        if (500..508).contains(&state.message_id) {
+            record.slack = Some(Slack::from_nanos(-59_000 * (1000 - record.time as i64)));
+            record.turnaround = Duration::from_micros(30_250);
+        }
         Cycle {
             record,
             state,
@@ -304,6 +309,9 @@ fn events_tell_goals_and_the_diagnosis() {
     assert_eq!(error.joint, Some(3));
     assert!((error.value - 0.02).abs() < 1e-12);
     assert!(explanation.to_string().contains("a remark"));
+    let late = "8 commands left after the next state was due, at most 29.500 ms after, 2000 ms before the end: \
+                30.250 ms after this computer had its state";
+    assert!(explanation.to_string().contains(late), "{explanation}");
     // Without events the goal is seen in the records.
     let explanation = Explanation::of(cycles, &[], Model::fr3());
     assert!(explanation.to_string().contains("goal 7 begins"));
