@@ -51,7 +51,9 @@ impl Advice {
                 "speed below 1 or limits with less velocity and acceleration, or softer gains"
             }
             (Self::Smooth | Self::SlowDown, Asynchronous) => "lower maximum_joint_velocities",
-            (Self::SlowDown, Function | Active) => "less speed and acceleration",
+            (Self::SlowDown, Function | Active) => {
+                "less speed and acceleration; of a torque law, smaller torques or more damping"
+            }
             (Self::StartWhereItIs, Function | Active) => {
                 "begin with what the first state has: q_d, O_T_EE_c, elbow_c, and zero velocity and torque"
             }

@@ -10,9 +10,13 @@ use super::finding::{Finding, Origin, Quantity, Subject};
 
 /// How near the last desired pose of a Cartesian motion is to a singular one, if it is.
 pub(super) fn singularity(evidence: &Evidence<'_>) -> Option<Cause> {
-    let state = evidence
-        .last_running()
-        .filter(|_| evidence.is_cartesian())?;
+    evidence.is_cartesian().then(|| singular_pose(evidence))?
+}
+
+/// How near the last desired pose is to a singular one, if it is: where small torques look like
+/// large forces.
+pub(super) fn singular_pose(evidence: &Evidence<'_>) -> Option<Cause> {
+    let state = evidence.last_running()?;
     let q = JointVector::from(state.q_d);
     if !q.iter().all(|angle| angle.is_finite()) {
         return None;

@@ -1,6 +1,7 @@
 //! How the reason of a reflex is worked out: from errors to a finding, from a finding to its
 //! causes, from causes to advice.
 
+use franka_model::CYCLE;
 use franka_proto::{Errors, RobotError as E};
 
 use super::advice::Advice;
@@ -244,11 +245,25 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
         Category::Link => {
             let late = lost_cycles::late_commands(evidence);
             let lost = lost_cycles::lost_packets(evidence, true);
-            // Commands that left too late have not reached the robot in time, either.
-            let all_came = matches!(lost, Some(Cause::LostPackets { states: 0, .. }));
-            causes.extend(late.filter(|_| all_came));
+            // Commands that left too late have not reached the robot in time, either. States that
+            // were all had, but late, may have been held up on their way.
+            let is_slow = |late: &Cause| match *late {
+                Cause::LateCommands {
+                    worst_turnaround, ..
+                } => worst_turnaround.as_secs_f64() > CYCLE,
+                _ => false,
+            };
+            let by_host = late.filter(|late| match lost {
+                Some(Cause::LostPackets {
+                    states: 0,
+                    unanswered,
+                    ..
+                }) => unanswered > 0 || is_slow(late),
+                _ => false,
+            });
+            causes.extend(by_host);
             causes.extend(lost);
-            causes.extend(late.filter(|_| !all_came));
+            causes.extend(late.filter(|_| by_host.is_none()));
         }
         Category::Start | Category::Command | Category::Inverse => {
             let lost = lost_cycles::lost_packets(evidence, false);
@@ -271,6 +286,9 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
                 _ => u64::MAX,
             };
             causes.extend(contact);
+            if error == E::CartesianReflex {
+                causes.extend(posture::singular_pose(evidence));
+            }
             causes.extend(command_steps::torque_step(evidence, since));
         }
         Category::Arm => {

@@ -130,15 +130,18 @@ fn commands_that_left_too_late_are_told_from_the_counts() {
         counts.worst_turnaround = Duration::from_micros(turnaround);
         let errors = [E::CommunicationConstraintsViolation];
         let diagnosis = story.stop_counted(Some(&counts), &errors, |_, _| {}, |_| {});
-        let [late, Cause::LostPackets { commands: 20, .. }] = diagnosis.causes[..] else {
-            panic!("{:?}", diagnosis.causes)
-        };
         let text = format!("20 commands left this computer too late: {what}");
-        assert_eq!(late.to_string(), text);
-        assert_eq!(diagnosis.advice, [Advice::Host, Advice::Network]);
+        let late = |cause: &Cause| cause.to_string() == text;
+        let first = diagnosis.causes.iter().position(late);
+        let lost = |cause: &Cause| matches!(cause, Cause::LostPackets { commands: 20, .. });
+        assert!(diagnosis.causes.iter().any(lost), "{diagnosis}");
+        (first, diagnosis.advice[0])
     };
-    told(1800, "the answer to a state took up to 1.8 ms");
-    told(45, "it had states late, and answered each within 0.045 ms");
+    let slow = told(1800, "the answer to a state took up to 1.8 ms");
+    assert_eq!(slow, (Some(0), Advice::Host));
+    // The states may have been late on their way.
+    let quick = told(45, "it had states late, and answered each within 0.045 ms");
+    assert_eq!(quick, (Some(1), Advice::Network));
 }
 
 #[test]
