@@ -14,7 +14,7 @@ use nalgebra::Isometry3;
 use tokio::sync::{oneshot, watch};
 use tokio_stream::Stream;
 
-use crate::destination::{Destination, Offset};
+use crate::destination::{Destination, Now, Offset};
 use crate::follow::{Follow, Targets, streamed, watched};
 use crate::input::{Beginning, EndReply, Input, Replies};
 use crate::move_to::Motion;
@@ -204,22 +204,26 @@ impl Arm {
 
     /// As [`Self::set`], without waiting for an answer: for plain threads, callbacks and loops at a
     /// rate of their own. The newest of goals that come faster than they are taken is the one that
-    /// counts. A target is checked here; what only the session can tell (an offset that leads out
-    /// of reach, [`Backend`]) is logged.
+    /// counts. A goal is checked here. What only the session can tell is logged: [`Backend`], and
+    /// where an offset leads that comes faster than the goal before is taken.
     ///
     /// # Errors
     /// [`MotionError::Goal`] for a goal that is not accepted, and what ended the session.
     pub fn try_set(&self, destination: impl Into<Destination>) -> Result<(), MotionError> {
         let destination = destination.into();
         self.session.check()?;
-        let goal = self.goal(destination.kind());
-        if let Destination::Target(_) = destination {
-            goal.check(self.robot().model(), &self.robot().state())?;
+        let (robot, waiting) = (self.robot(), &self.session.waiting);
+        let mut goal = self.goal(destination.kind());
+        if matches!(destination, Destination::Target(_)) || waiting.is_empty() {
+            let (model, state, course) = (robot.model(), robot.state(), &robot.link().course);
+            let reference = course.reference().map(|reference| reference.q);
+            let now = Now::of(model, &state, course.target(), reference);
+            goal.target = destination.seen_from(&now);
+            goal.check(model, &state)?;
         }
-        let waiting = &self.session.waiting;
         if waiting.put(self.beginning(goal, destination)) {
             let waiting = waiting.clone();
-            self.robot().send(Input::SetNewest { waiting });
+            robot.send(Input::SetNewest { waiting });
         }
         Ok(())
     }

@@ -105,6 +105,10 @@ impl Waiting {
         self.lock().replace(Box::new(motion)).is_none()
     }
 
+    pub(crate) fn is_empty(&self) -> bool {
+        self.lock().is_none()
+    }
+
     /// What `look` returns of the motion that waits, if one does.
     #[cfg(feature = "record")]
     pub(crate) fn peek<T>(&self, look: impl FnOnce(&Beginning) -> T) -> Option<T> {

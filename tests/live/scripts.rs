@@ -6,7 +6,7 @@ use std::time::Duration;
 use franka_async::blocking::{Wait, WaitEach, targets};
 use franka_async::control::{Finish, Torques};
 use franka_async::error::{GoalError, Lapse, PoseError};
-use franka_async::goal::Deadman;
+use franka_async::goal::{Deadman, Destination};
 use franka_async::gripper::Gripper;
 use franka_async::nalgebra::Translation3;
 use franka_async::supervision::EventKind;
@@ -171,12 +171,18 @@ fn goals_are_set_without_waiting_and_the_newest_counts() {
     let error = PoseError::between(&robot.pose(), &at(2000));
     assert!(error.translation < 1e-3, "{error:?}");
 
-    let far = Pose::translation(5.0, 0.0, 0.0) * start;
-    let refused = arm.try_set(far).unwrap_err();
-    assert!(
-        matches!(refused, MotionError::Goal(GoalError::Unreachable { .. })),
-        "{refused}"
-    );
+    let far = Pose::translation(5.0, 0.0, 0.0);
+    for far in [
+        Destination::from(far * start),
+        Destination::position([3.0, 0.0, 0.0]),
+        Offset::base(far).into(),
+    ] {
+        let refused = arm.try_set(far).unwrap_err();
+        assert!(
+            matches!(refused, MotionError::Goal(GoalError::Unreachable { .. })),
+            "{refused}"
+        );
+    }
     let other = arm.clone();
     arm.disengage().wait().unwrap();
     assert_eq!(other.try_set(start), Err(MotionError::Disengaged));
