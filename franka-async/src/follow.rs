@@ -192,10 +192,7 @@ impl Follow {
                     refused: Some(error),
                 });
                 // Braked first: once the error is returned, the arm rests.
-                return match moving.await {
-                    Err(MotionError::Stopped) | Ok(_) => Err(error.into()),
-                    otherwise => otherwise,
-                };
+                return moving.await;
             }
         }
     }

@@ -134,7 +134,7 @@ pub enum Ending {
     LinkLost,
     /// A guard of the driver gave it up.
     Guard(Guard),
-    /// It never began.
+    /// It never began, or a target of its stream was refused.
     Rejected,
     /// Anything else.
     #[default]

@@ -43,8 +43,10 @@ impl Bridge {
                 let _ = taken.send(updated);
             }
             Input::Set { motion, taken } => {
+                let id = motion.motion.id();
                 let begun = self.begin(motion);
                 self.course.head_for(self.lifecycle.heading());
+                self.note_refusal(id, &begun);
                 let _ = taken.send(begun);
             }
             Input::SetNewest { waiting } => {
@@ -52,9 +54,8 @@ impl Bridge {
                     return;
                 };
                 let id = motion.motion.id();
-                if let Err(error) = self.begin(motion) {
-                    log(id, &Err(error));
-                }
+                let begun = self.begin(motion);
+                self.note_refusal(id, &begun);
             }
             Input::Chunk {
                 id,
@@ -62,9 +63,10 @@ impl Bridge {
                 chunk,
                 taken,
             } => {
-                let state = &self.publisher.state();
+                let (state, number) = (&self.publisher.state(), goal.id);
                 let sent = self.lifecycle.chunk(id, *goal, *chunk, state);
                 self.course.head_for(self.lifecycle.heading());
+                self.note_refusal(number, &sent);
                 let _ = taken.send(sent);
             }
             Input::Tune { id, tuning, taken } => {
@@ -82,6 +84,7 @@ impl Bridge {
             Input::Cancel { goal, refused } => {
                 if let Some(error) = refused {
                     tracing::info!(goal = goal.0, %error, "a target is refused: the motion stops");
+                    self.refused = Some((goal, error));
                 }
                 self.lifecycle.cancel(goal, now);
             }
@@ -122,6 +125,16 @@ impl Bridge {
         let q = reference.unwrap_or(state.q);
         let path = Chunk::through(&path, &q, goal, self.lifecycle.model(), state)?;
         self.lifecycle.begin_along(path, motion, state, now)
+    }
+
+    /// Notes a goal that its session has not taken.
+    fn note_refusal(&self, goal: GoalId, taken: &Result<(), MotionError>) {
+        if let Err(error) = taken {
+            let refused = Err(error.clone());
+            log(goal, &refused);
+            #[cfg(feature = "record")]
+            self.supervisor.write_down(goal, &refused);
+        }
     }
 
     pub(super) fn refuse(&self, goal: GoalId, replies: Replies, error: MotionError) {

@@ -15,9 +15,9 @@ use std::time::Duration;
 use franka_proto::RobotState;
 use franka_rt::driver::{Driver, Event, Order};
 use franka_rt::event_fd::EventFd;
-use franka_rt::lifecycle::{CloseReason, Lifecycle, Outcome, Output};
+use franka_rt::lifecycle::{CloseReason, Lifecycle, MotionError, Outcome, Output};
 use franka_rt::queue::{Receiver, Sender};
-use franka_rt::session::GoalId;
+use franka_rt::session::{GoalError, GoalId};
 use franka_rt::supervision::Seen;
 use franka_rt::thread::{Handle, Notice, Thread};
 use tokio::io::unix::AsyncFd;
@@ -55,6 +55,8 @@ pub(crate) struct Bridge {
     /// Whether the thread that runs active control reads no states.
     stalled: bool,
     supervisor: Arc<Supervisor>,
+    /// The goal that is taken back for a target that was refused.
+    refused: Option<(GoalId, GoalError)>,
     /// What the supervisor was last shown.
     seen: Option<Seen>,
     /// `message_id` of the newest state when a silence was noticed, until one comes.
@@ -115,6 +117,7 @@ impl Bridge {
             lost: false,
             stalled: false,
             supervisor,
+            refused: None,
             seen: None,
             silent_since: None,
         }
@@ -215,7 +218,13 @@ impl Bridge {
                         let _ = began.send(());
                     }
                 }
-                Output::Resolve { goal, result } => {
+                Output::Resolve { goal, mut result } => {
+                    let refused = self.refused.take_if(|(id, _)| *id == goal);
+                    if let (Ok(_) | Err(MotionError::Stopped), Some((_, error))) =
+                        (&result, refused)
+                    {
+                        result = Err(error.into());
+                    }
                     self.supervisor.on_ended(goal, &result);
                     match self.replies.remove(&goal) {
                         Some((replies, span)) => {

@@ -211,6 +211,12 @@ impl Supervisor {
         });
     }
 
+    /// Writes down how something ended that the supervision does not follow.
+    #[cfg(feature = "record")]
+    pub(crate) fn write_down(&self, goal: GoalId, outcome: &Outcome) {
+        self.with(|inner, _| inner.journal.ended(goal, outcome));
+    }
+
     pub(crate) fn on_time(&self) {
         self.with(|inner, now| inner.core.on_time(now));
     }

@@ -11,10 +11,11 @@ use std::time::Duration;
 
 use franka_async::control::JointVelocities;
 use franka_async::diagnosis::Diagnose;
+use franka_async::goal;
 use franka_async::recording::{BlackBox, RecordOptions, RecordStatus, Recorder, Track, TrackError};
 use franka_async::settings::CollisionBehavior;
 use franka_async::state::RobotState;
-use franka_async::{MotionError, Pose};
+use franka_async::{Engage, MotionError, Pose};
 use franka_record::event::{Ending, Target};
 use franka_record::{Cycle, Event, EventKind, Recording};
 use franka_sim::{Sim, Tool};
@@ -231,7 +232,7 @@ async fn a_reflex_is_recorded_with_its_diagnosis_and_fills_a_black_box() {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-async fn a_target_of_a_stream_that_is_refused_is_told() {
+async fn targets_that_are_refused_are_told() {
     let _alone = alone();
     let (robot, _sim) = simulated().await;
     let folder = Folder::new();
@@ -241,17 +242,28 @@ async fn a_target_of_a_stream_that_is_refused_is_told() {
     let following = tokio::spawn(robot.follow(newest).into_future());
     under_way(&robot).await;
     targets.send_replace(Pose::translation(2.0, 0.0, 0.5));
-    let refused = following.await.unwrap().unwrap_err();
-    assert!(matches!(refused, MotionError::Goal(_)), "{refused}");
+    let of_stream = following.await.unwrap().unwrap_err();
+
+    let arm = robot.engage(Engage::default()).await.unwrap();
+    let mut q = robot.state().q_d;
+    q[3] = 1.0;
+    let bent = goal::Chunk::joints([(Duration::from_millis(500), q)]).unwrap();
+    let of_chunk = arm.chunk(bent).await.unwrap_err();
+    let of_set = arm.set(goal::Target::Joints(q)).await.unwrap_err();
     finish(recorder);
     robot.shutdown().await;
 
     let (_, events) = folder.read("");
-    let told = |event: &&Event| match &event.kind {
-        EventKind::Note(note) => note.text.ends_with(&refused.to_string()),
-        _ => false,
-    };
-    assert_eq!(events.iter().filter(told).count(), 1, "{events:?}");
+    for refused in [of_stream, of_chunk, of_set] {
+        assert!(matches!(refused, MotionError::Goal(_)), "{refused}");
+        let told = |event: &Event| match &event.kind {
+            EventKind::Outcome(outcome) => {
+                outcome.ending == Ending::Rejected && outcome.text == refused.to_string()
+            }
+            _ => false,
+        };
+        assert!(events.iter().any(told), "{refused}: {events:?}");
+    }
 }
 
 #[tokio::test(flavor = "multi_thread")]
