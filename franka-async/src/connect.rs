@@ -129,7 +129,7 @@ mod tests {
             drop(listener);
             let builder = Robot::builder(address).realtime(Realtime::Ignore);
             let error = builder.connect().await.expect_err("nothing listens");
-            assert!(matches!(error, ConnectError::Refused), "{error}");
+            assert!(matches!(error, ConnectError::Refused { .. }), "{error}");
         });
         assert_eq!(started.load(Relaxed), 1);
     }

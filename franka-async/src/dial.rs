@@ -98,7 +98,7 @@ pub(crate) async fn dial_one<P: Protocol>(
         Ok(Ok(stream)) => stream,
         Ok(Err(error)) => {
             return Err(match error.kind() {
-                std::io::ErrorKind::ConnectionRefused => ConnectError::Refused,
+                std::io::ErrorKind::ConnectionRefused => ConnectError::Refused { address },
                 std::io::ErrorKind::TimedOut => ConnectError::Timeout,
                 _ => ConnectError::Network {
                     reason: reason(&error),
@@ -173,7 +173,7 @@ mod tests {
             .await
             .expect_err("nothing listens");
         assert!(
-            matches!(error, ConnectError::Refused),
+            matches!(error, ConnectError::Refused { .. }),
             "one address alone: {error}"
         );
     }

@@ -19,7 +19,7 @@ use crate::robots_file::{Realtime, RobotsFile, check_name};
 macro_rules! seen {
     ($error:expr) => {
         match &$error {
-            ConnectError::Refused => Seen::Refused,
+            ConnectError::Refused { .. } => Seen::Refused,
             ConnectError::Timeout | ConnectError::HandshakeTimeout => Seen::Silent,
             ConnectError::ConnectionClosed {
                 reason: CloseReason::ClosedByPeer | CloseReason::Io { .. },
@@ -30,7 +30,7 @@ macro_rules! seen {
             ConnectError::NoAddress { attempts }
                 if attempts
                     .iter()
-                    .all(|attempt| matches!(attempt.error, ConnectError::Refused)) =>
+                    .all(|attempt| matches!(attempt.error, ConnectError::Refused { .. })) =>
             {
                 Seen::Refused
             }

@@ -21,11 +21,9 @@ async fn scenario_17_no_server_listens() {
     drop(listener);
     let connected = Robot::builder(address).realtime(Realtime::Ignore).connect();
     let error = connected.await.expect_err("no server listens");
-    assert!(matches!(error, ConnectError::Refused), "{error:?}");
-    assert_eq!(
-        error.to_string(),
-        "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk."
-    );
+    assert!(matches!(error, ConnectError::Refused { .. }), "{error:?}");
+    let text = "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk.";
+    assert_eq!(error.to_string(), format!("{text} ({address})"));
 }
 
 #[test]

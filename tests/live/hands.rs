@@ -241,7 +241,7 @@ async fn nobody_listening_is_a_refused_connection() {
     let address = port.local_addr().unwrap();
     drop(port);
     let error = Gripper::connect(address).await.unwrap_err();
-    assert!(matches!(error, ConnectError::Refused), "{error}");
+    assert!(matches!(error, ConnectError::Refused { .. }), "{error}");
 }
 
 #[tokio::test(flavor = "multi_thread")]

@@ -146,8 +146,10 @@ mod tests {
             assert_eq!(error.party(), party, "{error:?}");
         }
         check(
-            ConnectError::<Version>::Refused,
-            "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk.",
+            ConnectError::<Version>::Refused {
+                address: ([172, 16, 0, 2], 1337).into(),
+            },
+            "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk. (172.16.0.2:1337)",
             Party::Robot,
         );
         check(

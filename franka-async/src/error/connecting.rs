@@ -52,9 +52,12 @@ pub enum ConnectError<P: Protocol = Version> {
     System(#[from] io::Error),
     /// Robot: it takes no connection. FCI is off, or it is another machine.
     #[error(
-        "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk."
+        "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk. ({address})"
     )]
-    Refused,
+    Refused {
+        /// Where.
+        address: SocketAddr,
+    },
     /// Link: no answer.
     #[error("libfranka: Connection timeout. Please check your network connection or settings.")]
     Timeout,
@@ -117,7 +120,7 @@ impl<P: Protocol> ConnectError<P> {
             Self::LogSize { .. } => "connect-log-size",
             Self::Known(_) => "connect-known",
             Self::System(_) => "connect-system",
-            Self::Refused => "connect-refused",
+            Self::Refused { .. } => "connect-refused",
             Self::Timeout => "connect-timeout",
             Self::Network { .. } => "connect-network",
             Self::NoAddress { .. } => "connect-no-address",
@@ -147,7 +150,7 @@ impl<P: Protocol> ConnectError<P> {
                 .unwrap_or(Party::Link),
             Self::Realtime(error) if error.is_misuse() => Party::Caller,
             Self::Realtime(_) | Self::System(_) => Party::Host,
-            Self::Refused => Party::Robot,
+            Self::Refused { .. } => Party::Robot,
             Self::Timeout
             | Self::Network { .. }
             | Self::Datagram { .. }

@@ -305,6 +305,8 @@ impl MotionError {
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
+            // Somebody pushes it.
+            Self::Held(Lapse::Displaced) | Self::Braked(Lapse::Displaced) => Party::Robot,
             Self::Goal(_)
             | Self::Path(_)
             | Self::Superseded
@@ -383,7 +385,8 @@ pub enum Stage {
 
 /// The robot ended a motion.
 ///
-/// `Display` is the message of libfranka's `ControlException` for the same event.
+/// `Display` is the message of libfranka's `ControlException` for the same event; also that of a
+/// reflex before the first cycle names the errors.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -434,7 +437,10 @@ impl core::fmt::Display for ControlError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self.stage {
             // libfranka 0.21, `robot_impl.cpp`: a motion that has not begun ends in the refusal's
-            // text, and nothing more;
+            // text;
+            Stage::Starting if self.is_reflex() && !self.failure.reflex_reason.is_empty() => {
+                write!(f, "{} {}", self.failure.refusal, self.failure.reflex_reason)
+            }
             Stage::Starting => write!(f, "{}", self.failure.refusal),
             // and this text takes its place at the end.
             Stage::Finishing if self.is_reflex() => {

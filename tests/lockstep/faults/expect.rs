@@ -85,12 +85,12 @@ fn reflex_reasons(error: &MotionError) -> Errors {
     control.failure.reflex_reason
 }
 
-/// The text of a reflex: libfranka 0.21, `robot_impl.cpp`. Before the first cycle it names no
+/// The text of a reflex: libfranka 0.21, `robot_impl.cpp`, which before the first cycle names no
 /// reasons, and has no log to take a rate from.
 fn reflex_text(trial: &Trial, errors: Errors) -> String {
     let rate = trial.success_rate();
     match (trial.cycles, trial.finishing) {
-        (0, 0) => "libfranka: Move command aborted: motion aborted by reflex!".to_owned(),
+        (0, 0) => format!("libfranka: Move command aborted: motion aborted by reflex! {errors}"),
         (_, 0) => {
             format!("libfranka: Move command aborted: motion aborted by reflex! {errors}{rate}")
         }
