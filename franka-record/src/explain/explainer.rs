@@ -28,7 +28,8 @@ pub struct Explainer<'a> {
 /// What there is since the robot was started: its clock goes on.
 #[derive(Clone, Debug, Default)]
 struct Run {
-    /// When its first cycle came, and when that of the next run did.
+    /// When its first cycle came, and when that of the next run did. What came before any cycle
+    /// belongs to the first run.
     begin: HostTime,
     end: Option<HostTime>,
     tare: Tare,
@@ -118,10 +119,8 @@ impl<'a> Explainer<'a> {
             if run.ended.is_some() {
                 self.stopped = Some(run);
             }
-        }
-        if self.run.first.is_none() {
             self.run.begin = received;
-        } else if time == self.run.last {
+        } else if self.run.first.is_some() && time == self.run.last {
             return;
         }
         self.run.take(self.model, state, record);
@@ -149,7 +148,7 @@ impl Run {
                 text: diagnosis.text.clone(),
             });
         }
-        self.timeline.event(event);
+        self.timeline.event(event, self.first.unwrap_or_default());
     }
 
     /// Takes in a state that is newer than the last.

@@ -30,7 +30,7 @@ impl fmt::Display for Explanation {
             None => writeln!(f, "\nThe robot did not stop by itself.")?,
         }
         if let Some(place) = &self.contact
-            && (self.cause.is_some() || place.noticed)
+            && place.noticed
         {
             writeln!(f, "\nWhat touched the arm")?;
             write!(f, "{place}")?;
@@ -90,8 +90,8 @@ impl fmt::Display for Explanation {
         let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
         writeln!(
             f,
-            "{} commands left after the next state was due, at most {:.3} ms after, {}: {:.3} ms after this computer \
-             had its state",
+            "{} commands left after the next state was due, by {:.1} ms at most,\n  \
+             {} (its state was answered in {:.3} ms)",
             late.commands,
             milliseconds(late.most),
             self.before(late.at),
@@ -156,7 +156,8 @@ impl fmt::Display for Place {
             )?;
             writeln!(
                 f,
-                "  pushed by {:.1} N: {fx:.1}, {fy:.1}, {fz:.1} N",
+                "  pushed by {:.1} N: {fx:.1}, {fy:.1}, {fz:.1} N\n  \
+                 (what the robot estimates is what it does: of the other sign)",
                 contact.size()
             )?;
             if let Some((body, probability)) = contact.next

@@ -260,11 +260,13 @@ fn events_tell_goals_and_the_diagnosis() {
             record.turnaround = Duration::from_micros(30_250);
         }
         Cycle {
+            time: HostTime::from_nanos(1_000_000 * state.message_id),
             record,
             state,
             ..Cycle::default()
         }
     });
+    // The first goal is given before the first cycle comes.
     let event = |robot_time, kind| Event {
         time: HostTime::default(),
         robot_time,
@@ -290,7 +292,7 @@ fn events_tell_goals_and_the_diagnosis() {
         ..Note::default()
     };
     let events = [
-        event(1, EventKind::Goal(goal)),
+        event(0, EventKind::Goal(goal)),
         event(2501, EventKind::Outcome(outcome)),
         event(2502, EventKind::Diagnosis(diagnosis)),
         event(1200, EventKind::Note(note)),
@@ -309,8 +311,8 @@ fn events_tell_goals_and_the_diagnosis() {
     assert_eq!(error.joint, Some(3));
     assert!((error.value - 0.02).abs() < 1e-12);
     assert!(explanation.to_string().contains("a remark"));
-    let late = "8 commands left after the next state was due, at most 29.500 ms after, 2000 ms before the end: \
-                30.250 ms after this computer had its state";
+    let late = "8 commands left after the next state was due, by 29.5 ms at most,\n  2000 ms before the end \
+                (its state was answered in 30.250 ms)";
     assert!(explanation.to_string().contains(late), "{explanation}");
     // Without events the goal is seen in the records.
     let explanation = Explanation::of(cycles, &[], Model::fr3());

@@ -156,7 +156,8 @@ impl Timeline {
         self.end = Some(time);
     }
 
-    pub(super) fn event(&mut self, event: &Event) {
+    /// Takes in an event of a run that begins with the cycle `first`.
+    pub(super) fn event(&mut self, event: &Event, first: u64) {
         if self.is_after(event.robot_time) {
             self.left_out += 1;
             return;
@@ -183,7 +184,8 @@ impl Timeline {
             }
             kind => kind.to_string(),
         };
-        self.add(event.robot_time, kind, text);
+        // The first goal may be given before the first cycle comes.
+        self.add(event.robot_time.max(first), kind, text);
     }
 
     pub(super) fn add(&mut self, time: u64, kind: MomentKind, text: String) {
