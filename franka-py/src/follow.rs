@@ -103,10 +103,8 @@ pub(crate) fn operation(
     let py = owner.py();
     let mut keywords = Keywords::new(name, options)?;
     let common = Options::of_goal(&mut keywords, leader.robot().model())?;
-    let lead = keywords.take("lead")?;
-    let lead: Option<Bounds> = lead.map(|lead| lead.extract()).transpose()?;
-    let given_up = keywords.take("watchdog")?;
-    let given_up = given_up.map(|value| watchdog(&value)).transpose()?;
+    let lead: Option<Bounds> = keywords.value("lead")?;
+    let given_up = keywords.read("watchdog", watchdog)?;
     keywords.end()?;
     let configured = move |follow: Following| {
         let mut follow = with_options!(follow, common);

@@ -113,7 +113,8 @@ impl Robot {
     ///
     /// Options as of `move_to`, and `lead`, a `Lead`: how far ahead of the arm a target may be; and
     /// `watchdog`, a pair of seconds and `brake` or `hold`: what happens if no target comes for so
-    /// long. What the iterator raises brakes the arm and is raised.
+    /// long. Nothing begins before the first target, and no watchdog counts until then. What the
+    /// iterator raises brakes the arm and is raised.
     #[pyo3(signature = (targets, **options))]
     fn follow(
         this: &Bound<'_, Self>,

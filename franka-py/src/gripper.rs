@@ -34,7 +34,8 @@ device_methods!(Gripper, gripper::Gripper, "Gripper.connect");
 #[pymethods]
 impl Robot {
     /// The Franka Hand of this robot, at its host and the usual port; it is yet to be connected:
-    /// `async with robot.gripper() as gripper:`.
+    /// `async with robot.gripper() as gripper:`. That of a simulator may have another port:
+    /// `Gripper(sim.hand_address)`.
     fn gripper(&self) -> Gripper {
         Gripper::new(self.beside(1338))
     }

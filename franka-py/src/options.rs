@@ -7,7 +7,7 @@ use franka_async::goal::{
     AxisLimits, Budget, Deviation, ForceCap, Leash, OnTimeout, Settling, Tolerance, Tuning,
 };
 use franka_async::model::Model;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::exceptions::{PyAttributeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -51,9 +51,20 @@ impl<'py> Keywords<'py> {
     where
         T: for<'a> FromPyObject<'a, 'py, Error: Into<PyErr>>,
     {
+        self.read(name, |value| value.extract().map_err(Into::into))
+    }
+
+    /// The argument of this name, if it is given and not `None`, as `read` has it.
+    ///
+    /// # Errors
+    /// Those of `read`; of a value of the wrong type with the name of the argument.
+    pub(crate) fn read<T>(
+        &mut self,
+        name: &str,
+        read: impl FnOnce(&Bound<'py, PyAny>) -> PyResult<T>,
+    ) -> PyResult<Option<T>> {
         let value = self.take(name)?;
-        let value = value.map(|value| value.extract().map_err(Into::into));
-        value.transpose()
+        value.map(|value| named(name, &value, read)).transpose()
     }
 
     /// Refuses what nobody took.
@@ -70,6 +81,23 @@ impl<'py> Keywords<'py> {
             ))),
         }
     }
+}
+
+/// Reads the argument `name`, which is named by the error if it is of the wrong type.
+fn named<'py, T>(
+    name: &str,
+    value: &Bound<'py, PyAny>,
+    read: impl FnOnce(&Bound<'py, PyAny>) -> PyResult<T>,
+) -> PyResult<T> {
+    read(value).map_err(|error| {
+        let py = value.py();
+        match error.is_instance_of::<PyTypeError>(py)
+            || error.is_instance_of::<PyAttributeError>(py)
+        {
+            true => PyTypeError::new_err(format!("{name} is {value:?}: {}", error.value(py))),
+            false => error,
+        }
+    })
 }
 
 /// What motions, streams and sessions have in common.
@@ -96,14 +124,13 @@ impl Options {
     /// Takes the options of a motion or a stream.
     pub(crate) fn of_goal(keywords: &mut Keywords<'_>, model: &Model) -> PyResult<Self> {
         let stiffness = keywords.take("stiffness")?;
-        let (tolerance, settling) = (keywords.take("tolerance")?, keywords.take("settling")?);
         let until = keywords.take("until")?;
         Ok(Self {
             stiffness: stiffness
                 .map(|value| vector("stiffness", &value))
                 .transpose()?,
-            tolerance: tolerance.map(|value| self::tolerance(&value)).transpose()?,
-            settling: settling.map(|value| self::settling(&value)).transpose()?,
+            tolerance: keywords.read("tolerance", tolerance)?,
+            settling: keywords.read("settling", settling)?,
             until: until.map(|value| condition::reaction(&value)).transpose()?,
             ..Self::of_session(keywords, model)?
         })
@@ -168,21 +195,21 @@ pub(crate) use with_options;
 /// Takes what a session keeps and can be tuned: `limits`, `gains`, `force_cap`, `leash`,
 /// `deviation`, `posture`.
 pub(crate) fn tuning(keywords: &mut Keywords<'_>, model: &Model) -> PyResult<Tuning> {
-    let limits = keywords.take("limits")?;
-    let (gains, leash) = (keywords.take("gains")?, keywords.take("leash")?);
-    let (deviation, posture) = (keywords.take("deviation")?, keywords.take("posture")?);
+    let posture = keywords.take("posture")?;
     let force_cap = match keywords.given("force_cap")? {
         None => None,
         Some(cap) if cap.is_none() => Some(ForceCap::Off),
-        Some(cap) => Some(ForceCap::Newtons(cap.extract()?)),
+        Some(cap) => Some(ForceCap::Newtons(named("force_cap", &cap, |cap| {
+            cap.extract()
+        })?)),
     };
-    let bounds = |value: Bound<'_, PyAny>| value.extract::<Bounds>();
+    let bounds = |value: &Bound<'_, PyAny>| value.extract::<Bounds>();
     Ok(Tuning {
-        gains: gains.map(|value| gains::read(&value)).transpose()?,
-        budget: limits.map(|value| budget(&value, model)).transpose()?,
+        gains: keywords.read("gains", gains::read)?,
+        budget: keywords.read("limits", |limits| budget(limits, model))?,
         force_cap,
-        leash: leash.map(bounds).transpose()?.map(Bounds::leash),
-        deviation: deviation.map(bounds).transpose()?.map(Bounds::deviation),
+        leash: keywords.read("leash", bounds)?.map(Bounds::leash),
+        deviation: keywords.read("deviation", bounds)?.map(Bounds::deviation),
         posture: posture.map(|value| vector("posture", &value)).transpose()?,
     })
 }
@@ -283,7 +310,10 @@ pub(crate) fn budget_object<'py>(py: Python<'py>, budget: &Budget) -> PyResult<B
 
 /// Reads `watchdog`: seconds, and `brake` or `hold`.
 pub(crate) fn watchdog(value: &Bound<'_, PyAny>) -> PyResult<(Duration, OnTimeout)> {
-    let (silence, what): (f64, String) = value.extract()?;
+    let pair = value.extract();
+    let (silence, what): (f64, String) = pair.map_err(|_: PyErr| {
+        PyTypeError::new_err("expected a pair of seconds and 'brake' or 'hold'")
+    })?;
     let on_timeout = match what.as_str() {
         "brake" => OnTimeout::Brake,
         "hold" => OnTimeout::Hold,
