@@ -5,6 +5,7 @@
 
 use axum::{Json, Router, routing::post};
 use franka_async::prelude::*;
+use tokio::signal::{ctrl_c, unix};
 use tokio::sync::{mpsc, watch};
 
 #[tokio::main]
@@ -31,9 +32,13 @@ async fn main() -> anyhow::Result<()> {
     let jobs = Router::new().route("/jobs", post(take).get(list));
     let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await?;
     println!("listening on {}", listener.local_addr()?);
-    axum::serve(listener, jobs.route("/recover", post(recover)))
-        .with_graceful_shutdown(async { drop(tokio::signal::ctrl_c().await) })
-        .await?;
+    let mut terminated = unix::signal(unix::SignalKind::terminate())?;
+    let serving = axum::serve(listener, jobs.route("/recover", post(recover)));
+    tokio::select! {
+        served = serving => served?,
+        _ = ctrl_c() => {}
+        _ = terminated.recv() => {}
+    }
     robot.shutdown().await; // brakes if a job is under way
     Ok(())
 }
