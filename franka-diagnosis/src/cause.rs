@@ -161,7 +161,7 @@ impl fmt::Display for Cause {
                 }
                 write!(
                     f,
-                    " (at most {longest_run} in a row, cycles {first} to {last}, success rate {})",
+                    " (at most {longest_run} in a row, cycles {first} to {last}, last reported success rate {})",
                     Digits(success_rate)
                 )
             }
