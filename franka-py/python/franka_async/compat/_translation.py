@@ -8,6 +8,14 @@ from contextlib import AbstractContextManager, contextmanager
 from .. import errors
 
 
+def text_of(error: errors.FrankaError) -> str:
+    """The text of an error, without what the originals do not say: where there was no connection, and why."""
+    text = str(error)
+    if isinstance(error, errors.ConnectError) and error.kind in ("refused", "connection_closed"):
+        return text.split(" (")[0]
+    return text
+
+
 def translation(exception: Callable[[errors.FrankaError], Exception]) -> Callable[[], AbstractContextManager[None]]:
     """Returns a context that raises what ``exception`` makes of the exceptions of this package, which are its cause."""
 

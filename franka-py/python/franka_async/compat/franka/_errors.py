@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from ... import errors
-from .._translation import translation
+from .._translation import text_of, translation
 
 
 class FrankaError(Exception):
@@ -31,7 +31,7 @@ PREEMPTED = "libfranka: Move command preempted!"
 
 
 def _exception(error: errors.FrankaError) -> FrankaError:
-    text, kind = str(error), error.kind
+    text, kind = text_of(error), error.kind
     match error:
         case errors.ControlError():
             preempted = error.move_status == "preempted"

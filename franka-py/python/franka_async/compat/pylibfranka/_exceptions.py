@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ... import errors
-from .._translation import translation
+from .._translation import text_of, translation
 
 
 class FrankaException(Exception):
@@ -39,7 +39,7 @@ _ARGUMENT = ("Commanding value is infinite or NaN", "libfranka: Attempt to set i
 
 
 def _exception(error: errors.FrankaError) -> Exception:
-    text, kind = str(error), error.kind
+    text, kind = text_of(error), error.kind
     match error:
         case errors.ConnectError():
             if kind == "realtime":
