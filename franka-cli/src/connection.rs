@@ -214,7 +214,7 @@ impl Place {
             Seen::Closed => Failure::new(
                 Ending::Taken,
                 format!(
-                    "the {device} at {at} closed the connection at once: most likely somebody else is connected"
+                    "the {device} at {at} closed the connection at once: another client is probably connected"
                 ),
             )
             .advice("A robot takes one client at a time. End the other program, then try again."),

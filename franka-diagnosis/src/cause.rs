@@ -7,6 +7,11 @@ use franka_model::CYCLE;
 
 use super::finding::{Digits, Quantity, Subject};
 
+/// Whether the answer to a state took longer than a cycle.
+pub(super) fn is_slow(turnaround: Duration) -> bool {
+    turnaround.as_secs_f64() > CYCLE
+}
+
 /// Something in the log that led up to the end of a motion. Cycles are the `message_id`s of states.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -175,7 +180,7 @@ impl fmt::Display for Cause {
                     Count(count, "command")
                 )?;
                 let longest = Digits(worst_turnaround.as_secs_f64() * 1e3);
-                match worst_turnaround.as_secs_f64() > CYCLE {
+                match is_slow(worst_turnaround) {
                     true => write!(f, "the answer to a state took up to {longest} ms"),
                     false => write!(
                         f,

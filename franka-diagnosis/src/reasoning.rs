@@ -1,11 +1,10 @@
 //! How the reason of a reflex is worked out: from errors to a finding, from a finding to its
 //! causes, from causes to advice.
 
-use franka_model::CYCLE;
 use franka_proto::{Errors, RobotError as E};
 
 use super::advice::Advice;
-use super::cause::Cause;
+use super::cause::{Cause, is_slow};
 use super::commanded::{self, Which};
 use super::contact::Sense;
 use super::evidence::{Evidence, Reading, newest, worst};
@@ -247,23 +246,14 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
             let lost = lost_cycles::lost_packets(evidence, true);
             // Commands that left too late have not reached the robot in time, either. States that
             // were all had, but late, may have been held up on their way.
-            let is_slow = |late: &Cause| match *late {
-                Cause::LateCommands {
-                    worst_turnaround, ..
-                } => worst_turnaround.as_secs_f64() > CYCLE,
-                _ => false,
-            };
-            let by_host = late.filter(|late| match lost {
-                Some(Cause::LostPackets {
-                    states: 0,
-                    unanswered,
-                    ..
-                }) => unanswered > 0 || is_slow(late),
-                _ => false,
-            });
-            causes.extend(by_host);
-            causes.extend(lost);
-            causes.extend(late.filter(|_| by_host.is_none()));
+            let slow = evidence
+                .statistics
+                .is_some_and(|counts| is_slow(counts.worst_turnaround));
+            let by_host = matches!(lost, Some(Cause::LostPackets { states: 0, unanswered, .. })
+                if unanswered > 0 || slow);
+            let (first, second) = if by_host { (late, lost) } else { (lost, late) };
+            causes.extend(first);
+            causes.extend(second);
         }
         Category::Start | Category::Command | Category::Inverse => {
             let lost = lost_cycles::lost_packets(evidence, false);

@@ -94,7 +94,7 @@ fn busy(answers: &[Answer]) -> Judged {
     match answers.last() {
         Some(Answer::Accepted(_)) => Judged::good("free: the robot opened a session"),
         Some(Answer::Closed) => Judged::warning(
-            "the robot closed the connection without an answer: most likely somebody else is connected",
+            "the robot closed the connection without an answer: another client is probably connected",
         ),
         Some(Answer::Incompatible(_)) => {
             Judged::unknown("unknown: the robot refused the version before it opened a session")

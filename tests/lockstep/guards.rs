@@ -3,7 +3,7 @@
 use franka_lockstep::{Lockstep, for_each_robot};
 use franka_model::Wrench;
 use franka_proto::{CollisionBehavior, Request};
-use franka_rt::lifecycle::{MotionError, Tuning};
+use franka_rt::lifecycle::{MotionError, Party, Tuning};
 use franka_rt::session::{Guard, Lapse, Lead, OnArrival, PoseError, Target};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
@@ -51,7 +51,9 @@ fn a_displaced_arm_stays_where_it_is_released() {
             let off = pull_aside(&mut lockstep);
             assert!(off > 0.2, "{off} m aside");
             let outcome = lockstep.until_resolved(id, 20_000);
-            assert_eq!(outcome, Err(MotionError::Braked(Lapse::Displaced)));
+            let displaced = MotionError::Braked(Lapse::Displaced);
+            assert_eq!(displaced.party(), Party::Robot, "somebody pulls it");
+            assert_eq!(outcome, Err(displaced));
             lockstep.run(500);
             let at = lockstep.arm_pose().translation.vector - start.translation.vector;
             assert!(at.y > off - 0.06, "from {off} m to {} m aside", at.y);

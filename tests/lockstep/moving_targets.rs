@@ -89,6 +89,50 @@ fn without_news_the_arm_stops_on_the_way_of_its_target_and_goes_on_with_the_next
     assert!(error.translation < 3e-4, "{error:?}");
 }
 
+/// The figures of `docs/src/services.md`.
+#[test]
+fn a_target_that_stops_at_once_is_overshot_and_come_back_to() {
+    for (speed, fading, expected) in [
+        (0.05, 0.0, 3.0),
+        (0.1, 0.0, 14.0),
+        (0.2, 0.0, 73.0),
+        (0.1, 0.3, 0.3),
+    ] {
+        let mut lockstep = realistic();
+        let session = lockstep.engage();
+        let start = lockstep.arm_pose();
+        let (mut way, mut beyond, mut goal) = (0.0, 0.0_f64, None);
+        for ms in 0..4000_u64 {
+            let since = ms as f64 * 1e-3 - 1.0;
+            let left = if since < 0.0 {
+                1.0
+            } else {
+                1.0 - since / fading
+            };
+            let velocity = speed * left.max(0.0);
+            way += velocity * 1e-3;
+            let pose = Translation3::new(0.0, way, 0.0) * start;
+            let target = Target::from((pose, Twist::new(0.0, velocity, 0.0, 0.0, 0.0, 0.0)));
+            match goal {
+                None => goal = lockstep.within(session, target, OnArrival::Hold).ok(),
+                Some(goal) if ms % 16 == 0 => assert_eq!(lockstep.update(goal, target), Ok(true)),
+                Some(_) => {}
+            }
+            lockstep.tick();
+            let off = lockstep.arm_pose().translation.y - start.translation.y - way;
+            if velocity == 0.0 {
+                beyond = beyond.max(off * 1e3);
+            }
+            assert!(ms < 3990 || off.abs() < 1e-3, "{off} m from the target");
+        }
+        println!("{speed} m/s, fading in {fading} s: {beyond:.1} mm beyond");
+        assert!(
+            (beyond - expected).abs() < 1.0 + 0.2 * expected,
+            "{speed} m/s: {beyond} mm"
+        );
+    }
+}
+
 #[test]
 fn a_target_that_is_too_fast_is_followed_within_the_budget() {
     let mut lockstep = realistic();

@@ -68,6 +68,36 @@ fn a_torque_that_the_limiter_ramps_is_no_step() {
 }
 
 #[test]
+fn a_torque_that_goes_on_growing_is_no_step() {
+    let mut story = torques();
+    for cycle in 1..=20_u32 {
+        story.go(
+            |_, command| command.tau_J_d[3] = 0.8 * f64::from(cycle),
+            |_| {},
+        );
+    }
+    let fast = |state: &mut franka_proto::RobotState| state.dq[3] = 4.5;
+    let grow = |before: &franka_proto::RobotState, command: &mut franka_proto::RobotCommand| {
+        command.tau_J_d = before.tau_J_d;
+        command.tau_J_d[3] += 0.8;
+    };
+    let diagnosis = story.stop(&[E::JointVelocityViolation], grow, fast);
+    assert_eq!(diagnosis.causes, []);
+}
+
+#[test]
+fn near_a_stretched_arm_a_force_may_be_none() {
+    let singular = |elbow: f64| {
+        let mut story = torques();
+        story.go(|_, _| {}, |state| state.q_d[3] = elbow);
+        let diagnosis = story.stop(&[E::CartesianReflex], |_, _| {}, |_| {});
+        let singular = |cause: &Cause| matches!(cause, Cause::Singularity { .. });
+        diagnosis.causes.iter().any(singular)
+    };
+    assert_eq!([-2.0, -0.55].map(singular), [false, true]);
+}
+
+#[test]
 fn a_collision_is_the_flagged_axis_not_the_strongest() {
     let mut story = torques();
     for (force, contact) in [(5.0, 0.0), (12.0, 1.0), (19.0, 1.0)] {

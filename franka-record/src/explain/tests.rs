@@ -149,6 +149,18 @@ fn a_contact_that_was_over_before_the_end_is_not_said_to_touch() {
     assert!(!over.contains("touche"), "{over}");
     let lasting = text(500, 2001);
     assert!(lasting.contains("What touched the arm"), "{lasting}");
+    // A stop for want of commands: nobody touched it.
+    let silent = hit().into_iter().map(|mut state| {
+        (state.joint_contact, state.joint_collision) = ([0.0; 7], [0.0; 7]);
+        if state.message_id >= 2500 {
+            state.reflex_reason = RobotError::CommunicationConstraintsViolation.into();
+            state.errors = state.reflex_reason;
+        }
+        state
+    });
+    let silent = explained(silent).to_string();
+    assert!(silent.contains("Why the robot stopped"), "{silent}");
+    assert!(!silent.contains("touche"), "{silent}");
 }
 
 #[test]

@@ -305,7 +305,7 @@ impl MotionError {
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
-            // Somebody pushes it.
+            // A person at the robot pushed the arm.
             Self::Held(Lapse::Displaced) | Self::Braked(Lapse::Displaced) => Party::Robot,
             Self::Goal(_)
             | Self::Path(_)
