@@ -94,9 +94,9 @@ fn without_news_the_arm_stops_on_the_way_of_its_target_and_goes_on_with_the_next
 fn a_target_that_stops_at_once_is_overshot_and_come_back_to() {
     for (speed, fading, expected) in [
         (0.05, 0.0, 3.0),
-        (0.1, 0.0, 14.0),
-        (0.2, 0.0, 73.0),
-        (0.1, 0.3, 0.3),
+        (0.1, 0.0, 12.0),
+        (0.2, 0.0, 58.0),
+        (0.1, 0.3, 0.4),
     ] {
         let mut lockstep = realistic();
         let session = lockstep.engage();
@@ -127,7 +127,7 @@ fn a_target_that_stops_at_once_is_overshot_and_come_back_to() {
         }
         println!("{speed} m/s, fading in {fading} s: {beyond:.1} mm beyond");
         assert!(
-            (beyond - expected).abs() < 1.0 + 0.2 * expected,
+            (beyond - expected).abs() < 0.3 + 0.1 * expected,
             "{speed} m/s: {beyond} mm"
         );
     }
