@@ -192,7 +192,7 @@ fn a_robot_that_is_taken_or_too_old_is_reported() {
         let builder = Robot::builder(robot.as_str()).realtime(Realtime::Ignore);
         let first = runtime.block_on(builder.connect()).expect("connected");
         let ran = home.run(&["doctor", &robot, "--for", "read", "--quick", "--json"]);
-        assert!(ran.err.contains("somebody else"), "{ran:?}");
+        assert!(ran.err.contains("another client"), "{ran:?}");
         let json: serde_json::Value = serde_json::from_str(&ran.out).expect("JSON");
         assert_eq!(verdict(&json, "robot.busy"), "warning");
         assert_eq!(verdict(&json, "robot.version"), "unknown");
