@@ -2,6 +2,7 @@
 
 use std::net::SocketAddr;
 use std::sync::Arc;
+use std::time::Duration;
 
 use franka_rt::lifecycle::{CloseReason, MotionError};
 use franka_rt::sched::Granted;
@@ -53,6 +54,12 @@ impl Link {
     /// Whether the bridge takes nothing any more.
     pub(crate) fn has_ended(&self) -> bool {
         self.bridge.inbox.is_closed()
+    }
+
+    /// For how long the robot had been silent when its link was given up, if no state has come since.
+    pub(crate) fn silence(&self) -> Option<Duration> {
+        let newest = self.newest.state().message_id;
+        self.subscriptions().silence(newest)
     }
 
     /// Waits until the connection has ended, and returns why.

@@ -206,13 +206,14 @@ impl Robot {
     }
 
     /// Brakes whatever moves and resolves when the arm rests and the motion has ended; at once if
-    /// nothing moves. The motion itself resolves as [`MotionError::Stopped`].
+    /// nothing moves. The motion itself resolves as [`MotionError::Stopped`] as soon as the stop is
+    /// taken, while the arm still brakes.
     ///
     /// # Errors
     /// [`MotionError`] if the motion ended otherwise, for instance by a reflex;
     /// [`MotionError::Superseded`] by a goal that came after the stop;
-    /// [`MotionError::ConnectionClosed`] if there is no connection, so that it is unknown whether
-    /// the arm rests.
+    /// [`MotionError::LinkLost`] if the robot is silent and [`MotionError::ConnectionClosed`] if
+    /// there is no connection, so that it is unknown whether the arm rests.
     ///
     /// # Cancel safety
     /// Once polled, the arm is braked even if the future is dropped.
@@ -225,8 +226,11 @@ impl Robot {
         match outcome.await {
             Ok(outcome) => outcome.map(|_| ()),
             Err(_) if link.has_ended() => Err(link.closed()),
-            // Nothing moved.
-            Err(_) => Ok(()),
+            // This program moves nothing.
+            Err(_) => match link.silence() {
+                Some(silence) => Err(MotionError::LinkLost { silence }),
+                None => Ok(()),
+            },
         }
     }
 

@@ -188,8 +188,9 @@ impl Robot {
     }
 
     /// Brakes whatever moves, and waits until the arm rests and the motion has ended; that one
-    /// raises `MotionError` of the kind `stopped`. Once it has begun, it goes on even if it is
-    /// cancelled.
+    /// raises `MotionError` of the kind `stopped` at once, while the arm still brakes. Raises
+    /// `MotionError` if it is unknown whether the arm rests: `link_lost`, `connection_closed`. Once
+    /// it has begun, it goes on even if it is cancelled.
     fn stop(&self) -> PyResult<Operation> {
         let robot = self.connected()?;
         Ok(Operation::new(
@@ -224,7 +225,7 @@ impl Robot {
         runtime::runtime()?;
         self.connection().clone().ok_or_else(|| {
             let text = format!(
-                "not connected to the robot at {}: use 'async with', or await connect() before",
+                "not connected to the robot at {}: call connect() before, or use 'async with' ('with' in sync)",
                 self.address
             );
             Python::attach(|py| misuse(py, "not_connected", &text))

@@ -22,6 +22,12 @@ async fn a_robot_that_falls_silent_is_lost_and_serves_again_once_it_is_back() {
     let begun = Instant::now();
     let (silent, outcome) = tokio::join!(silence, async {
         let outcome = moving.await.unwrap();
+        // Nothing moves the arm any more, and nobody knows whether it rests.
+        let stop = robot.stop().await;
+        assert!(
+            matches!(stop, Err(MotionError::LinkLost { .. })),
+            "{stop:?}"
+        );
         drop(release);
         outcome
     });
@@ -42,6 +48,7 @@ async fn a_robot_that_falls_silent_is_lost_and_serves_again_once_it_is_back() {
     until(&robot, |state| state.robot_mode != RobotMode::Move).await;
     robot.recover().await.unwrap();
     assert_eq!(robot.state().robot_mode, RobotMode::Idle);
+    robot.stop().await.unwrap();
     robot.move_to(robot.pose()).await.unwrap();
     robot.shutdown().await;
 }
