@@ -37,7 +37,7 @@ impl<D: Clone> Device<D> {
         runtime::runtime()?;
         self.open().ok_or_else(|| {
             let text = format!(
-                "not connected to the {} at {}: use 'async with', or await connect() before",
+                "not connected to the {} at {}: call connect() before, or use 'async with' ('with' in sync)",
                 self.name, self.endpoint
             );
             Python::attach(|py| misuse(py, "not_connected", &text))
