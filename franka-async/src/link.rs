@@ -56,7 +56,7 @@ impl Link {
         self.bridge.inbox.is_closed()
     }
 
-    /// For how long the robot had been silent when its link was given up, if no state has come since.
+    /// The silence for which the link was given up, if no state has come since.
     pub(crate) fn silence(&self) -> Option<Duration> {
         let newest = self.newest.state().message_id;
         self.subscriptions().silence(newest)
