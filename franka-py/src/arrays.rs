@@ -116,7 +116,10 @@ pub(crate) fn pose_of(name: &str, shape: &[usize], values: &[f64]) -> PyResult<O
         [4, 4] => {
             let matrix = Matrix4::from_row_slice(values);
             let pose = pose::from_matrix(&matrix).ok_or_else(|| {
-                PyValueError::new_err(format!("{name} is not a rigid transformation: {matrix}"))
+                PyValueError::new_err(format!(
+                    "{name} is not a rigid transformation, row by row: expected a rotation matrix, \
+                     a translation in the last column and 0 0 0 1 in the last row, got\n{matrix:.4}"
+                ))
             });
             pose.map(Some)
         }

@@ -123,7 +123,8 @@ fn refuse_in_event_loop(py: Python<'_>) -> PyResult<()> {
         return Ok(());
     }
     Err(PyRuntimeError::new_err(
-        "waiting would block the event loop of this thread: use 'await' here",
+        "waiting would block the event loop of this thread: use 'await' here, and \
+         franka_async.Robot in place of franka_async.sync.Robot",
     ))
 }
 
