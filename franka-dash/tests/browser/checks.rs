@@ -158,7 +158,7 @@ pub(crate) fn take(page: &Browser) -> anyhow::Result<()> {
 }
 
 /// Presses the button that moves up until the arm has moved. It is held on return.
-fn hold_up(page: &Browser, served: &Served) -> anyhow::Result<()> {
+pub(crate) fn hold_up(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let start = served.height();
     hold_until(page, "[data-jog='Z+']", || served.height() > start + 0.003)
 }

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use anyhow::{Context as _, ensure};
 
-use crate::checks::{load, looks, take};
-use crate::driver::Browser;
+use crate::checks::{hold_up, load, looks, take};
+use crate::driver::{Browser, up};
 use crate::served::{Served, wait};
 
 /// All checks, one after the other, and a picture of what is left in the panels.
@@ -36,6 +36,10 @@ pub(crate) fn tune(page: &Browser, _: &Served) -> anyhow::Result<()> {
 /// Every quantity draws a line in colour, and the table has a row per frame, the newest joints in
 /// the last.
 pub(crate) fn plots_and_export(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    // The last quantities are those of control, and the plot has the last 20 s: they come first.
+    hold_up(page, served)?;
+    page.pointer(&[up()])?;
+    served.check_rest()?;
     let empty = page.run(
         "const choice = document.getElementById('plotted'); \
          const coloured = () => { \
@@ -49,7 +53,7 @@ pub(crate) fn plots_and_export(page: &Browser, served: &Served) -> anyhow::Resul
          }; \
          return (async () => { \
            const empty = []; \
-           for (const {value} of choice.options) { \
+           for (const {value} of [...choice.options].reverse()) { \
              choice.value = value; \
              choice.dispatchEvent(new Event('change')); \
              for (let i = 0; i < 50 && !coloured(); i += 1) await new Promise((ok) => setTimeout(ok, 100)); \
