@@ -108,9 +108,10 @@ fn second_viewer(page: &Browser, served: &Served) -> anyhow::Result<()> {
 }
 
 /// The last seconds can be looked at again, and then what is now.
-fn look_back(page: &Browser, _: &Served) -> anyhow::Result<()> {
+fn look_back(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let height = || page.state()?["endEffector"][2].as_f64().context("a height");
-    let now = height()?;
+    // Of the robot: a page on a busy machine shows it later.
+    let now = served.height();
     let scrub = |seconds: f64| {
         page.run(&format!(
             "const it = document.getElementById('scrub'); it.value = {seconds}; \
