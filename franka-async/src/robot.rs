@@ -212,8 +212,9 @@ impl Robot {
     /// # Errors
     /// [`MotionError`] if the motion ended otherwise, for instance by a reflex;
     /// [`MotionError::Superseded`] by a goal that came after the stop;
-    /// [`MotionError::LinkLost`] if the robot is silent and [`MotionError::ConnectionClosed`] if
-    /// there is no connection, so that it is unknown whether the arm rests.
+    /// [`MotionError::LinkLost`] if the robot has been silent for the link timeout, and
+    /// [`MotionError::ConnectionClosed`] if there is no connection: it is unknown whether the arm
+    /// rests.
     ///
     /// # Cancel safety
     /// Once polled, the arm is braked even if the future is dropped.

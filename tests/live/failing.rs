@@ -22,7 +22,7 @@ async fn a_robot_that_falls_silent_is_lost_and_serves_again_once_it_is_back() {
     let begun = Instant::now();
     let (silent, outcome) = tokio::join!(silence, async {
         let outcome = moving.await.unwrap();
-        // Nothing moves the arm any more, and nobody knows whether it rests.
+        // No motion is left to stop, and it is unknown whether the arm rests.
         let stop = robot.stop().await;
         assert!(
             matches!(stop, Err(MotionError::LinkLost { .. })),
