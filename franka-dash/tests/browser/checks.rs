@@ -191,11 +191,24 @@ pub(crate) fn hold_until(
 }
 
 fn jog(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    hold_up(page, served)?;
-    strip_says(page, ["held", "target control", "fed"])?;
-    page.pointer(&[up()])?;
+    let (mut shown, begin) = (false, Instant::now());
+    while !shown {
+        ensure!(begin.elapsed() < LONGEST, "each hold was cut short");
+        hold_up(page, served)?;
+        wait("the top lines", || {
+            shown = top_lines(page)? == json!(["held", "target control", "fed"]);
+            Ok(shown || page.state()?["holding"] != true)
+        })?;
+        page.pointer(&[up()])?;
+    }
     served.check_rest()?;
-    strip_says(page, ["none", "none", "off"])
+    wait("the top lines at rest", || {
+        let said = top_lines(page)?;
+        // Expired if the machine was too busy for the hold.
+        Ok(["off", "expired"]
+            .map(|deadman| json!(["none", "none", deadman]))
+            .contains(&said))
+    })
 }
 
 /// A step goes as far as it says, and ends by itself.
@@ -222,14 +235,11 @@ fn step(page: &Browser, served: &Served) -> anyhow::Result<()> {
 }
 
 /// Session, law and deadman.
-fn strip_says(page: &Browser, wanted: [&str; 3]) -> anyhow::Result<()> {
-    wait("the top lines", || {
-        let said = page.run(
-            "return ['session', 'law', 'deadman'] \
-             .map((id) => document.getElementById(id).textContent)",
-        )?;
-        Ok(said == json!(wanted))
-    })
+fn top_lines(page: &Browser) -> anyhow::Result<Value> {
+    page.run(
+        "return ['session', 'law', 'deadman'] \
+         .map((id) => document.getElementById(id).textContent)",
+    )
 }
 
 /// Each way in which a browser takes a held button away.
@@ -252,7 +262,9 @@ fn lose_the_hold(page: &Browser, served: &Served) -> anyhow::Result<()> {
         wait("the page", || Ok(page.state()?["holding"] == false))?;
         page.pointer(&[up()])?;
     }
-    strip_says(page, ["none", "none", "expired"])?;
+    wait("the top lines", || {
+        Ok(top_lines(page)? == json!(["none", "none", "expired"]))
+    })?;
     // The pointer leaves the button.
     hold_up(page, served)?;
     page.pointer(&[move_to((5.0, 300.0))])?;
@@ -291,17 +303,37 @@ fn keyboard(page: &Browser, served: &Served) -> anyhow::Result<()> {
 
 /// Drags link 6: the robot feels it, and the page draws the force.
 fn push(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    take(page)?;
-    drag(page, (0.0, -150.0))?;
-    wait("the push", || {
+    drag_until(page, (0.0, -150.0), || {
         let force = served.robot.state().O_F_ext_hat_K;
         let newtons = force[..3].iter().map(|f| f * f).sum::<f64>().sqrt();
-        Ok(newtons > 8.0 && page.state()?["forceShown"] == true)
+        newtons > 8.0
     })?;
     page.pointer(&[up()])?;
     wait("the end of the push", || {
         Ok(page.state()?["forceShown"] == false)
     })
+}
+
+/// Drags link 6 of the drawn arm, again where a page that was too busy has let it go, until the
+/// force is drawn and `felt`. It is held on return.
+pub(crate) fn drag_until(
+    page: &Browser,
+    by: (f64, f64),
+    felt: impl Fn() -> bool,
+) -> anyhow::Result<()> {
+    let begin = Instant::now();
+    while begin.elapsed() < LONGEST {
+        take(page)?;
+        drag(page, by)?;
+        for _ in 0..100 {
+            if page.state()?["forceShown"] == true && felt() {
+                return Ok(());
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        page.pointer(&[up()])?;
+    }
+    anyhow::bail!("no force is drawn: {}", page.state()?)
 }
 
 /// Presses on link 6 of the drawn arm, and drags it by so many pixels.
@@ -352,12 +384,14 @@ fn bend(page: &Browser, served: &Served) -> anyhow::Result<()> {
 }
 
 fn reflex_and_recovery(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    take(page)?;
     page.click("[data-fault='Reflex']")?;
     let is = |mode| Ok(served.robot.state().robot_mode == mode);
     wait("the reflex", || is(RobotMode::Reflex))?;
     wait("the reflex in the log", || {
         page.shows("events", "cartesian_reflex")
     })?;
+    take(page)?;
     page.click("#recover")?;
     wait("the recovery", || is(RobotMode::Idle))
 }

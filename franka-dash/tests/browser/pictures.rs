@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::checks::{drag, load, shows_the_robot, take};
+use crate::checks::{drag_until, load, shows_the_robot};
 use crate::driver::{Browser, up};
 use crate::served::{Served, wait};
 
@@ -18,7 +18,6 @@ pub(crate) fn run(
 ) -> anyhow::Result<()> {
     load(page, served)?;
     shows_the_robot(page, served)?;
-    take(page)?;
     wait("the meshes", || Ok(page.state()?["meshes"] == true))?;
     for (size, width, height) in [("desktop", 1440, 900), ("tablet", 820, 1180)] {
         resize(page, width, height)?;
@@ -29,8 +28,7 @@ pub(crate) fn run(
                 "Emulation.setEmulatedMedia",
                 json!({"features": features}),
             )?;
-            drag(page, (45.0, 65.0))?;
-            wait("the force", || Ok(page.state()?["forceShown"] == true))?;
+            drag_until(page, (45.0, 65.0), || true)?;
             page.picture(&folder.join(format!("{name}-{size}-{scheme}.png")))?;
             page.pointer(&[up()])?;
         }

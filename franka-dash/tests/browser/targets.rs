@@ -82,11 +82,11 @@ pub(crate) fn keep_out(page: &Browser, served: &Served) -> anyhow::Result<()> {
     aim(page, &[("z", below)])?;
     said(page, "region 1 to keep out of")?;
     let start = served.robot.state().q;
-    page.pointer(&[move_to(page.find("#goal-go")?), down()])?;
     wait("the refusal", || {
+        take(page)?;
+        page.click("#goal-go")?;
         page.shows("events", "Not moved: the arm would come")
     })?;
-    page.pointer(&[up()])?;
     served.check_still(start)?;
     aim(page, &[("z", served.region_top() * 1e3 + 40.0)])?;
     said(page, "Takes")?;
