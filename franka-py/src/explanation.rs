@@ -1,7 +1,8 @@
-//! What happened in a recording or in the log of an error, and why the robot stopped.
+//! What happened in a recording or in the log of an error, and why a motion ended.
 
 use franka_async::explain::Explanation as Explained;
 use franka_async::model::{Model, RobotKind};
+use franka_async::recording::HostTime;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -12,10 +13,10 @@ use crate::log::ControlLog;
 use crate::recording::RecordingFile;
 use crate::state::names;
 
-/// What happened, and why the robot stopped: of a `RecordingFile` or a part of one, of a
-/// `ControlError`, or of its log. What ended is the last motion that the robot stopped; without
-/// such a stop, it is the newest cycle. Raises `TypeError`, and `ValueError` for a recording that
-/// does not say which robot it is of.
+/// What happened, and why a motion ended: of a `RecordingFile` or a part of one, of a
+/// `ControlError`, or of its log. What ended is the last motion that the robot stopped, a guard
+/// gave up or a lost link ended; if none did, it is the newest cycle. Raises `TypeError`, and
+/// `ValueError` for a recording that does not say which robot it is of.
 #[pyfunction]
 pub(crate) fn explain(py: Python<'_>, of: &Bound<'_, PyAny>) -> PyResult<Explanation> {
     if let Ok(recording) = of.cast::<RecordingFile>() {
@@ -47,7 +48,7 @@ pub(crate) fn explain(py: Python<'_>, of: &Bound<'_, PyAny>) -> PyResult<Explana
     Ok(Explanation(Box::new(explained)))
 }
 
-/// What happened in a series of cycles, and why the robot stopped, as `explain` tells. `print`
+/// What happened in a series of cycles, and why a motion ended, as `explain` tells. `print`
 /// shows a report of a page, a notebook the figure as well. Times are the robot's clock, ms.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Explanation(Box<Explained>);
@@ -78,21 +79,40 @@ impl Explanation {
         self.0.last
     }
 
-    /// The cycle that shows the end of the last motion that the robot stopped; without one, the
-    /// last cycle.
+    /// The cycle that shows the end of the last motion that the robot stopped, a guard gave up or a
+    /// lost link ended; without one, the last cycle.
     #[getter]
     fn end_ms(&self) -> u64 {
         self.0.end
     }
 
-    /// Why the robot stopped, in words: which limit was exceeded, what led up to it, what to
-    /// change; `None` if it did not.
+    /// When this host had that cycle, ns since 1970: `recording.between(end=...)` holds what came
+    /// before. `None` where that is not known.
+    #[getter]
+    fn end_host_time(&self) -> Option<u64> {
+        self.0.received.map(HostTime::as_nanos)
+    }
+
+    /// How many such ends came before.
+    #[getter]
+    fn earlier(&self) -> u64 {
+        self.0.earlier
+    }
+
+    /// The goal that was followed in the last cycle, where nothing has ended a motion.
+    #[getter]
+    fn under_way(&self) -> Option<u64> {
+        self.0.under_way
+    }
+
+    /// Why that motion ended, in words: which limit was exceeded, what led up to it, what to
+    /// change; `None` without such an end.
     #[getter]
     fn cause(&self) -> Option<&str> {
         self.0.cause.as_ref().map(|cause| &*cause.text)
     }
 
-    /// The errors that the robot named.
+    /// The errors that the robot named; none where a guard or a lost link ended the motion.
     #[getter]
     fn errors(&self) -> Vec<String> {
         let cause = self.0.cause.as_ref();
@@ -226,7 +246,7 @@ impl Explanation {
     fn __repr__(&self) -> String {
         let stopped = match self.errors() {
             errors if !errors.is_empty() => format!("stopped by {}", errors.join(", ")),
-            _ if self.0.cause.is_some() => "stopped".to_owned(),
+            _ if self.0.cause.is_some() => "ended by a guard or a lost link".to_owned(),
             _ => "not stopped".to_owned(),
         };
         format!(

@@ -63,13 +63,20 @@ def test_a_recording_is_explained(hit: tuple[Path, ControlError]) -> None:
     # Before the push there was nothing to explain.
     before = explain(recording.between(end=int(recording.column("host_time")[4])))
     assert before.cause is None and before.errors == [] and "not stopped" in repr(before)
+    end = explanation.end_host_time
+    assert end is not None and end in recording.column("host_time")
+    assert (explanation.under_way, explanation.earlier) == (None, 0)
+    # The motion had not ended then.
+    cut = explain(recording.between(end=end - 1))
+    assert cut.cause is None and cut.under_way is not None and "was under way" in str(cut)
 
 
 def test_an_error_is_explained_with_its_log(hit: tuple[Path, ControlError]) -> None:
     path, error = hit
     explanation = explain(error)
     check(explanation, error, path.stem)
-    assert explanation.cycles == len(error.log)
+    assert explanation.cycles == len(error.log) and explanation.end_host_time is None
+    assert explanation.late == 0
     assert str(explain(error.log)) == str(explanation)
 
 

@@ -14,6 +14,7 @@ use nalgebra::Isometry3;
 /// Within one recording it follows the wall clock as it was when the recording began, and never
 /// decreases: a wall clock that is set later leaves it alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HostTime(u64);
 
 impl HostTime {

@@ -2,22 +2,28 @@
 
 use std::fs;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use anyhow::Context as _;
 use clap::Args;
 use franka_async::explain::Explanation;
 use franka_async::model::Model;
-use franka_async::recording::Recording;
+use franka_async::recording::{HostTime, Recording};
 
 use crate::ending::{Ending, Failure};
 use crate::motion::while_turning;
 use crate::output::{Output, say};
 
 /// Say why a recorded motion ended, and where the arm was touched
+///
+/// Of several the newest that the robot stopped, a guard gave up or a lost link ended.
 #[derive(Debug, Args)]
 pub(crate) struct Explain {
     #[command(flatten)]
     recorded: Recorded,
+    /// Explain an earlier end of a motion: 1 is the one before the newest
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    earlier: u64,
     /// Draw the last second to a file
     #[arg(long, value_name = "FILE.svg")]
     figure: Option<PathBuf>,
@@ -67,8 +73,18 @@ impl Explain {
     pub(super) fn run(self) -> anyhow::Result<Ending> {
         let (recording, name, model) = self.recorded.open()?;
         let robot = recording.robot(&name)?;
-        let explain = || Explanation::of_recording(&robot, model);
-        let explanation = while_turning("looking at every cycle", explain);
+        let explain = |until| Explanation::of_recording(&robot.to(until), model);
+        let explain = |until| while_turning("looking at every cycle", || explain(until));
+        let newest = explain(HostTime::from_nanos(u64::MAX));
+        if self.earlier > newest.earlier {
+            let message = format!("--earlier {}: there are {}", self.earlier, newest.earlier);
+            return Err(Failure::usage(message).into());
+        }
+        let mut explanation = newest;
+        for _ in 0..self.earlier {
+            let end = explanation.received.unwrap_or_default();
+            explanation = explain(end - Duration::from_nanos(1));
+        }
         if let Some(file) = &self.figure {
             let written = fs::write(file, explanation.figure());
             written.with_context(|| format!("writing {}", file.display()))?;

@@ -4,6 +4,7 @@ use std::net::TcpListener;
 
 use franka_async::gripper::Gripper;
 use franka_async::recording::{RecordOptions, Recorder, Track};
+use franka_async::state::RobotError;
 use franka_async::{Offset, Pose, Realtime, Robot};
 use nix::sys::signal::Signal;
 
@@ -75,6 +76,51 @@ fn a_motion_is_recorded_exported_and_replayed() {
             "{json}"
         );
     });
+}
+
+#[test]
+fn an_earlier_end_of_a_motion_is_explained() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let runtime = tokio::runtime::Runtime::new().expect("a runtime");
+    let (robot, recorder) = runtime.block_on(async {
+        let builder = Robot::builder(sim.address()).realtime(Realtime::Ignore);
+        let robot = builder.connect().await.expect("connected");
+        let recorder = Recorder::to_file(home.path("run.mcap"), RecordOptions::default());
+        let recorder = recorder.expect("a file");
+        let attached = recorder.attach(&robot, Track::default()).await;
+        attached.expect("attached");
+        (robot, recorder)
+    });
+    for error in [RobotError::JointReflex, RobotError::CartesianReflex] {
+        let away = Offset::base(Pose::translation(0.0, 0.2, 0.0));
+        let motion = robot.move_to(away).speed(0.1);
+        let motion = runtime.spawn(async move { motion.await });
+        sim.moves();
+        sim.with(move |robot| robot.trip(error));
+        let ended = runtime.block_on(motion).expect("no panic");
+        assert!(ended.is_err_and(|error| error.control().is_some()));
+        runtime.block_on(robot.recover()).expect("recovered");
+    }
+    recorder.finish().expect("recorded");
+    runtime.block_on(robot.shutdown());
+    let explain = ["explain", "run.mcap"];
+    let text = home.run(&explain).done();
+    assert!(text.contains("Why the robot stopped"), "{text}");
+    assert!(text.contains("one motion was ended before"), "{text}");
+    let ends = |earlier| {
+        let earlier = ["--json", "--earlier", earlier];
+        let json = home.run(&[&explain[..], &earlier].concat()).json();
+        (
+            json["end"].as_u64().expect("a time"),
+            json["cause"]["errors"].to_string(),
+        )
+    };
+    let (newest, first) = (ends("0"), ends("1"));
+    assert!(first.0 < newest.0, "{first:?}, {newest:?}");
+    assert!(newest.1.contains("cartesian_reflex"), "{newest:?}");
+    assert!(first.1.contains("joint_reflex"), "{first:?}");
+    let none = [&explain[..], &["--earlier", "2"]].concat();
+    home.run(&none).failed(2, &["--earlier 2", "there are 1"]);
 }
 
 #[test]

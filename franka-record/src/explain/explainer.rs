@@ -12,6 +12,7 @@ use franka_rt::stats::Slack;
 
 use super::timeline::{AFTER, Timeline};
 use super::{Cause, Explanation, Late, Lost, Margins, MomentKind, Peaks, Trace, place};
+use crate::event::Ending;
 use crate::recording::RecordingError;
 use crate::{Cycle, Event, EventKind, HostTime};
 
@@ -21,17 +22,15 @@ pub struct Explainer<'a> {
     model: &'a Model,
     /// The newest run.
     run: Run,
-    /// The newest run before that in which the robot stopped.
-    stopped: Option<Run>,
+    /// The newest run before that in which a motion was ended.
+    before: Option<Run>,
+    /// How often a motion was ended.
+    ends: u64,
 }
 
 /// What there is since the robot was started: its clock goes on.
 #[derive(Clone, Debug, Default)]
 struct Run {
-    /// When its first cycle came, and when that of the next run did. What came before any cycle
-    /// belongs to the first run.
-    begin: HostTime,
-    end: Option<HostTime>,
     tare: Tare,
     timeline: Timeline,
     margins: Margins,
@@ -45,6 +44,9 @@ struct Run {
     ended: Option<Ended>,
     first: Option<u64>,
     last: u64,
+    /// When the newest cycle came, if that is known, and the goal that it followed, or 0.
+    received: Option<HostTime>,
+    goal: u64,
     cycles: u64,
     has_hand: bool,
     diagnosis: Option<Told>,
@@ -58,11 +60,14 @@ struct Told {
     text: String,
 }
 
-/// The newest end of a motion.
+/// The newest end of a motion that the robot, a guard or a lost link made.
 #[derive(Clone, Debug)]
 struct Ended {
     time: u64,
+    received: Option<HostTime>,
     errors: Errors,
+    /// Why, as far as is known without a diagnosis.
+    text: String,
     window: VecDeque<Trace>,
     tared: f64,
     /// Until the arm rested.
@@ -76,32 +81,26 @@ impl<'a> Explainer<'a> {
         Self {
             model,
             run: Run::default(),
-            stopped: None,
+            before: None,
+            ends: 0,
         }
     }
 
     /// Takes in the next cycle. One that is as old as the last is left out; an older one is the
     /// first since the robot was started again.
     pub fn push(&mut self, cycle: &Cycle) {
-        self.take(cycle.time, &cycle.state, Some(&cycle.record));
+        self.take(Some(cycle.time), &cycle.state, Some(&cycle.record));
     }
 
     /// Takes in a state of which nothing else is known; as [`Self::push`].
     pub fn push_state(&mut self, state: &RobotState) {
-        self.take(HostTime::default(), state, None);
+        self.take(None, state, None);
     }
 
-    /// Takes in an event: goals, outcomes, notes and the diagnosis of an error. Changes of mode and
-    /// errors are found in the cycles, which have to be there before.
+    /// Takes in an event that came after the cycles so far: goals, outcomes, notes and the
+    /// diagnosis of an error. Changes of mode, and errors, are found in the cycles.
     pub fn push_event(&mut self, event: &Event) {
-        if event.time >= self.run.begin {
-            self.run.event(event);
-        } else if let Some(stopped) = &mut self.stopped
-            && event.time >= stopped.begin
-            && stopped.end.is_none_or(|end| event.time < end)
-        {
-            stopped.event(event);
-        }
+        self.ends += u64::from(self.run.event(event));
     }
 
     pub(super) fn note_unread(&mut self, error: &RecordingError) {
@@ -109,28 +108,32 @@ impl<'a> Explainer<'a> {
         self.run.note(text);
     }
 
-    fn take(&mut self, received: HostTime, state: &RobotState, record: Option<&Record>) {
+    fn take(&mut self, received: Option<HostTime>, state: &RobotState, record: Option<&Record>) {
         let time = state.message_id;
         if self.run.first.is_some() && time < self.run.last {
             let text = format!("the robot was started again: its clock goes back to {time} ms");
             self.run.note(text);
-            self.run.end = Some(received);
             let run = mem::take(&mut self.run);
             if run.ended.is_some() {
-                self.stopped = Some(run);
+                self.before = Some(run);
             }
-            self.run.begin = received;
         } else if self.run.first.is_some() && time == self.run.last {
             return;
         }
-        self.run.take(self.model, state, record);
+        self.run.received = received;
+        self.ends += u64::from(self.run.take(self.model, state, record));
     }
 
     /// The explanation of all that was taken in.
     pub fn finish(self) -> Explanation {
-        match self.stopped {
-            Some(stopped) if self.run.ended.is_none() => stopped.explained(self.model),
-            _ => self.run.explained(self.model),
+        let run = match self.before {
+            Some(before) if self.run.ended.is_none() => before,
+            _ => self.run,
+        };
+        let earlier = self.ends.saturating_sub(1);
+        Explanation {
+            earlier,
+            ..run.explained(self.model)
         }
     }
 }
@@ -140,7 +143,8 @@ impl Run {
         self.timeline.add(self.last, MomentKind::Note, text);
     }
 
-    fn event(&mut self, event: &Event) {
+    /// Takes in an event; returns whether it tells that a motion was ended.
+    fn event(&mut self, event: &Event) -> bool {
         if let EventKind::Diagnosis(diagnosis) = &event.kind {
             self.diagnosis = Some(Told {
                 time: event.robot_time,
@@ -149,10 +153,28 @@ impl Run {
             });
         }
         self.timeline.event(event, self.first.unwrap_or_default());
+        match &event.kind {
+            // What the robot ended is seen in the cycles.
+            EventKind::Outcome(outcome)
+                if outcome.ending != Ending::Reflex && outcome.ending.is_incident() =>
+            {
+                let mut text = outcome.text.clone();
+                if text.is_empty() {
+                    text = outcome.ending.to_string();
+                }
+                if outcome.ending == Ending::LinkLost {
+                    text += "\nlook at the cable, the switch, and whether the robot has power";
+                }
+                self.end(Errors::NONE, text);
+                true
+            }
+            _ => false,
+        }
     }
 
-    /// Takes in a state that is newer than the last.
-    fn take(&mut self, model: &Model, state: &RobotState, record: Option<&Record>) {
+    /// Takes in a state that is newer than the last; returns whether it shows that a motion was
+    /// ended.
+    fn take(&mut self, model: &Model, state: &RobotState, record: Option<&Record>) -> bool {
         let time = state.message_id;
         let lost = match self.first {
             Some(_) => time - self.last - 1,
@@ -189,56 +211,60 @@ impl Run {
         self.margins.cycle(model, state);
         self.peaks.cycle(state, record, &external);
         self.last = time;
+        self.goal = record.map_or(0, |record| record.goal);
         self.window.push_back(trace(model, state, lost, &external));
         while self.window.front().is_some_and(|t| time - t.time >= SPAN) {
             self.window.pop_front();
         }
-        self.note_end(state);
-    }
-
-    /// Keeps the window of the first state that shows why the last motion was ended.
-    fn note_end(&mut self, state: &RobotState) {
         let errors = state.reflex_reason;
         // What the first cycle shows ended a motion before it.
         let before = self.reflex_reason.replace(errors).unwrap_or(errors);
-        if errors != before && !errors.is_empty() {
-            self.ended = Some(Ended {
-                time: state.message_id,
-                errors,
-                window: self.window.clone(),
-                tared: self.tare.learned(),
-                margins: self.margins,
-                peaks: self.peaks,
-            });
-            self.timeline.ended(state.message_id);
+        let ended = errors != before && !errors.is_empty();
+        if ended {
+            self.end(errors, format!("the robot stopped: {errors}"));
         }
         if let Some(ended) = &mut self.ended
-            && state.message_id.saturating_sub(ended.time) <= AFTER
+            && time.saturating_sub(ended.time) <= AFTER
         {
             (ended.margins, ended.peaks) = (self.margins, self.peaks);
         }
+        ended
     }
 
-    fn explained(self, model: &Model) -> Explanation {
-        let stopped = self.ended.is_some();
-        let ended = self.ended.unwrap_or(Ended {
+    /// Keeps what led up to the end of a motion.
+    fn end(&mut self, errors: Errors, text: String) {
+        self.ended = Some(self.end_now(errors, text));
+        self.timeline.ended(self.last);
+    }
+
+    fn end_now(&self, errors: Errors, text: String) -> Ended {
+        Ended {
             time: self.last,
-            errors: Errors::NONE,
-            window: self.window,
+            received: self.received,
+            errors,
+            text,
+            window: self.window.clone(),
             tared: self.tare.learned(),
             margins: self.margins,
             peaks: self.peaks,
-        });
+        }
+    }
+
+    fn explained(mut self, model: &Model) -> Explanation {
+        let (ended, is_over) = match self.ended.take() {
+            Some(ended) => (ended, true),
+            None => (self.end_now(Errors::NONE, String::new()), false),
+        };
         let traces: Vec<_> = ended.window.into();
         let noticed = self.timeline.noticed();
         let contact = place::of(model, self.has_hand, &traces, ended.tared, noticed);
         let (timeline, moments_left_out) = self.timeline.finish();
-        let cause = stopped.then(|| {
+        let cause = is_over.then(|| {
             // One that is older is of another motion.
             let told = self.diagnosis.filter(|told| told.time >= ended.time);
             let (diagnosis, text) = match told {
                 Some(told) => (told.diagnosis, told.text),
-                None => (None, format!("the robot stopped: {}", ended.errors)),
+                None => (None, ended.text),
             };
             Cause {
                 errors: ended.errors,
@@ -252,6 +278,9 @@ impl Run {
             last: self.last,
             cycles: self.cycles,
             end: ended.time,
+            received: ended.received,
+            under_way: (!is_over && self.goal > 0).then_some(self.goal),
+            earlier: 0,
             cause,
             timeline,
             moments_left_out,

@@ -17,9 +17,10 @@
 //! | `report` | the text |
 //! | `figure`, `polyline`, `sketch` | the figure: curves with few points, and the arm with the contact |
 //!
-//! What ended is the last motion that the robot stopped; without such a stop, it is the newest
-//! cycle. A robot that is started again counts its time anew: what is explained is then the newest
-//! run with such a stop, or else the newest. Memory is bounded, however many cycles there are.
+//! What ended is the last motion that the robot stopped, a guard gave up or a lost link ended; if
+//! none did, it is the newest cycle. A robot that is started again counts its time anew: what is
+//! explained is then the newest run with such an end, or else the newest. Memory is bounded,
+//! however many cycles there are.
 //!
 //! # Example
 //!
@@ -56,8 +57,8 @@ use franka_model::{Model, RobotKind};
 use franka_proto::Errors;
 use franka_rt::lifecycle::ControlError;
 
-use crate::recording::RobotRecording;
-use crate::{Cycle, Event};
+use crate::recording::{RecordingError, RobotRecording};
+use crate::{Cycle, Event, HostTime};
 
 pub use explainer::Explainer;
 pub use margins::{Approach, Margins, Peak, Peaks};
@@ -79,10 +80,16 @@ pub struct Explanation {
     pub last: u64,
     /// How many there were.
     pub cycles: u64,
-    /// The cycle that shows the end of the last motion that the robot stopped; without one, the
-    /// last cycle.
+    /// The cycle that shows the end of the last motion that the robot stopped, a guard gave up or
+    /// a lost link ended; without one, the last cycle.
     pub end: u64,
-    /// Why the robot stopped; `None` if it did not.
+    /// When this host had that cycle; `None` if that is not known, as in a log.
+    pub received: Option<HostTime>,
+    /// The goal that was followed in the last cycle, where nothing has ended a motion.
+    pub under_way: Option<u64>,
+    /// How many such ends came before.
+    pub earlier: u64,
+    /// Why that motion ended; `None` without such an end.
     pub cause: Option<Cause>,
     /// What changed, oldest first, [`MOMENTS_MAX`] at most: until the end and half a second after
     /// it.
@@ -103,11 +110,11 @@ pub struct Explanation {
     pub last_second: Vec<Trace>,
 }
 
-/// Why the robot stopped.
+/// Why a motion ended.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cause {
-    /// What the robot named.
+    /// What the robot named; none where a guard or a lost link ended the motion.
     pub errors: Errors,
     /// Which limit was exceeded, and what led up to it; `None` where the commands of the motion are
     /// not known, as in a recording without the event that has the diagnosis.
@@ -168,34 +175,51 @@ pub struct Trace {
 }
 
 impl Explanation {
-    /// Of cycles, oldest first, and events.
-    pub fn of(cycles: impl IntoIterator<Item = Cycle>, events: &[Event], model: &Model) -> Self {
-        let mut explainer = Explainer::new(model);
-        for cycle in cycles {
-            explainer.push(&cycle);
-        }
-        for event in events {
-            explainer.push_event(event);
-        }
-        explainer.finish()
+    /// Of cycles and events, each oldest first.
+    pub fn of(
+        cycles: impl IntoIterator<Item = Cycle>,
+        events: impl IntoIterator<Item = Event>,
+        model: &Model,
+    ) -> Self {
+        let cycles = cycles.into_iter().map(Ok);
+        Self::of_readable(cycles, events.into_iter().map(Ok), model)
     }
 
     /// Of one robot of a recording, or of a part of its time. What cannot be read is left out and
     /// noted in the timeline.
     pub fn of_recording(recording: &RobotRecording<'_>, model: &Model) -> Self {
+        Self::of_readable(recording.cycles(), recording.events(), model)
+    }
+
+    fn of_readable(
+        cycles: impl Iterator<Item = Result<Cycle, RecordingError>>,
+        events: impl Iterator<Item = Result<Event, RecordingError>>,
+        model: &Model,
+    ) -> Self {
         let mut explainer = Explainer::new(model);
-        for cycle in recording.cycles() {
-            match cycle {
-                Ok(cycle) => explainer.push(&cycle),
-                Err(error) => explainer.note_unread(&error),
+        let take = |explainer: &mut Explainer<'_>, event| match event {
+            Ok(event) => explainer.push_event(&event),
+            Err(error) => explainer.note_unread(&error),
+        };
+        let mut events = events.peekable();
+        for cycle in cycles {
+            let cycle = match cycle {
+                Ok(cycle) => cycle,
+                Err(error) => {
+                    explainer.note_unread(&error);
+                    continue;
+                }
+            };
+            let is_before = |event: &Result<Event, _>| match event {
+                Ok(event) => event.time < cycle.time,
+                Err(_) => true,
+            };
+            while let Some(event) = events.next_if(is_before) {
+                take(&mut explainer, event);
             }
+            explainer.push(&cycle);
         }
-        for event in recording.events() {
-            match event {
-                Ok(event) => explainer.push_event(&event),
-                Err(error) => explainer.note_unread(&error),
-            }
-        }
+        events.for_each(|event| take(&mut explainer, event));
         explainer.finish()
     }
 

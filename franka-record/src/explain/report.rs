@@ -22,12 +22,35 @@ impl fmt::Display for Explanation {
         )?;
         match &self.cause {
             Some(cause) => {
-                writeln!(f, "\nWhy the robot stopped at {} ms", self.end)?;
+                let what = if cause.errors.is_empty() {
+                    "the motion ended"
+                } else {
+                    "the robot stopped"
+                };
+                write!(f, "\nWhy {what} at {} ms", self.end)?;
+                match self.received {
+                    Some(received) => writeln!(f, " ({received})")?,
+                    None => writeln!(f)?,
+                }
                 for line in cause.text.lines() {
                     writeln!(f, "  {line}")?;
                 }
             }
-            None => writeln!(f, "\nThe robot did not stop by itself.")?,
+            None => writeln!(
+                f,
+                "\nNo motion was ended by the robot, a guard or a lost link."
+            )?,
+        }
+        if let Some(goal) = self.under_way {
+            writeln!(
+                f,
+                "Goal {goal} was under way in the last cycle: how it ended is not known."
+            )?;
+        }
+        match self.earlier {
+            0 => {}
+            1 => writeln!(f, "(one motion was ended before)")?,
+            earlier => writeln!(f, "({earlier} motions were ended before)")?,
         }
         if let Some(place) = &self.contact
             && place.noticed
@@ -157,7 +180,7 @@ impl fmt::Display for Place {
             writeln!(
                 f,
                 "  pushed by {:.1} N: {fx:.1}, {fy:.1}, {fz:.1} N\n  \
-                 (what the robot estimates is what it does: of the other sign)",
+                 (the robot's own estimates are what the arm exerts: opposite signs)",
                 contact.size()
             )?;
             if let Some((body, probability)) = contact.next

@@ -5,6 +5,7 @@ use crate::event::{Ending, Goal, Note, Outcome};
 use crate::{EventKind, HostTime};
 use franka_proto::{RobotError, RobotMode, RobotState};
 use franka_rt::driver::Record;
+use franka_rt::session::Guard;
 use franka_rt::stats::Slack;
 
 fn state(message_id: u64) -> RobotState {
@@ -24,6 +25,23 @@ fn explained(states: impl IntoIterator<Item = RobotState>) -> Explanation {
         explainer.push_state(&state);
     }
     explainer.finish()
+}
+
+/// An event after the cycle of this number.
+fn event(robot_time: u64, kind: EventKind) -> Event {
+    Event {
+        time: HostTime::from_nanos(1_000_000 * robot_time),
+        robot_time,
+        kind,
+    }
+}
+
+fn note(robot_time: u64, text: &str) -> Event {
+    let note = Note {
+        text: text.into(),
+        ..Note::default()
+    };
+    event(robot_time, EventKind::Note(note))
 }
 
 /// Three seconds; a contact and a collision of joint 2 before a reflex at 2500 ms.
@@ -90,22 +108,17 @@ fn motions_after_the_stop_do_not_hide_it() {
     let mut explainer = Explainer::new(Model::fr3());
     for state in hit().into_iter().chain(later) {
         explainer.push_state(&state);
-    }
-    for number in 1..=600 {
-        let note = Note {
-            text: format!("chunk {number}"),
-            ..Note::default()
-        };
-        explainer.push_event(&Event {
-            time: HostTime::default(),
-            robot_time: 100 * number,
-            kind: EventKind::Note(note),
-        });
+        // Far more than a timeline holds.
+        if state.message_id % 20 == 0 {
+            explainer.push_event(&note(state.message_id, "chunk"));
+        }
     }
     let explanation = explainer.finish();
     let times = explanation.timeline.iter().map(|moment| moment.time);
     assert_eq!((explanation.end, times.max()), (2500, Some(3000)));
-    assert_eq!(explanation.moments_left_out, 572);
+    // All 3000 chunks but those of the first three seconds, and two changes of the state.
+    assert_eq!(explanation.moments_left_out, 2852);
+    assert_eq!(explanation.earlier, 0);
     let peak = explanation.peaks.external_torque.expect("a hit");
     assert_eq!(peak.joint, Some(2));
     assert!(
@@ -124,7 +137,7 @@ fn an_arm_that_nothing_touches_is_not_said_to_be_touched() {
         state
     });
     let text = explained(untouched).to_string();
-    assert!(text.contains("did not stop"), "{text}");
+    assert!(text.contains("No motion was ended"), "{text}");
     assert!(!text.contains("touche"), "{text}");
 }
 
@@ -186,27 +199,23 @@ fn a_robot_that_was_started_again_does_not_hide_the_stop_before() {
             state,
             ..Cycle::default()
         });
-    }
-    for (number, text) in [(1200, "before"), (3100, "after")] {
-        explainer.push_event(&Event {
-            time: received(number),
-            robot_time: 1,
-            kind: EventKind::Note(Note {
-                text: text.into(),
-                ..Note::default()
-            }),
-        });
+        match number {
+            1200 => explainer.push_event(&note(1, "before")),
+            3100 => explainer.push_event(&note(1, "after")),
+            _ => {}
+        }
     }
     let explained = |explainer: Explainer<'_>| {
         let explanation = explainer.finish();
         let notes = explanation.timeline.iter();
         let notes = notes.filter(|moment| moment.kind == MomentKind::Note);
         let notes: Vec<_> = notes.map(|moment| moment.text.clone()).collect();
-        (explanation.end, explanation.cycles, notes)
+        let earlier = explanation.earlier;
+        (explanation.end, explanation.cycles, earlier, notes)
     };
     let again = "the robot was started again: its clock goes back to 5 ms";
     let notes = vec!["before".to_owned(), again.to_owned()];
-    assert_eq!(explained(explainer.clone()), (2500, 3000, notes));
+    assert_eq!(explained(explainer.clone()), (2500, 3000, 0, notes));
     // Until it stops again.
     for message_id in 401..=402 {
         explainer.push_state(&RobotState {
@@ -214,7 +223,92 @@ fn a_robot_that_was_started_again_does_not_hide_the_stop_before() {
             ..state(message_id)
         });
     }
-    assert_eq!(explained(explainer), (401, 398, vec!["after".to_owned()]));
+    assert_eq!(
+        explained(explainer),
+        (401, 398, 1, vec!["after".to_owned()])
+    );
+}
+
+/// The robot stops; later a guard gives a motion up, and then the cable is cut.
+#[test]
+fn a_guard_and_a_lost_link_end_a_motion_as_the_robot_does() {
+    let outcome = |number: u64, ending, text: &str| {
+        let outcome = Outcome {
+            goal: number,
+            ending,
+            text: text.into(),
+            duration: None,
+        };
+        event(number, EventKind::Outcome(outcome))
+    };
+    let stopped = |message_id| RobotState {
+        reflex_reason: RobotError::JointReflex.into(),
+        ..state(message_id)
+    };
+    let cycle = |state: RobotState| Cycle {
+        time: HostTime::from_nanos(1_000_000 * state.message_id),
+        record: {
+            let mut record = Record::default();
+            (record.time, record.goal) = (state.message_id, 9);
+            record
+        },
+        state,
+        ..Cycle::default()
+    };
+    let of = |last: u64| {
+        let cycles = hit().into_iter().chain((3001..=last).map(stopped));
+        let events = [
+            outcome(2501, Ending::Reflex, "stopped by the robot"),
+            outcome(
+                4000,
+                Ending::Guard(Guard::Clearance),
+                "region 1 is too near",
+            ),
+            outcome(5000, Ending::Arrived, ""),
+            outcome(6000, Ending::LinkLost, ""),
+        ];
+        let events = events.into_iter().filter(|event| event.robot_time <= last);
+        Explanation::of(cycles.map(cycle), events, Model::fr3())
+    };
+    let told = |explanation: &Explanation| {
+        let cause = explanation.cause.as_ref().expect("an end");
+        assert_eq!(
+            explanation.last_second.last().map(|it| it.time),
+            Some(explanation.end)
+        );
+        let text = cause.text.clone();
+        (
+            explanation.end,
+            explanation.earlier,
+            cause.errors.is_empty(),
+            text,
+        )
+    };
+    let reflex = "the robot stopped: [\"joint_reflex\"]".to_owned();
+    assert_eq!(told(&of(3999)), (2500, 0, false, reflex));
+    let guard = of(5500);
+    assert_eq!(
+        told(&guard),
+        (4000, 1, true, "region 1 is too near".to_owned())
+    );
+    let text = guard.to_string();
+    assert!(
+        text.contains("Why the motion ended at 4000 ms (1970-01-01T00:00:04.000Z)"),
+        "{text}"
+    );
+    assert!(text.contains("one motion was ended before"), "{text}");
+    assert!(
+        text.contains("   -1500  the robot ends the motion"),
+        "{text}"
+    );
+    let lost = "link-lost\nlook at the cable, the switch, and whether the robot has power";
+    assert_eq!(told(&of(6400)), (6000, 2, true, lost.to_owned()));
+    // What is cut off in the middle of a motion says so.
+    let cut = Explanation::of((1..=700).map(state).map(cycle), [], Model::fr3());
+    assert_eq!((cut.cause.is_none(), cut.under_way), (true, Some(9)));
+    let text = cut.to_string();
+    assert!(text.contains("No motion was ended by the robot"), "{text}");
+    assert!(text.contains("Goal 9 was under way"), "{text}");
 }
 
 #[test]
@@ -279,11 +373,6 @@ fn events_tell_goals_and_the_diagnosis() {
         }
     });
     // The first goal is given before the first cycle comes.
-    let event = |robot_time, kind| Event {
-        time: HostTime::default(),
-        robot_time,
-        kind,
-    };
     let goal = Goal {
         number: 7,
         kind: "move_to".into(),
@@ -299,17 +388,13 @@ fn events_tell_goals_and_the_diagnosis() {
         text: "joint 2: external torque".into(),
         ..Default::default()
     };
-    let note = Note {
-        text: "a remark".into(),
-        ..Note::default()
-    };
     let events = [
         event(0, EventKind::Goal(goal)),
+        note(1200, "a remark"),
         event(2501, EventKind::Outcome(outcome)),
         event(2502, EventKind::Diagnosis(diagnosis)),
-        event(1200, EventKind::Note(note)),
     ];
-    let explanation = Explanation::of(cycles.clone(), &events, Model::fr3());
+    let explanation = Explanation::of(cycles.clone(), events, Model::fr3());
     let goals: Vec<_> = explanation
         .timeline
         .iter()
@@ -327,7 +412,7 @@ fn events_tell_goals_and_the_diagnosis() {
                 (its state was answered in 30.250 ms)";
     assert!(explanation.to_string().contains(late), "{explanation}");
     // Without events the goal is seen in the records.
-    let explanation = Explanation::of(cycles, &[], Model::fr3());
+    let explanation = Explanation::of(cycles, [], Model::fr3());
     assert!(explanation.to_string().contains("goal 7 begins"));
 }
 

@@ -1,7 +1,5 @@
 //! What changed from cycle to cycle.
 
-use core::mem;
-
 use franka_proto::{Errors, RobotMode, RobotState};
 use franka_rt::driver::Record;
 use franka_rt::session::Guard;
@@ -50,7 +48,8 @@ pub enum MomentKind {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Timeline {
     moments: Vec<Moment>,
-    left_out: u64,
+    /// How many there were.
+    count: u64,
     mode: Option<RobotMode>,
     errors: Errors,
     reflex_reason: Errors,
@@ -62,8 +61,10 @@ pub(super) struct Timeline {
     last_loss: Option<u64>,
     /// Whether goals are told by events.
     has_goals: bool,
-    /// The newest end of a motion.
+    /// The newest end of a motion, and the moments until shortly after it, as soon as there are
+    /// others.
     end: Option<u64>,
+    until_end: Option<Vec<Moment>>,
 }
 
 impl Timeline {
@@ -151,17 +152,13 @@ impl Timeline {
         }
     }
 
-    /// The robot has ended a motion: events long after it are left out.
+    /// A motion was ended: what comes long after it is left out.
     pub(super) fn ended(&mut self, time: u64) {
-        self.end = Some(time);
+        (self.end, self.until_end) = (Some(time), None);
     }
 
     /// Takes in an event of a run that begins with the cycle `first`.
     pub(super) fn event(&mut self, event: &Event, first: u64) {
-        if self.is_after(event.robot_time) {
-            self.left_out += 1;
-            return;
-        }
         let kind = match &event.kind {
             EventKind::Goal(_) | EventKind::Outcome(_) => MomentKind::Goal,
             EventKind::LinkLost { .. } | EventKind::LinkRestored { .. } => MomentKind::Loss,
@@ -171,8 +168,8 @@ impl Timeline {
         };
         if kind == MomentKind::Goal && !self.has_goals {
             self.has_goals = true;
-            self.moments
-                .retain(|moment| moment.kind != MomentKind::Goal);
+            let is_goal = |moment: &mut Moment| moment.kind == MomentKind::Goal;
+            self.count -= self.moments.extract_if(.., is_goal).count() as u64;
         }
         // Which goal ended is in no other word of the text.
         let text = match &event.kind {
@@ -189,9 +186,12 @@ impl Timeline {
     }
 
     pub(super) fn add(&mut self, time: u64, kind: MomentKind, text: String) {
-        // Events come after the cycles: room is made for them at the expense of the oldest.
+        if self.until_end.is_none() && self.is_after(time) {
+            self.until_end = Some(self.moments.clone());
+        }
+        self.count += 1;
+        // An event may tell of a cycle before others that are told: there is room to sort.
         if self.moments.len() >= 2 * MOMENTS_MAX {
-            self.left_out += 1;
             self.moments.remove(0);
         }
         self.moments.push(Moment { time, kind, text });
@@ -205,15 +205,13 @@ impl Timeline {
 
     /// The moments before the end and shortly after it, oldest first, and how many there were
     /// besides.
-    pub(super) fn finish(mut self) -> (Vec<Moment>, u64) {
-        let all = self.moments.len();
-        let mut moments = mem::take(&mut self.moments);
-        moments.retain(|moment| !self.is_after(moment.time));
+    pub(super) fn finish(self) -> (Vec<Moment>, u64) {
+        let mut moments = self.until_end.unwrap_or(self.moments);
         moments.sort_by_key(|moment| moment.time);
         let surplus = moments.len().saturating_sub(MOMENTS_MAX);
         moments.drain(..surplus);
-        let left_out = (all - moments.len()) as u64;
-        (moments, self.left_out + left_out)
+        let left_out = self.count - moments.len() as u64;
+        (moments, left_out)
     }
 
     fn is_after(&self, time: u64) -> bool {
