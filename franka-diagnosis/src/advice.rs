@@ -21,6 +21,8 @@ pub enum Advice {
     Host,
     /// Something was touched, or seemed to be.
     Thresholds,
+    /// What touched the arm was more than its joints can hold.
+    GiveWay,
     /// The pose is the problem.
     AvoidSingularity,
     /// A joint is near the end of its range.
@@ -86,11 +88,14 @@ impl Advice {
             (Self::Thresholds, _) => {
                 "set_collision_behavior if the contact is meant; set_load and less acceleration if nothing was touched"
             }
+            (Self::GiveWay, _) => {
+                "a clear way; softer gains have the arm give way, lower thresholds of set_collision_behavior stop it before"
+            }
             (Self::AvoidSingularity, _) => "go there by joint positions, or by another elbow",
             (Self::StayInRange, _) => "a target further inside the joint's range, or another elbow",
             (Self::StayClearOfItself, _) => "a way on which the links stay further apart",
             (Self::LessEffort, _) => {
-                "less acceleration, less load, or the load declared by set_load"
+                "less acceleration, less load, the load declared by set_load, or nothing that pushes the arm"
             }
             (Self::SofterGains, Function) => {
                 "lower stiffness, more damping, or cutoff_frequency for the torques"

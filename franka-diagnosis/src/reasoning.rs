@@ -268,25 +268,25 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
             causes.extend(posture::singularity(evidence));
             causes.extend(limit());
         }
-        Category::Contact => {
-            let contact = contact::contact(evidence, subject);
-            // What the commands do about a contact did not lead up to it.
+        Category::Contact | Category::Arm => {
+            let is_arm = category(error) == Category::Arm;
+            let contact = contact::contact(evidence, subject.filter(|_| !is_arm));
+            // What the commands do about a contact, or after the limit, did not lead up to it.
             let since = match contact {
                 Some(Cause::Contact { since, .. }) => since,
                 _ => u64::MAX,
             };
+            let limit_since = finding.filter(|_| is_arm).map(|finding| finding.since);
             causes.extend(contact);
             if error == E::CartesianReflex {
                 causes.extend(posture::singular_pose(evidence));
             }
+            let since = since.min(limit_since.unwrap_or(u64::MAX));
             causes.extend(command_steps::torque_step(evidence, since));
-        }
-        Category::Arm => {
-            causes.extend(contact::contact(evidence, None));
-            let since = finding.map_or(u64::MAX, |finding| finding.since);
-            causes.extend(command_steps::torque_step(evidence, since));
-            causes.extend(posture::singularity(evidence));
-            causes.extend(limit());
+            if is_arm {
+                causes.extend(posture::singularity(evidence));
+                causes.extend(limit());
+            }
         }
         Category::Desk => causes.extend(contact::contact(evidence, None)),
     }
@@ -296,6 +296,7 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
 /// What to change. Two at most: by the causes, and by the error itself if they say nothing, or if
 /// it is about what the arm does, whatever led up to that.
 pub(super) fn advice(error: E, causes: &[Cause]) -> Vec<Advice> {
+    let of_arm = category(error) == Category::Arm;
     let by_cause = causes.iter().map(|cause| match cause {
         Cause::LostPackets {
             states, commands, ..
@@ -304,12 +305,16 @@ pub(super) fn advice(error: E, causes: &[Cause]) -> Vec<Advice> {
         Cause::WrongStart { .. } => Advice::StartWhereItIs,
         Cause::FinishedMoving { .. } => Advice::FinishAtRest,
         Cause::TargetStep { .. } => Advice::Smooth,
+        Cause::Contact { .. } if of_arm => Advice::GiveWay,
         Cause::Contact { .. } => Advice::Thresholds,
         Cause::Singularity { .. } => Advice::AvoidSingularity,
         Cause::Limit { .. } => Advice::StayInRange,
     });
-    let of_arm = category(error) == Category::Arm;
-    let first = (of_arm || causes.is_empty()).then(|| by_error(error));
+    let by_error = by_error(error);
+    let touched = |cause: &Cause| matches!(cause, Cause::Contact { .. });
+    // The effort was that of the contact.
+    let is_first = of_arm && !(by_error == Advice::LessEffort && causes.iter().any(touched));
+    let first = (is_first || causes.is_empty()).then_some(by_error);
     let mut advice: Vec<Advice> = Vec::new();
     for next in first.into_iter().chain(by_cause) {
         if advice.len() < 2 && !advice.contains(&next) {

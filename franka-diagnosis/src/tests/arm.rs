@@ -186,6 +186,23 @@ fn power_torque_and_shaking_are_read_off_the_sensors() {
     assert_eq!(finding(&torque).subject, Subject::Joint(2));
     assert_eq!(finding(&torque).bound, Bound::AtMost(87.0));
     assert_eq!(torque.advice, [Advice::LessEffort]);
+    // Where something is touched, neither the load nor the commands are the matter.
+    let mut touched = story_of(&story);
+    for torque in [0.0, 0.9] {
+        touched.go(
+            |_, command| command.tau_J_d[1] = torque,
+            |state| {
+                state.O_F_ext_hat_K[1] = -36.0;
+                state.cartesian_contact[1] = 1.0;
+            },
+        );
+    }
+    let touched = touched.stop(&[E::TauJRangeViolation], |_, _| {}, |_| {});
+    let [Cause::Contact { subject, .. }] = touched.causes[..] else {
+        panic!("{:?}", touched.causes)
+    };
+    assert_eq!(subject, Subject::Translation(Axis::Y));
+    assert_eq!(touched.advice, [Advice::GiveWay]);
     for swing in 0..12 {
         story.go(
             |_, _| {},

@@ -34,7 +34,7 @@ fn the_advice_names_settings_that_the_commander_has() {
     }
 }
 
-const EVERY_ADVICE: [Advice; 13] = [
+const EVERY_ADVICE: [Advice; 14] = [
     Advice::Smooth,
     Advice::SlowDown,
     Advice::StartWhereItIs,
@@ -42,6 +42,7 @@ const EVERY_ADVICE: [Advice; 13] = [
     Advice::Network,
     Advice::Host,
     Advice::Thresholds,
+    Advice::GiveWay,
     Advice::AvoidSingularity,
     Advice::StayInRange,
     Advice::StayClearOfItself,
