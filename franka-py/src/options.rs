@@ -91,14 +91,29 @@ fn named<'py, T>(
 ) -> PyResult<T> {
     read(value).map_err(|error| {
         let py = value.py();
-        match error.is_instance_of::<PyTypeError>(py)
-            || error.is_instance_of::<PyAttributeError>(py)
-        {
-            true => PyTypeError::new_err(format!("{name} is {value:?}: {}", error.value(py))),
-            false => error,
+        if error.is_instance_of::<PyTypeError>(py) {
+            return PyTypeError::new_err(format!("{name} is {value:?}: {}", error.value(py)));
+        }
+        // What it lacks says less than what it should be.
+        match CLASSES.iter().find(|(argument, _)| *argument == name) {
+            Some((_, class)) if error.is_instance_of::<PyAttributeError>(py) => {
+                PyTypeError::new_err(format!("{name} is {value:?}, expected {class}"))
+            }
+            _ => error,
         }
     })
 }
+
+/// Arguments that are objects of `franka_async.goal`, and what they are.
+const CLASSES: [(&str, &str); 7] = [
+    ("gains", "Gains"),
+    ("limits", "a Budget"),
+    ("leash", "a Leash"),
+    ("deviation", "a Deviation"),
+    ("lead", "a Lead"),
+    ("tolerance", "a Tolerance"),
+    ("settling", "a Settling"),
+];
 
 /// What motions, streams and sessions have in common.
 #[derive(Default)]

@@ -261,8 +261,15 @@ def test_a_silent_stream_is_given_up(sim: Sim) -> None:
             assert caught.value.kind == kind
         with pytest.raises(ValueError, match="'brake' or 'hold'"):
             robot.follow(Latest(), watchdog=(0.1, "stop"))  # type: ignore[arg-type]
-        for name, value in {"watchdog": "brake", "gains": "soft", "speed": "fast", "tolerance": 1.0}.items():
-            with pytest.raises(TypeError, match=f"^{name} is {value!r}: "):
+        for name, value, expected in [
+            ("watchdog", "brake", ": expected a pair"),
+            ("speed", "fast", ": "),
+            ("gains", "soft", ", expected Gains"),
+            ("limits", 0.5, ", expected a Budget"),
+            ("tolerance", 1.0, ", expected a Tolerance"),
+            ("lead", 0.1, ", expected a Lead"),
+        ]:
+            with pytest.raises(TypeError, match=f"^{name} is {value!r}{expected}"):
                 robot.follow(Latest(), **{name: value})  # type: ignore[arg-type]
 
     run(sim, main)

@@ -183,6 +183,9 @@ def test_values_compare_and_print_and_pickle() -> None:
         Gains(cartesian_stiffness=[1.0, 2.0, 3.0])
     with pytest.raises(ValueError, match="not complete"):
         Budget().scaled(0.5)
+    for name, wrong in [("translation", 0.1), ("joints", [1.0] * 7)]:
+        with pytest.raises(TypeError, match=f"^{name} is .*, expected Limits"):
+            Budget(**{name: wrong})  # type: ignore[arg-type]
 
 
 def test_a_report_has_what_happened(robot: Robot) -> None:

@@ -115,8 +115,13 @@ class Budget:
     """For each joint: the same for all, or seven."""
 
     def __post_init__(self) -> None:
+        for name, limits in (("translation", self.translation), ("rotation", self.rotation)):
+            if not isinstance(limits, Limits):
+                raise TypeError(f"{name} is {limits!r}, expected Limits")
         if not isinstance(self.joints, Limits):
-            joints = tuple(self.joints)
+            joints = tuple(self.joints) if isinstance(self.joints, Sequence) else ()
+            if not joints or not all(isinstance(limits, Limits) for limits in joints):
+                raise TypeError(f"joints is {self.joints!r}, expected Limits, or seven of them")
             if len(joints) != 7:
                 raise ValueError(f"joints has {len(joints)} limits, expected 1 or 7")
             _set(self, joints=joints)
