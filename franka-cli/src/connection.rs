@@ -217,7 +217,9 @@ impl Place {
                     "the {device} at {at} closed the connection at once: another client is probably connected"
                 ),
             )
-            .advice("A robot takes one client at a time. End the other program, then try again."),
+            .advice(
+                "A robot takes one client at a time. End the other program, then try again. An arm that has to stop now: press the user stop.",
+            ),
             Seen::NoState => Failure::new(
                 Ending::NoRobot,
                 format!("the {device} at {at} answers, but no state of it arrives"),

@@ -11,6 +11,10 @@ use tokio::time::Instant;
 use super::{Bridge, woken};
 use crate::input::Input;
 
+/// The goal of having the arm rest when the last handle is dropped. No handle uses this id: they
+/// count up from 1.
+pub(super) const CLOSING: GoalId = GoalId(u64::MAX);
+
 /// Time that a motion gets to brake and finish when the last handle is dropped.
 const CLOSING_TIMEOUT: Duration = Duration::from_secs(15);
 
@@ -21,8 +25,7 @@ const BRAKING_TIMEOUT: Duration = Duration::from_secs(3);
 impl Bridge {
     /// Brakes what moves. Returns when to give up on it.
     pub(super) fn begin_closing(&mut self) -> Instant {
-        // An id that no handle uses: handles count up from 1.
-        self.lifecycle.stop(GoalId(u64::MAX), self.now());
+        self.lifecycle.stop(CLOSING, self.now());
         Instant::now() + CLOSING_TIMEOUT
     }
 

@@ -255,6 +255,7 @@ impl Bridge {
 /// Notes how something ended, which may have been detached.
 fn log(goal: GoalId, outcome: &Outcome) {
     match outcome {
+        Ok(_) if goal == closing::CLOSING => tracing::info!("the arm rests, and is let go"),
         Ok(report) => tracing::info!(goal = goal.0, duration = ?report.duration, "motion ended"),
         Err(error) => tracing::info!(goal = goal.0, %error, "motion ended"),
     }

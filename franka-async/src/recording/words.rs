@@ -184,7 +184,10 @@ pub(super) fn happening(event: &supervision::Event) -> Option<EventKind> {
             let text = format!("recovered from reflex {reflex} by {by} after {after:.1?}");
             (Level::Info, text)
         }
-        Kind::UserStop { pressed: true } => (Level::Warning, "user stop pressed".into()),
+        Kind::UserStop { pressed: true } => (
+            Level::Warning,
+            "user stop pressed, or a safety function".into(),
+        ),
         Kind::UserStop { pressed: false } => (Level::Info, "user stop released".into()),
         Kind::Guiding { active: true } => (Level::Info, "guided by hand".into()),
         Kind::Guiding { active: false } => (Level::Info, "no longer guided by hand".into()),

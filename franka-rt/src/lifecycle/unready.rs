@@ -23,7 +23,7 @@ pub enum Unready {
     #[error("a reflex holds the robot")]
     Reflex,
     /// Robot: the user stop is pressed, or a safety function holds the robot.
-    #[error("the user stop is pressed")]
+    #[error("the user stop is pressed, or a safety function holds the robot")]
     UserStopped,
     /// Robot: a hand guides the arm.
     #[error("a hand guides the arm")]
