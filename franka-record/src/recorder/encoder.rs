@@ -108,9 +108,11 @@ impl Encoder {
             };
             self.event(&event, out);
         };
-        if before.is_none_or(|before| before.mode != now.mode) {
+        if let Some(before) = before
+            && before.mode != now.mode
+        {
             put(EventKind::Mode {
-                from: before.map_or(RobotMode::Other, |before| before.mode),
+                from: before.mode,
                 to: now.mode,
             });
         }

@@ -136,10 +136,6 @@ fn events_come_back_in_order_and_changes_are_found() {
         kinds,
         [
             EventKind::Mode {
-                from: RobotMode::Other,
-                to: RobotMode::Move
-            },
-            EventKind::Mode {
                 from: RobotMode::Move,
                 to: RobotMode::Reflex
             },
