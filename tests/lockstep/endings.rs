@@ -31,6 +31,8 @@ fn a_stop_brakes_and_resolves_itself_and_the_goal() {
             lockstep.client.outcome(goal),
             Some(&Err(MotionError::Stopped))
         );
+        // The goal has ended while the arm brakes; the stop ends when it rests.
+        assert!(lockstep.robot.dq().norm() > 0.05);
         let report = lockstep.until_resolved(stop, 3000).unwrap();
         assert_eq!(report.final_error, None);
         assert!(lockstep.robot.dq().amax() < 0.01);

@@ -190,13 +190,10 @@ impl fmt::Display for Place {
             }
         }
         if self.tared < SHORT {
-            let (tared, tool) = (
-                1e3 * self.tared,
-                if self.has_hand { ", with a Hand" } else { "" },
-            );
+            let tared = 1e3 * self.tared;
             writeln!(
                 f,
-                "  (the torques of an untouched arm were seen for {tared:.0} ms only{tool})"
+                "  (roughly: the arm was seen untouched for {tared:.0} ms only)"
             )?;
         }
         Ok(())
