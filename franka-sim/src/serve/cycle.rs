@@ -18,6 +18,16 @@ const VIRTUAL_IDLE_PERIOD: Duration = Duration::from_micros(100);
 /// the client's from its processor for some 10 ms now and then.
 const FIRST_WAIT: Duration = Duration::from_millis(16);
 
+/// Whether an answer had to be waited for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Waited {
+    /// It was there, or none is awaited: what the thread is late by is none of the client's.
+    NotAtAll,
+    Once,
+    /// Nothing is left that could give orders to the robot.
+    End,
+}
+
 /// The devices, which share one clock.
 pub(super) struct Cycle {
     pub(super) robot: DeviceServer<Robot>,
@@ -44,10 +54,11 @@ impl Cycle {
             }
             if !patience.is_zero() {
                 let now = clock.at(Instant::now());
-                if !self.await_answer(now, patience, &mut attempts, clock.pace()) {
-                    return clock.pace().log();
+                match self.await_answer(now, patience, &mut attempts, clock.pace()) {
+                    Waited::NotAtAll => {}
+                    Waited::Once => clock.waited(Instant::now()),
+                    Waited::End => return clock.pace().log(),
                 }
-                clock.waited(Instant::now());
             }
             for _ in 0..clock.begin(Instant::now()) {
                 let now = clock.at(Instant::now());
@@ -76,7 +87,8 @@ impl Cycle {
             let asks = self.robot.awaits() != Awaited::Nothing;
             let next = now + PERIOD;
             loop {
-                if !self.await_answer(now, patience, &mut attempts, clock.pace()) {
+                let waited = self.await_answer(now, patience, &mut attempts, clock.pace());
+                if waited == Waited::End {
                     return;
                 }
                 let arrival = self.robot.next_arrival();
@@ -98,16 +110,16 @@ impl Cycle {
 
     /// Waits for the client's answer, if the newest state asks for one. A client may look at
     /// several states before its first command: the wait for it starts short ([`FIRST_WAIT`]) and
-    /// doubles with each of the `attempts`, up to `patience`. False at the end.
+    /// doubles with each of the `attempts`, up to `patience`.
     fn await_answer(
         &mut self,
         now: Instant,
         patience: Duration,
         attempts: &mut u32,
         pace: Pace,
-    ) -> bool {
+    ) -> Waited {
         let patience = match self.robot.awaits_answer() {
-            Awaited::Nothing => return true,
+            Awaited::Nothing => return Waited::NotAtAll,
             Awaited::First => {
                 let wait = FIRST_WAIT.saturating_mul(2_u32.saturating_pow(*attempts));
                 *attempts += 1;
@@ -118,7 +130,10 @@ impl Cycle {
                 patience
             }
         };
-        self.robot.await_command(now, patience, pace)
+        match self.robot.await_command(now, patience, pace) {
+            true => Waited::Once,
+            false => Waited::End,
+        }
     }
 
     /// Whether a client is connected to any device.
@@ -198,6 +213,8 @@ mod tests {
             in_step: None,
         };
         assert!(!cycle.has_client());
+        let waited = cycle.await_answer(Instant::now(), SOON, &mut 0, Pace::default());
+        assert_eq!(waited, Waited::NotAtAll);
         let mut stream = TcpStream::connect(hand.addr()).expect("a listener");
         let hello = client::Session::new(gripper::Version::default()).connect(1);
         stream.write_all(hello.as_bytes()).expect("an open stream");
