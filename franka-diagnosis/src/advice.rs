@@ -63,7 +63,7 @@ impl Advice {
                 "begin when the arm rests and nothing pushes it"
             }
             (Self::FinishAtRest, Function | Active) => {
-                "bring the command to rest before it says that it is finished"
+                "bring the command to rest, and the arm with it, before it says that it is finished"
             }
             (Self::FinishAtRest, Goals | Asynchronous) => {
                 "end the motion when the arm rests and nothing pushes it"

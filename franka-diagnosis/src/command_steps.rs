@@ -2,7 +2,7 @@
 
 use franka_model::limits::MotionLimits;
 use franka_model::{CYCLE, JointVector, Twist, rotation, transform};
-use franka_proto::{MotionGeneratorMode as Generator, RobotError};
+use franka_proto::{ControllerMode, MotionGeneratorMode as Generator, RobotError};
 use nalgebra::Vector3;
 
 use super::cause::Cause;
@@ -207,6 +207,21 @@ pub(super) fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Opt
     }
 }
 
+/// Whether the last command of a motion that the client's torques follow came before the arm had
+/// come to rest.
+pub(super) fn finished_before_the_arm(evidence: &Evidence<'_>) -> Option<Cause> {
+    let sample = evidence.samples().next_back()?;
+    let dq = JointVector::from(sample.before.dq);
+    let joint = dq.iamax();
+    let external = sample.before.controller_mode == ControllerMode::ExternalController;
+    let moves = sample.is_finished() && external && dq[joint].abs() > AT_REST;
+    moves.then_some(Cause::FinishedMoving {
+        subject: Subject::joint(joint),
+        velocity: dq[joint],
+        cycle: sample.cycle(),
+    })
+}
+
 /// The largest step of the commanded torques before a cycle, if it takes more than half of what is
 /// allowed. A torque that changes about as fast in the cycle beside is on a ramp; what takes all of
 /// what is allowed and no more comes from the limiter, which makes ramps of steps.
@@ -238,6 +253,9 @@ fn component<const N: usize>(motion: &Derivatives<N>, index: usize) -> Derivativ
         jerk: nalgebra::vector![motion.jerk[index]],
     }
 }
+
+/// Measured joint velocity, `[rad/s]`, above which an arm does not rest.
+const AT_REST: f64 = 0.05;
 
 /// What the limiter lets pass is nearer than this to what is allowed, as a share of it.
 const LIMITED: f64 = 2e-3;

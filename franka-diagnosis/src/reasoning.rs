@@ -261,10 +261,11 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
             if lost.is_some() {
                 causes.extend(lost_cycles::late_commands(evidence));
             }
-            causes.extend(finding.and_then(|finding| {
-                command_steps::finished_moving(evidence, finding)
-                    .or_else(|| command_steps::leap(evidence, finding))
-            }));
+            causes.extend(match finding {
+                Some(finding) => command_steps::finished_moving(evidence, finding)
+                    .or_else(|| command_steps::leap(evidence, finding)),
+                None => command_steps::finished_before_the_arm(evidence),
+            });
             causes.extend(posture::singularity(evidence));
             causes.extend(limit());
         }

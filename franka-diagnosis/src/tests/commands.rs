@@ -264,6 +264,33 @@ fn the_zeros_that_finish_an_asynchronous_motion_are_no_target() {
 }
 
 #[test]
+fn an_arm_that_has_not_followed_to_the_end_is_named() {
+    let causes = |measured: f64| {
+        let mut story = Story::of(Model::fr3(), Generator::JointVelocity);
+        story.go(|_, _| {}, |state| state.dq[6] = measured);
+        let error = E::JointMotionGeneratorVelocityDiscontinuity;
+        let finish = |_: &RobotState, command: &mut RobotCommand| {
+            command.motion_generation_finished = true;
+        };
+        let diagnosis = story.stop(&[error], finish, |_| {});
+        assert_eq!(diagnosis.finding, None);
+        (diagnosis.causes, diagnosis.advice)
+    };
+    let (following, advice) = causes(0.117);
+    let [
+        Cause::FinishedMoving {
+            subject, velocity, ..
+        },
+    ] = following[..]
+    else {
+        panic!("{following:?}")
+    };
+    assert_eq!((subject, velocity), (Subject::Joint(7), 0.117));
+    assert_eq!(advice, [Advice::FinishAtRest]);
+    assert_eq!(causes(0.01).0, []);
+}
+
+#[test]
 fn a_rotation_that_leaps_is_named_by_its_axis() {
     let story = Story::of(Model::fr3(), Generator::CartesianVelocity);
     let diagnosis = story.stop(
