@@ -130,7 +130,8 @@ impl Control {
         self
     }
 
-    /// Cutoff of the low-pass filter, `[Hz]`: 100 by default, 1000 switches it off.
+    /// Cutoff of the low-pass filter, `[Hz]`: 100 by default; 1000 and more switch it off, what is
+    /// not above zero ends the motion with its first command.
     pub fn cutoff_frequency(mut self, cutoff_frequency: f64) -> Self {
         self.cutoff_frequency = cutoff_frequency;
         self

@@ -64,11 +64,20 @@ pub(super) fn leap(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> 
     let sample = evidence.sample(finding.since)?;
     let cycle = sample.cycle();
     let step = |subject, quantity, size| {
-        Some(Cause::TargetStep {
-            subject,
-            quantity,
-            size,
-            cycle,
+        Some(if sample.first {
+            Cause::WrongStart {
+                subject,
+                quantity,
+                offset: size,
+                cycle,
+            }
+        } else {
+            Cause::TargetStep {
+                subject,
+                quantity,
+                size,
+                cycle,
+            }
         })
     };
     match (finding.quantity, finding.subject) {
@@ -78,18 +87,7 @@ pub(super) fn leap(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> 
             offset: finding.value,
             cycle,
         }),
-        (Quantity::TorqueRate, subject) => {
-            let size = finding.value * CYCLE;
-            if sample.first {
-                return Some(Cause::WrongStart {
-                    subject,
-                    quantity: Quantity::Torque,
-                    offset: size,
-                    cycle,
-                });
-            }
-            step(subject, Quantity::Torque, size)
-        }
+        (Quantity::TorqueRate, subject) => step(subject, Quantity::Torque, finding.value * CYCLE),
         (_, Subject::Joint(number)) if finding.origin == Origin::Commanded => {
             let index = usize::from(number) - 1;
             let (_, motion) = commanded::joints(&sample)?;

@@ -91,6 +91,30 @@ fn torques_of_a_first_command_are_compared_with_none() {
 }
 
 #[test]
+fn a_first_position_that_is_measured_is_no_start() {
+    let story = Story::unbegun(Model::fr3(), Generator::JointPosition);
+    let diagnosis = story.stop(
+        &[E::JointMotionGeneratorAccelerationDiscontinuity],
+        |_, command| command.q_c[1] -= 7e-5,
+        |_| {},
+    );
+    let [
+        Cause::WrongStart {
+            subject,
+            quantity,
+            offset,
+            ..
+        },
+    ] = diagnosis.causes[..]
+    else {
+        panic!("{:?}", diagnosis.causes)
+    };
+    assert_eq!((subject, quantity), (Subject::Joint(2), Quantity::Position));
+    assert!((offset + 7e-5).abs() < 1e-9, "{offset}");
+    assert_eq!(diagnosis.advice, [Advice::StartWhereItIs]);
+}
+
+#[test]
 fn states_that_nobody_answered_are_this_hosts_doing() {
     let mut story = Story::of(Model::fr3(), Generator::JointVelocity);
     let answered = story.newest().message_id - 1;

@@ -87,7 +87,7 @@ impl Shaper {
     /// `cutoff_frequency`, `[Hz]`, is below [`MAX_CUTOFF_FREQUENCY`].
     ///
     /// A cutoff frequency that is not positive is reported with the first command, as libfranka
-    /// does.
+    /// does, and so is one that is not a number, of which libfranka makes no filter.
     pub fn new(version: Version, limit_rate: bool, cutoff_frequency: f64) -> Self {
         let Conventions {
             bounds,
@@ -320,7 +320,8 @@ impl Shaper {
     }
 
     fn filters(&self) -> bool {
-        self.cutoff_frequency < MAX_CUTOFF_FREQUENCY
+        // One that is not a number reaches the filter, which refuses it.
+        self.cutoff_frequency < MAX_CUTOFF_FREQUENCY || self.cutoff_frequency.is_nan()
     }
 
     fn filtered<const N: usize>(

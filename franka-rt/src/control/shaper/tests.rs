@@ -268,7 +268,7 @@ fn a_pose_in_row_major_order_is_refused_with_the_text_of_the_step() {
 
 #[test]
 fn a_cutoff_frequency_that_is_not_positive_is_reported_with_the_first_command() {
-    for cutoff in [0.0, -1.0, f64::NEG_INFINITY] {
+    for cutoff in [0.0, -1.0, f64::NEG_INFINITY, f64::NAN] {
         let shaper = Shaper::new(Version::V10, false, cutoff);
         let got = shaper.torques(&Torques([0.0; 7]), &at_rest());
         let expected = InvalidCommand::Filter {
@@ -277,7 +277,7 @@ fn a_cutoff_frequency_that_is_not_positive_is_reported_with_the_first_command() 
         };
         assert_eq!(got, Err(expected));
     }
-    for off in [f64::INFINITY, f64::NAN] {
+    for off in [f64::INFINITY, OFF] {
         let shaper = Shaper::new(Version::V10, false, off);
         let tau = Torques([5.0; 7]);
         assert_eq!(shaper.torques(&tau, &at_rest()), Ok(tau));
