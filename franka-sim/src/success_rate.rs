@@ -12,7 +12,7 @@ const WINDOW: u32 = 100;
 
 /// The last hundred cycles, newest in the lowest bit.
 ///
-/// Counting begins with the client's first command: before it, the robot waits.
+/// Counting begins with the client's first command, in time or not: before it, the robot waits.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct SuccessRate {
     received: u128,
@@ -21,11 +21,6 @@ pub(crate) struct SuccessRate {
 }
 
 impl SuccessRate {
-    /// Whether a command has been received since the motion began.
-    pub(crate) fn has_begun(&self) -> bool {
-        self.counted > 0
-    }
-
     /// Counts a cycle whose command came in time.
     pub(crate) fn hit(&mut self) {
         self.count(1);

@@ -197,13 +197,14 @@ impl Robot {
     /// Takes a UDP datagram of the client.
     ///
     /// It counts if it answers the newest state and is the first to do so; everything else is
-    /// dropped, as is an invalid datagram. Of the targets of an asynchronous motion, which answer
+    /// dropped, as is an invalid datagram. Cycles without one count from the first that comes, in
+    /// time or not. Of the targets of an asynchronous motion, which answer
     /// no state, the last one counts.
     pub fn command(&mut self, datagram: &[u8]) {
         let Ok(command) = RobotCommand::decode(self.version(), datagram) else {
             return;
         };
-        let Activity::Moving(motion) = &self.activity else {
+        let Activity::Moving(motion) = &mut self.activity else {
             return;
         };
         let replaces = match &self.command {
@@ -212,6 +213,8 @@ impl Robot {
         };
         if replaces && motion.accepts(command.message_id, self.clock) {
             self.command = Some(command);
+        } else {
+            motion.refuse(command.message_id, self.clock);
         }
     }
 

@@ -23,6 +23,10 @@ pub(super) struct ActiveMotion {
     /// belong to the motion before.
     first_state: u64,
     success_rate: SuccessRate,
+    /// Whether a command has come, in time or not.
+    is_answered: bool,
+    /// Whether one has come in time.
+    is_begun: bool,
     /// `tau_J_d`: the last torques accepted, zero before the first, `[N·m]`.
     torque: JointVector,
     /// Whether the last cycle had no command, so that the generator did not advance.
@@ -78,6 +82,8 @@ impl ActiveMotion {
             request,
             first_state,
             success_rate: SuccessRate::default(),
+            is_answered: false,
+            is_begun: false,
             torque: JointVector::zeros(),
             paused: false,
             asynchronous: request
@@ -144,9 +150,16 @@ impl ActiveMotion {
     pub(super) fn awaits(&self) -> Awaited {
         match &self.asynchronous {
             Some(_) => Awaited::Nothing,
-            None if self.success_rate.has_begun() => Awaited::Next,
+            None if self.is_answered => Awaited::Next,
             None => Awaited::First,
         }
+    }
+
+    /// Takes note of a command that answers state `answers` and does not count, while `newest` is
+    /// the last state: one that comes late shows that the client has begun, so that what it misses
+    /// counts.
+    pub(super) fn refuse(&mut self, answers: u64, newest: u64) {
+        self.is_answered |= (self.first_state..newest).contains(&answers);
     }
 
     /// Takes in what arrived for one cycle, and advances `desired`. The joints have the measured
@@ -168,7 +181,7 @@ impl ActiveMotion {
         let mut errors = Errors::NONE;
         self.paused = false;
         // The first command is compared with the start as it is.
-        let filters = rules.filters.filter(|_| self.success_rate.has_begun());
+        let filters = rules.filters.filter(|_| self.is_begun);
         let smooth = command
             .zip(filters)
             .map(|(command, filters)| filtered(command, desired, &self.torque, &filters));
@@ -176,7 +189,8 @@ impl ActiveMotion {
         let input = match command {
             Some(command) => {
                 // Without limits there is no wrong place to start from, either.
-                let first = !self.success_rate.has_begun() && rules.limits;
+                let first = !self.is_begun && rules.limits;
+                (self.is_answered, self.is_begun) = (true, true);
                 self.success_rate.hit();
                 if first {
                     Input::First(command)
@@ -184,7 +198,7 @@ impl ActiveMotion {
                     Input::Next(command)
                 }
             }
-            None if !self.success_rate.has_begun() => return Verdict::Continues,
+            None if !self.is_answered => return Verdict::Continues,
             None => {
                 let lost = self.success_rate.miss();
                 if !rules.communication {

@@ -107,17 +107,22 @@ fn a_state_waits_for_no_command_and_lateness_counts_by_the_state() {
 }
 
 #[test]
-fn a_late_command_is_dropped() {
-    let mut pair = Pair::fr3();
-    let id = pair.start_joints();
-    pair.tick(Some(positions(&READY)));
-    for _ in 0..20 {
-        let mut late = stay(&pair.state);
-        late.message_id = pair.state.message_id - 1;
-        pair.datagram(&late);
-        pair.tick(None);
+fn a_late_command_is_dropped_and_the_first_one_begins_the_count() {
+    for first in [Some(positions(&READY)), None] {
+        let mut pair = Pair::fr3();
+        let id = pair.start_joints();
+        // Nobody counts before a command comes.
+        pair.idle(50);
+        pair.tick(first);
+        for _ in 0..20 {
+            assert_eq!(pair.state.robot_mode, RobotMode::Move);
+            let mut late = stay(&pair.state);
+            late.message_id = pair.state.message_id - 1;
+            pair.datagram(&late);
+            pair.tick(None);
+        }
+        pair.assert_reflex(id, &[E::CommunicationConstraintsViolation]);
     }
-    pair.assert_reflex(id, &[E::CommunicationConstraintsViolation]);
 }
 
 #[test]
