@@ -91,7 +91,7 @@ impl Robot {
         }
     }
 
-    /// The newest state.
+    /// The newest state, however old it is: [`Self::health`] tells of a robot that is silent.
     pub fn state(&self) -> RobotState {
         self.link().newest.state()
     }

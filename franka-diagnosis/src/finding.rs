@@ -321,6 +321,9 @@ impl fmt::Display for Finding {
                 let limit = quantity.of(subject, limit);
                 let excess = self.excess().unwrap_or_default();
                 match self.times() {
+                    _ if excess <= 0.0 && quantity == Quantity::LostCycles => {
+                        write!(f, " are in the log, limit {limit}")
+                    }
                     _ if excess <= 0.0 => write!(f, ", at the limit of {limit}"),
                     Some(times) if times > 1.1 => {
                         write!(f, ", limit {limit} ({} times)", Digits(round(times)))

@@ -232,11 +232,13 @@ impl fmt::Display for Diagnosis {
         };
         match (&self.finding, self.cycles_before_end()) {
             (Some(finding), Some(before)) => {
-                write!(f, "{finding}, since cycle {} ms, ", finding.since)?;
+                write!(f, "{finding}, since cycle {} ms", finding.since)?;
                 match before {
-                    0 => write!(f, "the last one")?,
-                    1 => write!(f, "the one before the stop")?,
-                    cycles => write!(f, "{cycles} cycles before the stop")?,
+                    // How many there were is how long it took.
+                    _ if finding.quantity == Quantity::LostCycles => {}
+                    0 => write!(f, ", the last one")?,
+                    1 => write!(f, ", the one before the stop")?,
+                    cycles => write!(f, ", {cycles} cycles before the stop")?,
                 }
                 write!(f, " ({error})")?;
             }

@@ -10,6 +10,9 @@ use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 /// `communication_constraints_violation`).
 const LOST_LIMIT: f64 = 19.0;
 
+/// Cycles between a loss and the command that it led to.
+const BEFORE: u64 = 2;
+
 /// Cycles without a command, oldest first, named by the states whose answers are missing.
 struct Losses {
     states: u64,
@@ -78,6 +81,19 @@ impl Losses {
         }
         longest
     }
+
+    fn cause(&self) -> Option<Cause> {
+        let (longest_run, _) = self.longest()?;
+        Some(Cause::LostPackets {
+            states: self.states,
+            commands: self.commands,
+            unanswered: self.unanswered,
+            longest_run,
+            first: *self.cycles.first()?,
+            last: *self.cycles.last()?,
+            success_rate: self.success_rate,
+        })
+    }
 }
 
 /// The longest run of cycles without a command, for a robot that stopped because of one.
@@ -88,27 +104,27 @@ pub(super) fn starvation(evidence: &Evidence<'_>) -> Option<Finding> {
         subject: Subject::Arm,
         quantity: Quantity::LostCycles,
         origin: Origin::Measured,
-        value: length as f64,
+        // What comes after the cycle that ended the motion does not count.
+        value: (length as f64).min(LOST_LIMIT + 1.0),
         bound: Bound::AtMost(LOST_LIMIT),
         since: first,
     })
 }
 
-/// What got lost within the log. `starved`: the robot stopped for want of commands, so the last one
-/// did not reach it either.
-pub(super) fn lost_packets(evidence: &Evidence<'_>, starved: bool) -> Option<Cause> {
-    let losses = Losses::of(evidence, starved);
-    let (longest_run, _) = losses.longest()?;
-    let (first, last) = (*losses.cycles.first()?, *losses.cycles.last()?);
-    Some(Cause::LostPackets {
-        states: losses.states,
-        commands: losses.commands,
-        unanswered: losses.unanswered,
-        longest_run,
-        first,
-        last,
-        success_rate: losses.success_rate,
-    })
+/// What got lost within the log, if the robot stopped for want of commands: the last one did not
+/// reach it, either.
+pub(super) fn lost_packets(evidence: &Evidence<'_>) -> Option<Cause> {
+    Losses::of(evidence, true).cause()
+}
+
+/// What got lost within the log; if it is known which command was wrong, only if some of it was
+/// lost right before: the robot makes up for what is missing, and a command may leap from that.
+pub(super) fn lost_before(evidence: &Evidence<'_>, finding: Option<&Finding>) -> Option<Cause> {
+    let losses = Losses::of(evidence, false);
+    let led = |cycle: &u64| {
+        finding.is_none_or(|finding| *cycle < finding.since && cycle + BEFORE >= finding.since)
+    };
+    losses.cycles.iter().any(led).then(|| losses.cause())?
 }
 
 /// Commands of the whole motion that left too late.

@@ -243,7 +243,7 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
     match category(error) {
         Category::Link => {
             let late = lost_cycles::late_commands(evidence);
-            let lost = lost_cycles::lost_packets(evidence, true);
+            let lost = lost_cycles::lost_packets(evidence);
             // Commands that left too late have not reached the robot in time, either. States that
             // were all had, but late, may have been held up on their way.
             let slow = evidence
@@ -256,7 +256,7 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
             causes.extend(second);
         }
         Category::Start | Category::Command | Category::Inverse => {
-            let lost = lost_cycles::lost_packets(evidence, false);
+            let lost = lost_cycles::lost_before(evidence, finding);
             causes.extend(lost);
             if lost.is_some() {
                 causes.extend(lost_cycles::late_commands(evidence));
@@ -298,10 +298,12 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
 /// it is about what the arm does, whatever led up to that.
 pub(super) fn advice(error: E, causes: &[Cause]) -> Vec<Advice> {
     let of_arm = category(error) == Category::Arm;
+    // Commands that left too late did not reach the robot in time.
+    let late = matches!(causes.first(), Some(Cause::LateCommands { .. }));
     let by_cause = causes.iter().map(|cause| match cause {
         Cause::LostPackets {
             states, commands, ..
-        } if states + commands > 0 => Advice::Network,
+        } if *states > 0 || (*commands > 0 && !late) => Advice::Network,
         Cause::LostPackets { .. } | Cause::LateCommands { .. } => Advice::Host,
         Cause::WrongStart { .. } => Advice::StartWhereItIs,
         Cause::FinishedMoving { .. } => Advice::FinishAtRest,

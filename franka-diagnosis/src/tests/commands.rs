@@ -115,6 +115,23 @@ fn a_first_position_that_is_measured_is_no_start() {
 }
 
 #[test]
+fn a_loss_long_before_a_step_did_not_lead_to_it() {
+    let causes = |between: u32| {
+        let mut story = Story::of(Model::fer(), Generator::JointVelocity);
+        // This command does not reach the robot.
+        story.go(|_, _| {}, |state| state.control_command_success_rate = 0.9);
+        for _ in 0..between {
+            story.go(|_, _| {}, |_| {});
+        }
+        let error = E::ControllerTorqueDiscontinuity;
+        let diagnosis = story.stop(&[error], |_, command| command.tau_J_d[4] += 5.0, |_| {});
+        (diagnosis.causes.len(), diagnosis.advice)
+    };
+    assert_eq!(causes(25), (1, vec![Advice::Smooth]));
+    assert_eq!(causes(0), (2, vec![Advice::Network, Advice::Smooth]));
+}
+
+#[test]
 fn states_that_nobody_answered_are_this_hosts_doing() {
     let mut story = Story::of(Model::fr3(), Generator::JointVelocity);
     let answered = story.newest().message_id - 1;
@@ -202,7 +219,7 @@ fn states_that_a_slow_function_skips_are_not_lost() {
     else {
         panic!("{:?}", diagnosis.causes)
     };
-    assert_eq!(finding(&diagnosis).value, 21.0);
+    assert_eq!(finding(&diagnosis).value, 20.0);
     assert_eq!(diagnosis.advice[0], Advice::Host);
 }
 

@@ -42,7 +42,8 @@ fn lost_states_are_counted() {
             success_rate: 1.0,
         };
         assert_eq!(diagnosis.causes, [lost]);
-        assert_eq!(diagnosis.finding.unwrap().value, 30.0);
+        // The twentieth ended the motion.
+        assert_eq!(diagnosis.finding.unwrap().value, 20.0);
     });
 }
 

@@ -267,6 +267,20 @@ fn a_pose_in_row_major_order_is_refused_with_the_text_of_the_step() {
 }
 
 #[test]
+fn a_pose_that_is_none_is_refused_though_the_filter_would_make_one_of_it() {
+    let state = at_rest();
+    let mut pose = nudged(&state);
+    for element in &mut pose.O_T_EE[..3] {
+        *element *= 1.01;
+    }
+    for limit_rate in [false, true] {
+        let shaper = Shaper::new(Version::V10, limit_rate, 100.0);
+        let got = shaper.cartesian_pose(&pose, &state, false);
+        assert_eq!(got, Err(InvalidCommand::Transformation));
+    }
+}
+
+#[test]
 fn a_cutoff_frequency_that_is_not_positive_is_reported_with_the_first_command() {
     for cutoff in [0.0, -1.0, f64::NEG_INFINITY, f64::NAN] {
         let shaper = Shaper::new(Version::V10, false, cutoff);
