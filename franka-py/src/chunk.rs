@@ -52,7 +52,7 @@ pub(crate) fn chunk(chunk: &Bound<'_, PyAny>, arm: &Arm) -> PyResult<Chunk> {
         made = made.observed_at(observed.extract()?);
     }
     if let Some(blend) = chunk.getattr("blend")?.extract::<Option<f64>>()? {
-        made = made.blend(seconds(blend)?);
+        made = made.blend(seconds("blend", blend)?);
     }
     Ok(made)
 }
@@ -62,7 +62,7 @@ fn times(chunk: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<Duration>> {
     let (dt, times) = (chunk.getattr("dt")?, chunk.getattr("times")?);
     match (dt.is_none(), times.is_none()) {
         (false, true) => {
-            let dt = seconds(dt.extract()?)?;
+            let dt = seconds("dt", dt.extract()?)?;
             (0..count)
                 .map(|i| {
                     let step = u32::try_from(i).ok().and_then(|i| dt.checked_mul(i));
@@ -76,7 +76,8 @@ fn times(chunk: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<Duration>> {
                 let expected = format!("({count},), a time for each point");
                 return Err(unexpected_shape("times", &numbers.shape, &expected));
             }
-            numbers.values.into_iter().map(seconds).collect()
+            let times = numbers.values.into_iter();
+            times.map(|time| seconds("times", time)).collect()
         }
         _ => Err(PyValueError::new_err(
             "a chunk needs either dt, the time between two points, or the times of all points",

@@ -63,7 +63,7 @@ impl Condition {
     /// clock.
     #[pyo3(signature = (seconds, /))]
     fn held_for(&self, seconds: f64) -> PyResult<Self> {
-        let time = self::seconds(seconds)?;
+        let time = self::seconds("seconds", seconds)?;
         let text = format!("{}.held_for({seconds:?})", self.text);
         Self::new(self.condition.held_for(time), text)
     }
@@ -201,7 +201,7 @@ comparisons! {
 #[pyfunction]
 #[pyo3(signature = (seconds, /))]
 pub(crate) fn elapsed(seconds: f64) -> PyResult<Condition> {
-    let time = self::seconds(seconds)?;
+    let time = self::seconds("seconds", seconds)?;
     Condition::new(condition::elapsed(time), format!("elapsed({seconds:?})"))
 }
 

@@ -34,7 +34,7 @@ impl Deadman {
 impl Deadman {
     #[new]
     fn new(silence: f64) -> PyResult<Self> {
-        let (token, monitor) = Token::new(seconds(silence)?);
+        let (token, monitor) = Token::new(seconds("silence", silence)?);
         Ok(Self {
             token: Mutex::new(Some(token)),
             monitor: Mutex::new(Some(monitor)),

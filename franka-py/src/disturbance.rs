@@ -52,7 +52,7 @@ fn touch(
         touch = touch.at(frame).offset(offset.into());
     }
     if let Some(duration) = duration {
-        let time = seconds(duration)?.as_millis();
+        let time = seconds("duration", duration)?.as_millis();
         touch = touch.lasting(u64::try_from(time).unwrap_or(u64::MAX));
     }
     let id = sim.get().robot(sim.py(), move |robot| robot.touch(touch))?;

@@ -255,7 +255,8 @@ impl Operation {
     /// cancels it and raises `KeyboardInterrupt`.
     #[pyo3(signature = (timeout = None))]
     fn wait(&self, py: Python<'_>, timeout: Option<f64>) -> PyResult<Py<PyAny>> {
-        let timeout = timeout.map(seconds).transpose()?;
+        let timeout = timeout.map(|timeout| seconds("timeout", timeout));
+        let timeout = timeout.transpose()?;
         let delivered = runtime::wait(py, self.begin()?, timeout)?;
         (delivered.0)(py)
     }
@@ -367,14 +368,13 @@ fn warn_of_unawaited(py: Python<'_>, name: &str) {
     }
 }
 
-/// A duration of so many seconds.
+/// A duration of so many seconds, from the argument called `name`.
 ///
 /// # Errors
 /// `ValueError` unless it is finite and not negative.
-pub(crate) fn seconds(seconds: f64) -> PyResult<Duration> {
+pub(crate) fn seconds(name: &str, seconds: f64) -> PyResult<Duration> {
     Duration::try_from_secs_f64(seconds).map_err(|_| {
-        PyValueError::new_err(format!(
-            "got {seconds} seconds, expected a number from 0 on"
-        ))
+        let text = format!("{name} is {seconds} s, expected a number from 0 on");
+        PyValueError::new_err(text)
     })
 }

@@ -263,7 +263,7 @@ fn tolerance(value: &Bound<'_, PyAny>) -> PyResult<Tolerance> {
 }
 
 fn settling(value: &Bound<'_, PyAny>) -> PyResult<Settling> {
-    let part = |name| seconds(value.getattr(name)?.extract()?);
+    let part = |name| seconds(name, value.getattr(name)?.extract()?);
     Ok(Settling {
         hold: part("hold")?,
         timeout: part("timeout")?,
@@ -338,5 +338,5 @@ pub(crate) fn watchdog(value: &Bound<'_, PyAny>) -> PyResult<(Duration, OnTimeou
             return Err(PyValueError::new_err(text));
         }
     };
-    Ok((seconds(silence)?, on_timeout))
+    Ok((seconds("watchdog", silence)?, on_timeout))
 }

@@ -89,10 +89,10 @@ impl Robot {
             builder = builder.version(VersionPolicy::Exact(version));
         }
         if let Some(timeout) = connect_timeout {
-            builder = builder.connect_timeout(seconds(timeout)?);
+            builder = builder.connect_timeout(seconds("connect_timeout", timeout)?);
         }
         if let Some(timeout) = link_timeout {
-            builder = builder.link_timeout(seconds(timeout)?);
+            builder = builder.link_timeout(seconds("link_timeout", timeout)?);
         }
         if let Some(cycles) = log_size {
             builder = builder.log_size(cycles);

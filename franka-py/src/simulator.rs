@@ -285,7 +285,8 @@ fn configured(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<franka_s
         sim = sim.vacuum_gripper(Suction::new(), gripper_port(2));
     }
     let patience: Option<f64> = keywords.value("patience")?;
-    let patience = patience.map(seconds).transpose()?;
+    let patience = patience.map(|patience| seconds("patience", patience));
+    let patience = patience.transpose()?;
     if keywords.value("virtual_time")?.unwrap_or(false) {
         sim = sim.virtual_time(patience.unwrap_or(PATIENCE));
     } else if let Some(patience) = patience {
@@ -388,8 +389,8 @@ fn network(network: &Bound<'_, PyAny>) -> PyResult<Network> {
     }
     let conditions = Conditions {
         loss: Loss::Independent(fields.loss),
-        delay: seconds(fields.delay)?,
-        jitter: seconds(fields.jitter)?,
+        delay: seconds("delay", fields.delay)?,
+        jitter: seconds("jitter", fields.jitter)?,
         duplication: fields.duplication,
         ..Conditions::default()
     };
@@ -399,7 +400,7 @@ fn network(network: &Bound<'_, PyAny>) -> PyResult<Network> {
     };
     let mut network = Network::new(fields.seed, to_client, conditions);
     for (from, to) in fields.cuts {
-        let time = seconds(from)?..seconds(to)?;
+        let time = seconds("a cut", from)?..seconds("a cut", to)?;
         network.to_client.cut(time.clone());
         network.to_robot.cut(time);
     }

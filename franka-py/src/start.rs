@@ -22,7 +22,7 @@ pub(crate) fn start_tickets(members: usize, timeout: f64) -> PyResult<Vec<StartT
         return Err(PyValueError::new_err(text));
     }
     let tickets = StartBarrier::new()
-        .timeout(seconds(timeout)?)
+        .timeout(seconds("timeout", timeout)?)
         .tickets_for(members);
     let ticket = |ticket| StartTicket(Mutex::new(Some(ticket)));
     Ok(tickets.into_iter().map(ticket).collect())

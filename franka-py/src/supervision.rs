@@ -1,7 +1,5 @@
 //! Supervised robots: the policy, events and health.
 
-use std::time::Duration;
-
 use franka_async::connection::Builder;
 use franka_async::error::CloseReason;
 use franka_async::state::RobotError;
@@ -15,7 +13,6 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
 
 use crate::arrays::{array, columns};
-use crate::device::at_least_zero;
 use crate::errors::{Raise, variant};
 use crate::exit;
 use crate::operation::{Operation, seconds};
@@ -50,10 +47,10 @@ struct BackoffFields {
 /// `TypeError` for another object, `ValueError` for values that make no sense.
 pub(crate) fn policy(policy: &Bound<'_, PyAny>) -> PyResult<Policy> {
     let fields: PolicyFields = policy.extract()?;
-    let mut policy = Policy::default().silence(named("silence", fields.silence)?);
+    let mut policy = Policy::default().silence(seconds("silence", fields.silence)?);
     match (fields.recover, &fields.only) {
         (Some((times, window)), _) => {
-            policy = policy.recover(times, named("the window of recover", window)?);
+            policy = policy.recover(times, seconds("the window of recover", window)?);
         }
         (None, Some(_)) => {
             let text =
@@ -81,27 +78,22 @@ pub(crate) fn policy(policy: &Bound<'_, PyAny>) -> PyResult<Policy> {
                 return Err(PyValueError::new_err(text));
             }
             policy.reconnect(Backoff {
-                first: named("first", first)?,
-                most: named("most", most)?,
+                first: seconds("first", first)?,
+                most: seconds("most", most)?,
                 jitter,
             })
         }
     };
     if let Some(time) = fields.give_up_after {
-        policy = policy.give_up_after(named("give_up_after", time)?);
+        policy = policy.give_up_after(seconds("give_up_after", time)?);
     }
     if let Some(most) = fields.motions_wait {
-        policy = policy.motions_wait(named("motions_wait", most)?);
+        policy = policy.motions_wait(seconds("motions_wait", most)?);
     }
     if let Some(seed) = fields.seed {
         policy = policy.seed(seed);
     }
     Ok(policy)
-}
-
-/// The argument called `name` as a duration, s.
-fn named(name: &str, time: f64) -> PyResult<Duration> {
-    seconds(at_least_zero(name, time)?)
 }
 
 /// The robot's error that the argument called `argument` names.

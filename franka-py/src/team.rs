@@ -71,7 +71,7 @@ impl Team {
         silence: f64,
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Operation> {
-        let silence = seconds(silence)?;
+        let silence = seconds("silence", silence)?;
         let mut engaged = Vec::with_capacity(robots.len());
         for robot in robots.iter() {
             let robot = robot.cast::<Robot>()?.get().connected()?;

@@ -68,7 +68,7 @@ impl VacuumGripper {
     fn vacuum(&self, vacuum: u8, timeout: f64, profile: u8) -> PyResult<Operation> {
         let profile = Profile::from_byte(profile)
             .map_err(|_| PyValueError::new_err(format!("profile is {profile}, expected 0 to 3")))?;
-        let timeout = seconds(timeout)?.as_millis();
+        let timeout = seconds("timeout", timeout)?.as_millis();
         let vacuum = Vacuum {
             vacuum,
             profile,
@@ -83,7 +83,7 @@ impl VacuumGripper {
     /// Drops the object; returns whether that was done within `timeout` seconds. Raises
     /// `ActionError`; cancelling stops the pump.
     fn drop_off(&self, timeout: f64) -> PyResult<Operation> {
-        let timeout = seconds(timeout)?;
+        let timeout = seconds("timeout", timeout)?;
         let gripper = self.0.connected()?;
         Ok(Operation::new("VacuumGripper.drop_off", async move {
             gripper.drop_off(timeout).await

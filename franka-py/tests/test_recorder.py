@@ -104,7 +104,7 @@ def test_what_is_wrong_is_said(fr3: Robot, tmp_path: Path) -> None:
     for options, text in (
         ({"flush": 5.0}, "flush is 5s; expected 0.01 s to 1 s"),
         ({"rotate_bytes": 10}, "rotation.bytes is 10; expected 1000000 or more"),
-        ({"rotate_time": -1.0}, "got -1 seconds"),
+        ({"rotate_time": -1.0}, "rotate_time is -1 s, expected"),
         ({"black_box": BlackBox(tmp_path, before=0.5)}, "black_box.before is 500ms"),
     ):
         with pytest.raises(ValueError, match=text):

@@ -155,7 +155,7 @@ impl Law {
         state: &RobotState,
         dt: f64,
     ) -> PyResult<(Bound<'py, PyArrayDyn<f64>>, i32)> {
-        let dt = seconds(dt)?;
+        let dt = seconds("dt", dt)?;
         let mut dry_run = lock(&self.dry_run);
         let running = dry_run.get_or_insert_with(|| {
             let kind = match state.version {

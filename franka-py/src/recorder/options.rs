@@ -17,7 +17,7 @@ pub(super) fn of_file(py: Python<'_>, keywords: &mut Keywords<'_>) -> PyResult<R
     let default = RecordOptions::default();
     let mut time = |name| {
         let time = keywords.value::<f64>(name)?;
-        time.map(seconds).transpose()
+        time.map(|time| seconds(name, time)).transpose()
     };
     let flush = time("flush")?.unwrap_or(default.flush);
     let rotation = Rotation {
@@ -76,8 +76,8 @@ pub(super) fn black_box(
 ) -> PyResult<BlackBox> {
     Ok(BlackBox {
         directory,
-        before: seconds(before)?,
-        after: seconds(after)?,
+        before: seconds("before", before)?,
+        after: seconds("after", after)?,
         keep,
     })
 }
