@@ -272,17 +272,16 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
         Category::Contact | Category::Arm => {
             let is_arm = category(error) == Category::Arm;
             let contact = contact::contact(evidence, subject.filter(|_| !is_arm));
-            // What the commands do about a contact, or after the limit, did not lead up to it.
-            let since = match contact {
-                Some(Cause::Contact { since, .. }) => since,
-                _ => u64::MAX,
-            };
-            let limit_since = finding.filter(|_| is_arm).map(|finding| finding.since);
+            // What the commands do after the contact, or beyond the limit, did not lead up to it.
+            let passed = finding.filter(|_| is_arm);
+            let mut since = passed.map_or(u64::MAX, |finding| finding.since);
+            if let Some(Cause::Contact { since: touched, .. }) = contact {
+                since = since.min(touched);
+            }
             causes.extend(contact);
             if error == E::CartesianReflex {
                 causes.extend(posture::singular_pose(evidence));
             }
-            let since = since.min(limit_since.unwrap_or(u64::MAX));
             causes.extend(command_steps::torque_step(evidence, since));
             if is_arm {
                 causes.extend(posture::singularity(evidence));
