@@ -10,6 +10,7 @@ use std::net::TcpListener;
 use franka_async::{Realtime, Robot};
 use franka_sim::Sim;
 use nix::sys::signal::Signal;
+use serde_json::Value;
 
 use crate::program::Home;
 use crate::simulated::Simulated;
@@ -29,15 +30,29 @@ fn a_connection_is_tested_or_two() {
         "0.5",
     ];
     home.run(&test).failed(5, &["stays where it is"]);
-    let text = home.run(&[&test[..], &["--yes"]].concat()).done();
+    let ran = home.run(&[&test[..], &["--yes"]].concat());
     assert!(
-        text.contains("good") && text.contains("turnaround"),
-        "{text}"
+        ran.out.contains("verdict") && ran.out.contains("turnaround"),
+        "{ran:?}"
     );
-    let both = [&test[..], &["--yes", "--json", "--two", &two]].concat();
-    let json = home.run(&both).json();
-    assert_eq!(json["verdict"], "good", "{json}");
-    assert_eq!(json["robots"].as_array().map(Vec::len), Some(2), "{json}");
+    let ran = home.run(&[&test[..], &["--yes", "--json", "--two", &two]].concat());
+    let json: Value = serde_json::from_str(&ran.out).unwrap_or_else(|_| panic!("{ran:?}"));
+    let robots = json["robots"].as_array().expect("robots");
+    assert_eq!(robots.len(), 2, "{json}");
+    // A machine that is busy has commands of both come late.
+    let rates = robots.iter().map(|it| it["success_rate"]["avg"].as_f64());
+    let worst = rates.map(|rate| rate.expect("a rate")).fold(1.0, f64::min);
+    let expected = match worst {
+        0.95.. => ("good", 0),
+        0.9.. => ("usable", 0),
+        _ => ("not usable", 1),
+    };
+    let verdict = json["verdict"].as_str().expect("a verdict");
+    assert_eq!(
+        (verdict, ran.code),
+        (expected.0, Some(expected.1)),
+        "{json}"
+    );
 }
 
 #[test]
