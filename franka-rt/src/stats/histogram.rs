@@ -1,5 +1,6 @@
 //! A histogram of durations with logarithmic buckets.
 
+use core::fmt;
 use core::sync::atomic::{AtomicU64, Ordering};
 use core::time::Duration;
 
@@ -10,12 +11,21 @@ use super::Counter;
 ///
 /// A value with its highest bit at position e >= 4 falls in one of 16 equal buckets of
 /// `[2^e, 2^(e+1))` nanoseconds. Durations of 2^40 ns (18 minutes) and more share the last bucket.
-#[derive(Debug)]
 pub struct Histogram {
     buckets: Box<[AtomicU64]>,
     count: Counter,
     min: AtomicU64,
     max: AtomicU64,
+}
+
+impl fmt::Debug for Histogram {
+    /// How many there are, and what stands out: the buckets are hundreds.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Histogram")
+            .field("count", &self.count())
+            .field("quantiles", &self.quantiles())
+            .finish_non_exhaustive()
+    }
 }
 
 impl Default for Histogram {
@@ -171,6 +181,15 @@ mod tests {
         }
         assert_eq!(first, 1 << OCTAVES_MAX);
         assert_eq!(bucket_of(u64::MAX), BUCKETS - 1);
+    }
+
+    #[test]
+    fn what_is_printed_is_a_line() {
+        let histogram = Histogram::default();
+        histogram.note(Duration::from_micros(7));
+        let text = format!("{histogram:?}");
+        assert!(text.contains("count: 1") && text.contains("7µs"), "{text}");
+        assert!(text.len() < 120, "{text}");
     }
 
     #[test]
