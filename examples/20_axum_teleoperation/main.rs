@@ -90,7 +90,13 @@ impl Service {
                     // Libraries answer pings, whatever became of the program that uses them: only
                     // messages of the program itself keep the lease.
                     Some(Ok(Message::Ping(_) | Message::Pong(_) | Message::Binary(_))) => None,
-                    Some(Ok(Message::Close(_)) | Err(_)) | None => return,
+                    Some(Ok(Message::Close(_))) => {
+                        drop(lease);
+                        // Reading on answers the farewell.
+                        let _ = socket.recv().await;
+                        return;
+                    }
+                    Some(Err(_)) | None => return,
                 },
                 reply = Lease::trouble(&mut lease) => Some(reply),
                 _ = clock.tick() => Some(Reply::state(&self.robot)),

@@ -27,6 +27,7 @@ use tokio::task::JoinHandle;
 
 /// Options of every example.
 #[derive(Args, Clone, Debug)]
+#[command(about = None)]
 pub struct Connection {
     /// Address of a robot or simulator, `host` or `host:port`; without it a simulator starts in
     /// this process.

@@ -16,6 +16,7 @@ use crate::Connection;
 
 /// Command line of the services.
 #[derive(Debug, Parser)]
+#[command(about = None)]
 pub struct Serving {
     /// Which robot.
     #[command(flatten)]
