@@ -218,7 +218,7 @@ impl Place {
                 ),
             )
             .advice(
-                "A robot takes one client at a time. End the other program, then try again. An arm that has to stop now: press the user stop.",
+                "A robot takes one client at a time. End the other program, then try again. Press the user stop if the arm has to stop now.",
             ),
             Seen::NoState => Failure::new(
                 Ending::NoRobot,

@@ -80,14 +80,14 @@ impl Explanation {
     }
 
     /// The cycle that shows the end of the last motion that the robot stopped, a guard gave up or a
-    /// lost link ended; without one, the last cycle.
+    /// lost link ended, of a guard that in which the arm rested; without one, the last cycle.
     #[getter]
     fn end_ms(&self) -> u64 {
         self.0.end
     }
 
-    /// When this host had that cycle, ns since 1970: `recording.between(end=...)` holds what came
-    /// before. `None` where that is not known.
+    /// When this host had that cycle, ns since 1970: `recording.between(end=end_host_time - 1)`
+    /// holds what came before. `None` where that is not known.
     #[getter]
     fn end_host_time(&self) -> Option<u64> {
         self.0.received.map(HostTime::as_nanos)
@@ -99,7 +99,7 @@ impl Explanation {
         self.0.earlier
     }
 
-    /// The goal that was followed in the last cycle, where nothing has ended a motion.
+    /// The newest goal whose end was not recorded, where nothing has ended a motion.
     #[getter]
     fn under_way(&self) -> Option<u64> {
         self.0.under_way

@@ -77,7 +77,10 @@ impl Explain {
         let explain = |until| while_turning("looking at every cycle", || explain(until));
         let newest = explain(HostTime::from_nanos(u64::MAX));
         if self.earlier > newest.earlier {
-            let message = format!("--earlier {}: there are {}", self.earlier, newest.earlier);
+            let message = format!(
+                "--earlier {}: of the ends before the newest there are {}",
+                self.earlier, newest.earlier
+            );
             return Err(Failure::usage(message).into());
         }
         let mut explanation = newest;

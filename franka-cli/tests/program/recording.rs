@@ -120,7 +120,8 @@ fn an_earlier_end_of_a_motion_is_explained() {
     assert!(newest.1.contains("cartesian_reflex"), "{newest:?}");
     assert!(first.1.contains("joint_reflex"), "{first:?}");
     let none = [&explain[..], &["--earlier", "2"]].concat();
-    home.run(&none).failed(2, &["--earlier 2", "there are 1"]);
+    home.run(&none)
+        .failed(2, &["--earlier 2", "before the newest there are 1"]);
 }
 
 #[test]

@@ -44,9 +44,10 @@ struct Run {
     ended: Option<Ended>,
     first: Option<u64>,
     last: u64,
-    /// When the newest cycle came, if that is known, and the goal that it followed, or 0.
+    /// When the newest cycle came, if that is known.
     received: Option<HostTime>,
-    goal: u64,
+    /// Goals that have been given and have not ended, oldest first.
+    open: Vec<u64>,
     cycles: u64,
     has_hand: bool,
     diagnosis: Option<Told>,
@@ -153,11 +154,20 @@ impl Run {
             });
         }
         self.timeline.event(event, self.first.unwrap_or_default());
+        // One loss ends several goals, and what is asked for later: the first one counts.
+        let is_told = self.ended.as_ref().is_some_and(|it| it.time == self.last);
         match &event.kind {
-            // What the robot ended is seen in the cycles.
-            EventKind::Outcome(outcome)
-                if outcome.ending != Ending::Reflex && outcome.ending.is_incident() =>
-            {
+            EventKind::Goal(goal) if goal.number > 0 => {
+                self.open.retain(|open| *open != goal.number);
+                self.open.push(goal.number);
+                false
+            }
+            EventKind::Outcome(outcome) => {
+                self.open.retain(|open| *open != outcome.goal);
+                // What the robot ended is seen in the cycles.
+                if outcome.ending == Ending::Reflex || !outcome.ending.is_incident() || is_told {
+                    return false;
+                }
                 let mut text = outcome.text.clone();
                 if text.is_empty() {
                     text = outcome.ending.to_string();
@@ -211,7 +221,6 @@ impl Run {
         self.margins.cycle(model, state);
         self.peaks.cycle(state, record, &external);
         self.last = time;
-        self.goal = record.map_or(0, |record| record.goal);
         self.window.push_back(trace(model, state, lost, &external));
         while self.window.front().is_some_and(|t| time - t.time >= SPAN) {
             self.window.pop_front();
@@ -279,7 +288,7 @@ impl Run {
             cycles: self.cycles,
             end: ended.time,
             received: ended.received,
-            under_way: (!is_over && self.goal > 0).then_some(self.goal),
+            under_way: self.open.last().copied().filter(|_| !is_over),
             earlier: 0,
             cause,
             timeline,

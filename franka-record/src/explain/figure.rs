@@ -5,6 +5,7 @@ use svg::node::element::{Group, Line, Path, Rectangle, Text, Title};
 use svg::{Document, Node};
 
 use super::polyline::thinned;
+use super::report::NO_END;
 use super::{Explanation, MomentKind, Trace, sketch};
 
 /// Where a panel is, and what it spans.
@@ -160,7 +161,7 @@ impl Panel {
 fn heading(explanation: &Explanation) -> Group {
     let mut group = Group::new();
     let cause = explanation.cause.as_ref().map(|cause| cause.text.as_str());
-    let lines = cause.unwrap_or("The robot did not stop by itself.");
+    let lines = cause.unwrap_or(NO_END);
     for (i, content) in lines.lines().take(2).enumerate() {
         let line = text(LEFT, 22.0 + 17.0 * i as f64, &shortened(content, 130));
         group.append(match i {

@@ -81,11 +81,11 @@ pub struct Explanation {
     /// How many there were.
     pub cycles: u64,
     /// The cycle that shows the end of the last motion that the robot stopped, a guard gave up or
-    /// a lost link ended; without one, the last cycle.
+    /// a lost link ended, of a guard that in which the arm rested; without one, the last cycle.
     pub end: u64,
     /// When this host had that cycle; `None` if that is not known, as in a log.
     pub received: Option<HostTime>,
-    /// The goal that was followed in the last cycle, where nothing has ended a motion.
+    /// The newest goal whose end was not recorded, where nothing has ended a motion.
     pub under_way: Option<u64>,
     /// How many such ends came before.
     pub earlier: u64,

@@ -36,15 +36,12 @@ impl fmt::Display for Explanation {
                     writeln!(f, "  {line}")?;
                 }
             }
-            None => writeln!(
-                f,
-                "\nNo motion was ended by the robot, a guard or a lost link."
-            )?,
+            None => writeln!(f, "\n{NO_END}")?,
         }
         if let Some(goal) = self.under_way {
             writeln!(
                 f,
-                "Goal {goal} was under way in the last cycle: how it ended is not known."
+                "Goal {goal} was under way: how it ended is not recorded."
             )?;
         }
         match self.earlier {
@@ -193,7 +190,7 @@ impl fmt::Display for Place {
             let tared = 1e3 * self.tared;
             writeln!(
                 f,
-                "  (roughly: the arm was seen untouched for {tared:.0} ms only)"
+                "  (this is rough: the arm was seen untouched for {tared:.0} ms only)"
             )?;
         }
         Ok(())
@@ -206,6 +203,9 @@ fn of(joint: Option<u8>) -> String {
         None => "end effector".to_owned(),
     }
 }
+
+/// Without a cause.
+pub(super) const NO_END: &str = "No reflex, guard or lost link ended a motion.";
 
 /// Moments that the report shows, the newest.
 const SHOWN: usize = 40;

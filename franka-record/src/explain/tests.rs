@@ -137,7 +137,7 @@ fn an_arm_that_nothing_touches_is_not_said_to_be_touched() {
         state
     });
     let text = explained(untouched).to_string();
-    assert!(text.contains("No motion was ended"), "{text}");
+    assert!(text.contains("No reflex, guard or lost link"), "{text}");
     assert!(!text.contains("touche"), "{text}");
 }
 
@@ -303,12 +303,60 @@ fn a_guard_and_a_lost_link_end_a_motion_as_the_robot_does() {
     );
     let lost = "link-lost\nlook at the cable, the switch, and whether the robot has power";
     assert_eq!(told(&of(6400)), (6000, 2, true, lost.to_owned()));
-    // What is cut off in the middle of a motion says so.
-    let cut = Explanation::of((1..=700).map(state).map(cycle), [], Model::fr3());
+}
+
+/// A lost link ends a session and its goal, and what is asked for afterwards.
+#[test]
+fn one_loss_is_one_end() {
+    let ended = |goal, text: &str| {
+        let outcome = Outcome {
+            goal,
+            ending: Ending::LinkLost,
+            text: text.into(),
+            duration: None,
+        };
+        event(700, EventKind::Outcome(outcome))
+    };
+    let events = [ended(1, "silent"), ended(2, "closed"), ended(3, "closed")];
+    let cycles = (1..=700).map(|time| Cycle {
+        time: HostTime::from_nanos(1_000_000 * time),
+        state: state(time),
+        ..Cycle::default()
+    });
+    let explanation = Explanation::of(cycles, events, Model::fr3());
+    let cause = explanation.cause.expect("an end");
+    assert!(cause.text.starts_with("silent"), "{}", cause.text);
+    assert_eq!((explanation.end, explanation.earlier), (700, 0));
+}
+
+/// What is cut off in the middle of a motion says so, and what is held after it does not.
+#[test]
+fn a_goal_without_an_end_is_under_way() {
+    let of = |ends: bool| {
+        let goal = Goal {
+            number: 9,
+            ..Goal::default()
+        };
+        let outcome = Outcome {
+            goal: 9,
+            ending: Ending::Arrived,
+            ..Outcome::default()
+        };
+        let mut explainer = Explainer::new(Model::fr3());
+        explainer.push_state(&state(1));
+        explainer.push_event(&event(1, EventKind::Goal(goal)));
+        if ends {
+            explainer.push_event(&event(1, EventKind::Outcome(outcome)));
+        }
+        explainer.push_state(&state(2));
+        explainer.finish()
+    };
+    let cut = of(false);
     assert_eq!((cut.cause.is_none(), cut.under_way), (true, Some(9)));
     let text = cut.to_string();
-    assert!(text.contains("No motion was ended by the robot"), "{text}");
+    assert!(text.contains("No reflex, guard or lost link"), "{text}");
     assert!(text.contains("Goal 9 was under way"), "{text}");
+    assert_eq!(of(true).under_way, None);
 }
 
 #[test]
