@@ -63,7 +63,7 @@ impl Advice {
                 "begin when the arm rests and nothing pushes it"
             }
             (Self::FinishAtRest, Function | Active) => {
-                "bring the command to rest, and the arm with it, before it says that it is finished"
+                "bring the command to rest, and the arm that your torques lead, before it says that it is finished"
             }
             (Self::FinishAtRest, Goals | Asynchronous) => {
                 "end the motion when the arm rests and nothing pushes it"
@@ -95,7 +95,7 @@ impl Advice {
             (Self::StayInRange, _) => "a target further inside the joint's range, or another elbow",
             (Self::StayClearOfItself, _) => "a way on which the links stay further apart",
             (Self::LessEffort, _) => {
-                "less acceleration, less load, the load declared by set_load, or nothing that pushes the arm"
+                "less acceleration, less load, or the load declared by set_load"
             }
             (Self::SofterGains, Function) => {
                 "lower stiffness, more damping, or cutoff_frequency for the torques"

@@ -33,7 +33,7 @@ pub enum Cause {
     WrongStart {
         /// What is off.
         subject: Subject,
-        /// Its position or torque.
+        /// What of it.
         quantity: Quantity,
         /// By how much, in the unit of the quantity.
         offset: f64,

@@ -205,9 +205,17 @@ pub(super) fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Opt
     }
 }
 
-/// Whether the last command of a motion that the client's torques follow came before the arm had
-/// come to rest.
-pub(super) fn finished_before_the_arm(evidence: &Evidence<'_>) -> Option<Cause> {
+/// That the last command of a motion came before the arm, which the client's torques lead, had
+/// come to rest: for the errors that say so.
+pub(super) fn finished_before_the_arm(evidence: &Evidence<'_>, error: RobotError) -> Option<Cause> {
+    let says_so = matches!(
+        error,
+        RobotError::JointMotionGeneratorVelocityDiscontinuity
+            | RobotError::CartesianMotionGeneratorVelocityDiscontinuity
+    );
+    if !says_so {
+        return None;
+    }
     let sample = evidence.samples().next_back()?;
     let dq = JointVector::from(sample.before.dq);
     let joint = dq.iamax();
@@ -252,8 +260,8 @@ fn component<const N: usize>(motion: &Derivatives<N>, index: usize) -> Derivativ
     }
 }
 
-/// Measured joint velocity, `[rad/s]`, above which an arm does not rest.
-const AT_REST: f64 = 0.05;
+/// Measured joint velocity, `[rad/s]`, above which an arm does not rest: the simulator's choice.
+const AT_REST: f64 = 0.1;
 
 /// What the limiter lets pass is nearer than this to what is allowed, as a share of it.
 const LIMITED: f64 = 2e-3;

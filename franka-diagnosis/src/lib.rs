@@ -234,7 +234,7 @@ impl fmt::Display for Diagnosis {
             (Some(finding), Some(before)) => {
                 write!(f, "{finding}, since cycle {} ms", finding.since)?;
                 match before {
-                    // How many there were is how long it took.
+                    // The thread may have looked long after the stop.
                     _ if finding.quantity == Quantity::LostCycles => {}
                     0 => write!(f, ", the last one")?,
                     1 => write!(f, ", the one before the stop")?,

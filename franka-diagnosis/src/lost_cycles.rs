@@ -1,5 +1,7 @@
 //! Which cycles passed without a command.
 
+use core::ops::Range;
+
 use franka_proto::RobotError;
 
 use super::cause::Cause;
@@ -10,7 +12,7 @@ use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 /// `communication_constraints_violation`).
 const LOST_LIMIT: f64 = 19.0;
 
-/// Cycles between a loss and the command that it led to.
+/// From a loss to the last command that it can lead astray: a jerk is taken of two commands.
 const BEFORE: u64 = 2;
 
 /// Cycles without a command, oldest first, named by the states whose answers are missing.
@@ -23,7 +25,8 @@ struct Losses {
 }
 
 impl Losses {
-    fn of(evidence: &Evidence<'_>, starved: bool) -> Self {
+    /// Of the cycles `within`.
+    fn of(evidence: &Evidence<'_>, starved: bool, within: Range<u64>) -> Self {
         let mut losses = Self {
             states: 0,
             commands: 0,
@@ -40,7 +43,8 @@ impl Losses {
         for pair in evidence.entries.windows(2) {
             let (before, command, after) = (&pair[0].state, &pair[1].command, &pair[1].state);
             let (id, next) = (before.message_id, after.message_id);
-            if next <= id || !before.motion_running() {
+            let is_within = id < within.end && next > within.start;
+            if next <= id || !before.motion_running() || !is_within {
                 continue;
             }
             let missing = next - id - 1;
@@ -55,7 +59,11 @@ impl Losses {
                     losses.unanswered += 1;
                     losses.cycles.push(id);
                 }
-            } else if is_lost(before, after, skipped) || (ends && starved && missing == skipped) {
+            } else if is_lost(before, after, skipped)
+                || (ends && starved && missing == skipped)
+                // None has come in time so far.
+                || (!ends && starved && after.control_command_success_rate == 0.0)
+            {
                 losses.commands += 1;
                 losses.cycles.push(id);
             }
@@ -98,7 +106,7 @@ impl Losses {
 
 /// The longest run of cycles without a command, for a robot that stopped because of one.
 pub(super) fn starvation(evidence: &Evidence<'_>) -> Option<Finding> {
-    let (length, first) = Losses::of(evidence, true).longest()?;
+    let (length, first) = Losses::of(evidence, true, 0..u64::MAX).longest()?;
     Some(Finding {
         error: RobotError::CommunicationConstraintsViolation,
         subject: Subject::Arm,
@@ -114,17 +122,22 @@ pub(super) fn starvation(evidence: &Evidence<'_>) -> Option<Finding> {
 /// What got lost within the log, if the robot stopped for want of commands: the last one did not
 /// reach it, either.
 pub(super) fn lost_packets(evidence: &Evidence<'_>) -> Option<Cause> {
-    Losses::of(evidence, true).cause()
+    Losses::of(evidence, true, 0..u64::MAX).cause()
 }
 
-/// What got lost within the log; if it is known which command was wrong, only if some of it was
-/// lost right before: the robot makes up for what is missing, and a command may leap from that.
+/// What got lost in a row right before the command that was wrong, or within the log if that is not
+/// known: the robot makes up for what is missing, and a command may leap from that.
 pub(super) fn lost_before(evidence: &Evidence<'_>, finding: Option<&Finding>) -> Option<Cause> {
-    let losses = Losses::of(evidence, false);
-    let led = |cycle: &u64| {
-        finding.is_none_or(|finding| *cycle < finding.since && cycle + BEFORE >= finding.since)
+    let Some(Finding { since, .. }) = finding else {
+        return Losses::of(evidence, false, 0..u64::MAX).cause();
     };
-    losses.cycles.iter().any(led).then(|| losses.cause())?
+    let losses = Losses::of(evidence, false, 0..*since);
+    let last = losses.cycles.iter().rev().find(|cycle| *cycle < since);
+    let mut first = *last.filter(|last| *last + BEFORE >= *since)?;
+    while first > 0 && losses.cycles.contains(&(first - 1)) {
+        first -= 1;
+    }
+    Losses::of(evidence, false, first..*since).cause()
 }
 
 /// Commands of the whole motion that left too late.

@@ -264,7 +264,7 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
             causes.extend(match finding {
                 Some(finding) => command_steps::finished_moving(evidence, finding)
                     .or_else(|| command_steps::leap(evidence, finding)),
-                None => command_steps::finished_before_the_arm(evidence),
+                None => command_steps::finished_before_the_arm(evidence, error),
             });
             causes.extend(posture::singularity(evidence));
             causes.extend(limit());

@@ -4,6 +4,7 @@
 
 use std::time::Duration;
 
+use franka_diagnosis::Diagnose;
 use franka_lockstep::{Link, Lockstep, Outcome, for_each_robot};
 use franka_proto::{RobotError, Version};
 use franka_rt::lifecycle::{MotionError, MotionReport};
@@ -107,6 +108,9 @@ fn a_delay_beyond_the_cycle_leaves_no_command_in_time() {
         };
         let starved = RobotError::CommunicationConstraintsViolation;
         assert!(error.errors.contains(starved), "{error}");
+        let diagnosis = error.diagnose().expect("a reflex");
+        let finding = diagnosis.finding.expect("none came in time");
+        assert!(finding.value > 19.0, "{finding}");
         assert_eq!((error.statistics.cycles, tally.lost), (22, 0));
         assert_eq!(lockstep.client.state.control_command_success_rate, 0.0);
     });
