@@ -12,7 +12,8 @@ const WINDOW: u32 = 100;
 
 /// The last hundred cycles, newest in the lowest bit.
 ///
-/// Counting begins with the client's first command, in time or not: before it, the robot waits.
+/// Counting begins with the client's first command, before which the robot waits. That a late one
+/// counts as the first is a choice of this simulator.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct SuccessRate {
     received: u128,
@@ -35,7 +36,7 @@ impl SuccessRate {
     }
 
     /// Fraction of commands received over the window; while it is not full, over what `first` says.
-    /// Zero before the first command.
+    /// Zero before the first command that came in time.
     pub(crate) fn rate(&self, first: FirstCycles) -> f64 {
         if self.counted == 0 {
             return 0.0;

@@ -191,7 +191,7 @@ pub(crate) fn hold_until(
 }
 
 fn jog(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    let (mut shown, begin) = (false, Instant::now());
+    let (mut shown, mut lost, begin) = (false, false, Instant::now());
     while !shown {
         ensure!(begin.elapsed() < LONGEST, "each hold was cut short");
         hold_up(page, served)?;
@@ -199,15 +199,14 @@ fn jog(page: &Browser, served: &Served) -> anyhow::Result<()> {
             shown = top_lines(page)? == json!(["held", "target control", "fed"]);
             Ok(shown || page.state()?["holding"] != true)
         })?;
+        // On a machine that was too busy for the hold.
+        lost = page.state()?["holding"] != true;
         page.pointer(&[up()])?;
     }
     served.check_rest()?;
+    let deadman = if lost { "expired" } else { "off" };
     wait("the top lines at rest", || {
-        let said = top_lines(page)?;
-        // Expired if the machine was too busy for the hold.
-        Ok(["off", "expired"]
-            .map(|deadman| json!(["none", "none", deadman]))
-            .contains(&said))
+        Ok(top_lines(page)? == json!(["none", "none", deadman]))
     })
 }
 

@@ -197,8 +197,8 @@ impl Robot {
     /// Takes a UDP datagram of the client.
     ///
     /// It counts if it answers the newest state and is the first to do so; everything else is
-    /// dropped, as is an invalid datagram. Cycles without one count from the first that comes, in
-    /// time or not. Of the targets of an asynchronous motion, which answer
+    /// dropped, as is an invalid datagram. Losses count from the first
+    /// command on, even if it is late. Of the targets of an asynchronous motion, which answer
     /// no state, the last one counts.
     pub fn command(&mut self, datagram: &[u8]) {
         let Ok(command) = RobotCommand::decode(self.version(), datagram) else {

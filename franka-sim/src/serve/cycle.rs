@@ -18,12 +18,13 @@ const VIRTUAL_IDLE_PERIOD: Duration = Duration::from_micros(100);
 /// the client's from its processor for some 10 ms now and then.
 const FIRST_WAIT: Duration = Duration::from_millis(16);
 
-/// Whether an answer had to be waited for.
+/// What has become of the answer to a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Waited {
-    /// It was there, or none is awaited: what the thread is late by is none of the client's.
-    NotAtAll,
-    Once,
+enum Answer {
+    /// It was there, or none is due.
+    NotAwaited,
+    /// It was waited for.
+    Awaited,
     /// Nothing is left that could give orders to the robot.
     End,
 }
@@ -55,9 +56,10 @@ impl Cycle {
             if !patience.is_zero() {
                 let now = clock.at(Instant::now());
                 match self.await_answer(now, patience, &mut attempts, clock.pace()) {
-                    Waited::NotAtAll => {}
-                    Waited::Once => clock.waited(Instant::now()),
-                    Waited::End => return clock.pace().log(),
+                    // If this thread was late, the client was not.
+                    Answer::NotAwaited => {}
+                    Answer::Awaited => clock.waited(Instant::now()),
+                    Answer::End => return clock.pace().log(),
                 }
             }
             for _ in 0..clock.begin(Instant::now()) {
@@ -87,8 +89,8 @@ impl Cycle {
             let asks = self.robot.awaits() != Awaited::Nothing;
             let next = now + PERIOD;
             loop {
-                let waited = self.await_answer(now, patience, &mut attempts, clock.pace());
-                if waited == Waited::End {
+                let answer = self.await_answer(now, patience, &mut attempts, clock.pace());
+                if answer == Answer::End {
                     return;
                 }
                 let arrival = self.robot.next_arrival();
@@ -117,9 +119,9 @@ impl Cycle {
         patience: Duration,
         attempts: &mut u32,
         pace: Pace,
-    ) -> Waited {
+    ) -> Answer {
         let patience = match self.robot.awaits_answer() {
-            Awaited::Nothing => return Waited::NotAtAll,
+            Awaited::Nothing => return Answer::NotAwaited,
             Awaited::First => {
                 let wait = FIRST_WAIT.saturating_mul(2_u32.saturating_pow(*attempts));
                 *attempts += 1;
@@ -131,8 +133,8 @@ impl Cycle {
             }
         };
         match self.robot.await_command(now, patience, pace) {
-            true => Waited::Once,
-            false => Waited::End,
+            true => Answer::Awaited,
+            false => Answer::End,
         }
     }
 
@@ -213,8 +215,8 @@ mod tests {
             in_step: None,
         };
         assert!(!cycle.has_client());
-        let waited = cycle.await_answer(Instant::now(), SOON, &mut 0, Pace::default());
-        assert_eq!(waited, Waited::NotAtAll);
+        let answer = cycle.await_answer(Instant::now(), SOON, &mut 0, Pace::default());
+        assert_eq!(answer, Answer::NotAwaited);
         let mut stream = TcpStream::connect(hand.addr()).expect("a listener");
         let hello = client::Session::new(gripper::Version::default()).connect(1);
         stream.write_all(hello.as_bytes()).expect("an open stream");
