@@ -51,8 +51,14 @@ pub enum Guard {
 }
 
 /// A set of guards.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct Bindings(u32);
+
+impl core::fmt::Debug for Bindings {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_set().entries(self.iter()).finish()
+    }
+}
 
 impl Guard {
     /// All guards.
