@@ -9,6 +9,7 @@
 //! {"type": "target", "position": [0.3, 0.1, 0.5], "quaternion": [1, 0, 0, 0]}   at any rate
 //! {"type": "alive"}                                                             without a target
 //! {"type": "release"}
+//! {"type": "recover"}                                                           from a reflex, without the lease
 //! ```
 
 mod lease;
@@ -118,12 +119,16 @@ impl Service {
             Err(error) => return Some(refused(error)),
         };
         let Some(held) = lease else {
-            if !matches!(request, Request::Take) {
+            if !matches!(request, Request::Take | Request::Recover) {
                 return Some(refused("this socket does not have the lease"));
             }
             let Ok(permit) = self.free.clone().try_acquire_owned() else {
                 return Some(refused("another socket has the lease"));
             };
+            if matches!(request, Request::Recover) {
+                let recovered = self.robot.recover().await;
+                return Some(recovered.map_or_else(refused, |()| Reply::Recovered));
+            }
             *lease = match Lease::begin(&self.robot, permit, self.silence).await {
                 Ok(begun) => Some(begun),
                 Err(error) => return Some(refused(error)),
@@ -137,6 +142,7 @@ impl Service {
                 None => return Some(refused("the quaternion is no rotation")),
             },
             Request::Take | Request::Alive => {}
+            Request::Recover => return Some(refused("release the lease first")),
             Request::Release => {
                 *lease = None;
                 return Some(Reply::Released);

@@ -11,6 +11,7 @@ pub(crate) enum Request {
     Target(Placement),
     Alive,
     Release,
+    Recover,
 }
 
 /// To a client.
@@ -27,6 +28,7 @@ pub(crate) enum Reply {
         why: String,
     },
     Released,
+    Recovered,
     State {
         time: u64,
         mode: String,
