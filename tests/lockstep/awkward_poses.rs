@@ -57,7 +57,7 @@ fn a_pose_through_a_stretched_elbow_or_wrist_is_reached_smoothly() {
         match lockstep.client.outcome(goal).unwrap() {
             Ok(_) => reached += 1,
             // The straight path leads through the arm itself.
-            Err(MotionError::Braked(Lapse::Blocked)) => {
+            Err(MotionError::Braked(Lapse::Blocked { .. })) => {
                 let near = self_distance(lockstep.robot.q());
                 println!("case {case}: {:.1} mm from itself", near * 1e3);
                 assert!(near < SELF_STOP + 0.01, "case {case}: {near} m");
@@ -100,7 +100,7 @@ fn a_distant_pose_is_reached_or_reported_as_not_reached() {
         match lockstep.until_resolved(id, 40_000) {
             Ok(_) => reached += 1,
             Err(MotionError::TargetNotReached(_)) => short += 1,
-            Err(MotionError::Braked(Lapse::Blocked)) => blocked += 1,
+            Err(MotionError::Braked(Lapse::Blocked { .. })) => blocked += 1,
             other => panic!("seed {seed}, case {case}: {other:?}"),
         }
     }

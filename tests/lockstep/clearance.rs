@@ -65,7 +65,7 @@ fn an_arm_on_its_way_into_itself_slows_down_and_stops_before_it() {
             );
             assert!(least < SELF_STOP + 0.01, "speed {speed}: {least} m");
             let outcome = lockstep.client.outcome(id);
-            let blocked = Some(&Err(MotionError::Braked(Lapse::Blocked)));
+            let blocked = Some(&Err(MotionError::Braked(Lapse::Blocked { region: None })));
             assert_eq!(outcome, blocked, "speed {speed}");
             assert_eq!(lockstep.client.state.robot_mode, RobotMode::Idle);
             // The arm can leave again.
@@ -97,6 +97,7 @@ fn a_hand_stays_out_of_a_region_and_leaves_it() {
         let kind = lockstep.robot.config().kind;
         let table = block(start.translation.z - 0.15);
         let mut regions = KeepOut::default();
+        regions[0] = Some(Obstacle::floor(-1.0));
         regions[2] = Some(table);
         lockstep.client.lifecycle.keep_out_of(regions);
         let margin = |q: &JointVector| room_to(kind, &table, q);
@@ -105,8 +106,8 @@ fn a_hand_stays_out_of_a_region_and_leaves_it() {
         println!("{:.2} mm", least * 1e3);
         assert!(bound && least >= KEEP_OUT_STOP - CURVE, "{least}");
         assert!(least < KEEP_OUT_STOP + 0.01, "{least}");
-        let blocked = Some(&Err(MotionError::Braked(Lapse::Blocked)));
-        assert_eq!(lockstep.client.outcome(down), blocked);
+        let blocked = Err(MotionError::Braked(Lapse::Blocked { region: Some(1) }));
+        assert_eq!(lockstep.client.outcome(down), Some(&blocked));
         let up = lockstep.begin(Target::Pose(start));
         lockstep.until_resolved(up, 10_000).expect("a way out");
 
@@ -115,7 +116,7 @@ fn a_hand_stays_out_of_a_region_and_leaves_it() {
         lockstep.client.lifecycle.keep_out_of(regions);
         let down = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.0, -0.02) * start));
         let outcome = lockstep.until_resolved(down, 20_000);
-        assert_eq!(outcome, Err(MotionError::Braked(Lapse::Blocked)));
+        assert_eq!(outcome, blocked);
         let up = lockstep.begin(Target::Pose(Translation3::new(0.0, 0.0, 0.1) * start));
         lockstep.until_resolved(up, 10_000).expect("a way out");
     });

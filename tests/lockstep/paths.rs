@@ -456,7 +456,7 @@ fn random_paths_are_gone_to_their_end_or_refused_before_anything_moves() {
                 Ok(id) => match lockstep.until_resolved(id, 60_000) {
                     Ok(_) => arrived += 1,
                     // The way leads too near to the arm itself.
-                    Err(MotionError::Braked(Lapse::Blocked)) => blocked += 1,
+                    Err(MotionError::Braked(Lapse::Blocked { .. })) => blocked += 1,
                     // Near a singular posture joints move at thrice their budget, which the robot
                     // may take for a contact of an arm that sticks.
                     Err(MotionError::Control(error)) if error.is_reflex() => {

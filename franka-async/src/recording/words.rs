@@ -124,7 +124,7 @@ fn guard(lapse: Lapse) -> Option<Guard> {
         Lapse::Silent { .. } => Some(Guard::Watchdog),
         Lapse::Deadman => Some(Guard::Deadman),
         Lapse::Displaced => Some(Guard::Deviation),
-        Lapse::Blocked => Some(Guard::Clearance),
+        Lapse::Blocked { .. } => Some(Guard::Clearance),
         Lapse::Team(_) => Some(Guard::Team),
         Lapse::TooFast => Some(Guard::SpeedCap),
         _ => None,

@@ -10,7 +10,7 @@ use crate::session::guard::speed_cap::SpeedCap;
 use crate::session::kinematics::Posture;
 use crate::session::reference::Reference;
 use crate::session::running::Measured;
-use crate::session::{Budget, Chunk, Target};
+use crate::session::{Budget, Chunk, Lapse, Target};
 
 /// Share of its velocity that a goal keeps where something is near.
 const SLOW: f64 = 0.3;
@@ -35,6 +35,8 @@ pub(super) struct Route {
     stale: bool,
     /// Cycles for which it still counts as hindered.
     hindered: u32,
+    /// What it was last braked before: the region with this index, or the arm itself.
+    obstacle: Option<usize>,
     /// The budget with which the way to rest was last found clear.
     judged: Budget,
     /// A chunk whose course has been replaced. It is returned in the next cycle, to be freed
@@ -69,6 +71,7 @@ impl Route {
             pace: Pace::Full,
             stale: false,
             hindered: 0,
+            obstacle: None,
             judged: budget,
             retired_chunk: None,
             chunk_end: None,
@@ -256,7 +259,8 @@ impl Route {
         let end = course::end_of_brake(model, next, &aim.budget);
         let ahead = self.clearance.ahead(&reference.q, &next.q, &end);
         match (ahead, &mut self.pace) {
-            (Ahead::TooNear, _) => {
+            (Ahead::TooNear(region), _) => {
+                self.obstacle = region;
                 self.pace = Pace::Braked(0);
                 self.hindered = HINDERED;
                 self.brake(model, ee, reference, aim);
@@ -285,9 +289,10 @@ impl Route {
         !matches!(self.pace, Pace::Full)
     }
 
-    /// Whether something too near keeps the course from its goal, or did a moment ago.
-    pub(super) fn is_hindered(&self) -> bool {
-        self.hindered > 0
+    /// What keeps the course from its goal by being too near, or did a moment ago.
+    pub(super) fn hindrance(&self) -> Option<Lapse> {
+        let region = self.obstacle;
+        (self.hindered > 0).then_some(Lapse::Blocked { region })
     }
 
     /// Whether the course has come to the end of its way.

@@ -70,7 +70,10 @@ pub enum Lapse {
     Displaced,
     /// The way leads too near to the arm itself, or to a region to keep out of: see
     /// [`SELF_STOP`](super::SELF_STOP) and [`KEEP_OUT_STOP`](super::KEEP_OUT_STOP).
-    Blocked,
+    Blocked {
+        /// The index of the region, as the session was given them; `None` for the arm itself.
+        region: Option<usize>,
+    },
     /// The team that it is a member of has stopped.
     Team(TeamStop),
     /// The arm was faster than the speed cap of its session.
@@ -82,7 +85,11 @@ impl Lapse {
     pub(super) fn is_final(self) -> bool {
         match self {
             Self::Silent { .. } => false,
-            Self::Deadman | Self::Displaced | Self::Blocked | Self::Team(_) | Self::TooFast => true,
+            Self::Deadman
+            | Self::Displaced
+            | Self::Blocked { .. }
+            | Self::Team(_)
+            | Self::TooFast => true,
         }
     }
 }
@@ -94,7 +101,7 @@ impl Lapse {
             Self::Silent { .. } => "lapse-silent",
             Self::Deadman => "lapse-deadman",
             Self::Displaced => "lapse-displaced",
-            Self::Blocked => "lapse-blocked",
+            Self::Blocked { .. } => "lapse-blocked",
             Self::Team(_) => "lapse-team",
             Self::TooFast => "lapse-too-fast",
         }
@@ -107,9 +114,12 @@ impl core::fmt::Display for Lapse {
             Self::Silent { silence } => write!(f, "no target came for {} ms", silence.as_millis()),
             Self::Deadman => write!(f, "its deadman is silent"),
             Self::Displaced => write!(f, "the arm was pushed too far from its path"),
-            Self::Blocked => write!(
+            Self::Blocked { region: None } => write!(f, "the way leads too near to the arm itself"),
+            Self::Blocked {
+                region: Some(region),
+            } => write!(
                 f,
-                "the way leads too near to the arm itself or to a region to keep out of"
+                "the way leads too near to a region to keep out of, keep_out[{region}]"
             ),
             Self::Team(stop) => stop.fmt(f),
             Self::TooFast => write!(f, "the arm moved faster than its speed cap"),

@@ -214,7 +214,10 @@ fn a_session_keeps_out_of_its_regions_and_refuses_invalid_ones() {
             .within(engaged, Target::Pose(down), OnArrival::ReportAndHold)
             .unwrap();
         let outcome = lockstep.until_resolved(goal, 20_000);
-        assert_eq!(outcome, Err(MotionError::Braked(Lapse::Blocked)));
+        assert_eq!(
+            outcome,
+            Err(MotionError::Braked(Lapse::Blocked { region: Some(0) }))
+        );
         lockstep.disengage(engaged);
         lockstep.until_resolved(engaged, 1000).unwrap();
         for regions in [vec![floor; 5], vec![Obstacle::floor(f64::NAN)]] {

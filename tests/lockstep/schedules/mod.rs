@@ -154,7 +154,7 @@ fn kind(outcome: &Outcome) -> &'static str {
         Err(MotionError::Braked(Lapse::Silent { .. })) => "silent, braked",
         Err(MotionError::Held(Lapse::Deadman)) => "deadman",
         Err(MotionError::Braked(Lapse::Displaced)) => "displaced",
-        Err(MotionError::Braked(Lapse::Blocked)) => "blocked",
+        Err(MotionError::Braked(Lapse::Blocked { .. })) => "blocked",
         Err(MotionError::Control(error)) if error.is_reflex() => "reflex",
         Err(MotionError::Rejected(_)) => "rejected",
         Err(MotionError::Control(_)) => "aborted",

@@ -191,7 +191,7 @@ impl Submission {
                 reacts && self.may_fail(error, now, causes)
             }
             MotionError::Braked(Lapse::Displaced) => causes.pushed,
-            MotionError::Braked(Lapse::Blocked) => self.hindered,
+            MotionError::Braked(Lapse::Blocked { .. }) => self.hindered,
             MotionError::Control(error) => causes.explains(error),
             MotionError::Rejected(_) => causes.any(),
             _ => false,

@@ -76,8 +76,8 @@ enum Kind {
 }
 
 impl Item {
-    /// The index of the region, as it was given, whose distance it is; `None` for a distance within
-    /// the arm.
+    /// The index of the region whose distance it is, among those that were given; `None` for a
+    /// distance within the arm.
     pub fn region(self) -> Option<usize> {
         match self.0 {
             Kind::Pair(_) => None,

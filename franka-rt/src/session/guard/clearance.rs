@@ -61,14 +61,14 @@ struct Known {
 }
 
 /// What lies on the way to rest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ahead {
     /// Nothing near.
     Clear,
     /// Something that is approached slowly.
     Near,
-    /// Something that is not to be approached.
-    TooNear,
+    /// Something that is not to be approached: the region with this index, or the arm itself.
+    TooNear(Option<usize>),
 }
 
 impl Clearance {
@@ -126,7 +126,8 @@ impl Clearance {
         let (here, there) = (self.spacing.at(now), self.spacing.at(next));
         self.spacing.items(CandidateMask::ALL).find(|&item| {
             let then = there.margin_below(item, 0.0);
-            then.is_some_and(|then| judge(here.margin(item), then) == Ahead::TooNear)
+            let ahead = then.map(|then| judge(item.region(), here.margin(item), then));
+            matches!(ahead, Some(Ahead::TooNear(_)))
         })
     }
 
@@ -151,11 +152,10 @@ impl Clearance {
                     continue;
                 };
                 let here = here.get_or_insert_with(|| self.spacing.at(now));
-                ahead = ahead.max(judge(here.margin(item), then));
-                match ahead {
+                match judge(item.region(), here.margin(item), then) {
                     Ahead::Clear => {}
-                    Ahead::Near => limit = 0.0,
-                    Ahead::TooNear => return ahead,
+                    Ahead::Near => (ahead, limit) = (Ahead::Near, 0.0),
+                    too_near @ Ahead::TooNear(_) => return too_near,
                 }
             }
         }
@@ -163,14 +163,15 @@ impl Clearance {
     }
 }
 
-/// Classifies a margin that changes from `now` to `then`, both in metres.
-fn judge(now: f64, then: f64) -> Ahead {
+/// Classifies a margin to a region, or within the arm, that changes from `now` to `then`, both in
+/// metres.
+fn judge(region: Option<usize>, now: f64, then: f64) -> Ahead {
     if then >= SLOW_ZONE || then >= now - NEARER {
         Ahead::Clear
     } else if then >= 0.0 {
         Ahead::Near
     } else {
-        Ahead::TooNear
+        Ahead::TooNear(region)
     }
 }
 

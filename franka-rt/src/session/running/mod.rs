@@ -392,7 +392,7 @@ impl RunningSession {
         }
         let leashed = self.held.is_some();
         bindings.set(Guard::Leash, leashed || step.leashed);
-        self.held_back = if leashed || step.held || self.lags || self.route.is_hindered() {
+        self.held_back = if leashed || step.held || self.lags || self.route.hindrance().is_some() {
             self.held_back + 1
         } else {
             self.held_back.saturating_sub(1)

@@ -133,8 +133,8 @@ impl RunningSession {
         let paused = pursued && self.goal.paused;
         let ends = self.goal.on_arrival != OnArrival::Hold && !paused;
         if ends && (arrived || stalled) {
-            if stalled && self.route.is_hindered() {
-                self.give_up(Lapse::Blocked);
+            if stalled && let Some(lapse) = self.route.hindrance() {
+                self.give_up(lapse);
             } else if stalled && heading != Target::Rest {
                 self.turn_to(Target::Rest);
             }

@@ -98,8 +98,8 @@ impl Sessions<'_> {
             let again = self.lockstep.begin(Target::Joints(READY.into()));
             let outcome = self.lockstep.until_resolved(again, TIME_MAX);
             // An arm that was pushed into itself may find no path from there.
-            let pushed_together =
-                self.causes.pushed() && outcome == Err(MotionError::Braked(Lapse::Blocked));
+            let is_blocked = matches!(outcome, Err(MotionError::Braked(Lapse::Blocked { .. })));
+            let pushed_together = self.causes.pushed() && is_blocked;
             assert!(outcome.is_ok() || pushed_together, "{outcome:?}");
         }
         self.counts.robot_time += self.lockstep.now();

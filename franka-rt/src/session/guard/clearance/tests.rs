@@ -37,13 +37,23 @@ fn least(q: &JointVector) -> f64 {
     margins.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// What [`Clearance::ahead`] is to say, by all distances at all three postures.
-fn plain(keep_out: &KeepOut, now: &JointVector, next: &JointVector, end: &JointVector) -> Ahead {
+/// How near it is: 0 for clear, 2 for too near.
+fn nearness(ahead: Ahead) -> usize {
+    match ahead {
+        Ahead::Clear => 0,
+        Ahead::Near => 1,
+        Ahead::TooNear(_) => 2,
+    }
+}
+
+/// How near [`Clearance::ahead`] is to say it is, by all distances at all three postures.
+fn plain(keep_out: &KeepOut, now: &JointVector, next: &JointVector, end: &JointVector) -> usize {
     let now = margins(keep_out, now);
     let judged = [(next + end) * 0.5, *end].map(|there| {
         let there = margins(keep_out, &there);
         let all = now.iter().zip(&there);
-        all.map(|(&now, &then)| judge(now, then)).max()
+        all.map(|(&now, &then)| nearness(judge(None, now, then)))
+            .max()
     });
     judged[0].max(judged[1]).expect("an arm has pairs")
 }
@@ -94,10 +104,10 @@ fn the_verdict_is_that_of_all_distances_wherever_the_arm_goes() {
             let end = course::end_of_brake(model, &next, &budget);
             let half = (next.q + end) * 0.5;
             known += usize::from(is_clear(&clearance, &half, &(end - half).abs()));
-            let ahead = clearance.ahead(&reference.q, &next.q, &end);
+            let ahead = nearness(clearance.ahead(&reference.q, &next.q, &end));
             let expected = plain(&keep_out, &reference.q, &next.q, &end);
             assert_eq!(ahead, expected, "cycle {cycle} of {keep_out:?}, {next:?}");
-            seen[ahead as usize] += 1;
+            seen[ahead] += 1;
             reference = next;
         }
     }
@@ -136,11 +146,11 @@ fn what_could_not_stop_in_time_is_too_near_and_what_could_is_slow() {
     assert_eq!(ahead(0.065, 0.061), Ahead::Clear);
     assert_eq!(ahead(0.065, 0.059), Ahead::Near);
     assert_eq!(ahead(0.01, 0.001), Ahead::Near);
-    assert_eq!(ahead(0.01, -0.001), Ahead::TooNear);
+    assert_eq!(ahead(0.01, -0.001), Ahead::TooNear(None));
     assert_eq!(ahead(0.001, 0.01), Ahead::Clear);
     // From inside only outwards.
     assert_eq!(ahead(-0.03, -0.02), Ahead::Clear);
-    assert_eq!(ahead(-0.03, -0.031), Ahead::TooNear);
+    assert_eq!(ahead(-0.03, -0.031), Ahead::TooNear(None));
 }
 
 #[test]
@@ -181,9 +191,11 @@ fn regions_are_kept_out_of_by_their_own_distance() {
         }
     }
     assert!(low > 0.25 && low < 0.45, "{low}");
-    for (height, expected) in [(low - 0.001, Ahead::Near), (low + 0.001, Ahead::TooNear)] {
+    let too_near = Ahead::TooNear(Some(1));
+    for (height, expected) in [(low - 0.001, Ahead::Near), (low + 0.001, too_near)] {
         let mut keep_out = KeepOut::default();
-        keep_out[1] = Some(block(height));
+        keep_out[0] = Some(Obstacle::floor(-1.0));
+        keep_out[2] = Some(block(height));
         let mut clearance = of(keep_out);
         assert_eq!(clearance.ahead(&READY, &READY, &lower), expected);
         assert_eq!(clearance.ahead(&lower, &lower, &READY), Ahead::Clear);
