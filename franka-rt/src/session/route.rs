@@ -131,14 +131,19 @@ impl Route {
         chunk: Chunk,
         now: u64,
     ) -> Option<ChunkCourse> {
+        let budget = self.paced(aim).budget;
         let (pose, drift) = self.course.pose(model, ee, reference);
+        let before = match &self.course {
+            Course::Chunk(before) => Some(before),
+            _ => None,
+        };
         let start = ChunkStart {
             reference,
             pose,
             drift,
+            before,
             now,
         };
-        let budget = self.paced(aim).budget;
         let mut next = ChunkCourse::new(model, aim.goal, budget, chunk, start);
         next.set_paused(aim.paused);
         match core::mem::replace(&mut self.course, Course::Chunk(next)) {

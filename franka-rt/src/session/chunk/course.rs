@@ -56,6 +56,8 @@ pub(in crate::session) struct ChunkStart<'a> {
     pub(in crate::session) pose: PoseState,
     /// What is left of a motion over the joints.
     pub(in crate::session) drift: Drift,
+    /// The chunk that was followed up to now.
+    pub(in crate::session) before: Option<&'a ChunkCourse>,
     /// The state that is to be answered, `message_id`.
     pub(in crate::session) now: u64,
 }
@@ -73,6 +75,7 @@ impl ChunkCourse {
             reference,
             pose,
             drift,
+            before,
             now,
         } = start;
         let Chunk {
@@ -83,15 +86,19 @@ impl ChunkCourse {
         } = chunk;
         let asked = (origin, blend, pace);
         let play = match points {
-            Points::Joints(curve) => Play::Joints {
-                limits: joint_limits(model.joint_limits(), curve.extent(), reference, &budget),
-                player: Player::new(curve, asked, reference, now),
-            },
+            Points::Joints(curve) => {
+                let wanted = before.and_then(|before| before.joints_at(now - 1));
+                Play::Joints {
+                    limits: joint_limits(model.joint_limits(), curve.extent(), reference, &budget),
+                    player: Player::new(curve, asked, (reference, wanted), now),
+                }
+            }
             Points::Poses(curve) => {
+                let wanted = before.and_then(|before| before.pose_at(now - 1));
                 let limits = pose_limits(model, &pose, &budget);
                 let posture = pace.map(|_| Posture::kept(reference.q));
                 Play::Poses {
-                    player: Player::new(curve, asked, &pose, now),
+                    player: Player::new(curve, asked, (&pose, wanted), now),
                     state: pose,
                     // The way to another posture fades.
                     drift: posture.map_or(drift, |_| Drift::of(reference.dq)),
@@ -106,6 +113,22 @@ impl ChunkCourse {
             budget,
             lag: 0.0,
             play,
+        }
+    }
+
+    /// Where it wants the joints at the time `now`, if that is what it moves.
+    fn joints_at(&self, now: u64) -> Option<Reference> {
+        match &self.play {
+            Play::Joints { player, .. } => Some(player.at(now)),
+            Play::Poses { .. } => None,
+        }
+    }
+
+    /// The same of the end effector.
+    fn pose_at(&self, now: u64) -> Option<PoseState> {
+        match &self.play {
+            Play::Joints { .. } => None,
+            Play::Poses { player, .. } => Some(player.at(now)),
         }
     }
 

@@ -40,6 +40,9 @@ pub(super) trait CurveState: Copy {
     /// may be.
     fn lag(&self, target: &Self) -> f64;
 
+    /// How far away from `other` it is, in the same units.
+    fn distance(&self, other: &Self) -> f64;
+
     /// At rest in the same place.
     fn resting(&self) -> Self;
 
@@ -104,6 +107,10 @@ impl CurveState for Reference {
 
     fn lag(&self, target: &Self) -> f64 {
         behind(&(target.q - self.q), &target.dq) / LAG_ROTATION
+    }
+
+    fn distance(&self, other: &Self) -> f64 {
+        (self.q - other.q).norm() / LAG_ROTATION
     }
 
     fn resting(&self) -> Self {
@@ -226,6 +233,12 @@ impl CurveState for PoseState {
         let turn = rotation::error(&target.pose.rotation, &self.pose.rotation);
         let turn = behind(&turn, &target.rotation().v);
         (way / LAG_TRANSLATION).max(turn / LAG_ROTATION)
+    }
+
+    fn distance(&self, other: &Self) -> f64 {
+        let way = self.translation().p - other.translation().p;
+        let turn = rotation::error(&self.pose.rotation, &other.pose.rotation);
+        (way.norm() / LAG_TRANSLATION).max(turn.norm() / LAG_ROTATION)
     }
 
     fn resting(&self) -> Self {

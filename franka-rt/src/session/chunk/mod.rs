@@ -10,8 +10,8 @@
 //! * `value`, `error`: the chunk and what it may hold; `derivatives`, `curve`, `quintic`,
 //!   `curve_state`: the motion through its points, made outside the thread.
 //! * `ring`: across threads and back.
-//! * `player`: what is wanted at a time of the robot. Lost states need no more: the time jumps, and
-//!   the servo makes up for the distance.
+//! * `player`: what is wanted at a time of the robot, and how a new chunk takes over. Lost states
+//!   need no more: the time jumps, and the servo makes up for the distance.
 //! * `path`, `pace`: places without times are timed and checked outside the thread, and then
 //!   followed as a chunk whose time can wait.
 //! * `servo`: what the limits allow of it. `course`: both, for joints and for poses.

@@ -42,11 +42,16 @@ enum Entry<M: CurveState> {
 
 impl<M: CurveState> Player<M> {
     /// Takes up a chunk through `curve` in the answer to the state `now`, from a reference that was
-    /// at `last` in the answer before.
+    /// at `reference` in the answer before, where a chunk before this one wanted it at `wanted`.
+    ///
+    /// The motion before is the nearer of the two. What the reference lags behind the chunk before,
+    /// it makes up for within its limits, and goes on to do so: from there to be on a new chunk in
+    /// time asks for more than the limits allow, and each chunk would add to the swing. A chunk
+    /// that begins where the arm is goes on from there.
     pub(super) fn new(
         curve: Curve<M>,
         (origin, blend, pace): (Origin, Duration, Option<Pace>),
-        last: &M,
+        (reference, wanted): (&M, Option<M>),
         now: u64,
     ) -> Self {
         let counted_from = match origin {
@@ -54,13 +59,16 @@ impl<M: CurveState> Player<M> {
             Origin::Robot(time) => time,
         };
         let since = milliseconds(now, counted_from) - CYCLE;
+        let there = curve.at(since);
+        let is_nearer = |wanted: &M| wanted.distance(&there) < reference.distance(&there);
+        let last = wanted.filter(is_nearer).unwrap_or(*reference);
         let entry = if since + CYCLE < curve.begin() {
-            Entry::Approach { from: *last, since }
+            Entry::Approach { from: last, since }
         } else if blend.is_zero() {
             Entry::Turn
         } else {
             Entry::Blend {
-                gap: last.gap_from(&curve.at(since)),
+                gap: last.gap_from(&there),
                 since,
                 duration: blend.as_secs_f64(),
             }
@@ -190,9 +198,12 @@ mod tests {
 
     fn play(chunk: Chunk, last: &Reference, now: u64) -> Player<Reference> {
         match chunk.points {
-            Points::Joints(curve) => {
-                Player::new(curve, (chunk.origin, chunk.blend, chunk.pace), last, now)
-            }
+            Points::Joints(curve) => Player::new(
+                curve,
+                (chunk.origin, chunk.blend, chunk.pace),
+                (last, None),
+                now,
+            ),
             Points::Poses(_) => panic!("these are joints"),
         }
     }

@@ -12,6 +12,11 @@
 use super::value::Chunk;
 use crate::queue::{self, Receiver, Sender};
 use crate::session::GoalId;
+use crate::shaping::CYCLE;
+
+/// How long before its first point a chunk begins that has superseded one that is due, at most,
+/// `[s]`.
+const AHEAD_MAX: f64 = 1.0;
 
 /// A chunk and the goal that it belongs to.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,6 +75,9 @@ pub struct ChunkReader {
     returns: Sender<Returned>,
     /// The newest chunk, until it is taken up.
     newest: Option<Sent>,
+    /// When the first chunk that waited was to begin, by the robot's clock, and for which goal. A
+    /// newer one may have superseded it since.
+    due: Option<(GoalId, u64)>,
 }
 
 /// The two ends of a way for chunks.
@@ -85,6 +93,7 @@ pub fn chunk_ring() -> (ChunkWriter, ChunkReader) {
         chunks: receiver,
         returns: back,
         newest: None,
+        due: None,
     };
     (writer, reader)
 }
@@ -136,6 +145,8 @@ impl ChunkWriter {
 impl ChunkReader {
     /// The newest chunk for `goal`, the one in force at the robot's time `now`, if it is new and
     /// may begin: that is, if its first point's time has come, or `idle`, as no other chunk runs.
+    /// If it has superseded one whose time has come, it may begin a second before its own: a policy
+    /// that predicts more often than its first point is ahead would never be followed.
     ///
     /// What that makes superfluous goes back. Chunks of goals to come are kept.
     pub(in crate::session) fn poll(&mut self, goal: GoalId, now: u64, idle: bool) -> Option<Chunk> {
@@ -151,9 +162,15 @@ impl ChunkReader {
             self.give_back(goal, chunk, Fate::Late);
             return None;
         }
-        if idle || chunk.begins_at_take_up() || t >= chunk.begin() {
+        let ahead = chunk.begin() - t;
+        let due = self.due.filter(|(of, _)| *of == goal);
+        let is_due = due.is_some_and(|(_, due)| due <= now) && ahead <= AHEAD_MAX;
+        if idle || chunk.begins_at_take_up() || ahead <= 0.0 || is_due {
+            self.due = None;
             return Some(chunk);
         }
+        let begin = now + (ahead / CYCLE).ceil() as u64;
+        self.due = due.or(Some((goal, begin)));
         self.newest = Some(Sent { goal, chunk });
         None
     }
@@ -251,6 +268,24 @@ mod tests {
         assert!(reader.poll(GOAL, 111, true).is_some(), "nothing else runs");
         writer.send(GOAL, chunk()).unwrap();
         assert!(reader.poll(GOAL, 112, false).is_some(), "its origin is now");
+    }
+
+    #[test]
+    fn a_chunk_begins_when_the_first_that_it_superseded_was_to() {
+        let (mut writer, mut reader) = chunk_ring();
+        for now in [100, 103, 106, 109] {
+            writer.send(GOAL, chunk().observed_at(now)).unwrap();
+            assert_eq!(reader.poll(GOAL, now, false), None, "{now}");
+        }
+        writer.send(GOAL, chunk().observed_at(110)).unwrap();
+        assert!(reader.poll(GOAL, 110, false).is_some());
+        // One that begins much later waits for a second before its time.
+        for origin in [120, 3120] {
+            writer.send(GOAL, chunk().observed_at(origin)).unwrap();
+            assert_eq!(reader.poll(GOAL, 121, false), None);
+        }
+        assert_eq!(reader.poll(GOAL, 2129, false), None);
+        assert!(reader.poll(GOAL, 2130, false).is_some());
     }
 
     #[test]

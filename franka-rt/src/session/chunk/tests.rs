@@ -21,6 +21,8 @@ use crate::session::{
 use crate::slot::{SlotWriter, slot};
 use crate::together::Gate;
 
+mod replanning;
+
 const GOAL: GoalId = GoalId(1);
 
 /// One arm that does what its reference says, and the session's part in following chunks.
@@ -64,6 +66,7 @@ impl Arm {
                 reference: &self.reference,
                 pose: self.pose(),
                 drift: Drift::of(self.reference.dq),
+                before: self.course.as_ref(),
                 now: self.now,
             };
             let next = ChunkCourse::new(self.model, GOAL, self.budget, chunk, start);

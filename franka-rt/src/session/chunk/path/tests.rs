@@ -333,6 +333,7 @@ fn go(way: Timed<PoseState>, q: JointVector, budget: &Budget, model: &Model) -> 
             acceleration: still,
         },
         drift: Drift::of(reference.dq),
+        before: None,
         now: 1000,
     };
     let end = chunk.end();
