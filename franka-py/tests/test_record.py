@@ -23,6 +23,7 @@ def test_a_motion_is_recorded_cycle_by_cycle(franka_robot: Robot, tmp_path: Path
     rows = len(recording)
     assert rows > 500
     assert recording.keys() == ["time", *columns]
+    assert list(recording) == recording.keys() and "q" in recording and 1 not in recording
     shapes = {name: array.shape for name, array in recording.arrays().items()}
     assert shapes["q"] == (rows, 7) and shapes["O_T_EE"] == (rows, 4, 4)
     assert shapes["time"] == shapes["activity"] == (rows,) and shapes["current_errors"] == (rows, 41)

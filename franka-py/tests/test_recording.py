@@ -146,6 +146,10 @@ def test_episodes_become_a_dataset(recording: RecordingFile, path: Path, tmp_pat
     assert (there.value.kind, there.value.party) == ("dataset", "caller")
     assert recording.to_lerobot(folder, fps=20, action="measured", append=True) == (2, frames)
     assert info()["total_episodes"] == 4
+    name = recording.episodes()[1].name
+    assert recording.to_lerobot(tmp_path / "one", fps=20, episodes=[name])[0] == 1
+    with pytest.raises(ValueError, match='got the episode "none", expected one of '):
+        recording.to_lerobot(tmp_path / "none", episodes=["none"])
     with pytest.raises(ValueError, match="action is \"guess\", expected 'reference' or 'measured'"):
         recording.to_lerobot(folder, action="guess")  # type: ignore[arg-type]
 

@@ -24,7 +24,7 @@ pub struct Episode {
     pub end: HostTime,
 }
 
-/// Why an episode cannot have this name or task.
+/// Why an episode cannot have this name or task, or why none is found.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EpisodeError {
@@ -42,6 +42,14 @@ pub enum EpisodeError {
     Task {
         /// Its name.
         name: String,
+    },
+    /// None has this name.
+    #[error("got the episode {got:?}, expected one of {known}")]
+    Unknown {
+        /// The name given.
+        got: String,
+        /// The names that there are.
+        known: String,
     },
 }
 
@@ -92,6 +100,23 @@ impl Episode {
             }
         }
         Ok(episodes)
+    }
+
+    /// Those of `all` that have one of these names, in their order.
+    ///
+    /// # Errors
+    /// [`EpisodeError::Unknown`] for a name that none of them has.
+    pub fn named(all: Vec<Self>, names: &[String]) -> Result<Vec<Self>, EpisodeError> {
+        let is_there = |name: &String| all.iter().any(|episode| episode.name == *name);
+        if let Some(unknown) = names.iter().find(|name| !is_there(name)) {
+            let known: Vec<_> = all.iter().map(|episode| episode.name.as_str()).collect();
+            return Err(EpisodeError::Unknown {
+                got: unknown.clone(),
+                known: known.join(", "),
+            });
+        }
+        let is_wanted = |episode: &Self| names.contains(&episode.name);
+        Ok(all.into_iter().filter(is_wanted).collect())
     }
 }
 

@@ -66,6 +66,14 @@ impl EntryQueue {
         });
     }
 
+    /// Has the track `id` begin with this state, and everything that is written to `journal` from
+    /// now on go there. States may be a tenth of a second apart: what is recorded meanwhile has
+    /// one, too.
+    pub(super) fn read_device(&self, journal: &Journal, state: What, id: usize) {
+        self.entries.send(id, Entry::now(state));
+        self.read(journal, id, None);
+    }
+
     /// Looks at the tracks or changes them. The thread waits meanwhile.
     pub(super) fn with<T>(&self, act: impl FnOnce(&mut Tracks) -> T) -> T {
         self.shared.with(act)

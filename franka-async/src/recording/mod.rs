@@ -49,7 +49,7 @@ pub use franka_record::{
 };
 
 use crate::gripper::Gripper;
-use crate::journal::Journal;
+use crate::journal::{Journal, What};
 use crate::robot::Robot;
 use crate::team::Team;
 use crate::vacuum::VacuumGripper;
@@ -233,13 +233,14 @@ impl Recorder {
         Ok(())
     }
 
-    /// Records a Franka Hand with the robot of this name: its states, and actions when they have
-    /// ended.
+    /// Records a Franka Hand with the robot of this name: its states, the newest one at once, and
+    /// actions when they have ended.
     ///
     /// # Errors
     /// [`TrackError::Unknown`].
     pub fn attach_gripper(&self, gripper: &Gripper, robot: &str) -> Result<(), TrackError> {
-        self.attach_device(gripper.journal(), robot)
+        let state = What::HandState(gripper.state());
+        self.attach_device(gripper.journal(), state, robot)
     }
 
     /// Records a vacuum gripper with the robot of this name, as [`Self::attach_gripper`] does.
@@ -251,17 +252,18 @@ impl Recorder {
         gripper: &VacuumGripper,
         robot: &str,
     ) -> Result<(), TrackError> {
-        self.attach_device(gripper.journal(), robot)
+        let state = What::VacuumState(gripper.state());
+        self.attach_device(gripper.journal(), state, robot)
     }
 
-    fn attach_device(&self, journal: &Journal, robot: &str) -> Result<(), TrackError> {
+    fn attach_device(&self, journal: &Journal, state: What, robot: &str) -> Result<(), TrackError> {
         let id = self.entries.with(|tracks| {
             let mut tracks = tracks.iter();
             let found = tracks.find(|(_, recorded)| recorded.track.name == robot);
             found.map(|(id, _)| *id)
         });
         let id = id.ok_or_else(|| TrackError::Unknown { name: robot.into() })?;
-        self.entries.read(journal, id, None);
+        self.entries.read_device(journal, state, id);
         Ok(())
     }
 

@@ -37,6 +37,9 @@ pub(crate) struct Export {
     /// Add the episodes to a dataset, a new one if there is none
     #[arg(long, value_name = "FOLDER")]
     lerobot: Option<PathBuf>,
+    /// Episodes of the dataset, by their names; all by default
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    episodes: Vec<String>,
     /// Frames per second of the dataset
     #[arg(long, value_name = "HZ", default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=1000))]
     fps: u16,
@@ -80,7 +83,7 @@ impl Export {
             if self.measured {
                 options = options.action(Action::Measured);
             }
-            let found = Episode::of(robot.events())?;
+            let mut found = Episode::of(robot.events())?;
             if found.is_empty() {
                 let message = format!("{} has no episodes", self.recorded.file.display());
                 let failure = Failure::new(Ending::Failed, message);
@@ -88,7 +91,11 @@ impl Export {
                     .advice("A program marks them while it records: Recorder::begin_episode.")
                     .into());
             }
-            let mut dataset = match folder.exists() {
+            if !self.episodes.is_empty() {
+                found = Episode::named(found, &self.episodes)
+                    .map_err(|error| Failure::usage(error.to_string()))?;
+            }
+            let mut dataset = match folder.join("meta").exists() {
                 true => Dataset::open(folder, options)?,
                 false => Dataset::create(folder, options)?,
             };
@@ -101,7 +108,8 @@ impl Export {
                 let added = while_turning("adding an episode", add);
                 count += added.map_err(|error| {
                     Failure::new(Ending::Failed, error.to_string()).advice(
-                        "--measured takes where the arm was; --no-gripper leaves the gripper out.",
+                        "--measured takes where the arm was; --no-gripper leaves the gripper out; \
+                         --episodes chooses others.",
                     )
                 })?;
             }

@@ -17,7 +17,7 @@ use franka_async::record::{Column, Record};
 use futures::{Stream, StreamExt};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyIterator, PyList, PyTuple};
 use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::{broadcast, watch};
 
@@ -127,6 +127,15 @@ impl Recording {
     fn keys(&self) -> Vec<&'static str> {
         let names = self.columns.iter().map(|column| column.name);
         std::iter::once("time").chain(names).collect()
+    }
+
+    fn __contains__(&self, name: &Bound<'_, PyAny>) -> bool {
+        name.extract::<&str>()
+            .is_ok_and(|name| self.keys().contains(&name))
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        PyList::new(py, self.keys())?.try_iter()
     }
 
     /// The column of this name, a new array with one row for each cycle. Raises `KeyError`.

@@ -56,10 +56,12 @@ impl RecordingFile {
     /// that is there. `fps` are frames per second. `robot_type` is `franka_fr3` or `franka_fer`
     /// unless given. `gripper`, whether its width is part of states and actions: by default, if the
     /// recording has one of a Hand. `action` is `reference`, where the arm was to be at the next
-    /// frame, or `measured`, where it was: for demonstrations by hand. Raises `ExportError`,
-    /// `ValueError`; a dataset that is there is then as it was.
+    /// frame, or `measured`, where it was: for demonstrations by hand. `episodes` are the names of
+    /// those to write; all by default. Raises `ExportError`, `ValueError`; a dataset that is there
+    /// is then as it was.
     #[pyo3(signature = (
         folder, *, fps = 30, robot_type = None, gripper = None, action = "reference", append = false,
+        episodes = None,
     ))]
     #[expect(clippy::too_many_arguments, reason = "keywords")]
     fn to_lerobot(
@@ -71,6 +73,7 @@ impl RecordingFile {
         gripper: Option<bool>,
         action: &str,
         append: bool,
+        episodes: Option<Vec<String>>,
     ) -> PyResult<(usize, u64)> {
         let action = match action {
             "reference" => Action::Reference,
@@ -89,7 +92,11 @@ impl RecordingFile {
             },
             Ok,
         )?;
-        let episodes = self.read_episodes(py)?;
+        let mut chosen = self.read_episodes(py)?;
+        if let Some(names) = episodes {
+            chosen = Episode::named(chosen, &names)
+                .map_err(|error| PyValueError::new_err(error.to_string()))?;
+        }
         let written = self.view(py, |view| {
             let gripper = gripper.unwrap_or_else(|| {
                 let mut states = view.gripper_states();
@@ -110,7 +117,7 @@ impl RecordingFile {
                 begin,
                 end,
                 ..
-            } in &episodes
+            } in &chosen
             {
                 // The width that the gripper had before is that of the first frames.
                 let until = view.to(*end);
@@ -120,7 +127,7 @@ impl RecordingFile {
                 frames += dataset.add_episode(task, *success, samples)?;
             }
             dataset.finish()?;
-            Ok((episodes.len(), frames))
+            Ok((chosen.len(), frames))
         })?;
         written.map_err(|error: ExportError| error.raise(py))
     }

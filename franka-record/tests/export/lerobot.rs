@@ -246,13 +246,18 @@ fn what_makes_no_episode_or_no_dataset_is_refused_with_what_was_expected() {
         change(&mut samples[50]);
         samples
     };
-    assert!(add(without(|it| it.width = None)).contains("no gripper"));
+    assert!(add(without(|it| it.width = None)).contains("before the first state of a Hand"));
     assert!(add(without(|it| it.q_ref = None)).contains("told the arm where to be at 5050 ms"));
     let free = |it: Sample| Sample { q_ref: None, ..it };
     assert!(add(vec![free(sample(3))]).contains("at 5003 ms"));
     assert!(refused(dataset.add_episode(" ", None, [sample(0)])).contains("needs a text"));
     let nothing = dataset.finish().unwrap_err().to_string();
     assert!(nothing.contains("no episode was added"), "{nothing}");
+    let mut dataset = Dataset::create(&root, options()).expect("an empty folder");
+    dataset
+        .add_episode("pick", None, (0..100).map(sample))
+        .unwrap();
+    drop(dataset);
 
     let measured = options().action(Action::Measured).gripper(false);
     let mut dataset = Dataset::create(&root, measured.clone()).unwrap();

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use franka_async::gripper::{Grasp, Gripper};
 use franka_async::vacuum::{Profile, Vacuum, VacuumGripper};
-use franka_record::{EventKind, GripperState, Recording};
+use franka_record::{Event, EventKind, GripperState, Recording};
 use franka_sim::{Fingers, Sim, Suction};
 use franka_tests::PATIENCE;
 
@@ -63,7 +63,15 @@ async fn actions_and_states_of_a_hand_are_recorded() {
     assert_eq!(told, expected.map(|(name, done)| (name.to_owned(), done)));
     let recording = Recording::open(folder.file()).unwrap();
     let states = recording.robot("").unwrap().gripper_states();
-    let grasped = states.map(Result::unwrap).any(|(_, state)| match state {
+    let states: Vec<_> = states.map(Result::unwrap).collect();
+    // The episode began sooner than another state can have come.
+    let began = |event: &Event| matches!(event.kind, EventKind::EpisodeStart { .. });
+    let began = events
+        .iter()
+        .find(|event| began(event))
+        .expect("an episode");
+    assert!(states[0].0 <= began.time);
+    let grasped = states.into_iter().any(|(_, state)| match state {
         GripperState::Hand(state) => state.is_grasped,
         GripperState::Vacuum(_) => false,
     });

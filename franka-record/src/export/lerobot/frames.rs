@@ -135,6 +135,10 @@ fn resampled(
     Ok((frames, before))
 }
 
+/// Why a dataset with a gripper refuses an episode.
+const NO_WIDTH: &str =
+    "it has cycles before the first state of a Hand, whose width the dataset has";
+
 /// The longest gap between cycles that is filled at any rate, `[ms]`: what the robot itself
 /// tolerates of lost states.
 const GAP_MIN: f64 = 20.0;
@@ -157,7 +161,7 @@ fn rows(
         let coordinates = pose.rotation.coords;
         let same = coordinates.dot(&before) >= 0.0;
         before = if same { coordinates } else { -coordinates };
-        let width = gripper.then(|| width.ok_or("a cycle has no gripper, which the dataset has"));
+        let width = gripper.then(|| width.ok_or(NO_WIDTH));
         let numbers = joints.iter().chain(&pose.translation.vector).chain(&before);
         rows.extend(numbers.map(|x| *x as f32));
         rows.extend(width.transpose()?.map(|x| x as f32));

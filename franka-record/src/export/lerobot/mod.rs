@@ -271,10 +271,8 @@ impl Dataset {
     pub fn finish(mut self) -> Result<(), ExportError> {
         if self.contents.episodes == 0 {
             let why = "no episode was added, and a dataset needs one".to_owned();
-            return Err(ExportError::Dataset {
-                path: self.root,
-                why,
-            });
+            let path = self.root.clone();
+            return Err(ExportError::Dataset { path, why });
         }
         if self.added.is_empty() {
             return Ok(());
@@ -304,6 +302,19 @@ impl Dataset {
             self.next_file = self.next_file.next();
         }
         Ok(self.next_file.before())
+    }
+}
+
+impl Drop for Dataset {
+    /// Leaves no folder for a file that is not there.
+    fn drop(&mut self) {
+        self.full.clear();
+        self.data = None;
+        let file = self.next_file.before().path(&self.root, "data");
+        for folder in file.ancestors().skip(1).take(2) {
+            // Fails where there are files.
+            let _ = fs::remove_dir(folder);
+        }
     }
 }
 
