@@ -169,7 +169,7 @@ impl ChunkReader {
             self.due = None;
             return Some(chunk);
         }
-        let begin = now + (ahead / CYCLE).ceil() as u64;
+        let begin = now.saturating_add((ahead / CYCLE).ceil() as u64);
         self.due = due.or(Some((goal, begin)));
         self.newest = Some(Sent { goal, chunk });
         None
@@ -286,6 +286,8 @@ mod tests {
         }
         assert_eq!(reader.poll(GOAL, 2129, false), None);
         assert!(reader.poll(GOAL, 2130, false).is_some());
+        writer.send(GOAL, chunk().observed_at(u64::MAX)).unwrap();
+        assert_eq!(reader.poll(GOAL, 2131, false), None, "at the end of time");
     }
 
     #[test]

@@ -73,6 +73,10 @@ fn run(
     seen
 }
 
+fn farthest(seen: &[f64]) -> f64 {
+    seen.iter().fold(0.0, |most, y| most.max(y.abs()))
+}
+
 #[test]
 fn what_the_arm_lags_behind_does_not_grow_from_chunk_to_chunk() {
     // From rest onto a sine of 40 mm and 0.4 Hz: half the acceleration of the default budget, which
@@ -80,7 +84,7 @@ fn what_the_arm_lags_behind_does_not_grow_from_chunk_to_chunk() {
     let sine = |t: f64| 0.04 * (TAU * 0.4 * t).sin();
     for rhythm in RHYTHMS {
         let seen = run(rhythm, 6000, |_, _| Box::new(sine));
-        let most = seen.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
+        let most = farthest(&seen);
         assert!(most < 0.0405, "{rhythm:?}: {most} m of 0.04");
         let off = seen.iter().enumerate().skip(2000);
         let off = off.map(|(ms, y)| (y - sine(ms as f64 * 1e-3)).abs());
@@ -95,7 +99,7 @@ fn what_asks_for_more_than_the_limits_is_overshot_by_20_mm() {
     let sine = |t: f64| 0.1 * (TAU * 0.4 * t).sin();
     for rhythm in RHYTHMS {
         let seen = run(rhythm, 6000, |_, _| Box::new(sine));
-        let most = seen.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
+        let most = farthest(&seen);
         assert!(
             (0.115..0.125).contains(&most),
             "{rhythm:?}: {most} m of 0.1"
