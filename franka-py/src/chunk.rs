@@ -5,7 +5,7 @@ use std::time::Duration;
 use franka_async::goal::Chunk;
 use franka_async::nalgebra::{Translation3, UnitQuaternion};
 use franka_async::{Arm, Pose};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, pose_of, rows, unexpected_shape};
@@ -49,7 +49,12 @@ pub(crate) fn chunk(chunk: &Bound<'_, PyAny>, arm: &Arm) -> PyResult<Chunk> {
     if let Ok(state) = observed.cast::<RobotState>() {
         made = made.observed_at(state.get().state.message_id);
     } else if !observed.is_none() {
-        made = made.observed_at(observed.extract()?);
+        let Ok(time) = observed.extract() else {
+            let got = observed.repr()?;
+            let text = format!("observed_at is {got}, expected a RobotState or its time_ms");
+            return Err(PyTypeError::new_err(text));
+        };
+        made = made.observed_at(time);
     }
     if let Some(blend) = chunk.getattr("blend")?.extract::<Option<f64>>()? {
         made = made.blend(seconds("blend", blend)?);

@@ -48,6 +48,8 @@ struct Run {
     received: Option<HostTime>,
     /// Goals that have been given and have not ended, oldest first.
     open: Vec<u64>,
+    /// The goal of the first chunk of those that came last.
+    chunks: Option<u64>,
     cycles: u64,
     has_hand: bool,
     diagnosis: Option<Told>,
@@ -158,8 +160,15 @@ impl Run {
         let is_told = self.ended.as_ref().is_some_and(|it| it.time == self.last);
         match &event.kind {
             EventKind::Goal(goal) if goal.number > 0 => {
-                self.open.retain(|open| *open != goal.number);
-                self.open.push(goal.number);
+                // The goal of the first chunk ends for all that follow.
+                let is_more = |first: u64| goal.kind == "chunk" && self.open.contains(&first);
+                if !self.chunks.is_some_and(is_more) {
+                    self.open.retain(|open| *open != goal.number);
+                    self.open.push(goal.number);
+                    self.chunks = (goal.kind == "chunk")
+                        .then_some(goal.number)
+                        .or(self.chunks);
+                }
                 false
             }
             EventKind::Outcome(outcome) => {

@@ -359,6 +359,29 @@ fn a_goal_without_an_end_is_under_way() {
     assert_eq!(of(true).under_way, None);
 }
 
+/// Chunks share the goal of the first one, which ends for all of them.
+#[test]
+fn chunks_that_followed_another_are_not_under_way() {
+    let mut explainer = Explainer::new(Model::fr3());
+    explainer.push_state(&state(1));
+    for number in [2, 3, 4] {
+        let goal = Goal {
+            number,
+            kind: "chunk".into(),
+            ..Goal::default()
+        };
+        explainer.push_event(&event(1, EventKind::Goal(goal)));
+    }
+    assert_eq!(explainer.clone().finish().under_way, Some(2));
+    let outcome = Outcome {
+        goal: 2,
+        ending: Ending::Superseded,
+        ..Outcome::default()
+    };
+    explainer.push_event(&event(1, EventKind::Outcome(outcome)));
+    assert_eq!(explainer.finish().under_way, None);
+}
+
 #[test]
 fn margins_and_peaks_name_joint_value_and_time() {
     let mut states = hit();

@@ -107,6 +107,19 @@ fn what_asks_for_more_than_the_limits_is_overshot_by_20_mm() {
     }
 }
 
+/// The figures of the same chapter.
+#[test]
+fn a_chunk_that_ends_in_motion_is_passed_and_come_back_to() {
+    for (speed, points, passed) in [(0.1, 40, 0.013), (0.2, 20, 0.062)] {
+        let seen = run(rhythm(6000, 0, 50, points, 100), 6000, |_, _| {
+            Box::new(move |t| speed * t)
+        });
+        let off = farthest(&seen) - 0.2;
+        assert!((off - passed).abs() < 1e-3, "{speed} m/s: {off} m");
+        assert!((seen[6000] - 0.2).abs() < 1e-4, "{} m", seen[6000]);
+    }
+}
+
 #[test]
 fn a_policy_that_predicts_from_where_the_arm_is_gets_on() {
     // 0.1 m/s from wherever it is.
