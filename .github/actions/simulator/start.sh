@@ -1,11 +1,15 @@
 # Starts a simulated robot in the background and waits until it listens. Its environment has
-# FRANKA, the program; ROBOT, fr3 or fer; OPTIONS of `franka sim`; WAIT, seconds.
+# FRANKA, the program; ROBOT, fr3 or fer; OPTIONS of `franka sim`; WAIT, whole seconds.
 set -euo pipefail
 
-log="$RUNNER_TEMP/franka-sim.log"
-# An old log would say that the simulator listens.
-: > "$log"
-read -ra options <<< "$OPTIONS"
+if ! [[ "$WAIT" =~ ^[1-9][0-9]{0,4}$ ]]; then
+  echo "wait is '$WAIT', expected whole seconds from 1 on"
+  exit 1
+fi
+# Of each simulator its own: a job may start several.
+log=$(mktemp "$RUNNER_TEMP/franka-sim.XXXXXX.log")
+# xargs takes any number of lines, and quotes.
+mapfile -t options < <(xargs --no-run-if-empty printf '%s\n' <<< "$OPTIONS")
 "$FRANKA" sim --robot "$ROBOT" "${options[@]}" > "$log" 2>&1 &
 simulator=$!
 {

@@ -68,7 +68,7 @@ fn the_book_has_the_exit_codes_of_the_help() {
 #[test]
 fn the_action_starts_a_simulator_and_says_why_not() {
     let home = Home::new();
-    let start = |options: &str| {
+    let start = |options: &str, wait: &str| {
         let script = concat!(
             env!("CARGO_MANIFEST_DIR"),
             "/../.github/actions/simulator/start.sh"
@@ -78,11 +78,12 @@ fn the_action_starts_a_simulator_and_says_why_not() {
             .arg(script)
             .env("FRANKA", env!("CARGO_BIN_EXE_franka"));
         command.env("ROBOT", "fer").env("OPTIONS", options);
-        command.env("WAIT", "60").env("RUNNER_TEMP", home.path(""));
+        command.env("WAIT", wait).env("RUNNER_TEMP", home.path(""));
         command.env("GITHUB_OUTPUT", home.path("outputs"));
         command.output().expect("bash")
     };
-    let said = start("--port 0 --virtual-time");
+    // Of several lines, and with quotes.
+    let said = start("--port\n'0'\n--virtual-time", "60");
     let outputs = std::fs::read_to_string(home.path("outputs")).expect("it has outputs");
     let pid = outputs.lines().find_map(|line| line.strip_prefix("pid="));
     let pid = pid.and_then(|pid| pid.parse().ok()).expect("a process");
@@ -91,11 +92,25 @@ fn the_action_starts_a_simulator_and_says_why_not() {
     assert!(said.stdout.starts_with(b"listening on "), "{said:?}");
     killed.expect("it runs");
 
-    let said = start("--port 99999");
+    let said = start("--port 99999", "60");
+    let outputs = std::fs::read_to_string(home.path("outputs")).expect("more outputs");
+    let logs: Vec<_> = outputs
+        .lines()
+        .filter(|line| line.starts_with("log="))
+        .collect();
+    assert!(logs.len() == 2 && logs[0] != logs[1], "{logs:?}");
     assert!(!said.status.success(), "{said:?}");
     let text = String::from_utf8_lossy(&said.stdout);
     assert!(
         text.contains("the simulator has ended:") && text.contains("99999"),
         "{text}"
     );
+    for wait in ["0", "1m", "1.5", "abc", ""] {
+        let said = start("--port 0", wait);
+        let text = String::from_utf8_lossy(&said.stdout);
+        assert!(
+            !said.status.success() && text.contains("expected whole seconds"),
+            "{text}"
+        );
+    }
 }
