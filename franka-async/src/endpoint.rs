@@ -122,7 +122,8 @@ impl Endpoint {
         self.host.as_ref().map_err(Clone::clone)
     }
 
-    pub(crate) fn port(&self) -> Option<u16> {
+    /// The port, if one is named.
+    pub fn port(&self) -> Option<u16> {
         self.port
     }
 

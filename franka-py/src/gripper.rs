@@ -33,11 +33,11 @@ device_methods!(Gripper, gripper::Gripper, "Gripper.connect");
 
 #[pymethods]
 impl Robot {
-    /// The Franka Hand of this robot, at its host and the usual port; it is yet to be connected:
-    /// `async with robot.gripper() as gripper:`. That of a simulator may have another port:
-    /// `Gripper(sim.hand_address)`.
+    /// The Franka Hand of this robot, at its host and the port after the robot's; it is yet to be
+    /// connected: `async with robot.gripper() as gripper:`. That of a simulator on a free port has
+    /// another one: `Gripper(sim.hand_address)`.
     fn gripper(&self) -> Gripper {
-        Gripper::new(self.beside(1338))
+        Gripper::new(self.beside(1))
     }
 }
 

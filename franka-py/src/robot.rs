@@ -232,9 +232,12 @@ impl Robot {
         })
     }
 
-    /// The robot's host at another port.
-    pub(crate) fn beside(&self, port: u16) -> Endpoint {
-        Endpoint::from(&self.address).at_port(port)
+    /// The robot's host, so many ports after the robot's: the usual ones may be those of another
+    /// simulator there.
+    pub(crate) fn beside(&self, ports: u16) -> Endpoint {
+        let endpoint = Endpoint::from(&self.address);
+        let port = endpoint.port().unwrap_or(1337);
+        endpoint.at_port(port.saturating_add(ports))
     }
 
     /// The connected robot, unless its connection has ended for good.

@@ -32,10 +32,10 @@ device_methods!(
 
 #[pymethods]
 impl Robot {
-    /// The vacuum gripper of this robot, at its host and the usual port; it is yet to be connected,
-    /// as `gripper()`.
+    /// The vacuum gripper of this robot, at its host and the second port after the robot's; it is
+    /// yet to be connected, as `gripper()`.
     fn vacuum_gripper(&self) -> VacuumGripper {
-        VacuumGripper::new(self.beside(1339))
+        VacuumGripper::new(self.beside(2))
     }
 }
 
