@@ -105,6 +105,13 @@ impl Explanation {
         self.0.under_way
     }
 
+    /// What the last goal that failed of itself said, as after a user stop or at an obstacle;
+    /// `None` if the last one did not fail.
+    #[getter]
+    fn failed(&self) -> Option<&str> {
+        self.0.failed.as_deref()
+    }
+
     /// Why that motion ended, in words: which limit was exceeded, what led up to it, what to
     /// change; `None` without such an end.
     #[getter]

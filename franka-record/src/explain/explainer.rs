@@ -48,6 +48,8 @@ struct Run {
     received: Option<HostTime>,
     /// Goals that have been given and have not ended, oldest first.
     open: Vec<u64>,
+    /// Of the last goal that has ended, if it failed.
+    failed: Option<String>,
     /// The goal of the first chunk of those that came last.
     chunks: Option<u64>,
     cycles: u64,
@@ -173,6 +175,8 @@ impl Run {
             }
             EventKind::Outcome(outcome) => {
                 self.open.retain(|open| *open != outcome.goal);
+                let failed = outcome.ending == Ending::Failed;
+                self.failed = failed.then(|| outcome.text.clone());
                 // What the robot ended is seen in the cycles.
                 if outcome.ending == Ending::Reflex || !outcome.ending.is_incident() || is_told {
                     return false;
@@ -298,6 +302,7 @@ impl Run {
             end: ended.time,
             received: ended.received,
             under_way: self.open.last().copied().filter(|_| !is_over),
+            failed: self.failed,
             earlier: 0,
             cause,
             timeline,

@@ -87,6 +87,9 @@ pub struct Explanation {
     pub received: Option<HostTime>,
     /// The newest goal whose end was not recorded, where nothing has ended a motion.
     pub under_way: Option<u64>,
+    /// What the last goal that failed of itself said, as after a user stop or at an obstacle;
+    /// `None` if the last one did not fail.
+    pub failed: Option<String>,
     /// How many such ends came before.
     pub earlier: u64,
     /// Why that motion ended; `None` without such an end.

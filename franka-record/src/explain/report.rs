@@ -38,6 +38,9 @@ impl fmt::Display for Explanation {
             }
             None => writeln!(f, "\n{NO_END}")?,
         }
+        if let (None, Some(failed)) = (&self.cause, &self.failed) {
+            writeln!(f, "The last goal failed: {failed}")?;
+        }
         if let Some(goal) = self.under_way {
             writeln!(
                 f,

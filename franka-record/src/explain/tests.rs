@@ -329,6 +329,24 @@ fn one_loss_is_one_end() {
     assert_eq!((explanation.end, explanation.earlier), (700, 0));
 }
 
+#[test]
+fn a_goal_that_failed_of_itself_is_told_where_nothing_ended_a_motion() {
+    let mut explainer = Explainer::new(Model::fr3());
+    explainer.push_state(&state(1));
+    let outcome = Outcome {
+        goal: 1,
+        ending: Ending::Failed,
+        text: "User Stop pressed!".into(),
+        ..Outcome::default()
+    };
+    explainer.push_event(&event(1, EventKind::Outcome(outcome)));
+    let text = explainer.finish().to_string();
+    assert!(
+        text.contains("The last goal failed: User Stop pressed!"),
+        "{text}"
+    );
+}
+
 /// What is cut off in the middle of a motion says so, and what is held after it does not.
 #[test]
 fn a_goal_without_an_end_is_under_way() {
