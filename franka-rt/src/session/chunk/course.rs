@@ -87,14 +87,14 @@ impl ChunkCourse {
         let asked = (origin, blend, pace);
         let play = match points {
             Points::Joints(curve) => {
-                let wanted = before.and_then(|before| before.joints_at(now - 1));
+                let wanted = before.and_then(|before| before.joints_at(now.saturating_sub(1)));
                 Play::Joints {
                     limits: joint_limits(model.joint_limits(), curve.extent(), reference, &budget),
                     player: Player::new(curve, asked, (reference, wanted), now),
                 }
             }
             Points::Poses(curve) => {
-                let wanted = before.and_then(|before| before.pose_at(now - 1));
+                let wanted = before.and_then(|before| before.pose_at(now.saturating_sub(1)));
                 let limits = pose_limits(model, &pose, &budget);
                 let posture = pace.map(|_| Posture::kept(reference.q));
                 Play::Poses {

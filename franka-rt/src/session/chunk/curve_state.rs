@@ -43,6 +43,9 @@ pub(super) trait CurveState: Copy {
     /// How far away from `other` it is, in the same units.
     fn distance(&self, other: &Self) -> f64;
 
+    /// In the same place, with the motion of `other`.
+    fn moving_as(&self, other: &Self) -> Self;
+
     /// At rest in the same place.
     fn resting(&self) -> Self;
 
@@ -111,6 +114,13 @@ impl CurveState for Reference {
 
     fn distance(&self, other: &Self) -> f64 {
         (self.q - other.q).norm() / LAG_ROTATION
+    }
+
+    fn moving_as(&self, other: &Self) -> Self {
+        Self {
+            q: self.q,
+            ..*other
+        }
     }
 
     fn resting(&self) -> Self {
@@ -239,6 +249,13 @@ impl CurveState for PoseState {
         let way = self.translation().p - other.translation().p;
         let turn = rotation::error(&self.pose.rotation, &other.pose.rotation);
         (way.norm() / LAG_TRANSLATION).max(turn.norm() / LAG_ROTATION)
+    }
+
+    fn moving_as(&self, other: &Self) -> Self {
+        Self {
+            pose: self.pose,
+            ..*other
+        }
     }
 
     fn resting(&self) -> Self {

@@ -44,10 +44,11 @@ impl<M: CurveState> Player<M> {
     /// Takes up a chunk through `curve` in the answer to the state `now`, from a reference that was
     /// at `reference` in the answer before, where a chunk before this one wanted it at `wanted`.
     ///
-    /// The motion before is the nearer of the two. What the reference lags behind the chunk before,
-    /// it makes up for within its limits, and goes on to do so: from there to be on a new chunk in
-    /// time asks for more than the limits allow, and each chunk would add to the swing. A chunk
-    /// that begins where the arm is goes on from there.
+    /// The way begins at the one of the two places that is nearer to the chunk. What the reference
+    /// lags behind the chunk before, it makes up for within its limits, and goes on to do so: to be
+    /// on a new chunk in time, from where it is, would ask for more than the limits allow, and each
+    /// chunk would add to the swing. A chunk that begins where the arm is goes on from there. The
+    /// velocity is that of the reference: a chunk may want any.
     pub(super) fn new(
         curve: Curve<M>,
         (origin, blend, pace): (Origin, Duration, Option<Pace>),
@@ -61,7 +62,8 @@ impl<M: CurveState> Player<M> {
         let since = milliseconds(now, counted_from) - CYCLE;
         let there = curve.at(since);
         let is_nearer = |wanted: &M| wanted.distance(&there) < reference.distance(&there);
-        let last = wanted.filter(is_nearer).unwrap_or(*reference);
+        let wanted = wanted.filter(is_nearer);
+        let last = wanted.map_or(*reference, |wanted| wanted.moving_as(reference));
         let entry = if since + CYCLE < curve.begin() {
             Entry::Approach { from: last, since }
         } else if blend.is_zero() {

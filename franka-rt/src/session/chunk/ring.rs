@@ -14,9 +14,15 @@ use crate::queue::{self, Receiver, Sender};
 use crate::session::GoalId;
 use crate::shaping::CYCLE;
 
-/// How long before its first point a chunk begins that has superseded one that is due, at most,
-/// `[s]`.
-const AHEAD_MAX: f64 = 1.0;
+/// A chunk that waited, and may have been superseded since.
+#[derive(Clone, Copy, Debug)]
+struct Waiting {
+    goal: GoalId,
+    /// When it was to begin, by the robot's clock.
+    begin: u64,
+    /// For how long it was to wait, `[s]`.
+    wait: f64,
+}
 
 /// A chunk and the goal that it belongs to.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,9 +81,8 @@ pub struct ChunkReader {
     returns: Sender<Returned>,
     /// The newest chunk, until it is taken up.
     newest: Option<Sent>,
-    /// When the first chunk that waited was to begin, by the robot's clock, and for which goal. A
-    /// newer one may have superseded it since.
-    due: Option<(GoalId, u64)>,
+    /// Of the chunks that waited since one was taken up, the one that was to begin first.
+    due: Option<Waiting>,
 }
 
 /// The two ends of a way for chunks.
@@ -145,8 +150,9 @@ impl ChunkWriter {
 impl ChunkReader {
     /// The newest chunk for `goal`, the one in force at the robot's time `now`, if it is new and
     /// may begin: that is, if its first point's time has come, or `idle`, as no other chunk runs.
-    /// If it has superseded one whose time has come, it may begin a second before its own: a policy
-    /// that predicts more often than its first point is ahead would never be followed.
+    /// If it has superseded one whose time has come, it may begin before its own, by as long as
+    /// that one was to wait: a policy that predicts more often than its first point is ahead would
+    /// never be followed.
     ///
     /// What that makes superfluous goes back. Chunks of goals to come are kept.
     pub(in crate::session) fn poll(&mut self, goal: GoalId, now: u64, idle: bool) -> Option<Chunk> {
@@ -154,23 +160,30 @@ impl ChunkReader {
         let newest = self.newest.take_if(|newest| newest.goal <= goal)?;
         let Sent { goal: of, chunk } = newest;
         if of != goal {
+            self.due = None;
             self.give_back(of, chunk, Fate::Obsolete);
             return None;
         }
         let t = chunk.since_origin(now);
         if t > chunk.end() {
+            self.due = None;
             self.give_back(goal, chunk, Fate::Late);
             return None;
         }
         let ahead = chunk.begin() - t;
-        let due = self.due.filter(|(of, _)| *of == goal);
-        let is_due = due.is_some_and(|(_, due)| due <= now) && ahead <= AHEAD_MAX;
+        let due = self.due.filter(|due| due.goal == goal);
+        let is_due = due.is_some_and(|due| due.begin <= now && ahead <= due.wait);
         if idle || chunk.begins_at_take_up() || ahead <= 0.0 || is_due {
             self.due = None;
             return Some(chunk);
         }
         let begin = now.saturating_add((ahead / CYCLE).ceil() as u64);
-        self.due = due.or(Some((goal, begin)));
+        let waiting = Waiting {
+            goal,
+            begin,
+            wait: ahead,
+        };
+        self.due = due.filter(|due| due.begin <= begin).or(Some(waiting));
         self.newest = Some(Sent { goal, chunk });
         None
     }
@@ -178,6 +191,7 @@ impl ChunkReader {
     /// Gives back what has come for `goal`, or for one before it: it takes up no chunk any more.
     pub(in crate::session) fn discard(&mut self, goal: GoalId) {
         self.receive();
+        self.due = None;
         if let Some(Sent { goal, chunk }) = self.newest.take_if(|newest| newest.goal <= goal) {
             self.give_back(goal, chunk, Fate::Obsolete);
         }
@@ -279,15 +293,31 @@ mod tests {
         }
         writer.send(GOAL, chunk().observed_at(110)).unwrap();
         assert!(reader.poll(GOAL, 110, false).is_some());
-        // One that begins much later waits for a second before its time.
+        // One that begins much later comes no earlier than by what the first one waited.
         for origin in [120, 3120] {
             writer.send(GOAL, chunk().observed_at(origin)).unwrap();
             assert_eq!(reader.poll(GOAL, 121, false), None);
         }
-        assert_eq!(reader.poll(GOAL, 2129, false), None);
-        assert!(reader.poll(GOAL, 2130, false).is_some());
+        assert_eq!(reader.poll(GOAL, 3120, false), None);
+        assert!(reader.poll(GOAL, 3121, false).is_some());
+        fates(&mut writer);
+        // A sooner one counts, and one that was late no more.
+        for origin in [9000, 3130] {
+            writer.send(GOAL, chunk().observed_at(origin)).unwrap();
+            assert_eq!(reader.poll(GOAL, 3130, false), None);
+        }
+        writer.send(GOAL, chunk().observed_at(3135)).unwrap();
+        assert!(reader.poll(GOAL, 3140, false).is_some());
+        writer.send(GOAL, chunk().observed_at(3140)).unwrap();
+        assert_eq!(reader.poll(GOAL, 3141, false), None);
+        writer.send(GOAL, chunk().observed_at(100)).unwrap();
+        assert_eq!(reader.poll(GOAL, 3142, false), None, "late");
+        fates(&mut writer);
+        writer.send(GOAL, chunk().observed_at(3990)).unwrap();
+        assert_eq!(reader.poll(GOAL, 3992, false), None);
+        assert!(reader.poll(GOAL, 4000, false).is_some());
         writer.send(GOAL, chunk().observed_at(u64::MAX)).unwrap();
-        assert_eq!(reader.poll(GOAL, 2131, false), None, "at the end of time");
+        assert_eq!(reader.poll(GOAL, 4001, false), None, "at the end of time");
     }
 
     #[test]
