@@ -236,7 +236,7 @@ impl Robot {
     /// simulator there.
     pub(crate) fn beside(&self, ports: u16) -> Endpoint {
         let endpoint = Endpoint::from(&self.address);
-        let port = endpoint.port().unwrap_or(1337);
+        let port = endpoint.port().unwrap_or(Version::TCP_PORT);
         endpoint.at_port(port.saturating_add(ports))
     }
 

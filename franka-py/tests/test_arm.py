@@ -148,7 +148,7 @@ def test_a_chunk_is_followed_to_its_end(sim: Sim) -> None:
                 with pytest.raises(ValueError, match=text):
                     arm.chunk(**wrong)  # type: ignore[arg-type]
             with pytest.raises(TypeError, match="observed_at is 0.5, expected a RobotState"):
-                arm.chunk(positions, dt=0.1, observed_at=0.5)
+                arm.chunk(positions, dt=0.1, observed_at=0.5)  # type: ignore[arg-type]
 
     run(sim, main)
 

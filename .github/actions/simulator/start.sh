@@ -8,8 +8,12 @@ if ! [[ "$WAIT" =~ ^[1-9][0-9]{0,4}$ ]]; then
 fi
 # Of each simulator its own: a job may start several.
 log=$(mktemp "$RUNNER_TEMP/franka-sim.XXXXXX.log")
-# xargs takes any number of lines, and quotes.
-mapfile -t options < <(xargs --no-run-if-empty printf '%s\n' <<< "$OPTIONS")
+# xargs takes any number of lines, and quotes; a quote without its end ends this script.
+words=$(xargs --no-run-if-empty printf '%s\n' <<< "$OPTIONS")
+options=()
+if [[ -n "$words" ]]; then
+  mapfile -t options <<< "$words"
+fi
 "$FRANKA" sim --robot "$ROBOT" "${options[@]}" > "$log" 2>&1 &
 simulator=$!
 {

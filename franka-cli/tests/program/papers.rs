@@ -105,6 +105,11 @@ fn the_action_starts_a_simulator_and_says_why_not() {
         text.contains("the simulator has ended:") && text.contains("99999"),
         "{text}"
     );
+    assert!(
+        !start("--port 0 --virtual-time \"half", "60")
+            .status
+            .success()
+    );
     for wait in ["0", "1m", "1.5", "abc", ""] {
         let said = start("--port 0", wait);
         let text = String::from_utf8_lossy(&said.stdout);

@@ -169,6 +169,26 @@ fn episodes_become_a_dataset() {
         let info: serde_json::Value = serde_json::from_str(&info).expect("JSON");
         assert_eq!(info["total_episodes"], 4, "{info}");
         assert_eq!(info["total_frames"], 2 * frames, "{info}");
+        let one = [
+            "export",
+            "run.mcap",
+            "--lerobot",
+            "one",
+            "--episodes",
+            "two",
+            "--json",
+        ];
+        assert_eq!(home.run(&one).json()["episodes"], 1);
+        let none = [
+            "export",
+            "run.mcap",
+            "--lerobot",
+            "none",
+            "--episodes",
+            "three",
+        ];
+        home.run(&none)
+            .failed(2, &["\"three\"", "expected one of one, two"]);
         let other = [&export[..4], &["--measured", "--fps", "30"]].concat();
         home.run(&other).failed(1, &["fps"]);
     });

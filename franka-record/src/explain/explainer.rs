@@ -46,12 +46,10 @@ struct Run {
     last: u64,
     /// When the newest cycle came, if that is known.
     received: Option<HostTime>,
-    /// Goals that have been given and have not ended, oldest first.
-    open: Vec<u64>,
+    /// Goals that have been given and have not ended, oldest first, and whether each is of chunks.
+    open: Vec<(u64, bool)>,
     /// Of the last goal that has ended, if it failed.
     failed: Option<String>,
-    /// The goal of the first chunk of those that came last.
-    chunks: Option<u64>,
     cycles: u64,
     has_hand: bool,
     diagnosis: Option<Told>,
@@ -162,19 +160,16 @@ impl Run {
         let is_told = self.ended.as_ref().is_some_and(|it| it.time == self.last);
         match &event.kind {
             EventKind::Goal(goal) if goal.number > 0 => {
+                let is_chunk = goal.kind == "chunk";
                 // The goal of the first chunk ends for all that follow.
-                let is_more = |first: u64| goal.kind == "chunk" && self.open.contains(&first);
-                if !self.chunks.is_some_and(is_more) {
-                    self.open.retain(|open| *open != goal.number);
-                    self.open.push(goal.number);
-                    self.chunks = (goal.kind == "chunk")
-                        .then_some(goal.number)
-                        .or(self.chunks);
+                if !(is_chunk && self.open.iter().any(|(_, is_chunk)| *is_chunk)) {
+                    self.open.retain(|(open, _)| *open != goal.number);
+                    self.open.push((goal.number, is_chunk));
                 }
                 false
             }
             EventKind::Outcome(outcome) => {
-                self.open.retain(|open| *open != outcome.goal);
+                self.open.retain(|(open, _)| *open != outcome.goal);
                 let failed = outcome.ending == Ending::Failed;
                 self.failed = failed.then(|| outcome.text.clone());
                 // What the robot ended is seen in the cycles.
@@ -301,7 +296,7 @@ impl Run {
             cycles: self.cycles,
             end: ended.time,
             received: ended.received,
-            under_way: self.open.last().copied().filter(|_| !is_over),
+            under_way: self.open.last().map(|(goal, _)| *goal).filter(|_| !is_over),
             failed: self.failed,
             earlier: 0,
             cause,

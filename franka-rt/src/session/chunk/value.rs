@@ -47,8 +47,9 @@ pub(super) enum Origin {
 ///   whose time has passed when the chunk is taken up are skipped, and the motion is entered at the
 ///   instant that the robot is at.
 /// - **Receding horizon.** A newer chunk takes the place of the one before it as soon as its first
-///   point's time has come, or at once if none is running. It is blended in over [`Chunk::BLEND`];
-///   see [`blend`](Self::blend) and [`replace`](Self::replace).
+///   point's time has come, or at once if none is running. If it has superseded one that waited, it
+///   comes when that was to, earlier than its own time by as long as that one waited at most. It is
+///   blended in over [`Chunk::BLEND`]; see [`blend`](Self::blend) and [`replace`](Self::replace).
 ///
 /// ```
 /// use core::time::Duration;
@@ -209,7 +210,9 @@ impl Chunk {
 
     /// Replaces [`Chunk::BLEND`]: the time over which the chunk is blended with what the arm does
     /// when it is taken up. What the arm does goes on with its velocity and acceleration at first,
-    /// and the difference to the chunk is then let go.
+    /// and the difference to the chunk is then let go. An arm that lags behind another chunk is
+    /// taken to be where that one wants it, if that is nearer to the new one: what it lags, it
+    /// makes up for at the pace of the budget, and not within the blend.
     #[must_use]
     pub fn blend(mut self, over: Duration) -> Self {
         self.blend = over.min(Self::OFFSET_MAX);
