@@ -1,7 +1,9 @@
 //! Why points are not a chunk.
 
+use std::time::Duration;
+
 /// Why a chunk cannot be made of these points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ChunkError {
     /// There are no points.
@@ -13,25 +15,45 @@ pub enum ChunkError {
         /// The most that a chunk may have, [`Chunk::POINTS_MAX`](super::Chunk::POINTS_MAX).
         most: usize,
     },
-    /// A number of a point is not finite, or larger than 1e6, or its quaternion is not of length
-    /// one.
-    #[error("point {point} holds a non-finite or far too large number, or an invalid rotation")]
-    NotFinite {
+    /// A number of a point is not finite, or larger than 1e6.
+    #[error("point {point} has the number {got}, expected finite ones up to 1e6")]
+    Number {
         /// The point, from 0.
         point: usize,
+        /// The number.
+        got: f64,
+    },
+    /// The quaternion of a point is not of length one.
+    #[error("the quaternion of point {point} has the length {length}, expected 1")]
+    Rotation {
+        /// The point, from 0.
+        point: usize,
+        /// The length.
+        length: f64,
     },
     /// A point comes less than a millisecond after the one before it, or before it.
-    #[error("point {point} comes less than 1 ms after the one before it")]
+    #[error(
+        "point {point} is due at {time:?}, expected 1 ms or more after the one before, at {before:?}"
+    )]
     TooClose {
         /// The point, from 0.
         point: usize,
+        /// Its time.
+        time: Duration,
+        /// The time of the point before it.
+        before: Duration,
     },
     /// A point lies later than [`Chunk::OFFSET_MAX`](super::Chunk::OFFSET_MAX) after the chunk's
     /// origin.
-    #[error("point {point} lies too far in the future")]
+    #[error(
+        "point {point} is due at {time:?}, expected at most {:?}",
+        super::Chunk::OFFSET_MAX
+    )]
     TooLate {
         /// The point, from 0.
         point: usize,
+        /// Its time.
+        time: Duration,
     },
     /// Between two points the end effector turns so far that its direction is in doubt.
     #[error("{degrees} degrees from point {} to point {point}: expected less than 170", point - 1)]

@@ -4,7 +4,7 @@ use core::time::Duration;
 
 use franka_model::{JointVector, Model, Twist, rotation};
 use franka_proto::RobotState;
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::Isometry3;
 
 use super::curve::Curve;
 use super::curve_state::stacked;
@@ -15,8 +15,8 @@ use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
 use crate::session::{GoalError, Target, check};
 
-/// The least time between two points, `[s]`: one cycle, less the rounding of a conversion.
-const SPACING_MIN: f64 = 1e-3 - 1e-9;
+/// The least time between two points: one cycle, less the rounding of a conversion.
+const SPACING_MIN: Duration = Duration::from_nanos(999_999);
 
 /// The largest number of a point, in its unit. Far above any number of an arm, and small enough for
 /// all computations to stay finite.
@@ -104,7 +104,7 @@ impl Chunk {
     pub fn joints(
         points: impl IntoIterator<Item = (Duration, [f64; 7])>,
     ) -> Result<Self, ChunkError> {
-        let (times, q) = collect(points, |q| are_numbers(q))?;
+        let (times, q) = collect(points, |point, q| check_numbers(point, q))?;
         let state = |i| {
             let [dq, ddq] = derivatives::at(&times, i, |k| JointVector::from(q[k]));
             Reference {
@@ -128,7 +128,10 @@ impl Chunk {
         points: impl IntoIterator<Item = (Duration, [f64; 7], [f64; 7])>,
     ) -> Result<Self, ChunkError> {
         let points = points.into_iter().map(|(time, q, dq)| (time, (q, dq)));
-        let (times, points) = collect(points, |(q, dq)| are_numbers(q.iter().chain(dq)))?;
+        let (times, points) = collect(points, |point, (q, dq)| {
+            check_numbers(point, q)?;
+            check_numbers(point, dq)
+        })?;
         let state = |i: usize| {
             let [ddq, _] = derivatives::at(&times, i, |k| JointVector::from(points[k].1));
             Reference {
@@ -151,7 +154,7 @@ impl Chunk {
     pub fn poses(
         points: impl IntoIterator<Item = (Duration, Isometry3<f64>)>,
     ) -> Result<Self, ChunkError> {
-        let (times, poses) = collect(points, is_pose)?;
+        let (times, poses) = collect(points, check_pose)?;
         check_turns(poses.iter())?;
         let state = |i: usize| {
             let way = |k: usize| poses[k].translation.vector;
@@ -184,7 +187,10 @@ impl Chunk {
         let points = points
             .into_iter()
             .map(|(time, pose, twist)| (time, (pose, twist)));
-        let (times, points) = collect(points, |(pose, twist)| is_pose(pose) && are_numbers(twist))?;
+        let (times, points) = collect(points, |point, (pose, twist)| {
+            check_pose(point, pose)?;
+            check_numbers(point, twist)
+        })?;
         check_turns(points.iter().map(|(pose, _)| pose))?;
         let state = |i: usize| {
             let [acceleration, _] = derivatives::at(&times, i, |k| Twist::from(points[k].1));
@@ -313,12 +319,13 @@ pub(super) fn milliseconds(now: u64, origin: u64) -> f64 {
     if now < origin { -distance } else { distance }
 }
 
-/// Times and values of the points, checked.
+/// Times and values of the points, checked; `check` gets the number of the point as well.
 fn collect<T>(
     points: impl IntoIterator<Item = (Duration, T)>,
-    is_valid: impl Fn(&T) -> bool,
+    check: impl Fn(usize, &T) -> Result<(), ChunkError>,
 ) -> Result<(Vec<f64>, Vec<T>), ChunkError> {
     let (mut times, mut values) = (Vec::new(), Vec::new());
+    let mut before: Option<Duration> = None;
     for (point, (time, value)) in points.into_iter().enumerate() {
         if point == Chunk::POINTS_MAX {
             return Err(ChunkError::TooMany {
@@ -326,19 +333,19 @@ fn collect<T>(
             });
         }
         if time > Chunk::OFFSET_MAX {
-            return Err(ChunkError::TooLate { point });
+            return Err(ChunkError::TooLate { point, time });
         }
-        let time = time.as_secs_f64();
-        if times
-            .last()
-            .is_some_and(|before| time - before < SPACING_MIN)
+        if let Some(before) = before.replace(time)
+            && time < before + SPACING_MIN
         {
-            return Err(ChunkError::TooClose { point });
+            return Err(ChunkError::TooClose {
+                point,
+                time,
+                before,
+            });
         }
-        if !is_valid(&value) {
-            return Err(ChunkError::NotFinite { point });
-        }
-        times.push(time);
+        check(point, &value)?;
+        times.push(time.as_secs_f64());
         values.push(value);
     }
     if times.is_empty() {
@@ -347,15 +354,22 @@ fn collect<T>(
     Ok((times, values))
 }
 
-fn are_numbers<'a>(values: impl IntoIterator<Item = &'a f64>) -> bool {
-    values.into_iter().all(|x| x.abs() <= NUMBER_MAX)
+fn check_numbers(point: usize, numbers: &[f64]) -> Result<(), ChunkError> {
+    match numbers.iter().find(|x| x.is_nan() || x.abs() > NUMBER_MAX) {
+        Some(&got) => Err(ChunkError::Number { point, got }),
+        None => Ok(()),
+    }
 }
 
-/// Whether all numbers are finite and the rotation is a unit quaternion.
-fn is_pose(pose: &Isometry3<f64>) -> bool {
-    let position: &Vector3<f64> = &pose.translation.vector;
-    // A quaternion of length 1 is finite.
-    are_numbers(position) && (pose.rotation.coords.norm() - 1.0).abs() < 1e-6
+fn check_pose(point: usize, pose: &Isometry3<f64>) -> Result<(), ChunkError> {
+    check_numbers(point, pose.translation.vector.as_slice())?;
+    let length = pose.rotation.coords.norm();
+    // NaN is no such length either.
+    if (length - 1.0).abs() < 1e-6 {
+        Ok(())
+    } else {
+        Err(ChunkError::Rotation { point, length })
+    }
 }
 
 fn check_turns<'a>(poses: impl Iterator<Item = &'a Isometry3<f64>>) -> Result<(), ChunkError> {
@@ -386,28 +400,32 @@ mod tests {
 
     #[test]
     fn points_that_make_no_chunk_are_refused_by_number() {
-        let refused = |points: Vec<_>| Chunk::joints(points).unwrap_err();
-        assert_eq!(refused(vec![]), ChunkError::Empty);
-        assert_eq!(
-            refused(vec![at(0, 0.0), at(10, 0.0), at(10, 0.1)]),
-            ChunkError::TooClose { point: 2 }
-        );
-        assert_eq!(
-            refused(vec![at(10, 0.0), at(5, 0.0)]),
-            ChunkError::TooClose { point: 1 }
-        );
-        assert_eq!(
-            refused(vec![at(0, 0.0), at(1, f64::NAN)]),
-            ChunkError::NotFinite { point: 1 }
-        );
-        assert_eq!(
-            refused(vec![at(0, 0.0), at(60_001, 0.0)]),
-            ChunkError::TooLate { point: 1 }
-        );
-        assert_eq!(
-            refused((0..1025).map(|k| at(k, 0.0)).collect()),
-            ChunkError::TooMany { most: 1024 }
-        );
+        let refused = |points: Vec<_>| Chunk::joints(points).unwrap_err().to_string();
+        for (points, expected) in [
+            (vec![], "a chunk needs at least one point"),
+            (
+                vec![at(0, 0.0), at(10, 0.0), at(10, 0.1)],
+                "point 2 is due at 10ms, expected 1 ms or more after the one before, at 10ms",
+            ),
+            (
+                vec![at(10, 0.0), at(5, 0.0)],
+                "point 1 is due at 5ms, expected 1 ms or more after the one before, at 10ms",
+            ),
+            (
+                vec![at(0, 0.0), at(1, f64::NAN)],
+                "point 1 has the number NaN, expected finite ones up to 1e6",
+            ),
+            (
+                vec![at(0, 0.0), at(60_001, 0.0)],
+                "point 1 is due at 60.001s, expected at most 60s",
+            ),
+            (
+                (0..1025).map(|k| at(k, 0.0)).collect(),
+                "more than 1024 points",
+            ),
+        ] {
+            assert_eq!(refused(points), expected);
+        }
         assert!(Chunk::joints((0..1024).map(|k| at(k, 0.0))).is_ok());
     }
 
@@ -429,7 +447,10 @@ mod tests {
             UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(2.0, 0.0, 0.0, 0.0));
         assert_eq!(
             Chunk::poses([(MS, long)]),
-            Err(ChunkError::NotFinite { point: 0 })
+            Err(ChunkError::Rotation {
+                point: 0,
+                length: 2.0
+            })
         );
     }
 
