@@ -4,6 +4,7 @@ use std::fmt;
 use std::future::Future;
 use std::sync::Arc;
 
+use franka_model::JointVector;
 use franka_model::collision::Obstacle;
 use franka_proto::RobotState;
 use franka_rt::driver::{Observer, Record, ReferenceState};
@@ -162,8 +163,8 @@ impl Arm {
     }
 
     /// A motion of the joints to `q`, `[rad]`; otherwise like [`Self::move_to`].
-    pub fn move_joints(&self, q: [f64; 7]) -> Motion {
-        self.move_to(q)
+    pub fn move_joints(&self, q: impl Into<JointVector>) -> Motion {
+        self.move_to(q.into())
     }
 
     /// A motion of the end effector away from the present target, or from the arm; otherwise like

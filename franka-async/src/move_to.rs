@@ -6,6 +6,7 @@ use std::pin::Pin;
 use std::sync::Arc;
 use std::task::{Context, Poll};
 
+use franka_model::JointVector;
 use franka_rt::lifecycle::{MotionError, NewMotion, Outcome};
 use franka_rt::session::{Goal, GoalError, GoalId, OnArrival, Preview, Target, Waypoint};
 use franka_rt::team::Round;
@@ -72,8 +73,8 @@ impl Robot {
     }
 
     /// A motion of the joints to `q`, `[rad]`; all joints arrive together.
-    pub fn move_joints(&self, q: [f64; 7]) -> Motion {
-        self.move_to(q)
+    pub fn move_joints(&self, q: impl Into<JointVector>) -> Motion {
+        self.move_to(q.into())
     }
 
     /// A motion of the end effector away from where it is, or from the target if a motion is under
