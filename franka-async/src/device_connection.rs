@@ -169,10 +169,10 @@ where
         let mut session = Session::new(D::default());
         timeout(TCP_TIMEOUT, shake_hands(&mut stream, &mut session, port))
             .await
-            .unwrap_or(Err(ConnectError::HandshakeTimeout))?;
+            .unwrap_or(Err(ConnectError::HandshakeTimeout { address }))?;
         let first = timeout(TCP_TIMEOUT, first_state::<D>(&socket, address.ip()))
             .await
-            .unwrap_or(Err(ConnectError::NoState))?;
+            .unwrap_or(Err(ConnectError::NoState { address }))?;
 
         #[cfg(feature = "record")]
         let journal = Journal::default();

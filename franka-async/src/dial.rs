@@ -19,11 +19,12 @@ pub(crate) const TCP_TIMEOUT: Duration = Duration::from_secs(1);
 /// `network.cpp`.
 const KEEPALIVE: (Duration, Duration, u32) = (Duration::from_secs(1), Duration::from_secs(1), 3);
 
-/// Finds the addresses of the host, each once, in the order in which to try them; `port` is that of
-/// the device, for an endpoint without one.
+/// Finds the addresses of the host within `limit`, each once, in the order in which to try them;
+/// `port` is that of the device, for an endpoint without one.
 pub(crate) async fn resolve<P: Protocol>(
     endpoint: &Endpoint,
     port: u16,
+    limit: Duration,
 ) -> Result<Vec<SocketAddr>, ConnectError<P>> {
     let port = endpoint.port().unwrap_or(port);
     let (name, interface) = match endpoint.host()? {
@@ -35,10 +36,11 @@ pub(crate) async fn resolve<P: Protocol>(
         Host::Scoped(address, interface) => (format!("{address}%{interface}"), Some(interface)),
         Host::Name(name) => (name.clone(), None),
     };
-    let Ok(found) = tokio::net::lookup_host((name, port)).await else {
+    let look_up = tokio::net::lookup_host((name.as_str(), port));
+    let Ok(Ok(found)) = timeout(limit, look_up).await else {
         return Err(match interface.cloned() {
             Some(interface) => EndpointError::Interface { interface }.into(),
-            None => network("Host not found"),
+            None => network(format!("Host not found ({name})")),
         });
     };
     let mut addresses: Vec<SocketAddr> = Vec::new();
@@ -56,7 +58,7 @@ pub(crate) async fn resolve<P: Protocol>(
     Ok(addresses)
 }
 
-fn network<P: Protocol>(reason: &str) -> ConnectError<P> {
+fn network<P: Protocol>(reason: impl Into<String>) -> ConnectError<P> {
     ConnectError::Network {
         reason: reason.into(),
     }
@@ -99,13 +101,13 @@ pub(crate) async fn dial_one<P: Protocol>(
         Ok(Err(error)) => {
             return Err(match error.kind() {
                 std::io::ErrorKind::ConnectionRefused => ConnectError::Refused { address },
-                std::io::ErrorKind::TimedOut => ConnectError::Timeout,
+                std::io::ErrorKind::TimedOut => ConnectError::Timeout { address },
                 _ => ConnectError::Network {
                     reason: reason(&error),
                 },
             });
         }
-        Err(_) => return Err(ConnectError::Timeout),
+        Err(_) => return Err(ConnectError::Timeout { address }),
     };
     if let Err(error) = stream.set_nodelay(true) {
         tracing::debug!(%error, "small requests may be delayed");
@@ -181,7 +183,7 @@ mod tests {
     #[tokio::test]
     async fn texts_and_addresses_become_socket_addresses() {
         let found = async |endpoint: &str| {
-            let addresses = resolve::<Version>(&endpoint.into(), 1337).await;
+            let addresses = resolve::<Version>(&endpoint.into(), 1337, LIMIT).await;
             addresses.map(|found| found.iter().map(ToString::to_string).collect::<Vec<_>>())
         };
         for (endpoint, address) in [

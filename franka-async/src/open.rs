@@ -54,9 +54,7 @@ pub(crate) async fn open(
     off_worker(move || scheduling.probe()).await??;
 
     let limit = builder.connect_timeout;
-    let addresses = timeout(limit, resolve(&builder.endpoint, Version::TCP_PORT))
-        .await
-        .unwrap_or(Err(ConnectError::Timeout))?;
+    let addresses = resolve(&builder.endpoint, Version::TCP_PORT, limit).await?;
     let (tcp, address) = dial(&addresses, limit).await?;
     let session = negotiate(tcp, address, builder).await?;
     let (reader, state_wakeups) = (&session.handle.states, &session.handle.state_wakeups);
@@ -164,7 +162,7 @@ async fn open_with(
         shake_hands(&mut stream, &mut session, port),
     )
     .await
-    .unwrap_or(Err(ConnectError::HandshakeTimeout))?;
+    .unwrap_or(Err(ConnectError::HandshakeTimeout { address }))?;
 
     let config = ThreadConfig {
         scheduling: builder.scheduling.clone(),
@@ -178,7 +176,7 @@ async fn open_with(
     let wake = bridge::attach(handle.event_fd.clone())?;
     let first = timeout(builder.connect_timeout, first_state(&mut handle, &wake))
         .await
-        .map_err(|_| ConnectError::NoState)??;
+        .map_err(|_| ConnectError::NoState { address })??;
     Ok(Negotiated {
         version,
         stream,

@@ -20,11 +20,11 @@ macro_rules! seen {
     ($error:expr) => {
         match &$error {
             ConnectError::Refused { .. } => Seen::Refused,
-            ConnectError::Timeout | ConnectError::HandshakeTimeout => Seen::Silent,
+            ConnectError::Timeout { .. } | ConnectError::HandshakeTimeout { .. } => Seen::Silent,
             ConnectError::ConnectionClosed {
                 reason: CloseReason::ClosedByPeer | CloseReason::Io { .. },
             } => Seen::Closed,
-            ConnectError::NoState => Seen::NoState,
+            ConnectError::NoState { .. } => Seen::NoState,
             ConnectError::Realtime(_) => Seen::Realtime,
             ConnectError::Endpoint(_) => Seen::Caller,
             ConnectError::NoAddress { attempts }

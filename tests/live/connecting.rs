@@ -76,7 +76,7 @@ async fn a_host_that_does_not_exist_is_not_found() {
     let error = refused("no-host-of-this-name.invalid").await;
     assert_eq!(
         error.to_string(),
-        "libfranka: Connection error: Host not found"
+        "libfranka: Connection error: Host not found (no-host-of-this-name.invalid)"
     );
 }
 
@@ -97,10 +97,12 @@ async fn a_host_that_does_not_answer_times_out() {
         fill.push(stream);
     }
     let error = refused(address).await;
-    assert!(matches!(error, ConnectError::Timeout), "{error:?}");
+    assert!(matches!(error, ConnectError::Timeout { .. }), "{error:?}");
     assert_eq!(
         error.to_string(),
-        "libfranka: Connection timeout. Please check your network connection or settings."
+        format!(
+            "libfranka: Connection timeout. Please check your network connection or settings. ({address})"
+        )
     );
 }
 
@@ -163,7 +165,7 @@ async fn a_silent_server_a_closing_one_and_one_without_states_are_told_apart() {
     .await;
     assert_eq!(
         refused(silent).await.to_string(),
-        "libfranka: TCP receive: Timeout"
+        format!("libfranka: TCP receive: Timeout ({silent})")
     );
     let closing = server(|mut stream| async move {
         let mut request = [0; 16];
@@ -182,7 +184,7 @@ async fn a_silent_server_a_closing_one_and_one_without_states_are_told_apart() {
     .await;
     assert_eq!(
         refused(stateless).await.to_string(),
-        "libfranka: UDP receive: Timeout"
+        format!("libfranka: UDP receive: Timeout ({stateless})")
     );
 }
 

@@ -153,8 +153,10 @@ mod tests {
             Party::Robot,
         );
         check(
-            ConnectError::<gripper::Version>::HandshakeTimeout,
-            "libfranka: TCP receive: Timeout",
+            ConnectError::<gripper::Version>::HandshakeTimeout {
+                address: ([172, 16, 0, 2], 1338).into(),
+            },
+            "libfranka: TCP receive: Timeout (172.16.0.2:1338)",
             Party::Link,
         );
         check(

@@ -59,8 +59,13 @@ pub enum ConnectError<P: Protocol = Version> {
         address: SocketAddr,
     },
     /// Link: no answer.
-    #[error("libfranka: Connection timeout. Please check your network connection or settings.")]
-    Timeout,
+    #[error(
+        "libfranka: Connection timeout. Please check your network connection or settings. ({address})"
+    )]
+    Timeout {
+        /// Where.
+        address: SocketAddr,
+    },
     /// Link: any other failure to connect.
     #[error("libfranka: Connection error: {reason}")]
     Network {
@@ -97,12 +102,18 @@ pub enum ConnectError<P: Protocol = Version> {
     #[error(transparent)]
     Frame(#[from] FrameError),
     /// Link: the handshake was not answered in time.
-    #[error("libfranka: TCP receive: Timeout")]
-    HandshakeTimeout,
+    #[error("libfranka: TCP receive: Timeout ({address})")]
+    HandshakeTimeout {
+        /// Where.
+        address: SocketAddr,
+    },
     /// Link: the handshake succeeded and no state came. A firewall in the way of UDP is the usual
     /// cause.
-    #[error("libfranka: UDP receive: Timeout")]
-    NoState,
+    #[error("libfranka: UDP receive: Timeout ({address})")]
+    NoState {
+        /// Where the handshake succeeded.
+        address: SocketAddr,
+    },
     /// Robot, link or peer: there is no model of the arm. See
     /// [`Builder::nominal_model`](crate::connection::Builder::nominal_model).
     #[cfg(feature = "urdf")]
@@ -121,7 +132,7 @@ impl<P: Protocol> ConnectError<P> {
             Self::Known(_) => "connect-known",
             Self::System(_) => "connect-system",
             Self::Refused { .. } => "connect-refused",
-            Self::Timeout => "connect-timeout",
+            Self::Timeout { .. } => "connect-timeout",
             Self::Network { .. } => "connect-network",
             Self::NoAddress { .. } => "connect-no-address",
             Self::IncompatibleVersion(_) => "connect-incompatible-version",
@@ -129,8 +140,8 @@ impl<P: Protocol> ConnectError<P> {
             Self::Datagram { .. } => "connect-datagram",
             Self::Violation(_) => "connect-violation",
             Self::Frame(_) => "connect-frame",
-            Self::HandshakeTimeout => "connect-handshake-timeout",
-            Self::NoState => "connect-no-state",
+            Self::HandshakeTimeout { .. } => "connect-handshake-timeout",
+            Self::NoState { .. } => "connect-no-state",
             #[cfg(feature = "urdf")]
             Self::Model(error) => error.entry(),
         }
@@ -151,11 +162,11 @@ impl<P: Protocol> ConnectError<P> {
             Self::Realtime(error) if error.is_misuse() => Party::Caller,
             Self::Realtime(_) | Self::System(_) => Party::Host,
             Self::Refused { .. } => Party::Robot,
-            Self::Timeout
+            Self::Timeout { .. }
             | Self::Network { .. }
             | Self::Datagram { .. }
-            | Self::HandshakeTimeout
-            | Self::NoState => Party::Link,
+            | Self::HandshakeTimeout { .. }
+            | Self::NoState { .. } => Party::Link,
             Self::ConnectionClosed { reason } => reason.party(),
             Self::IncompatibleVersion(_) | Self::Violation(_) | Self::Frame(_) => Party::Peer,
             #[cfg(feature = "urdf")]
