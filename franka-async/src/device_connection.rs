@@ -10,7 +10,7 @@ use std::fmt;
 use std::net::{IpAddr, SocketAddr};
 
 use franka_proto::client::{Event, Session};
-use franka_proto::gripper::Reply;
+use franka_proto::gripper::{Failure, Reply};
 use franka_proto::{CommandId, DecodeError, Protocol, Violation, gripper, vacuum};
 use franka_rt::exchange;
 use franka_rt::lifecycle::CloseReason;
@@ -49,6 +49,11 @@ pub(crate) trait Device: for<'a> Protocol<Reply<'a> = Reply> + Default {
     /// The device's clock, `[ms]`.
     fn clock(state: &Self::State) -> u32;
 
+    /// Why the device cannot do it, if the request is out of the range that it gives.
+    fn out_of_range(_request: &Self::Request, _state: &Self::State) -> Option<String> {
+        None
+    }
+
     /// What a journal has of an action that has ended.
     #[cfg(feature = "record")]
     fn ended(request: Self::Request, ended: ActionEnd) -> What;
@@ -66,6 +71,36 @@ impl Device for gripper::Version {
 
     fn state(datagram: &[u8]) -> Result<gripper::State, DecodeError> {
         gripper::State::decode(datagram)
+    }
+
+    fn out_of_range(request: &gripper::Request, state: &gripper::State) -> Option<String> {
+        let (width, speed, grasp) = match request {
+            gripper::Request::Move(to) => (to.width, to.speed, None),
+            gripper::Request::Grasp(grasp) => (grasp.width, grasp.speed, Some(grasp)),
+            _ => return None,
+        };
+        let most = state.max_width;
+        if !(0.0..=most).contains(&width) {
+            return Some(if most > 0.0 {
+                format!("width {width} m, expected 0 to {most}")
+            } else {
+                format!("width {width} m, before a homing has found how wide the fingers open")
+            });
+        }
+        let above_zero = |name: &str, got: f64, unit: &str| {
+            let fits = got.is_finite() && got > 0.0;
+            (!fits).then(|| format!("{name} {got} {unit}, expected above 0"))
+        };
+        let tolerance = |name: &str, got: f64| {
+            let fits = got.is_finite() && got >= 0.0;
+            (!fits).then(|| format!("{name} {got} m, expected 0 or more"))
+        };
+        above_zero("speed", speed, "m/s").or_else(|| {
+            let grasp = grasp?;
+            above_zero("force", grasp.force, "N")
+                .or_else(|| tolerance("epsilon_inner", grasp.epsilon_inner))
+                .or_else(|| tolerance("epsilon_outer", grasp.epsilon_outer))
+        })
     }
 
     fn clock(state: &gripper::State) -> u32 {
@@ -157,9 +192,7 @@ where
     D::State: Send + Sync,
 {
     pub(crate) async fn connect(endpoint: Endpoint) -> Result<Self, ConnectError<D>> {
-        let addresses = timeout(TCP_TIMEOUT, resolve::<D>(&endpoint, D::TCP_PORT))
-            .await
-            .unwrap_or(Err(ConnectError::Timeout))?;
+        let addresses = resolve::<D>(&endpoint, D::TCP_PORT, TCP_TIMEOUT).await?;
         let (tcp, address) = dial::<D>(&addresses, TCP_TIMEOUT).await?;
         let socket = exchange::bind(address.ip())?;
         socket.set_nonblocking(true)?;
@@ -224,9 +257,16 @@ where
     /// # Cancel safety
     /// The action is stopped, unless a newer one has taken its place.
     pub(crate) async fn act(&self, request: D::Request) -> ActionResult<D> {
-        #[cfg(feature = "record")]
         let asked = request.clone();
-        let ended = self.ask(request).await;
+        let ended = self.ask(request).await.map_err(|error| match error {
+            ActionError::Failure(failure @ Failure::Failed { .. }) => {
+                match D::out_of_range(&asked, &self.state()) {
+                    Some(why) => ActionError::OutOfRange { failure, why },
+                    None => error,
+                }
+            }
+            error => error,
+        });
         #[cfg(feature = "record")]
         self.journal.write(|| {
             let ended = ended.as_ref().map(|done| *done);

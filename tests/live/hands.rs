@@ -5,7 +5,7 @@ use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream, UdpSocket};
 use std::time::{Duration, Instant};
 
 use franka_async::Pose;
-use franka_async::error::{ActionError, ConnectError};
+use franka_async::error::{ActionError, ConnectError, GripperError, Party};
 use franka_async::gripper::{Grasp, Gripper, State as GripperState};
 use franka_async::vacuum::{Profile, Vacuum, VacuumGripper};
 use franka_proto::{gripper, server, vacuum};
@@ -16,7 +16,6 @@ use tokio::time::{sleep, timeout};
 use crate::{SOON, alone, connect};
 
 const ABORTED: &str = "libfranka gripper: Command aborted!";
-const FAILED: &str = "libfranka gripper: Command failed!";
 
 /// A robot with a hand that has an object of 5 cm between its fingers and knows its width.
 async fn with_hand() -> (Gripper, Running) {
@@ -25,6 +24,9 @@ async fn with_hand() -> (Gripper, Running) {
     let sim = sim.expect("a simulator starts");
     let gripper = hand_of(&sim).await.expect("a hand takes a client");
     assert_eq!(gripper.state().max_width, 0.0);
+    let early = gripper.move_to(0.05, 0.1).await.expect_err("no homing");
+    let unhomed = "(width 0.05 m, before a homing has found how wide the fingers open)";
+    assert!(early.to_string().ends_with(unhomed), "{early}");
     assert!(gripper.homing().await.expect("a homing"));
     assert_eq!(gripper.state().max_width, 0.08);
     (gripper, sim)
@@ -78,8 +80,35 @@ async fn a_hand_moves_grasps_and_lets_go_while_the_arm_moves() {
     let moving = tokio::spawn(robot.move_to(up).speed(0.25).into_future());
     assert!(gripper.move_to(0.06, 0.1).await.expect("a move"));
     assert!((gripper.state().width - 0.06).abs() < 1e-9);
-    let error = gripper.move_to(0.09, 0.1).await.unwrap_err();
-    assert_eq!(error.to_string(), FAILED);
+    let refused = |error: GripperError| {
+        let text = error.to_string();
+        let why = text.strip_prefix("libfranka gripper: Command failed! (");
+        (error.party(), why.map(ToOwned::to_owned))
+    };
+    let caller = |why: &str| (Party::Caller, Some(format!("{why})")));
+    for (width, speed, why) in [
+        (0.09, 0.1, "width 0.09 m, expected 0 to 0.08"),
+        (-0.01, 0.1, "width -0.01 m, expected 0 to 0.08"),
+        (f64::NAN, 0.1, "width NaN m, expected 0 to 0.08"),
+        (0.05, 0.0, "speed 0 m/s, expected above 0"),
+        (0.05, f64::INFINITY, "speed inf m/s, expected above 0"),
+    ] {
+        let error = gripper.move_to(width, speed).await.unwrap_err();
+        assert_eq!(refused(error), caller(why));
+    }
+    for (grasp, why) in [
+        (Grasp::new(0.03, 0.1, -1.0), "force -1 N, expected above 0"),
+        (
+            Grasp {
+                epsilon_outer: -0.01,
+                ..Grasp::new(0.03, 0.1, 40.0)
+            },
+            "epsilon_outer -0.01 m, expected 0 or more",
+        ),
+    ] {
+        let error = gripper.grasp(grasp).await.unwrap_err();
+        assert_eq!(refused(error), caller(why));
+    }
 
     assert!(
         !gripper
@@ -340,7 +369,11 @@ fn check<C: franka_proto::ServiceCommand>(status: u16, result: Result<bool, Acti
 #[tokio::test(flavor = "multi_thread")]
 async fn conformance_18_every_status_of_every_command() {
     let statuses = || (0..5).flat_map(|status| [status; 4]).collect::<Vec<u16>>();
-    let state = GripperState::default().encode().to_vec();
+    let state = GripperState {
+        max_width: 0.08,
+        ..GripperState::default()
+    };
+    let state = state.encode().to_vec();
     let address = scripted(gripper::Version::V3, state, statuses());
     let gripper = Gripper::connect(address).await.expect("a session");
     for status in 0..5 {

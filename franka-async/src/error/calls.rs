@@ -70,6 +70,14 @@ pub enum ActionError<C: ServiceCommand> {
     /// Device: it could not do it, or something ended it: a stop, or a newer action.
     #[error(transparent)]
     Failure(#[from] Failure<C>),
+    /// Caller: the device could not do it, for what was asked of it is out of its range.
+    #[error("{failure} ({why})")]
+    OutOfRange {
+        /// What the device answered.
+        failure: Failure<C>,
+        /// What was asked for, and what is possible.
+        why: String,
+    },
     /// Caller: too many requests wait for their answers. Nothing was sent.
     #[error(transparent)]
     Request(#[from] RequestError),
@@ -89,6 +97,7 @@ impl<C: ServiceCommand> ActionError<C> {
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Failure(_) => "action-failure",
+            Self::OutOfRange { .. } => "action-out-of-range",
             Self::Request(_) => "action-request",
             Self::Violation(_) => "action-violation",
             Self::ConnectionClosed { reason } => reason.entry(),
@@ -99,7 +108,7 @@ impl<C: ServiceCommand> ActionError<C> {
     pub fn party(&self) -> Party {
         match self {
             Self::Failure(_) => Party::Robot,
-            Self::Request(_) => Party::Caller,
+            Self::OutOfRange { .. } | Self::Request(_) => Party::Caller,
             Self::Violation(_) => Party::Peer,
             Self::ConnectionClosed { reason } => reason.party(),
         }
