@@ -195,7 +195,8 @@ impl Arm {
     /// itself is [`Target::MOVES_ON_MS`].
     ///
     /// # Errors
-    /// [`MotionError::Goal`] for a goal that is not accepted, and what ended the session.
+    /// [`MotionError::Goal`] for a goal that is not accepted, [`MotionError::Held`] while a
+    /// [deadman](Engage::deadman) holds the arm, and what ended the session.
     ///
     /// # Cancel safety
     /// Once polled the goal is taken all the same.
@@ -290,8 +291,10 @@ impl Arm {
     ///
     /// # Errors
     /// As [`Self::set`]; [`GoalError::Late`](crate::error::GoalError::Late) if all points have
-    /// passed, and [`GoalError::Chunks`](crate::error::GoalError::Chunks) if chunks come faster
-    /// than the control thread takes them up.
+    /// passed, [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation is of another
+    /// clock, [`GoalError::Outdated`](crate::error::GoalError::Outdated) if that of the chunk
+    /// before is newer, and [`GoalError::Chunks`](crate::error::GoalError::Chunks) if chunks come
+    /// faster than the control thread takes them up.
     ///
     /// # Cancel safety
     /// As [`Self::set`].

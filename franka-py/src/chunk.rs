@@ -8,7 +8,8 @@ use franka_async::{Arm, Pose};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-use crate::arrays::{Numbers, pose_of, rows, unexpected_shape};
+use crate::arrays::{Numbers, rows, unexpected_shape};
+use crate::destination::place;
 use crate::operation::seconds;
 use crate::state::RobotState;
 
@@ -134,7 +135,10 @@ fn poses(points: &Numbers, arm: &Arm) -> PyResult<Vec<Pose>> {
             3 => Err(PyValueError::new_err(format!(
                 "{name} is {row:?}, expected finite numbers"
             ))),
-            _ => Ok(pose_of(&name, &points.shape[1..], row)?.expect("one of its shapes")),
+            _ => {
+                let pose = place(&name, &points.shape[1..], row, "need joints=True")?;
+                Ok(pose.expect("one of its shapes"))
+            }
         }
     };
     points.values.chunks(width).enumerate().map(pose).collect()

@@ -30,7 +30,7 @@ pub(crate) fn destination(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<D
     match *numbers.shape {
         [3] => Ok(Destination::position(vector::<3>(name, argument)?)),
         [4] | [3, 3] => Ok(Destination::orientation(orientation(name, &numbers)?)),
-        _ => match place(name, &numbers)? {
+        _ => match place(name, &numbers.shape, &numbers.values, JOINTS)? {
             Some(pose) => Ok(pose.into()),
             None => {
                 let also = "a position (3,), a quaternion (4,) or a rotation matrix (3, 3)";
@@ -59,27 +59,36 @@ pub(crate) fn target(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Target
     }
 }
 
+/// How joint positions are given.
+const JOINTS: &str = "are Joints(q), or go to move_joints";
+
 const SHAPES: &str = "a pose (4, 4) or (7,), x y z and a quaternion x y z w";
 
 fn whole_pose(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Pose> {
     let numbers = Numbers::read(name, argument)?;
-    place(name, &numbers)?.ok_or_else(|| unexpected_shape(name, &numbers.shape, SHAPES))
+    place(name, &numbers.shape, &numbers.values, JOINTS)?
+        .ok_or_else(|| unexpected_shape(name, &numbers.shape, SHAPES))
 }
 
 /// As [`pose_of`], but of seven numbers the last four have to be about as long as a quaternion:
-/// joint positions given by mistake are no place to go to.
-fn place(name: &str, numbers: &Numbers) -> PyResult<Option<Pose>> {
-    if let ([7], [_, _, _, quaternion @ ..]) = (&*numbers.shape, &*numbers.values) {
+/// joint positions given by mistake are no place to go to. For those there is what `joints` says.
+pub(crate) fn place(
+    name: &str,
+    shape: &[usize],
+    values: &[f64],
+    joints: &str,
+) -> PyResult<Option<Pose>> {
+    if let ([7], [_, _, _, quaternion @ ..]) = (shape, values) {
         let length = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
         if (length - 1.0).abs() > LENGTH_OFF {
             let text = format!(
                 "{name} has a quaternion of length {length:.3} after its position, expected 1; \
-                 joint positions are Joints(q), or go to move_joints"
+                 joint positions {joints}"
             );
             return Err(PyValueError::new_err(text));
         }
     }
-    pose_of(name, &numbers.shape, &numbers.values)
+    pose_of(name, shape, values)
 }
 
 /// How far a quaternion's length may be from 1: its numbers may be rounded.

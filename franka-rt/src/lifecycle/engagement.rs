@@ -1,5 +1,7 @@
 //! A session that goes on from goal to goal.
 
+use core::time::Duration;
+
 use franka_model::collision::Obstacle;
 use franka_proto::RobotState;
 
@@ -101,6 +103,9 @@ impl Lifecycle {
         let is_ending = self.is_ending();
         if let Some(goals) = self.goals_mut() {
             goals.backend.check(&goal)?;
+            if goal.target != Target::Rest {
+                goals.check_deadman()?;
+            }
             if is_ending {
                 goals.after_end.push(goal.id);
                 return Ok(());
@@ -115,7 +120,9 @@ impl Lifecycle {
     /// goal comes, and says how fast and how stiff. The arm rests at the last point.
     ///
     /// # Errors
-    /// As [`Self::begin`]; [`GoalError::Late`] for a chunk whose points have all passed,
+    /// As [`Self::begin`]; [`MotionError::Held`] while a deadman holds the arm;
+    /// [`GoalError::Late`] for a chunk whose points have all passed, [`GoalError::Ahead`] for one
+    /// of another clock, [`GoalError::Outdated`] for one that was observed before the one before,
     /// [`GoalError::Chunks`] if too many are under way.
     pub fn chunk(
         &mut self,
@@ -126,6 +133,12 @@ impl Lifecycle {
     ) -> Result<(), MotionError> {
         self.check_engaged(engaged)?;
         chunk.check(&self.model, state)?;
+        let observed_at = chunk.observation();
+        let ahead = observed_at.map_or(0, |time| time.saturating_sub(state.message_id));
+        let by = Duration::from_millis(ahead);
+        if by > Chunk::OFFSET_MAX {
+            return Err(GoalError::Ahead { by }.into());
+        }
         if chunk.end_after(state.message_id).is_zero() {
             let by = chunk.late_by(state.message_id);
             return Err(GoalError::Late { by }.into());
@@ -149,11 +162,20 @@ impl Lifecycle {
             goals.after_end.push(goal.id);
             return Ok(());
         }
+        goals.check_deadman()?;
         // One that was taken back is on its way to rest, and belongs to no caller any more.
         let goes_on = goals.current.id == goals.chunk_goal && !goals.cancelled;
         let of = if goes_on { goals.chunk_goal } else { goal.id };
+        let before = goals.observed_at.filter(|_| goes_on);
+        if let (Some(before), Some(now)) = (before, observed_at)
+            && now < before
+        {
+            let by = Duration::from_millis(before - now);
+            return Err(GoalError::Outdated { by }.into());
+        }
         goals.send(of, chunk).map_err(GoalError::from)?;
         goals.chunk_goal = of;
+        goals.observed_at = observed_at.or(before);
         if !goes_on {
             self.replace(goal, MotionError::Superseded);
         }

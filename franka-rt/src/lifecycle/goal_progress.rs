@@ -1,5 +1,7 @@
 //! The goals of one motion under target control, and how each turned out.
 
+use std::sync::Arc;
+
 use franka_proto::MoveStatus;
 
 use super::current_motion::CommandSide;
@@ -7,8 +9,8 @@ use super::outcome::{Counted, Outcome};
 use super::{MotionError, MotionReport};
 use crate::driver::{Ended, Ending, Program};
 use crate::session::{
-    Backend, Chunk, ChunkWriter, Goal, GoalError, GoalId, OnArrival, Reacted, Settlement, Target,
-    TooManyChunks,
+    Backend, Chunk, ChunkWriter, Goal, GoalError, GoalId, Lapse, OnArrival, Pulse, Reacted,
+    Settlement, Target, TooManyChunks,
 };
 use crate::slot::SlotWriter;
 
@@ -24,6 +26,8 @@ pub(super) struct Goals {
     pub(super) bad_tool: bool,
     /// The session that the goals belong to, if it goes on from goal to goal.
     pub(super) engaged: Option<Engaged>,
+    /// That of the deadman that the session is bound to.
+    pub(super) pulse: Option<Arc<Pulse>>,
     /// What turns setpoints into torques.
     pub(super) backend: Backend,
     /// The way of chunks to the session.
@@ -31,6 +35,8 @@ pub(super) struct Goals {
     /// The goal that its newest chunk belongs to, if that is no path: what comes next goes on with
     /// a chunk, and supersedes a path.
     pub(super) chunk_goal: GoalId,
+    /// The observation that the newest chunk of that goal names, `message_id`.
+    pub(super) observed_at: Option<u64>,
     /// Goals that came for that session after it had ended and before its outcome was known.
     pub(super) after_end: Vec<GoalId>,
 }
@@ -67,11 +73,22 @@ impl Goals {
             settled: None,
             bad_tool: false,
             engaged: None,
+            pulse: None,
             backend: Backend::default(),
             chunks,
             chunk_goal: GoalId::default(),
+            observed_at: None,
             after_end: Vec::new(),
         }
+    }
+
+    /// Checks that a deadman does not hold the arm.
+    pub(super) fn check_deadman(&self) -> Result<(), MotionError> {
+        let silent = self.pulse.as_ref().is_some_and(|pulse| pulse.is_silent());
+        if silent {
+            return Err(MotionError::Held(Lapse::Deadman));
+        }
+        Ok(())
     }
 
     /// Whether a chunk or a path can be sent. Frees those that the session is done with.

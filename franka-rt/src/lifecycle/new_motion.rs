@@ -294,6 +294,7 @@ impl Lifecycle {
                 session = session.no_faster_than(cap);
             }
             if let Some(deadman) = engagement.deadman {
+                goals.pulse = Some(deadman.pulse());
                 session = session.bound_to(deadman);
             }
             if let Some(member) = engagement.team {

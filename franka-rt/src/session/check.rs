@@ -98,6 +98,19 @@ pub enum GoalError {
         /// How long ago, by the robot's clock.
         by: Duration,
     },
+    /// The times of a chunk count from one that the robot does not come to for long: of another
+    /// clock.
+    #[error("the chunk counts from {} ms after the robot's newest state, expected {} ms at most, by the robot's clock", .by.as_millis(), Chunk::OFFSET_MAX.as_millis())]
+    Ahead {
+        /// How far ahead of that state.
+        by: Duration,
+    },
+    /// A chunk names an observation from before that of the chunk that is followed.
+    #[error("the chunk was observed {} ms before the one that is followed", .by.as_millis())]
+    Outdated {
+        /// How long before.
+        by: Duration,
+    },
     /// Too many chunks came within a few cycles of the control thread.
     #[error(transparent)]
     Chunks(#[from] TooManyChunks),
@@ -151,6 +164,8 @@ impl GoalError {
             Self::Unheld => "goal-unheld",
             Self::Number { .. } => "goal-number",
             Self::Late { .. } => "goal-late",
+            Self::Ahead { .. } => "goal-ahead",
+            Self::Outdated { .. } => "goal-outdated",
             Self::Chunks(_) => "goal-chunks",
             Self::Backend { .. } => "goal-backend",
             Self::KeepOut { .. } => "goal-keep-out",

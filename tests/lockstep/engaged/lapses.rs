@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use super::{assert_stays, guarded, turned, watched};
+use super::{assert_stays, guarded, turned, turned_q, watched};
 use franka_lockstep::{Lockstep, for_each_robot};
 use franka_model::{READY, Wrench};
 use franka_rt::lifecycle::{MotionError, Tuning};
-use franka_rt::session::{Free, GoalId, Guard, Lapse, OnArrival, OnTimeout, Target};
+use franka_rt::session::{Chunk, Free, GoalId, Guard, Lapse, OnArrival, OnTimeout, Target};
 
 /// Runs a session whose stream times out, and returns it with the stream's outcome.
 fn silent_stream(
@@ -67,16 +67,14 @@ fn a_deadman_timeout_holds_the_arm_until_the_deadman_is_kept_alive_again() {
             lockstep.run(40);
             token.keep_alive();
         }
-        let held = Err(MotionError::Held(Lapse::Deadman));
-        assert_eq!(lockstep.until_resolved(goal, 1000), held);
+        let held = MotionError::Held(Lapse::Deadman);
+        assert_eq!(lockstep.until_resolved(goal, 1000), Err(held.clone()));
         assert!(lockstep.client.record.bindings.contains(Guard::Deadman));
         assert!(lockstep.robot.q()[0] < READY[0] + 0.25, "short of the goal");
-        let another = lockstep
-            .within(engaged, turned(0.3), OnArrival::ReportAndHold)
-            .unwrap();
-        assert_eq!(lockstep.until_resolved(another, 1000), held);
+        assert_refused(&mut lockstep, engaged, &held);
         assert_stays(&mut lockstep, engaged);
 
+        token.keep_alive();
         let goal = lockstep
             .within(engaged, turned(0.3), OnArrival::ReportAndHold)
             .unwrap();
@@ -90,8 +88,21 @@ fn a_deadman_timeout_holds_the_arm_until_the_deadman_is_kept_alive_again() {
         let goal = lockstep
             .within(engaged, turned(0.0), OnArrival::ReportAndHold)
             .unwrap();
-        assert_eq!(lockstep.until_resolved(goal, 1000), held);
+        assert_eq!(lockstep.until_resolved(goal, 1000), Err(held.clone()));
+        assert_refused(&mut lockstep, engaged, &held);
+        let rest = lockstep
+            .within(engaged, Target::Rest, OnArrival::ReportAndHold)
+            .unwrap();
+        lockstep.until_resolved(rest, 1000).unwrap();
     });
+}
+
+/// What leads somewhere is refused, a goal as well as a chunk.
+fn assert_refused(lockstep: &mut Lockstep, engaged: GoalId, held: &MotionError) {
+    let goal = lockstep.within(engaged, turned(0.3), OnArrival::ReportAndHold);
+    assert_eq!(goal.as_ref(), Err(held));
+    let chunk = Chunk::joints([(Duration::from_secs(1), turned_q(0.3))]).unwrap();
+    assert_eq!(lockstep.chunk(engaged, chunk).as_ref(), Err(held));
 }
 
 #[test]

@@ -303,3 +303,67 @@ fn chunks_of_a_slow_policy_become_one_smooth_motion() {
         );
     });
 }
+
+#[test]
+fn a_chunk_of_another_clock_or_from_before_the_newest_is_refused() {
+    let mut lockstep = Lockstep::ready();
+    let engaged = lockstep.engage();
+    lockstep.run(500);
+    let now = lockstep.client.state.message_id;
+    let chunk = |rad| Chunk::joints([(Duration::from_secs(2), turned_q(rad))]).unwrap();
+    let mut refused = |observed_at, rad| {
+        let sent = lockstep.chunk(engaged, chunk(rad).observed_at(observed_at));
+        lockstep.run(1);
+        sent.err().map(|error| error.to_string())
+    };
+    let ahead = "the chunk counts from 60001 ms after the robot's newest state, \
+                 expected 60000 ms at most, by the robot's clock";
+    assert_eq!(refused(now + 60_001, 0.3).as_deref(), Some(ahead));
+    assert_eq!(refused(now, 0.2), None);
+    let outdated = "the chunk was observed 250 ms before the one that is followed";
+    assert_eq!(refused(now - 250, 0.3).as_deref(), Some(outdated));
+    assert_eq!(refused(now, 0.1), None, "the same observation");
+    lockstep.run(4000);
+    assert!((lockstep.robot.q()[0] - turned_q(0.1)[0]).abs() < 1e-3);
+    // The chunks after another goal have none before them.
+    let goal = lockstep
+        .within(engaged, turned(0.0), OnArrival::ReportAndHold)
+        .unwrap();
+    lockstep.until_resolved(goal, 5000).unwrap();
+    let late = Chunk::joints([(Duration::from_secs(60), turned_q(0.1))]).unwrap();
+    lockstep
+        .chunk(engaged, late.observed_at(now - 250))
+        .unwrap();
+}
+
+#[test]
+fn velocities_that_no_robot_allows_are_refused() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let at = |k: u32| Duration::from_millis(100) * k;
+        let dq = [0.0, 0.0, -50.0, 0.0, 0.0, 0.0, 0.0];
+        let joints = Chunk::joints_with_velocities((1..9).map(|k| (at(k), READY.into(), dq)));
+        let error = lockstep.chunk(engaged, joints.unwrap()).unwrap_err();
+        let text = error.to_string();
+        assert!(
+            text.starts_with("speed of a joint is 50 rad/s, expected between 0 and 2."),
+            "{text}"
+        );
+        let pose = lockstep.arm_pose();
+        for (twist, expected) in [
+            (
+                [0.0, -50.0, 0.0, 0.0, 0.0, 0.0],
+                "speed is 50 m/s, expected between 0 and ",
+            ),
+            (
+                [0.0, 0.0, 0.0, 0.0, 0.0, 50.0],
+                "angular speed is 50 rad/s, expected between 0 and ",
+            ),
+        ] {
+            let poses = Chunk::poses_with_twists((1..9).map(|k| (at(k), pose, twist)));
+            let error = lockstep.chunk(engaged, poses.unwrap()).unwrap_err();
+            assert!(error.to_string().starts_with(expected), "{error}");
+        }
+    });
+}

@@ -83,6 +83,7 @@ impl ChunkCourse {
             origin,
             blend,
             pace,
+            ..
         } = chunk;
         let asked = (origin, blend, pace);
         let play = match points {

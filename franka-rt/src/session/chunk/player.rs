@@ -151,14 +151,14 @@ impl<M: CurveState> Player<M> {
         &self.curve
     }
 
-    /// The chunk as it came.
+    /// The chunk as it came, but for what nobody asks for any more.
     pub(super) fn into_chunk(self) -> Chunk {
         let (origin, blend, pace) = self.asked;
         Chunk {
-            points: M::points(self.curve),
             origin,
             blend,
             pace,
+            ..Chunk::of(M::points(self.curve))
         }
     }
 }

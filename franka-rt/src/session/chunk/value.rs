@@ -70,6 +70,8 @@ pub struct Chunk {
     pub(super) points: Points,
     pub(super) origin: Origin,
     pub(super) blend: Duration,
+    /// Whether the velocities of the points were given: these are checked before it is sent.
+    pub(super) with_velocities: bool,
     /// How a path waits and pauses; `None` for points that have times.
     pub(super) pace: Option<Pace>,
 }
@@ -88,8 +90,8 @@ impl Chunk {
     /// Chunks that may be on their way to the thread, in use, or on their way back at a time.
     pub const UNDER_WAY_MAX: usize = 8;
 
-    /// The latest that a point may lie after its chunk's origin. A later time is a mistake of
-    /// units.
+    /// The latest that a point may lie after its chunk's origin, and that origin after the robot's
+    /// newest state. A later time is a mistake of units, or of clocks.
     pub const OFFSET_MAX: Duration = Duration::from_secs(60);
 
     /// How long a chunk is blended with what the arm does unless said otherwise: as long as one
@@ -140,10 +142,11 @@ impl Chunk {
                 ddq,
             }
         };
-        Ok(Self::through_joints(
-            (0..points.len()).map(state).collect(),
-            times,
-        ))
+        let states = (0..points.len()).map(state).collect();
+        Ok(Self {
+            with_velocities: true,
+            ..Self::through_joints(states, times)
+        })
     }
 
     /// Through poses of the end effector in the base frame, `O_T_EE`, metres, each at its time
@@ -200,10 +203,11 @@ impl Chunk {
                 acceleration,
             }
         };
-        Ok(Self::through_poses(
-            (0..points.len()).map(state).collect(),
-            times,
-        ))
+        let states = (0..points.len()).map(state).collect();
+        Ok(Self {
+            with_velocities: true,
+            ..Self::through_poses(states, times)
+        })
     }
 
     /// Counts the points' times from the robot's state `message_id`, `[ms]`: the one that the
@@ -252,17 +256,72 @@ impl Chunk {
 
     /// Checks the chunk for a robot in `state`: every point for joints. For poses the last one,
     /// where the arm is to rest; on the way to it inverse kinematics holds the arm inside its
-    /// bounds, whatever it is asked for.
+    /// bounds, whatever it is asked for. Velocities that were given have to be ones that the robot
+    /// allows.
     ///
     /// # Errors
-    /// [`GoalError`] of the first point that cannot be reached.
+    /// [`GoalError`] of the first point that cannot be reached, or is passed too fast.
     pub fn check(&self, model: &Model, state: &RobotState) -> Result<(), GoalError> {
+        if self.with_velocities {
+            self.check_velocities(model)?;
+        }
         match &self.points {
             Points::Joints(curve) => curve
                 .states()
                 .iter()
                 .try_for_each(|point| check::target(&Target::Joints(point.q.into()), model, state)),
             Points::Poses(_) => check::target(&self.target(), model, state),
+        }
+    }
+
+    fn check_velocities(&self, model: &Model) -> Result<(), GoalError> {
+        let check = |what, unit, got: f64, most: f64| {
+            if got <= most {
+                return Ok(());
+            }
+            let least = 0.0;
+            Err(GoalError::Number {
+                what,
+                got,
+                unit,
+                least,
+                most,
+            })
+        };
+        match &self.points {
+            Points::Joints(curve) => {
+                let most = model.joint_limits().velocity;
+                let mut dq = curve.states().iter().map(|point| point.dq.abs());
+                dq.try_for_each(|dq| {
+                    let each = dq.iter().zip(&most);
+                    let mut each = each.map(|(&got, &most)| (got, most));
+                    each.try_for_each(|(got, most)| check("speed of a joint", "rad/s", got, most))
+                })
+            }
+            Points::Poses(curve) => {
+                let most = model.cartesian_limits();
+                curve.states().iter().try_for_each(|point| {
+                    let (v, omega) = (
+                        point.twist.fixed_rows::<3>(0),
+                        point.twist.fixed_rows::<3>(3),
+                    );
+                    check("speed", "m/s", v.norm(), most.translation.velocity)?;
+                    check(
+                        "angular speed",
+                        "rad/s",
+                        omega.norm(),
+                        most.rotation.velocity,
+                    )
+                })
+            }
+        }
+    }
+
+    /// The state that the policy saw, `message_id`, if that is named.
+    pub(crate) fn observation(&self) -> Option<u64> {
+        match self.origin {
+            Origin::TakeUp => None,
+            Origin::Robot(message_id) => Some(message_id),
         }
     }
 
@@ -303,11 +362,12 @@ impl Chunk {
         Self::of(Points::Poses(Curve::new(times, states)))
     }
 
-    fn of(points: Points) -> Self {
+    pub(super) fn of(points: Points) -> Self {
         Self {
             points,
             origin: Origin::TakeUp,
             blend: Self::BLEND,
+            with_velocities: false,
             pace: None,
         }
     }

@@ -7,6 +7,26 @@ use std::sync::Arc;
 /// The value of the counter once the token is dropped.
 const GONE: u64 = u64::MAX;
 
+/// A count that no token comes to.
+const NEVER: u64 = u64::MAX - 1;
+
+/// What the two ends of a deadman share.
+#[derive(Debug)]
+pub(crate) struct Pulse {
+    /// How often the token was kept alive.
+    beats: AtomicU64,
+    /// The count at which it was last found silent.
+    silent: AtomicU64,
+}
+
+impl Pulse {
+    /// Whether the control thread has found the token silent, and it was not kept alive since.
+    pub(crate) fn is_silent(&self) -> bool {
+        // Relaxed, as below.
+        self.beats.load(Ordering::Relaxed) == self.silent.load(Ordering::Relaxed)
+    }
+}
+
 /// The token of a session. [`Self::keep_alive`] has to be called more often than every `silence`;
 /// otherwise, and once the token is dropped, the arm brakes and holds, and every goal ends as held,
 /// until the token is kept alive again. A token that was dropped never comes back.
@@ -15,14 +35,14 @@ const GONE: u64 = u64::MAX;
 /// with.
 #[derive(Debug)]
 pub struct Deadman {
-    beats: Arc<AtomicU64>,
+    pulse: Arc<Pulse>,
     silence: Duration,
 }
 
 /// The other end of a [`Deadman`], for the session that is bound to it.
 #[derive(Debug)]
 pub struct DeadmanMonitor {
-    beats: Arc<AtomicU64>,
+    pulse: Arc<Pulse>,
     silence: Duration,
     /// The newest count, and the robot's time when it was first seen, `[ms]`.
     seen: Option<(u64, u64)>,
@@ -32,13 +52,16 @@ impl Deadman {
     /// Returns a token that may be silent for `silence`, in whole milliseconds, and the end of it
     /// for a session.
     pub fn new(silence: Duration) -> (Self, DeadmanMonitor) {
-        let beats = Arc::new(AtomicU64::new(0));
+        let pulse = Arc::new(Pulse {
+            beats: AtomicU64::new(0),
+            silent: AtomicU64::new(NEVER),
+        });
         let token = Self {
-            beats: beats.clone(),
+            pulse: pulse.clone(),
             silence,
         };
         let monitor = DeadmanMonitor {
-            beats,
+            pulse,
             silence,
             seen: None,
         };
@@ -48,7 +71,7 @@ impl Deadman {
     /// Restarts the time of silence. Wait-free.
     pub fn keep_alive(&self) {
         // Relaxed: the count is all that crosses.
-        self.beats.fetch_add(1, Ordering::Relaxed);
+        self.pulse.beats.fetch_add(1, Ordering::Relaxed);
     }
 
     /// How long it may be silent.
@@ -60,7 +83,7 @@ impl Deadman {
 impl Drop for Deadman {
     fn drop(&mut self) {
         // Relaxed, as above. The counter has no other writer any more.
-        self.beats.store(GONE, Ordering::Relaxed);
+        self.pulse.beats.store(GONE, Ordering::Relaxed);
     }
 }
 
@@ -73,7 +96,7 @@ impl DeadmanMonitor {
     /// Whether the token lives at the robot's time `now`, `[ms]`. Its silence counts from the first
     /// call on.
     pub(crate) fn is_alive(&mut self, now: u64) -> bool {
-        let beats = self.beats.load(Ordering::Relaxed);
+        let beats = self.pulse.beats.load(Ordering::Relaxed);
         let since = match self.seen {
             Some((seen, since)) if seen == beats => since,
             _ => {
@@ -81,7 +104,17 @@ impl DeadmanMonitor {
                 now
             }
         };
-        beats != GONE && u128::from(now.saturating_sub(since)) < self.silence.as_millis()
+        let alive =
+            beats != GONE && u128::from(now.saturating_sub(since)) < self.silence.as_millis();
+        if !alive {
+            self.pulse.silent.store(beats, Ordering::Relaxed);
+        }
+        alive
+    }
+
+    /// What is known of the token outside the control thread.
+    pub(crate) fn pulse(&self) -> Arc<Pulse> {
+        self.pulse.clone()
     }
 }
 
@@ -94,13 +127,20 @@ mod tests {
         let (token, mut monitor) = Deadman::new(Duration::from_millis(100));
         assert!(monitor.is_alive(7));
         assert!(monitor.is_alive(106));
+        assert!(!monitor.pulse().is_silent());
         assert!(!monitor.is_alive(107));
+        assert!(monitor.pulse().is_silent());
         token.keep_alive();
+        assert!(
+            !monitor.pulse().is_silent(),
+            "before the thread has seen it"
+        );
         assert!(monitor.is_alive(500));
         assert!(!monitor.is_alive(600));
         token.keep_alive();
         assert!(monitor.is_alive(601));
         drop(token);
         assert!(!monitor.is_alive(602));
+        assert!(monitor.pulse().is_silent());
     }
 }

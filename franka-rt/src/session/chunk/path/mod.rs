@@ -28,7 +28,7 @@ use franka_proto::RobotState;
 
 pub use self::error::PathError;
 pub use self::preview::{Blocked, Preview};
-use super::value::{Chunk, Origin, Points};
+use super::value::{Chunk, Points};
 use crate::session::kinematics::Posture;
 use crate::session::{Goal, Target, check, end_effector_of, rigid};
 
@@ -144,10 +144,8 @@ impl Chunk {
             (Points::Poses(way.into_curve()), pace)
         };
         Ok(Self {
-            points,
-            origin: Origin::TakeUp,
-            blend: Self::BLEND,
             pace: Some(pace),
+            ..Self::of(points)
         })
     }
 }

@@ -318,10 +318,8 @@ fn go(way: Timed<PoseState>, q: JointVector, budget: &Budget, model: &Model) -> 
         (0..=count as u32).map(at).collect()
     };
     let chunk = Chunk {
-        points: Points::Poses(curve),
-        origin: Origin::TakeUp,
-        blend: Chunk::BLEND,
         pace: Some(pace),
+        ..Chunk::of(Points::Poses(curve))
     };
     let still = crate::session::chunk::curve_state::stacked(&Vector3::zeros(), &Vector3::zeros());
     let mut reference = Reference::at_rest(q);
