@@ -182,7 +182,10 @@ mod tests {
     #[test]
     fn whoever_can_act_on_an_error_decides_how_it_ends() {
         let of = |error: anyhow::Error| Ending::of(&error);
-        assert_eq!(of(<ConnectError>::Timeout.into()), Ending::NoRobot);
+        let silent: ConnectError = ConnectError::Timeout {
+            address: ([172, 16, 0, 2], 1337).into(),
+        };
+        assert_eq!(of(silent.into()), Ending::NoRobot);
         assert_eq!(of(MotionError::Superseded.into()), Ending::Failed);
         assert_eq!(of(Failure::usage("no").into()), Ending::Usage);
         assert_eq!(of(io::Error::other("full").into()), Ending::Host);
