@@ -29,6 +29,8 @@ pub struct DriverStack {
     step: u64,
     /// The time since any fixed moment.
     pub now: Duration,
+    /// When the newest state came.
+    heard: Duration,
     /// The time from a state to its answer. The client is then ready for the next state.
     pub turnaround: Duration,
     /// Whether events of the driver do not reach the lifecycle, as if its task were not scheduled.
@@ -58,6 +60,7 @@ impl DriverStack {
             state: RobotState::default(),
             step: 0,
             now: Duration::ZERO,
+            heard: Duration::ZERO,
             turnaround: Duration::ZERO,
             lifecycle_is_paused: false,
             free: Duration::ZERO,
@@ -176,6 +179,7 @@ impl DriverStack {
         let version = self.session.version();
         let previous = self.state.message_id;
         self.state = RobotState::decode(version, datagram).expect("a state of this version");
+        self.heard = self.now;
         self.step = self.state.message_id.saturating_sub(previous);
         let answer = self.driver.on_state(&self.state);
         answer.map(|answer| answer.encode(version, command).expect("it fits"))
@@ -206,7 +210,8 @@ impl DriverStack {
         {
             self.lifecycle.on_event(event, self.now);
         }
-        self.lifecycle.on_time(self.now);
+        let silence = self.now.saturating_sub(self.heard);
+        self.lifecycle.on_time(self.now, silence);
         self.carry_out()
     }
 

@@ -61,6 +61,9 @@ pub(crate) struct Bridge {
     seen: Option<Seen>,
     /// `message_id` of the newest state when a silence was noticed, until one comes.
     silent_since: Option<u64>,
+    /// The lifecycle's deadline, and `message_id` of the newest state when it was set, and when
+    /// that was.
+    awaited: Option<(Duration, u64, Duration)>,
 }
 
 /// A bridge that is not yet running, with what it will receive.
@@ -120,6 +123,7 @@ impl Bridge {
             refused: None,
             seen: None,
             silent_since: None,
+            awaited: None,
         }
     }
 
@@ -154,8 +158,9 @@ impl Bridge {
             if self.lost || closing.is_some() && self.lifecycle.is_idle() {
                 break;
             }
+            self.note_deadline();
             let deadline = [
-                self.lifecycle.deadline().map(|after| self.started + after),
+                self.awaited.map(|(after, ..)| self.started + after),
                 closing,
             ];
             let deadline = deadline.into_iter().flatten().min();
@@ -184,7 +189,8 @@ impl Bridge {
                         tracing::error!("the motion did not end; closing all the same");
                         break;
                     }
-                    self.lifecycle.on_time(self.now());
+                    self.publisher.refresh();
+                    self.lifecycle.on_time(self.now(), self.silence());
                 }
             }
         }
@@ -197,6 +203,26 @@ impl Bridge {
 
     fn now(&self) -> Duration {
         self.started.elapsed()
+    }
+
+    /// Notes since when a deadline is waited for.
+    fn note_deadline(&mut self) {
+        let deadline = self.lifecycle.deadline();
+        if deadline == self.awaited.map(|(deadline, ..)| deadline) {
+            return;
+        }
+        self.publisher.refresh();
+        let newest = self.publisher.state().message_id;
+        self.awaited = deadline.map(|deadline| (deadline, newest, self.now()));
+    }
+
+    /// For how long no state has come, if none has since the deadline was set; zero otherwise.
+    fn silence(&self) -> Duration {
+        let newest = self.publisher.state().message_id;
+        let silent = self.awaited.filter(|(_, before, _)| *before == newest);
+        silent.map_or(Duration::ZERO, |(.., since)| {
+            self.now().saturating_sub(since)
+        })
     }
 
     /// Carries out what the lifecycle has decided, in its order.

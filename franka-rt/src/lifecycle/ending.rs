@@ -12,8 +12,7 @@ use crate::session::{GoalId, OnArrival, Target};
 
 /// Why no motion begins: the one before was given up, and does not end.
 pub(super) const STILL_SHOWN: MotionError = MotionError::Protocol {
-    what: "waited for the end of the motion before, which the robot was told to stop and goes on \
-           showing",
+    what: "no state has shown the end of the motion before, which the robot was told to stop",
 };
 
 impl Lifecycle {
