@@ -2,7 +2,7 @@
 
 use std::net::SocketAddr;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use franka_rt::lifecycle::{CloseReason, MotionError};
 use franka_rt::sched::Granted;
@@ -60,6 +60,28 @@ impl Link {
     pub(crate) fn silence(&self) -> Option<Duration> {
         let newest = self.newest.state().message_id;
         self.subscriptions().silence(newest)
+    }
+
+    /// Waits until the link has been given up for so long and no state has come meanwhile, and
+    /// returns the whole silence.
+    ///
+    /// # Cancel safety
+    /// Nothing happens if the future is dropped.
+    pub(crate) async fn stays_silent(&self, more: Duration) -> Duration {
+        const LOOK: Duration = Duration::from_millis(50);
+        let mut since = None;
+        loop {
+            match self.silence() {
+                None => since = None,
+                Some(silence) => {
+                    let waited = since.get_or_insert_with(Instant::now).elapsed();
+                    if waited >= more {
+                        return silence + waited;
+                    }
+                }
+            }
+            tokio::time::sleep(LOOK).await;
+        }
     }
 
     /// Waits until the connection has ended, and returns why.

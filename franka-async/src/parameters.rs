@@ -17,6 +17,9 @@ const ANSWER: Duration = Duration::from_secs(5);
 /// Time for a recovery, which moves brakes.
 const RECOVERY: Duration = Duration::from_secs(30);
 
+/// How much longer than the link timeout a robot that recovers may be silent.
+const SILENT: Duration = Duration::from_secs(3);
+
 impl Robot {
     /// Sets the torques and forces at which the robot reports contact (lower) and stops itself
     /// (upper): [`CollisionBehavior::careful`], [`compliant`](CollisionBehavior::compliant),
@@ -113,15 +116,26 @@ impl Robot {
     }
 
     /// Recovers from a reflex (`AutomaticErrorRecovery`) and resolves when the robot takes motions
-    /// again. Succeeds without effect if there is nothing to recover from.
+    /// again. Succeeds without effect if there is nothing to recover from. May take as long as the
+    /// brakes do, 30 s at most.
     ///
     /// # Errors
     /// [`CommandError`]; a refusal that names manual recovery has to be solved at the robot.
+    /// [`CommandError::LinkLost`] if the robot answers and its states stay away, or if both do for
+    /// three seconds more than the link timeout.
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
     pub async fn recover(&self) -> Result<(), CommandError> {
-        recover(&self.channel()).await
+        let link = self.link();
+        tokio::select! {
+            recovered = recover(&link.channel) => recovered?,
+            silence = link.stays_silent(SILENT) => return Err(CommandError::LinkLost { silence }),
+        }
+        match link.silence() {
+            Some(silence) => Err(CommandError::LinkLost { silence }),
+            None => Ok(()),
+        }
     }
 
     /// The robot's description of itself, URDF. Protocol 10 only.

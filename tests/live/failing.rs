@@ -6,6 +6,7 @@ use franka_async::MotionError;
 use franka_async::error::CommandError;
 use franka_async::state::RobotMode;
 use franka_proto::RobotError;
+use franka_sim::Network;
 
 use crate::{SOON, alone, connect, long_way, simulated, under_way, until};
 
@@ -137,5 +138,52 @@ async fn the_last_handle_dropped_in_mid_motion_brakes_and_closes() {
         state.reflex_reason
     );
     let robot = connect(&sim).await;
+    robot.shutdown().await;
+}
+
+/// A frozen computer, as its network is: the connection stands, nothing is said.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_recovery_of_a_silent_robot_is_given_up_before_the_brakes_time() {
+    let _alone = alone();
+    let (robot, sim) = simulated().await;
+    let (release, held) = std::sync::mpsc::channel::<()>();
+    let (freeze, frozen) = tokio::sync::oneshot::channel();
+    let silence = sim.with(move |_| {
+        freeze.send(()).unwrap();
+        held.recv().is_err()
+    });
+    let (silent, recovered) = tokio::join!(silence, async {
+        frozen.await.unwrap();
+        let recovered = robot.recover().await;
+        drop(release);
+        recovered
+    });
+    silent.unwrap();
+    let Err(CommandError::LinkLost { silence }) = recovered else {
+        panic!("{recovered:?}");
+    };
+    assert!(silence >= Duration::from_secs(4), "{silence:?}");
+    robot.shutdown().await;
+}
+
+/// Commands are answered and carried out; the states are lost on their way.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_recovery_that_no_state_confirms_is_no_success() {
+    let _alone = alone();
+    let (robot, sim) = simulated().await;
+    let moving = tokio::spawn(long_way(&robot).into_future());
+    under_way(&robot).await;
+    let cut = |network: &mut Option<Network>, now| {
+        let network = network.get_or_insert_with(Network::perfect);
+        network.to_client.cut(now..Duration::MAX);
+    };
+    sim.with_network(cut).await.unwrap();
+    let lost = moving.await.unwrap().unwrap_err();
+    assert!(matches!(lost, MotionError::LinkLost { .. }), "{lost:?}");
+    let recovered = robot.recover().await.unwrap_err();
+    assert!(
+        matches!(recovered, CommandError::LinkLost { .. }),
+        "{recovered:?}"
+    );
     robot.shutdown().await;
 }

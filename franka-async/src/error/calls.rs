@@ -28,6 +28,12 @@ pub enum CommandError {
         /// How long the answer was awaited.
         deadline: Duration,
     },
+    /// Link: the robot's states stay away, so that nobody knows what has become of the command.
+    #[error("no answer that a state confirms: no robot state for {} ms", .silence.as_millis())]
+    LinkLost {
+        /// The silence so far, at least.
+        silence: Duration,
+    },
     /// Peer: its answer cannot be read.
     #[error(transparent)]
     Violation(#[from] Violation),
@@ -46,6 +52,7 @@ impl CommandError {
             Self::Refused(refusal) => refusal.entry(),
             Self::Request(_) => "command-request",
             Self::Timeout { .. } => "command-timeout",
+            Self::LinkLost { .. } => "command-link-lost",
             Self::Violation(_) => "command-violation",
             Self::ConnectionClosed { reason } => reason.entry(),
         }
@@ -56,7 +63,7 @@ impl CommandError {
         match self {
             Self::Refused(_) => Party::Robot,
             Self::Request(_) => Party::Caller,
-            Self::Timeout { .. } => Party::Link,
+            Self::Timeout { .. } | Self::LinkLost { .. } => Party::Link,
             Self::ConnectionClosed { reason } => reason.party(),
             Self::Violation(_) => Party::Peer,
         }
