@@ -3,7 +3,7 @@
 use std::pin::pin;
 use std::time::Duration;
 
-use anyhow::{Context, anyhow, ensure};
+use anyhow::{Context, anyhow, bail};
 use clap::Parser;
 use franka_async::Robot;
 use franka_async::connection::CancellationToken;
@@ -82,20 +82,22 @@ where
     closing.cancel();
     let end = Instant::now() + deadline;
     let resting = async {
-        let rested = timeout_at(end, robot.shutdown()).await;
+        // `shutdown` alone brakes, too. `stop` says whether the arm was seen to rest.
+        let rested = timeout_at(end, robot.stop()).await;
+        let closed = timeout_at(end, robot.shutdown()).await;
         at_rest.cancel();
-        rested
+        rested.and_then(|rested| closed.map(|()| rested))
     };
     let (rested, served) = tokio::join!(resting, timeout_at(end, serving));
-    ensure!(
-        rested.is_ok(),
-        "the arm was not seen to rest within {deadline:?}"
-    );
     match served {
         Ok(served) => served.map_err(Into::into)?,
         Err(_) => println!("cut the connections that were left"),
     }
-    why
+    why?;
+    match rested {
+        Ok(rested) => rested.context("the arm was not seen to rest"),
+        Err(_) => bail!("the arm was not seen to rest within {deadline:?}"),
+    }
 }
 
 /// Resolves when the process is asked to end.

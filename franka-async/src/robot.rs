@@ -236,7 +236,8 @@ impl Robot {
     }
 
     /// Brakes, ends the motion, ends the control thread and closes the connection. Every other
-    /// handle is then closed.
+    /// handle is then closed. Whether the arm was seen to rest is what [`Self::stop`] says, called
+    /// before.
     ///
     /// # Cancel safety
     /// Once polled, it goes on in the background.

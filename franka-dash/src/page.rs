@@ -1,7 +1,9 @@
 //! The page: files that are part of the program. `cargo xtask assets` makes them.
 
 use axum::Router;
-use axum::http::{HeaderName, header};
+use axum::extract::OriginalUri;
+use axum::http::{HeaderName, StatusCode, header};
+use axum::response::IntoResponse;
 use axum::routing::get;
 
 /// The routes of the files of a robot's page.
@@ -23,11 +25,23 @@ pub(crate) fn is_file(name: &str) -> bool {
 
 /// The routes of all files; `page` is what comes first.
 fn files<S: Clone + Send + Sync + 'static>(page: &'static [u8]) -> Router<S> {
-    let mut router = Router::new().route("/", get(async move || (headers(HTML), page)));
+    let first = async move |OriginalUri(asked): OriginalUri| {
+        if asked.path().ends_with('/') {
+            (headers(HTML), page).into_response()
+        } else {
+            (StatusCode::NOT_FOUND, needs_a_slash(asked.path())).into_response()
+        }
+    };
+    let mut router = Router::new().route("/", get(first));
     for (path, kind, content) in FILES.iter().chain(MESHES) {
         router = router.route(path, get(async || (headers(kind), *content)));
     }
     router
+}
+
+/// Why there is no page at a path whose files a browser would look for elsewhere.
+fn needs_a_slash(path: &str) -> String {
+    format!("the page's files are beside it: nest its router under \"{path}/\", got \"{path}\"\n")
 }
 
 const HTML: &str = "text/html; charset=utf-8";

@@ -69,3 +69,43 @@ fn each_robot_has_a_page_and_a_commander_of_its_own() {
         (&json!("fr3"), &json!("fer"))
     );
 }
+
+/// A page there would look for its files in the folder above.
+#[test]
+fn a_page_nested_under_a_path_without_a_slash_says_so() {
+    let runtime = Runtime::new().expect("a runtime");
+    let (address, _running) = runtime.block_on(async {
+        let sim = std::sync::Arc::new(Sim::fr3().start().await.expect("a simulated robot"));
+        let page = franka_dash::simulator(&sim, Options::default()).await;
+        let page = page.expect("a page");
+        let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await;
+        let listener = listener.expect("a port");
+        let address = listener.local_addr().expect("an address");
+        let nested = axum::Router::new()
+            .nest("/wrong", page.clone())
+            .nest("/right/", page);
+        tokio::spawn(async move { axum::serve(listener, nested).await });
+        (address, sim)
+    });
+    let agent: ureq::Agent = ureq::Agent::config_builder()
+        .http_status_as_error(false)
+        .build()
+        .into();
+    let get = |path: &str| {
+        let answer = agent.get(format!("http://{address}{path}")).call();
+        let mut answer = answer.expect("an answer");
+        let text = answer.body_mut().read_to_string().expect("text");
+        (answer.status().as_u16(), text)
+    };
+    let (status, text) = get("/wrong");
+    assert_eq!(status, 404);
+    assert!(
+        text.contains(r#"nest its router under "/wrong/", got "/wrong""#),
+        "{text}"
+    );
+    let (status, text) = get("/right/");
+    assert!(
+        status == 200 && text.contains("id=\"scene\""),
+        "{status} {text}"
+    );
+}
