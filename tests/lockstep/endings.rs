@@ -279,10 +279,17 @@ fn bad_goals_are_named_and_change_nothing() {
             Target::Joints(beyond),
             "joint 4: 0.5 rad, expected between -3.0343 and -0.1596",
         ),
-        (Target::Joints(nan), "the target has a non-finite number"),
+        (
+            Target::Joints(nan),
+            "a number of the target's joint positions is not finite",
+        ),
         (
             Target::Pose(far),
-            "no joint positions inside their ranges reach",
+            "no joint positions inside their ranges reach (2.",
+        ),
+        (
+            Target::Pose(Translation3::new(1e300, 0.0, 0.0) * lockstep.arm_pose()),
+            "no joint positions inside their ranges reach (1.000e300,",
         ),
     ] {
         let bad = lockstep.goal(target, OnArrival::ReportAndFinish);

@@ -57,13 +57,13 @@ pub struct SuccessRate {
 
 impl SuccessRate {
     /// The rate that libfranka 0.21 computes from the last two records of its log: the success rate
-    /// in the last but one, diminished by a hundredth for every state lost between the two. Times
-    /// are `message_id`s `[ms]`.
+    /// in the last but one, diminished by a hundredth for every state lost between the two; but 0
+    /// at least, where libfranka's falls below. Times are `message_id`s `[ms]`.
     #[must_use]
     pub fn of_log(success_rate: f64, time: u64, last_time: u64) -> Self {
         let lost = last_time.saturating_sub(time).saturating_sub(1);
         Self {
-            rate: success_rate * (1.0 - lost as f64 / 100.0),
+            rate: success_rate * (1.0 - lost as f64 / 100.0).max(0.0),
             lost,
         }
     }
@@ -93,6 +93,11 @@ mod tests {
     fn states_out_of_order_count_as_none_lost() {
         assert_eq!(SuccessRate::of_log(0.5, 7, 7).lost, 0);
         assert_eq!(SuccessRate::of_log(0.5, 8, 7).lost, 0);
+    }
+
+    #[test]
+    fn a_rate_is_never_below_zero() {
+        assert_eq!(SuccessRate::of_log(0.5, 0, 302).rate, 0.0);
     }
 
     #[test]

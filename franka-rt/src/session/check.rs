@@ -20,9 +20,12 @@ use crate::session::{
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GoalError {
-    /// The target has a non-finite number.
-    #[error("the target has a non-finite number")]
-    NotFinite,
+    /// The target has a number that is not finite.
+    #[error("a number of the target's {what} is not finite")]
+    NotFinite {
+        /// Which part of the target.
+        what: &'static str,
+    },
     /// The target moves: there is no arrival to wait for.
     #[error("the target moves, so that the arm cannot come to rest at it")]
     Moves,
@@ -39,9 +42,7 @@ pub enum GoalError {
         upper: f64,
     },
     /// No joint positions inside their ranges put the end effector there.
-    #[error(
-        "no joint positions inside their ranges reach ({x:.4}, {y:.4}, {z:.4}) m with that orientation"
-    )]
+    #[error("no joint positions inside their ranges reach {} with that orientation", place([*x, *y, *z]))]
     Unreachable {
         /// Position asked for, base frame, `[m]`.
         x: f64,
@@ -154,7 +155,7 @@ impl GoalError {
     /// Returns the name of its row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
-            Self::NotFinite => "goal-not-finite",
+            Self::NotFinite { .. } => "goal-not-finite",
             Self::Moves => "goal-moves",
             Self::OutOfRange { .. } => "goal-out-of-range",
             Self::Unreachable { .. } => "goal-unreachable",
@@ -208,7 +209,7 @@ impl Goal {
         if let Some(grasp) = &self.grasp {
             let finite = grasp.to_homogeneous().iter().all(|x| x.is_finite());
             if !finite {
-                return Err(GoalError::NotFinite);
+                return Err(GoalError::NotFinite { what: "grasp" });
             }
             if !matches!(self.target, Target::Pose(_) | Target::Rest) {
                 return Err(GoalError::Grasp);
@@ -288,10 +289,11 @@ pub(super) fn target(target: &Target, model: &Model, state: &RobotState) -> Resu
     match target {
         Target::Rest | Target::Guide(_) => Ok(()),
         Target::MovingJoints { dq, .. } if !dq.iter().all(|x| x.is_finite()) => {
-            Err(GoalError::NotFinite)
+            let what = "joint velocities";
+            Err(GoalError::NotFinite { what })
         }
         Target::MovingPose { twist, .. } if !twist.iter().all(|x| x.is_finite()) => {
-            Err(GoalError::NotFinite)
+            Err(GoalError::NotFinite { what: "twist" })
         }
         Target::Joints(q) | Target::MovingJoints { q, .. } => check_joints(q, model, state),
         Target::Pose(pose) | Target::MovingPose { pose, .. } => {
@@ -301,7 +303,7 @@ pub(super) fn target(target: &Target, model: &Model, state: &RobotState) -> Resu
                 .chain(pose.rotation.coords.iter())
                 .all(|x| x.is_finite()))
             {
-                return Err(GoalError::NotFinite);
+                return Err(GoalError::NotFinite { what: "pose" });
             }
             check_reach(pose, &ee, model, &state.q.into()).map_err(|()| GoalError::Unreachable {
                 x: p.x,
@@ -361,6 +363,15 @@ pub(crate) fn check_speed_cap(got: f64) -> Result<(), GoalError> {
     })
 }
 
+/// A position in an error's text.
+fn place(position: [f64; 3]) -> String {
+    let [x, y, z] = position;
+    if position.iter().any(|x| x.abs() > 10.0) {
+        return format!("({x:.3e}, {y:.3e}, {z:.3e}) m (expected metres)");
+    }
+    format!("({x:.4}, {y:.4}, {z:.4}) m")
+}
+
 /// Checks the silence that a watchdog or a deadman bears.
 pub(crate) fn check_silence(got: Duration) -> Result<(), GoalError> {
     if got < Goal::SILENCE_MIN {
@@ -373,7 +384,8 @@ fn check_joints(q: &[f64; 7], model: &Model, state: &RobotState) -> Result<(), G
     let limits = model.joint_limits();
     for (i, &got) in q.iter().enumerate() {
         if !got.is_finite() {
-            return Err(GoalError::NotFinite);
+            let what = "joint positions";
+            return Err(GoalError::NotFinite { what });
         }
         // An arm that stands nearer to the end of its range than it could go may stay there, or
         // leave.

@@ -148,8 +148,8 @@ async fn an_object_that_cannot_go_there_stays_in_all_hands() {
             base.move_to(object()),
         ] {
             let [first, _] = motion.await;
-            let finite = Err(MotionError::Goal(GoalError::NotFinite));
-            assert_eq!(first, finite);
+            let unlike = matches!(first, Err(MotionError::Goal(GoalError::NotFinite { .. })));
+            assert!(unlike, "{first:?}");
         }
     }
     // Only the first arm has it out of its reach: the other one does not begin, either.

@@ -168,10 +168,12 @@ fn an_invalid_goal_is_refused_and_the_motion_continues() {
                 let none = Target::Joints([f64::NAN; 7]);
                 let goal = trial.lockstep.goal(none, OnArrival::ReportAndFinish);
                 let refused = trial.lockstep.submit(goal);
-                assert_eq!(refused, Err(MotionError::Goal(GoalError::NotFinite)));
+                let what = "joint positions";
+                let error = GoalError::NotFinite { what };
+                assert_eq!(refused, Err(MotionError::Goal(error)));
                 if variant.way == Way::Target(Gesture::Follow) {
                     let updated = trial.lockstep.update(trial.work, none);
-                    assert_eq!(updated, Err(GoalError::NotFinite));
+                    assert_eq!(updated, Err(error));
                 }
                 let outcome = trial.outcome();
                 Expect::Done.check(&trial, &outcome);
