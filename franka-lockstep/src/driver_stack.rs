@@ -30,7 +30,7 @@ pub struct DriverStack {
     /// The time since any fixed moment.
     pub now: Duration,
     /// When the newest state came.
-    heard: Duration,
+    pub(crate) heard: Duration,
     /// The time from a state to its answer. The client is then ready for the next state.
     pub turnaround: Duration,
     /// Whether events of the driver do not reach the lifecycle, as if its task were not scheduled.

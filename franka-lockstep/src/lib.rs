@@ -243,6 +243,7 @@ impl Lockstep {
     pub fn jump(&mut self, milliseconds: u64) {
         self.milliseconds += milliseconds;
         self.heard += milliseconds;
+        self.client.heard += Duration::from_millis(milliseconds);
         self.client.now = Duration::from_millis(self.milliseconds);
         self.client.settle();
     }
