@@ -3,7 +3,7 @@
 use std::sync::mpsc;
 
 use franka_lockstep::{Link, Lockstep, for_each_robot};
-use franka_model::{READY, Wrench};
+use franka_model::{READY, Twist, Wrench};
 use franka_proto::{
     CollisionBehavior, MoveControllerMode, MoveStatus, Request, RobotError, RobotMode, Status,
 };
@@ -296,6 +296,16 @@ fn bad_goals_are_named_and_change_nothing() {
         let error = lockstep.submit(bad).unwrap_err();
         assert!(error.to_string().starts_with(expected), "{error}");
     }
+    // Millimetres per second.
+    let twist = Twist::new(0.0, 300.0, 0.0, 0.0, 0.0, 0.0);
+    let pose = lockstep.arm_pose();
+    let moving = Target::MovingPose { pose, twist };
+    let fast = lockstep.goal(moving, OnArrival::Hold);
+    let error = lockstep.submit(fast).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "speed is 300 m/s, expected between 0 and 3"
+    );
     let mut fast = lockstep.goal(Target::Joints(READY.into()), OnArrival::ReportAndFinish);
     fast.budget.joints[1].velocity = 3.0;
     let error = lockstep.submit(fast).unwrap_err();

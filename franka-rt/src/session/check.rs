@@ -4,7 +4,7 @@
 use core::time::Duration;
 
 use franka_model::collision::Obstacle;
-use franka_model::{EndEffector, JointVector, Model, inverse_kinematics};
+use franka_model::{EndEffector, JointVector, Model, Twist, inverse_kinematics};
 use franka_otg::AxisLimits;
 use franka_proto::{RobotState, Version};
 
@@ -283,20 +283,21 @@ impl Goal {
     }
 }
 
-/// Checks that a robot in `state` can get to `target`.
-pub(super) fn target(target: &Target, model: &Model, state: &RobotState) -> Result<(), GoalError> {
+/// Checks that a robot in `state` can get to a target.
+pub(super) fn target(to: &Target, model: &Model, state: &RobotState) -> Result<(), GoalError> {
     let ee = super::end_effector_of(state).ok_or(GoalError::Tool)?;
-    match target {
+    match to {
         Target::Rest | Target::Guide(_) => Ok(()),
-        Target::MovingJoints { dq, .. } if !dq.iter().all(|x| x.is_finite()) => {
-            let what = "joint velocities";
-            Err(GoalError::NotFinite { what })
+        Target::MovingJoints { q, dq } => {
+            joint_speeds(dq, model)?;
+            check_joints(q, model, state)
         }
-        Target::MovingPose { twist, .. } if !twist.iter().all(|x| x.is_finite()) => {
-            Err(GoalError::NotFinite { what: "twist" })
+        Target::MovingPose { pose, twist } => {
+            speeds(twist, model)?;
+            target(&Target::Pose(*pose), model, state)
         }
-        Target::Joints(q) | Target::MovingJoints { q, .. } => check_joints(q, model, state),
-        Target::Pose(pose) | Target::MovingPose { pose, .. } => {
+        Target::Joints(q) => check_joints(q, model, state),
+        Target::Pose(pose) => {
             let p = pose.translation.vector;
             if !(p
                 .iter()
@@ -358,6 +359,37 @@ pub(crate) fn check_speed_cap(got: f64) -> Result<(), GoalError> {
         what: "speed cap",
         got,
         unit: "m/s",
+        least,
+        most,
+    })
+}
+
+/// Checks that the joints of this robot can be as fast as what they are to follow, `[rad/s]`.
+pub(super) fn joint_speeds(dq: &[f64; 7], model: &Model) -> Result<(), GoalError> {
+    let most = model.joint_limits().velocity;
+    let mut each = dq.iter().zip(&most);
+    each.try_for_each(|(dq, &most)| speed("speed of a joint", "rad/s", dq.abs(), most))
+}
+
+/// Checks that the end effector of this robot can be as fast as what it is to follow, `[m/s]` and
+/// `[rad/s]`.
+pub(super) fn speeds(twist: &Twist, model: &Model) -> Result<(), GoalError> {
+    let most = model.cartesian_limits();
+    let (linear, angular) = (twist.fixed_rows::<3>(0), twist.fixed_rows::<3>(3));
+    let angular = angular.norm();
+    speed("speed", "m/s", linear.norm(), most.translation.velocity)?;
+    speed("angular speed", "rad/s", angular, most.rotation.velocity)
+}
+
+fn speed(what: &'static str, unit: &'static str, got: f64, most: f64) -> Result<(), GoalError> {
+    if got <= most {
+        return Ok(());
+    }
+    let least = 0.0;
+    Err(GoalError::Number {
+        what,
+        got,
+        unit,
         least,
         most,
     })

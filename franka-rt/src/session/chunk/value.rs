@@ -275,44 +275,14 @@ impl Chunk {
     }
 
     fn check_velocities(&self, model: &Model) -> Result<(), GoalError> {
-        let check = |what, unit, got: f64, most: f64| {
-            if got <= most {
-                return Ok(());
-            }
-            let least = 0.0;
-            Err(GoalError::Number {
-                what,
-                got,
-                unit,
-                least,
-                most,
-            })
-        };
         match &self.points {
             Points::Joints(curve) => {
-                let most = model.joint_limits().velocity;
-                let mut dq = curve.states().iter().map(|point| point.dq.abs());
-                dq.try_for_each(|dq| {
-                    let each = dq.iter().zip(&most);
-                    let mut each = each.map(|(&got, &most)| (got, most));
-                    each.try_for_each(|(got, most)| check("speed of a joint", "rad/s", got, most))
-                })
+                let mut states = curve.states().iter();
+                states.try_for_each(|point| check::joint_speeds(&point.dq.into(), model))
             }
             Points::Poses(curve) => {
-                let most = model.cartesian_limits();
-                curve.states().iter().try_for_each(|point| {
-                    let (v, omega) = (
-                        point.twist.fixed_rows::<3>(0),
-                        point.twist.fixed_rows::<3>(3),
-                    );
-                    check("speed", "m/s", v.norm(), most.translation.velocity)?;
-                    check(
-                        "angular speed",
-                        "rad/s",
-                        omega.norm(),
-                        most.rotation.velocity,
-                    )
-                })
+                let mut states = curve.states().iter();
+                states.try_for_each(|point| check::speeds(&point.twist, model))
             }
         }
     }
