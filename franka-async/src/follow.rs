@@ -8,7 +8,7 @@ use std::task::{Context, Poll};
 use std::time::Duration;
 
 use franka_rt::lifecycle::{MotionError, MotionReport, NewMotion};
-use franka_rt::session::{Goal, Lead, OnArrival, OnTimeout, Target, Watchdog};
+use franka_rt::session::{Goal, GoalError, Lead, OnArrival, OnTimeout, Target, Watchdog};
 use franka_rt::team::Round;
 use franka_rt::together::StartTicket;
 use tokio::sync::{oneshot, watch};
@@ -156,7 +156,7 @@ impl Follow {
         };
         let Some(first) = first else {
             // Nothing to follow: the arm goes on with what it does.
-            return Err(MotionError::Stopped);
+            return Err(GoalError::NoTarget.into());
         };
         let motion = NewMotion::Goal {
             goal: Box::new(towards(first)?),
@@ -240,7 +240,7 @@ impl IntoFuture for Follow {
     /// Resolves when the targets have ended and the arm rests at the last one, or with the reason
     /// why not. A target that is not accepted brakes the arm and ends the motion with
     /// [`MotionError::Goal`]. Before the first target nothing begins, and no watchdog counts; a
-    /// stream that ends without any resolves as [`MotionError::Stopped`].
+    /// stream that ends without any resolves as [`GoalError::NoTarget`].
     ///
     /// # Cancel safety
     /// Dropping the future brakes the arm, in the background.

@@ -131,6 +131,8 @@ async fn a_stream_that_has_no_target_yet_ends_with_its_session() {
     assert_eq!(outcome, Err(MotionError::Stopped));
 
     let arm = robot.engage(Engage::default()).await.unwrap();
+    let over = arm.follow_stream(tokio_stream::empty::<Pose>()).await;
+    assert_eq!(over, Err(GoalError::NoTarget.into()));
     arm.clone().disengage().await.unwrap();
     let outcome = arm.follow_stream(nothing()).await;
     assert_eq!(outcome, Err(MotionError::Disengaged));

@@ -26,6 +26,9 @@ pub enum GoalError {
         /// Which part of the target.
         what: &'static str,
     },
+    /// A stream of targets has ended, and none came.
+    #[error("the targets ended before the first one came")]
+    NoTarget,
     /// The target moves: there is no arrival to wait for.
     #[error("the target moves, so that the arm cannot come to rest at it")]
     Moves,
@@ -155,6 +158,7 @@ impl GoalError {
     /// Returns the name of its row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
+            Self::NoTarget => "goal-no-target",
             Self::NotFinite { .. } => "goal-not-finite",
             Self::Moves => "goal-moves",
             Self::OutOfRange { .. } => "goal-out-of-range",
