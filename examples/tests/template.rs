@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use franka_async::MotionError;
 use franka_async::prelude::*;
-use franka_sim::{Running, Sim};
+use franka_sim::{Network, Running, Sim};
 
 /// What is tested: the hand goes down by `depth`, in metres, and back.
 async fn nod(robot: &Robot, depth: f64) -> Result<(), MotionError> {
@@ -65,4 +65,24 @@ async fn a_collision_is_not_hidden_and_can_be_recovered_from() {
     assert!(error.to_string().contains("cartesian_reflex"), "{error}");
     robot.recover().await.expect("it recovers");
     nod(&robot, 0.04).await.expect("it arrives");
+}
+
+/// Neither states nor commands arrive any more; the connection for requests stands.
+#[tokio::test]
+async fn a_lost_link_ends_the_nod() {
+    let (robot, sim) = simulated().await;
+    let mut states = robot.states();
+    let cut = async {
+        let moving = |state: &franka_async::state::RobotState| state.dq[3].abs() > 0.05;
+        states.wait_for(moving).await.expect("states come");
+        let cut = |network: &mut Option<Network>, now| {
+            let network = network.get_or_insert_with(Network::perfect);
+            network.to_client.cut(now..Duration::MAX);
+            network.to_robot.cut(now..Duration::MAX);
+        };
+        sim.with_network(cut).await.expect("the robot runs");
+    };
+    let (nodded, ()) = tokio::join!(nod(&robot, 0.1), cut);
+    let error = nodded.expect_err("nobody knows where the arm is");
+    assert!(matches!(error, MotionError::LinkLost { .. }), "{error}");
 }

@@ -29,7 +29,7 @@ pub enum RecordingError {
         source: Arc<io::Error>,
     },
     /// A chunk is damaged. Those after it can be read.
-    #[error("the chunk at byte {offset} is damaged: {reason}")]
+    #[error("the chunk at byte {offset} is damaged: {reason}; a recovered copy goes on behind it")]
     Chunk {
         /// Where it begins.
         offset: u64,
