@@ -2,6 +2,7 @@
 
 use std::ffi::OsStr;
 use std::fs;
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::thread;
 
@@ -202,8 +203,10 @@ fn test(workspace: &Workspace) -> anyhow::Result<Outcome> {
 fn builds(workspace: &Workspace) -> anyhow::Result<()> {
     thread::scope(|scope| {
         let builds = [
-            scope.spawn(|| no_std(workspace).map(drop)),
-            scope.spawn(|| without_features(workspace)),
+            scope.spawn(|| {
+                no_std(workspace)?;
+                without_features(workspace)
+            }),
             scope.spawn(|| peers::prepare(workspace)),
             scope.spawn(|| package::prepare(workspace).map(drop)),
         ];
@@ -224,6 +227,8 @@ fn without_features(workspace: &Workspace) -> anyhow::Result<()> {
     let packages = ["franka-async", "franka-sim", "franka-record"];
     let mut arguments = packages.map(|name| format!("--package={name}")).to_vec();
     arguments.push("--no-default-features".to_owned());
+    // Other features, other dependencies: what the tests have built is of no use here.
+    arguments.push(format!("--target-dir={}", bare_target(workspace).display()));
     clippy(workspace, &arguments)
 }
 
@@ -242,7 +247,7 @@ fn no_std(workspace: &Workspace) -> anyhow::Result<Outcome> {
         let mut command = workspace.cargo();
         command.arg("check").arg("--manifest-path");
         command.arg(package.join("Cargo.toml")).arg("--target-dir");
-        command.arg(workspace.target().join("no-std"));
+        command.arg(bare_target(workspace));
         command.args(target.map(|target| format!("--target={target}")));
         workspace.run(&mut command)?;
     }
@@ -253,6 +258,12 @@ fn no_std(workspace: &Workspace) -> anyhow::Result<Outcome> {
             BARE_TARGETS[0]
         )),
     })
+}
+
+/// Where what is built without features goes, beside all else and at the same time: cargo builds
+/// one thing at a time in a folder.
+fn bare_target(workspace: &Workspace) -> PathBuf {
+    workspace.target().join("bare")
 }
 
 /// Whether the toolchain has the `core` of a target.

@@ -34,7 +34,7 @@ pub enum ExportError {
         source: ::parquet::errors::ParquetError,
     },
     /// The samples of an episode do not make one.
-    #[error("episode {index} ({task:?}): {why}")]
+    #[error("episode {index} of the dataset, with the task {task:?}: {why}")]
     Episode {
         /// Its number in the dataset, from 0.
         index: u64,

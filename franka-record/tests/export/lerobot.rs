@@ -237,7 +237,10 @@ fn what_makes_no_episode_or_no_dataset_is_refused_with_what_was_expected() {
     let refused = |result: Result<u64, ExportError>| result.unwrap_err().to_string();
     let mut dataset = Dataset::create(&root, options()).unwrap();
     let mut add = |samples: Vec<Sample>| refused(dataset.add_episode("pick", None, samples));
-    assert_eq!(add(vec![]), "episode 0 (\"pick\"): there is no cycle in it");
+    assert_eq!(
+        add(vec![]),
+        "episode 0 of the dataset, with the task \"pick\": there is no cycle in it"
+    );
     let gap = (0..10).chain(100..200).map(sample).collect();
     assert!(add(gap).contains("no cycle for 91 ms after 5009 ms"));
     assert!(add(vec![sample(7), sample(7)]).contains("from 5007 ms back to 5007 ms"));
