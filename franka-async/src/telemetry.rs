@@ -13,8 +13,29 @@ pub(crate) struct Telemetry {
     stats: Arc<Stats>,
     /// Overruns that were told.
     told: u64,
-    /// When the last of them were.
+    warnings: Pace,
+}
+
+/// Ever longer times between warnings of what goes on.
+#[derive(Default)]
+struct Pace {
     last: Option<Instant>,
+    /// From then on until the next one, at least.
+    interval: Duration,
+}
+
+impl Pace {
+    /// Whether a warning is due now, which it is taken for.
+    fn take(&mut self, now: Instant) -> bool {
+        let since = self.last.map(|last| now.duration_since(last));
+        self.interval = match since {
+            Some(since) if since < self.interval => return false,
+            Some(since) if since < 2 * self.interval => (2 * self.interval).min(INTERVAL_MAX),
+            _ => INTERVAL_MIN,
+        };
+        self.last = Some(now);
+        true
+    }
 }
 
 impl Telemetry {
@@ -22,22 +43,24 @@ impl Telemetry {
         Self {
             stats,
             told: 0,
-            last: None,
+            warnings: Pace::default(),
         }
     }
 
-    /// Warns of commands that left too late since the last time: once a second while there are
-    /// more.
+    /// Warns of commands that left too late since the last time: at once, and while there are more
+    /// after a second, after two, and so on, at last twice a minute.
     pub(crate) fn watch(&mut self, now: Instant) {
         let overruns = self.stats.overrun.count();
-        let quiet = self.last.is_some_and(|last| now < last + WARNING_INTERVAL);
-        if overruns == self.told || quiet {
+        if overruns == self.told {
             return;
         }
         // Written before it is counted.
         let Some(cycle) = self.stats.newest_overrun() else {
             return;
         };
+        if !self.warnings.take(now) {
+            return;
+        }
         let (phase, longest) = cycle.longest();
         tracing::warn!(
             overruns = overruns - self.told,
@@ -47,10 +70,10 @@ impl Telemetry {
             turnaround_us = micros(cycle.turnaround),
             %phase,
             phase_us = micros(longest),
-            "commands left after the next state was due; this is the newest"
+            "commands left after the next state was due, and this is the newest; \
+             `franka doctor` tells what this computer lacks"
         );
         self.told = overruns;
-        self.last = Some(now);
     }
 }
 
@@ -90,5 +113,24 @@ fn micros(duration: Duration) -> u64 {
     u64::try_from(duration.as_micros()).unwrap_or(u64::MAX)
 }
 
-/// Time between two warnings.
-const WARNING_INTERVAL: Duration = Duration::from_secs(1);
+/// Time between the first two warnings.
+const INTERVAL_MIN: Duration = Duration::from_secs(1);
+
+/// And between those of a computer that is always late.
+const INTERVAL_MAX: Duration = Duration::from_secs(32);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_goes_on_is_warned_of_ever_more_rarely_until_it_pauses() {
+        let begin = Instant::now();
+        let mut pace = Pace::default();
+        let mut due = |second: u64| pace.take(begin + Duration::from_secs(second));
+        let told: Vec<u64> = (0..130).filter(|second| due(*second)).collect();
+        assert_eq!(told, [0, 1, 3, 7, 15, 31, 63, 95, 127]);
+        let told: Vec<u64> = (300..310).filter(|second| due(*second)).collect();
+        assert_eq!(told, [300, 301, 303, 307]);
+    }
+}
