@@ -50,6 +50,14 @@ impl Latest {
     fn close(&self) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
     }
+
+    fn __repr__(&self) -> &'static str {
+        match &*self.0.lock().unwrap_or_else(PoisonError::into_inner) {
+            None => "<Latest, closed>",
+            Some(sender) if sender.borrow().is_none() => "<Latest, without a target yet>",
+            Some(_) => "<Latest, with a target>",
+        }
+    }
 }
 
 impl Latest {

@@ -186,6 +186,16 @@ impl MotionHandle {
     fn cancel(&self) {
         self.0.cancel();
     }
+
+    fn __repr__(&self) -> String {
+        match self.0.progress() {
+            Some(progress) => {
+                let remaining = progress.remaining.as_secs_f64();
+                format!("<MotionHandle under way, {remaining:.2} s remain>")
+            }
+            None => "<MotionHandle of a motion that is not under way>".into(),
+        }
+    }
 }
 
 fn class<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
