@@ -10,9 +10,10 @@ use franka_async::team::MemberMotion;
 use franka_async::{MotionError, MotionReport};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyAny;
+use pyo3::types::{PyAny, PyTuple};
 
 use crate::arrays::{array, pose_array};
+use crate::errors::variant;
 use crate::operation::Operation;
 use crate::stats;
 
@@ -218,12 +219,15 @@ pub(crate) fn reference<'py>(
     py: Python<'py>,
     reference: &Reference,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let guards = reference.guards.iter().map(|guard| variant(&guard));
+    let guards: Vec<String> = guards.collect();
     class(py, "Reference")?.call1((
         reference.time,
         array(py, &reference.q),
         array(py, &reference.dq),
         array(py, &reference.ddq),
         pose_array(py, &reference.pose),
+        PyTuple::new(py, guards)?,
     ))
 }
 
@@ -268,7 +272,7 @@ impl<'py> IntoPyObject<'py> for Report {
         );
         // Tuples are converted up to twelve long.
         let fields = fields.into_pyobject(py)?.add(timing.into_pyobject(py)?)?;
-        class(py, "MotionReport")?.call1(fields.cast_into::<pyo3::types::PyTuple>()?)
+        class(py, "MotionReport")?.call1(fields.cast_into::<PyTuple>()?)
     }
 }
 

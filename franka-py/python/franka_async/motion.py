@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from .value import Value
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-__all__ = ["CycleTimes", "MotionReport", "Phases", "PoseError", "Progress", "Quantiles", "Reacted", "Reference"]
+__all__ = ["CycleTimes", "Guard", "MotionReport", "Phases", "PoseError", "Progress", "Quantiles", "Reacted", "Reference"]
 
 
 @dataclass(frozen=True)
@@ -173,6 +173,29 @@ class Progress:
         return self.elapsed / whole if whole > 0.0 else 1.0
 
 
+Guard = Literal[
+    "leash",
+    "inverse_kinematics",
+    "torque_clamp",
+    "force_cap",
+    "velocity_barrier",
+    "torque_rate",
+    "watchdog",
+    "deadman",
+    "backstop",
+    "joint_velocity",
+    "position_envelope",
+    "clearance",
+    "deviation",
+    "lead",
+    "plan_failure",
+    "reaction",
+    "team",
+    "speed_cap",
+]
+"""What may hold an arm back: see guards.md of the book."""
+
+
 @dataclass(frozen=True, eq=False)
 class Reference(Value):
     """Where target control has the arm go in a cycle."""
@@ -191,3 +214,6 @@ class Reference(Value):
 
     pose: NDArray[np.float64]
     """The end effector at those positions, base frame, ``(4, 4)``."""
+
+    guards: tuple[Guard, ...] = ()
+    """Which guards have held the arm back within the last 0.1 s, and at most 0.2 s."""
