@@ -1,8 +1,8 @@
 //! An engaged arm: one session, many goals.
 
-use std::sync::atomic::{AtomicU64, Ordering};
-
+use franka_async::MotionError;
 use franka_async::goal::Free;
+use futures::FutureExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyAny, PyDict};
 
@@ -15,6 +15,7 @@ use crate::motion::{Follow, Motion, Report, reference};
 use crate::operation::Operation;
 use crate::options::{Keywords, tuning};
 use crate::runtime::{self, Threaded};
+use crate::told::{Told, leave, telling};
 
 /// A session of target control: the arm is held, and goes from goal to goal without a stop in
 /// between, whatever their kinds. Made by `Robot.engage`.
@@ -27,16 +28,13 @@ use crate::runtime::{self, Threaded};
 pub(crate) struct Arm {
     arm: Threaded<franka_async::Arm>,
     /// By which its motions know it.
-    pub(crate) id: u64,
+    pub(crate) told: Told,
 }
 
 impl Arm {
-    pub(crate) fn new(arm: franka_async::Arm) -> Self {
-        static ARMS: AtomicU64 = AtomicU64::new(0);
-        Self {
-            arm: Threaded::new(arm),
-            id: ARMS.fetch_add(1, Ordering::Relaxed),
-        }
+    pub(crate) fn new(arm: franka_async::Arm, told: Told) -> Self {
+        let arm = Threaded::new(arm);
+        Self { arm, told }
     }
 
     /// The session.
@@ -56,9 +54,28 @@ impl Arm {
         begun: franka_async::Motion,
     ) -> PyResult<Py<Motion>> {
         let motion = motion(py, name, self.arm.robot(), options, begun)?;
-        // The motion is new, so its session is not set yet.
-        let _ = motion.get().member.arm.set(self.id);
+        motion.get().member.is_of(self.told_session()?);
         Ok(motion)
+    }
+
+    /// The session, with what was told of it.
+    pub(crate) fn told_session(&self) -> PyResult<(Told, franka_async::Arm)> {
+        Ok((self.told.clone(), self.session()?))
+    }
+
+    /// The operation `name` of the session.
+    fn operation<T, W>(
+        &self,
+        name: &'static str,
+        work: impl FnOnce(franka_async::Arm) -> W,
+    ) -> PyResult<Operation>
+    where
+        T: for<'py> IntoPyObject<'py> + Send + 'static,
+        W: Future<Output = Result<T, MotionError>> + Send + 'static,
+    {
+        let session = self.told_session()?;
+        let work = work(session.1.clone());
+        Ok(telling(name, session, work))
     }
 }
 
@@ -132,11 +149,8 @@ impl Arm {
     /// `move_to` takes, and targets with velocities. Over as soon as the goal is taken.
     /// Cancelling takes nothing back.
     fn set(&self, target: &Bound<'_, PyAny>) -> PyResult<Operation> {
-        let (arm, target) = (self.session()?, destination("target", target)?);
-        Ok(Operation::new(
-            "Arm.set",
-            async move { arm.set(target).await },
-        ))
+        let target = destination("target", target)?;
+        self.operation("Arm.set", |arm| async move { arm.set(target).await })
     }
 
     /// As `set`, without waiting for an answer: for loops at a rate of their own, on any thread.
@@ -145,8 +159,12 @@ impl Arm {
     fn try_set(&self, py: Python<'_>, target: &Bound<'_, PyAny>) -> PyResult<()> {
         use crate::errors::Raise;
         let (arm, target) = (self.session()?, destination("target", target)?);
-        py.detach(|| arm.try_set(target))
-            .map_err(|error| error.raise(py))
+        let set = py.detach(|| arm.try_set(target));
+        self.told.saw(&set);
+        set.map_err(|error| {
+            self.told.note(&arm, &error);
+            error.raise(py)
+        })
     }
 
     /// What the arm is held at or heads for: a pose, `(4, 4)`, `Joints`, or a pair with the twist.
@@ -169,11 +187,7 @@ impl Arm {
     /// Waits until the arm rests at the target that was taken last, or where that has been given
     /// up. Cancelling has no effect on the arm.
     fn at_rest(&self) -> PyResult<Operation> {
-        let arm = self.session()?;
-        Ok(Operation::new(
-            "Arm.at_rest",
-            async move { arm.at_rest().await },
-        ))
+        self.operation("Arm.at_rest", |arm| async move { arm.at_rest().await })
     }
 
     /// Follows points with times, as a policy predicts them, from now on; over as soon as they are
@@ -199,9 +213,7 @@ impl Arm {
             class.call1((points, dt, times, velocities, joints, observed_at, blend))?
         };
         let chunk = chunk(&made, &arm)?;
-        Ok(Operation::new("Arm.chunk", async move {
-            arm.chunk(chunk).await
-        }))
+        self.operation("Arm.chunk", |arm| async move { arm.chunk(chunk).await })
     }
 
     /// Lets a hand guide the arm, once it rests, until the next goal; `hold()` ends it. `axes` are
@@ -210,12 +222,8 @@ impl Arm {
     /// down.
     #[pyo3(signature = (axes = [true; 6], elbow = true))]
     fn guide(&self, axes: [bool; 6], elbow: bool) -> PyResult<Operation> {
-        let arm = self.session()?;
         let free = Free { axes, elbow };
-        Ok(Operation::new(
-            "Arm.guide",
-            async move { arm.guide(free).await },
-        ))
+        self.operation("Arm.guide", |arm| async move { arm.guide(free).await })
     }
 
     /// As `Robot.follow`; the arm is then held at the last target.
@@ -225,11 +233,11 @@ impl Arm {
         targets: &Bound<'_, PyAny>,
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Py<Follow>> {
-        let arm = Leader::Arm(this.get().session()?);
+        let session = this.get().told_session()?;
+        let arm = Leader::Arm(session.clone());
         let follow = follow::operation(this, "Arm.follow", arm, targets, options)?;
         if let Some(member) = &follow.get().member {
-            // As above.
-            let _ = member.arm.set(this.get().id);
+            member.is_of(session);
         }
         Ok(follow)
     }
@@ -242,28 +250,33 @@ impl Arm {
         let mut keywords = Keywords::new("Arm.tune", options)?;
         let tuning = tuning(&mut keywords, arm.robot().model())?;
         keywords.end()?;
-        Ok(Operation::new(
-            "Arm.tune",
-            async move { arm.tune(tuning).await },
-        ))
+        self.operation("Arm.tune", |arm| async move { arm.tune(tuning).await })
     }
 
     /// Brakes, lets the arm go and ends the session, with a `MotionReport`; a goal under way raises
     /// `stopped`. Raises how the session ended if it ended otherwise.
     fn disengage(&self) -> PyResult<Operation> {
-        let arm = self.session()?;
-        Ok(Operation::new("Arm.disengage", async move {
+        self.operation("Arm.disengage", |arm| async move {
             arm.disengage().await.map(Report)
-        }))
+        })
     }
 
     /// Waits until the session has ended, and returns or raises how. Cancelling has no effect on
     /// the arm.
     fn ended(&self) -> PyResult<Operation> {
-        let ended = self.session()?.ended();
-        Ok(Operation::new("Arm.ended", async move {
-            ended.await.map(Report)
-        }))
+        self.operation(
+            "Arm.ended",
+            |arm| async move { arm.ended().await.map(Report) },
+        )
+    }
+
+    fn __repr__(&self) -> PyResult<String> {
+        let arm = self.session()?;
+        let state = match arm.ended().now_or_never() {
+            None => "engaged",
+            Some(_) => "disengaged",
+        };
+        Ok(format!("<Arm of {}, {state}>", arm.robot().address()))
     }
 
     fn __aenter__(this: Py<Self>) -> Operation {
@@ -276,17 +289,6 @@ impl Arm {
         kind: Option<&Bound<'_, PyAny>>,
         _rest: &Bound<'_, PyAny>,
     ) -> PyResult<Operation> {
-        Ok(leave(self.session()?, kind))
+        Ok(leave(self.told_session()?, kind))
     }
-}
-
-/// Ends the session at the end of a `with` block. What the block raised is not replaced.
-pub(crate) fn leave(arm: franka_async::Arm, raised: Option<&Bound<'_, PyAny>>) -> Operation {
-    let raised = raised.is_some_and(|kind| !kind.is_none());
-    Operation::new("Arm.disengage", async move {
-        match arm.disengage().await {
-            Err(error) if !raised => Err(error),
-            _ => Ok(()),
-        }
-    })
 }

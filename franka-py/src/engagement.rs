@@ -11,12 +11,13 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyAny, PyDict};
 
-use crate::arm::{Arm, leave};
+use crate::arm::Arm;
 use crate::arrays::{pose, vector};
 use crate::deadman::Deadman;
 use crate::destination::is;
 use crate::operation::Operation;
 use crate::options::{Keywords, Options, with_options};
+use crate::told::{Told, leave};
 
 /// A session that begins when it is awaited, or entered by `async with`, and is then an `Arm`.
 #[pyclass(frozen, extends = Operation, module = "franka_async")]
@@ -28,7 +29,7 @@ pub(crate) struct Engagement {
 #[derive(Default)]
 struct Entered {
     is_entered: AtomicBool,
-    arm: OnceLock<franka_async::Arm>,
+    session: OnceLock<(Told, franka_async::Arm)>,
 }
 
 impl Engagement {
@@ -57,12 +58,12 @@ impl Engagement {
         let entered = Arc::new(Entered::default());
         let shared = entered.clone();
         let begin = Operation::new("Robot.engage", async move {
-            let arm = robot.engage(engage).await?;
+            let (told, arm) = (Told::default(), robot.engage(engage).await?);
             if shared.is_entered.load(Ordering::Relaxed) {
                 // Set once: the operation runs once.
-                let _ = shared.arm.set(arm.clone());
+                let _ = shared.session.set((told.clone(), arm.clone()));
             }
-            Ok::<_, MotionError>(Arm::new(arm))
+            Ok::<_, MotionError>(Arm::new(arm, told))
         });
         Py::new(
             py,
@@ -84,9 +85,9 @@ impl Engagement {
         kind: Option<&Bound<'_, PyAny>>,
         _rest: &Bound<'_, PyAny>,
     ) -> PyResult<Operation> {
-        let arm = self.entered.arm.get();
-        let arm = arm.ok_or_else(|| PyTypeError::new_err("the session was not entered"))?;
-        Ok(leave(arm.clone(), kind))
+        let session = self.entered.session.get();
+        let session = session.ok_or_else(|| PyTypeError::new_err("the session was not entered"))?;
+        Ok(leave(session.clone(), kind))
     }
 }
 

@@ -2,7 +2,6 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use franka_async::MotionError;
 use franka_async::goal::{Lead, Target};
 use franka_async::motion::Follow as Following;
 use futures::{Stream, StreamExt, future, stream};
@@ -17,6 +16,7 @@ use crate::exit;
 use crate::motion::{Follow, Member, Report};
 use crate::operation::Operation;
 use crate::options::{Bounds, Keywords, Options, watchdog, with_options};
+use crate::told::{Telling, Told};
 
 /// The newest target of a program: `set` it from any thread, at any rate, and `follow` it. When it
 /// is closed or its last reference is dropped, the motion ends at the target that was set last.
@@ -81,21 +81,28 @@ impl Latest {
 /// What follows targets.
 pub(crate) enum Leader {
     Robot(franka_async::Robot),
-    Arm(franka_async::Arm),
+    Arm((Told, franka_async::Arm)),
 }
 
 impl Leader {
     fn robot(&self) -> &franka_async::Robot {
         match self {
             Self::Robot(robot) => robot,
-            Self::Arm(arm) => arm.robot(),
+            Self::Arm((_, arm)) => arm.robot(),
         }
     }
 
     fn follow(&self, targets: impl Stream<Item = Target> + Send + 'static) -> Following {
         match self {
             Self::Robot(robot) => robot.follow_stream(targets),
-            Self::Arm(arm) => arm.follow_stream(targets),
+            Self::Arm((_, arm)) => arm.follow_stream(targets),
+        }
+    }
+
+    fn session(self) -> Option<(Told, franka_async::Arm)> {
+        match self {
+            Self::Robot(_) => None,
+            Self::Arm(session) => Some(session),
         }
     }
 }
@@ -147,11 +154,17 @@ pub(crate) fn operation(
     };
     let (failed, failure) = oneshot::channel();
     let follow = configured(leader.follow(stepped(iterator.into_any().unbind(), failed)));
+    let of = leader.session();
     let operation = Operation::new(name, async move {
         tokio::select! {
             biased;
             Ok(error) = failure => Err(Failure::Iterator(error)),
-            outcome = follow.into_future() => outcome.map(Report).map_err(Failure::Motion),
+            outcome = follow.into_future() => {
+                if let Some((told, _)) = &of {
+                    told.saw(&outcome);
+                }
+                outcome.map(Report).map_err(|error| Failure::Motion(Telling { error, of }))
+            }
         }
     });
     Follow::new(py, operation, None)
@@ -193,7 +206,7 @@ fn stepped(
 
 /// Why following an iterator ended early.
 enum Failure {
-    Motion(MotionError),
+    Motion(Telling),
     Iterator(PyErr),
 }
 

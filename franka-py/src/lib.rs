@@ -55,6 +55,7 @@ mod stats;
 mod stream;
 mod supervision;
 mod team;
+mod told;
 mod vacuum_gripper;
 mod virtual_robots;
 

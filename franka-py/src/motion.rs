@@ -1,13 +1,13 @@
 //! Motions: awaitables with a handle, and what they report.
 
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use franka_async::condition::Reacted;
 use franka_async::motion::{MotionHandle as Handle, Outcome, Progress, Reference};
 use franka_async::realtime::{CycleTimes, Phases, Quantiles};
 use franka_async::team::MemberMotion;
-use franka_async::{MotionError, MotionReport};
+use franka_async::{Arm, MotionError, MotionReport};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyAny, PyTuple};
@@ -16,6 +16,7 @@ use crate::arrays::{array, pose_array};
 use crate::errors::variant;
 use crate::operation::Operation;
 use crate::stats;
+use crate::told::{Telling, Told};
 
 /// A motion: it begins when it is awaited, and then arrives, with a `MotionReport`, or raises
 /// `MotionError`. Cancelling it brakes the arm.
@@ -61,8 +62,8 @@ impl Follow {
 /// What may be a part of a joint motion, until it begins.
 pub(crate) struct Member {
     take: Box<dyn Fn() -> Option<MemberMotion> + Send + Sync>,
-    /// Which `Arm` has made it.
-    pub(crate) arm: OnceLock<u64>,
+    /// The session that it is of, until it begins.
+    of: Arc<Mutex<Option<(Told, Arm)>>>,
 }
 
 impl Member {
@@ -73,16 +74,35 @@ impl Member {
     {
         let waiting = Arc::new(Mutex::new(Some(motion)));
         let taken = waiting.clone();
+        let of = Arc::new(Mutex::new(None::<(Told, Arm)>));
+        let session = of.clone();
         let operation = Operation::new(name, async move {
-            // An operation that was taken apart never begins.
-            let motion = take(&taken).ok_or(MotionError::Stopped)?;
-            motion.await.map(Report)
+            let of = take(&session);
+            let outcome = match take(&taken) {
+                Some(motion) => motion.await,
+                // An operation that was taken apart never begins.
+                None => Err(MotionError::Stopped),
+            };
+            if let Some((told, _)) = &of {
+                told.saw(&outcome);
+            }
+            outcome.map(Report).map_err(|error| Telling { error, of })
         });
         let member = Self {
             take: Box::new(move || take(&waiting).map(Into::into)),
-            arm: OnceLock::new(),
+            of,
         };
         (operation, member)
+    }
+
+    /// Has it know the session that it is of.
+    pub(crate) fn is_of(&self, session: (Told, Arm)) {
+        *self.of.lock().unwrap_or_else(PoisonError::into_inner) = Some(session);
+    }
+
+    fn is_of_session(&self, told: &Told) -> bool {
+        let of = self.of.lock().unwrap_or_else(PoisonError::into_inner);
+        of.as_ref().is_some_and(|(own, _)| own.is(told))
     }
 
     /// Takes the driver's motions out of a `Motion` or `Follow` of each of `arms`, for a joint
@@ -91,22 +111,25 @@ impl Member {
     /// # Errors
     /// `ValueError` for one of another arm, for one that has begun, and for targets that Python
     /// has to be asked for.
-    pub(crate) fn take_all(
+    pub(crate) fn take_all<'a>(
         motions: &[Bound<'_, PyAny>],
-        arms: impl Iterator<Item = u64>,
+        arms: impl Iterator<Item = &'a Told>,
     ) -> PyResult<Vec<MemberMotion>> {
-        for (number, (motion, arm)) in motions.iter().zip(arms).enumerate() {
+        for (number, (motion, told)) in motions.iter().zip(arms).enumerate() {
             let Some(member) = Self::of(motion)? else {
                 let text = format!("motion {number} follows an iterator, expected a Latest");
                 return Err(PyValueError::new_err(text));
             };
-            if member.arm.get() != Some(&arm) {
+            if !member.is_of_session(told) {
                 let text = format!("motion {number} is not one of arms[{number}] of this team");
                 return Err(PyValueError::new_err(text));
             }
         }
         let taken = motions.iter().map(|motion| {
-            let taken = Self::of(motion)?.and_then(|member| (member.take)());
+            let taken = Self::of(motion)?.and_then(|member| {
+                take(&member.of);
+                (member.take)()
+            });
             let begun = "a motion has begun already: it takes one that was not awaited";
             let taken = taken.ok_or_else(|| PyValueError::new_err(begun))?;
             // It is awaited as a part of the joint motion.
@@ -124,7 +147,7 @@ impl Member {
     }
 }
 
-fn take<M>(waiting: &Mutex<Option<M>>) -> Option<M> {
+fn take<T>(waiting: &Mutex<Option<T>>) -> Option<T> {
     waiting
         .lock()
         .unwrap_or_else(PoisonError::into_inner)

@@ -16,6 +16,7 @@ use crate::errors::{Raise, made, variant};
 use crate::operation::Operation;
 use crate::recording::{RecordingFile, value};
 use crate::robot::Robot;
+use crate::told::Telling;
 
 #[pymethods]
 impl Robot {
@@ -61,11 +62,18 @@ impl Arm {
         source: &str,
         targets: &str,
     ) -> PyResult<Operation> {
-        let arm = self.session()?;
+        let (told, arm) = self.told_session()?;
         let motion = Motion::new(py, recording, speed, source, targets)?;
         Ok(Operation::new("Arm.replay", async move {
             let plan = motion.plan(arm.robot().model()).await?;
-            Ok::<_, Failure>(Report(arm.replay(&plan).await?))
+            let replayed = arm.replay(&plan).await;
+            replayed.map(Report).map_err(|failure| match failure {
+                ReplayFailure::Motion(error) => Failure::Motion(Telling {
+                    error,
+                    of: Some((told, arm)),
+                }),
+                failure => Failure::Replay(failure),
+            })
         }))
     }
 }
@@ -134,6 +142,8 @@ impl Motion {
 enum Failure {
     Recording(RecordingError),
     Replay(ReplayFailure),
+    /// Of a session.
+    Motion(Telling),
 }
 
 impl From<RecordingError> for Failure {
@@ -152,6 +162,7 @@ impl Raise for Failure {
     fn raise(self, py: Python<'_>) -> PyErr {
         let failure = match self {
             Self::Recording(error) => return error.raise(py),
+            Self::Motion(error) => return error.raise(py),
             Self::Replay(failure) => failure,
         };
         let text = failure.to_string();

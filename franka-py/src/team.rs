@@ -22,6 +22,7 @@ use crate::operation::{Operation, seconds};
 use crate::options::{Keywords, Options, with_options};
 use crate::robot::Robot;
 use crate::runtime::Threaded;
+use crate::told::Told;
 
 /// A team of any size.
 pub(crate) enum Members {
@@ -122,7 +123,7 @@ impl Team {
             let target = destination("targets", target)?;
             motions.push(with_options!(arm.move_to(target), options).into());
         }
-        Ok(self.joint("Team.move_to", motions))
+        self.joint("Team.move_to", motions)
     }
 
     /// A motion of all arms: `motions` are one of each arm, in their order,
@@ -132,9 +133,9 @@ impl Team {
     /// `Latest` is closed.
     fn run(&self, motions: Vec<Bound<'_, PyAny>>) -> PyResult<Operation> {
         self.check_count("motions", motions.len())?;
-        let arms = self.arms.iter().map(|arm| arm.get().id);
+        let arms = self.arms.iter().map(|arm| &arm.get().told);
         let motions = Member::take_all(&motions, arms)?;
-        Ok(self.joint("Team.run", motions))
+        self.joint("Team.run", motions)
     }
 
     /// Brakes all arms, each within two of its cycles. Never waits, fit for any thread. Motions
@@ -181,11 +182,9 @@ impl Team {
     /// Brakes all arms, lets them go and ends their sessions. Raises `TeamError` if one ended
     /// otherwise.
     fn disengage(&self) -> PyResult<Operation> {
-        let arms: PyResult<Vec<_>> = self.arms.iter().map(|arm| arm.get().session()).collect();
-        let ending = arms?.into_iter().map(franka_async::Arm::disengage);
-        let ended = futures::future::join_all(ending);
+        let (sessions, ended) = self.ending()?;
         Ok(Operation::new("Team.disengage", async move {
-            judge(ended.await)
+            judge(ended.await, sessions)
         }))
     }
 
@@ -200,13 +199,11 @@ impl Team {
         _rest: &Bound<'_, PyAny>,
     ) -> PyResult<Operation> {
         let raised = kind.is_some_and(|kind| !kind.is_none());
-        let arms: PyResult<Vec<_>> = self.arms.iter().map(|arm| arm.get().session()).collect();
-        let ending = arms?.into_iter().map(franka_async::Arm::disengage);
-        let ended = futures::future::join_all(ending);
+        let (sessions, ended) = self.ending()?;
         Ok(Operation::new("Team.disengage", async move {
-            match judge(ended.await) {
-                // What the block raised is not replaced.
-                Err(error) if !raised => Err(error),
+            match judge(ended.await, sessions) {
+                // What the block raised is not replaced, and what it was told not repeated.
+                Err(error) if !raised && !error.is_known() => Err(error),
                 _ => Ok(()),
             }
         }))
@@ -231,16 +228,30 @@ impl Team {
         Err(PyTypeError::new_err(text))
     }
 
-    fn joint(&self, name: &'static str, motions: Vec<MemberMotion>) -> Operation {
+    fn sessions(&self) -> PyResult<Vec<Session>> {
+        let sessions = self.arms.iter().map(|arm| arm.get().told_session());
+        sessions.collect()
+    }
+
+    /// The sessions, and their end.
+    fn ending(&self) -> PyResult<(Vec<Session>, impl Future<Output = Vec<Outcome>> + use<>)> {
+        let sessions = self.sessions()?;
+        let ending = sessions.iter().map(|(_, arm)| arm.clone().disengage());
+        let ended = futures::future::join_all(ending);
+        Ok((sessions, ended))
+    }
+
+    fn joint(&self, name: &'static str, motions: Vec<MemberMotion>) -> PyResult<Operation> {
         let members = Arc::clone(&self.members);
-        Operation::new(name, async move {
+        let sessions = self.sessions()?;
+        Ok(Operation::new(name, async move {
             let running: Outcomes = with_team!(&*members, team => {
                 let mut motions = motions.into_iter();
                 let motion = team.run(|_, _| motions.next().expect("one for each arm"));
                 Box::pin(async move { motion.await.into() })
             });
-            judge(running.await)
-        })
+            judge(running.await, sessions)
+        }))
     }
 }
 
@@ -274,6 +285,7 @@ impl TeamGrasp {
             keywords.end()?;
         }
         let members = Arc::clone(&team.members);
+        let sessions = team.sessions()?;
         let (bases, hands) = (self.bases.clone(), self.hands.clone());
         Ok(Operation::new("TeamGrasp.move_to", async move {
             let running: Outcomes = with_team!(&*members, team => {
@@ -286,7 +298,7 @@ impl TeamGrasp {
                 });
                 Box::pin(async move { motion.await.into() })
             });
-            judge(running.await)
+            judge(running.await, sessions)
         }))
     }
 
@@ -328,7 +340,7 @@ impl<'py> IntoPyObject<'py> for Engaged {
         let arms: Vec<franka_async::Arm> = with_team!(&self.0, team => team.arms().to_vec());
         let arms: PyResult<Vec<_>> = arms
             .into_iter()
-            .map(|arm| Py::new(py, Arm::new(arm)))
+            .map(|arm| Py::new(py, Arm::new(arm, Told::default())))
             .collect();
         let team = Team {
             members: Threaded::new(Arc::new(self.0)),
@@ -357,19 +369,45 @@ impl<'py> IntoPyObject<'py> for Reports {
 }
 
 /// The outcomes of a motion of which a member has not arrived.
-struct Failed(Vec<Outcome>);
+struct Failed {
+    outcomes: Vec<Outcome>,
+    /// One for each.
+    sessions: Vec<Session>,
+}
 
-fn judge(outcomes: Vec<Outcome>) -> Result<Reports, Failed> {
+/// A session, and what was told of it.
+type Session = (Told, franka_async::Arm);
+
+fn judge(outcomes: Vec<Outcome>, sessions: Vec<Session>) -> Result<Reports, Failed> {
+    for (outcome, (told, _)) in outcomes.iter().zip(&sessions) {
+        told.saw(outcome);
+    }
     if outcomes.iter().any(Result::is_err) {
-        return Err(Failed(outcomes));
+        return Err(Failed { outcomes, sessions });
     }
     let reports = outcomes.into_iter().flatten().map(Report);
     Ok(Reports(reports.collect()))
 }
 
+impl Failed {
+    /// The errors, each with its session.
+    fn errors(&self) -> impl Iterator<Item = (&MotionError, &Session)> {
+        let each = self.outcomes.iter().zip(&self.sessions);
+        each.filter_map(|(outcome, session)| Some((outcome.as_ref().err()?, session)))
+    }
+
+    /// Whether the program was told all of it before.
+    fn is_known(&self) -> bool {
+        self.errors().all(|(error, (told, _))| told.knows(error))
+    }
+}
+
 impl Raise for Failed {
     fn raise(self, py: Python<'_>) -> PyErr {
-        raised(py, self.0).unwrap_or_else(|broken| broken)
+        for (error, (told, arm)) in self.errors() {
+            told.note(arm, error);
+        }
+        raised(py, self.outcomes).unwrap_or_else(|broken| broken)
     }
 }
 

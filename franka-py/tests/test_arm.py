@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Iterator
-from typing import Any
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -15,6 +15,7 @@ from franka_async import (
     Arm,
     Box,
     Chunk,
+    ControlError,
     Deadman,
     Engagement,
     Gains,
@@ -27,6 +28,8 @@ from franka_async import (
     Robot,
     Sim,
 )
+
+from franka_async.motion import Guard
 
 NEAR = 3e-3
 """How near an arm that sticks comes to its target, m."""
@@ -78,10 +81,80 @@ def test_the_error_of_a_block_is_not_replaced_by_its_end(sim: Sim) -> None:
         with pytest.raises(MotionError) as caught:
             async with robot.engage() as arm:
                 sim.trip("cartesian_reflex")
-                await outcome(arm.ended())
+                await unnoticed_end(arm)
         assert caught.value.kind == "reflex_aborted"
 
     run(sim, main)
+
+
+async def unnoticed_end(arm: Arm) -> None:
+    """Waits for the end of a session without being told why."""
+    while "disengaged" not in repr(arm):
+        await asyncio.sleep(0.001)
+
+
+def test_the_end_of_a_block_does_not_repeat_what_was_raised_in_it(live: Sim) -> None:
+    async def ask(arm: Arm) -> None:
+        while True:
+            arm.try_set(Offset([0.0, 0.0, 0.001]))
+            await asyncio.sleep(0.001)
+
+    async def iterate(arm: Arm) -> None:
+        def targets() -> Iterator[Any]:
+            while True:
+                yield here[0]
+                time.sleep(0.002)
+
+        await arm.follow(targets())
+
+    asked: list[Callable[[Arm], Awaitable[Any]]] = [
+        lambda arm: arm.move_by([0.0, 0.0, 0.2], speed=0.1),
+        lambda arm: arm.ended(),
+        lambda arm: arm.follow(latest),
+        ask,
+        iterate,
+    ]
+    latest = Latest()
+    here: list[Joints] = []
+
+    async def main(robot: Robot) -> None:
+        here.append(Joints(robot.state().q))
+        latest.set(here[0])
+        for each in asked:
+            async with robot.engage() as arm:
+                assert repr(arm).startswith("<Arm of 127.0.0.1:") and repr(arm).endswith(", engaged>")
+                await arm.hold()
+                motion = asyncio.ensure_future(each(arm))
+                await asyncio.sleep(0.02)
+                live.trip("cartesian_reflex")
+                with pytest.raises(ControlError):
+                    await motion
+                await robot.recover()
+            # The arm that was left is told of it as before.
+            with pytest.raises(ControlError):
+                await arm.hold()
+        async with robot.engage() as arm:
+            motion = asyncio.ensure_future(arm.move_by([0.0, 0.0, 0.2], speed=0.1))
+            await begun(robot)
+            await robot.stop()
+            with pytest.raises(MotionError) as stopped:
+                await motion
+            assert stopped.value.kind == "stopped"
+        # A goal that was stopped alone says nothing of the end of the session.
+        with pytest.raises(MotionError) as stopped:
+            async with robot.engage() as arm:
+                goal = arm.move_by([0.0, 0.0, 0.2], speed=0.1)
+                motion = asyncio.ensure_future(goal)
+                await begun(robot)
+                goal.handle().cancel()
+                with pytest.raises(MotionError):
+                    await motion
+                await arm.hold()
+                await robot.stop()
+                await unnoticed_end(arm)
+        assert stopped.value.kind == "stopped"
+
+    run(live, main)
 
 
 def test_goals_follow_each_other_without_a_stop(sim: Sim) -> None:
@@ -345,6 +418,18 @@ def test_an_arm_holds_while_its_deadman_is_silent(live: Sim) -> None:
             deadman.release()
             with pytest.raises(MotionError) as caught:
                 await motion
+            assert caught.value.kind == "held"
+            reference = arm.reference()
+            assert reference is not None and "deadman" in reference.guards
+            assert set(reference.guards) <= set(get_args(Guard))
+            # A stream that is closed then comes to no last target.
+            targets = Latest(robot.pose())
+            assert repr(targets) == "<Latest, with a target>" and "without" in repr(Latest())
+            following = asyncio.ensure_future(arm.follow(targets))
+            targets.close()
+            assert repr(targets) == "<Latest, closed>"
+            with pytest.raises(MotionError) as caught:
+                await following
             assert caught.value.kind == "held"
             with pytest.raises(ValueError, match="bound to a session"):
                 robot.engage(deadman=deadman)

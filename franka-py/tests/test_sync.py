@@ -16,7 +16,7 @@ from conftest import PATIENT, until
 from sync_stub import PACKAGE, STUB, stub
 
 import franka_async
-from franka_async import FrankaError, Joints, Latest, MotionError, Sim, _native, sync
+from franka_async import ControlError, FrankaError, Joints, Latest, MotionError, Sim, _native, sync
 
 
 def test_a_program_without_an_event_loop(sim: Sim) -> None:
@@ -51,6 +51,18 @@ def test_a_program_without_an_event_loop(sim: Sim) -> None:
         np.testing.assert_allclose(robot.pose_at(robot.state().q), robot.pose(), atol=1e-3)
     with pytest.raises(FrankaError):
         robot.state()
+
+
+def test_the_end_of_a_block_does_not_repeat_what_was_raised_in_it(sim: Sim) -> None:
+    with sync.Robot(sim.address, **PATIENT) as robot:
+        with robot.engage() as arm:
+            sim.trip("cartesian_reflex")
+            with pytest.raises(ControlError):
+                arm.ended()
+            robot.recover()
+        with pytest.raises(ControlError), robot.engage() as arm:
+            sim.trip("cartesian_reflex")
+            until(lambda: "disengaged" in repr(arm))
 
 
 def test_a_stop_of_another_thread_ends_what_waits(live: Sim) -> None:

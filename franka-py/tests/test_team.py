@@ -112,6 +112,17 @@ def test_the_fault_of_one_brakes_the_other_and_is_the_cause(fr3: Robot, sim_fr3:
         await team.arms[1].move_to(up(fer, -0.02))
         with pytest.raises(TeamError):
             await team.disengage()
+        # What the program was told is not raised again.
+        async with team:
+            pass
+        await fr3.recover()
+        async with await Team.engage(fr3, fer, silence=SILENCE) as team:
+            moving = asyncio.ensure_future(team.move_to([up(fr3, 0.1), up(fer, 0.1)], speed=0.1))
+            await moves((fr3, fer), moving)
+            sim_fr3.trip("cartesian_reflex")
+            with pytest.raises(TeamError):
+                await moving
+            await fr3.recover()
 
     asyncio.run(main())
 
