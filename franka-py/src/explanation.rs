@@ -43,7 +43,11 @@ pub(crate) fn explain(py: Python<'_>, of: &Bound<'_, PyAny>) -> PyResult<Explana
         let text = format!("got {got}, expected {expected}");
         return Err(PyTypeError::new_err(text));
     };
-    let error = log.get().error();
+    let Some(error) = log.get().error() else {
+        let text = "this log was pickled: explain it in the process that raised the error; its \
+                    diagnosis and findings came along";
+        return Err(PyValueError::new_err(text));
+    };
     let explained = py.detach(|| Explained::of_error(error));
     Ok(Explanation(Box::new(explained)))
 }

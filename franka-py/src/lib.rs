@@ -99,7 +99,7 @@ mod _native {
     #[pymodule_export]
     use crate::law::{_law_layout, Law};
     #[pymodule_export]
-    use crate::log::ControlLog;
+    use crate::log::{_log_of_json, ControlLog};
     #[pymodule_export]
     use crate::logging::enable_logging;
     #[pymodule_export]

@@ -1,7 +1,10 @@
 //! The last cycles of a motion.
 
+use std::sync::Arc;
+
 use franka_async::connection::Version;
 use franka_async::error::ControlError;
+use franka_async::record::{ControlLog as Log, LogEntry};
 use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -17,19 +20,24 @@ use crate::state::RobotState;
 /// `log.sent("tau_J_d")`.
 #[pyclass(frozen, sequence, module = "franka_async")]
 pub(crate) struct ControlLog {
-    error: Box<ControlError>,
+    log: Arc<Log>,
+    /// The error whose log it is; `None` of one that was pickled.
+    error: Option<Box<ControlError>>,
     version: Version,
 }
 
 impl ControlLog {
     pub(crate) fn new(error: ControlError, version: Version) -> Self {
-        let error = Box::new(error);
-        Self { error, version }
+        Self {
+            log: error.log.clone(),
+            error: Some(Box::new(error)),
+            version,
+        }
     }
 
-    /// The error whose log it is.
-    pub(crate) fn error(&self) -> &ControlError {
-        &self.error
+    /// The error whose log it is; `None` of one that was pickled.
+    pub(crate) fn error(&self) -> Option<&ControlError> {
+        self.error.as_deref()
     }
 
     /// A field of the states, as one array over the cycles.
@@ -81,11 +89,14 @@ pub(crate) fn add_fields(py: Python<'_>) -> PyResult<()> {
     Ok(())
 }
 
+/// The entries, and the protocol's version.
+type Written = (Vec<String>, u16);
+
 #[pymethods]
 impl ControlLog {
     /// The states, oldest first.
     fn states(&self) -> Vec<RobotState> {
-        let entries = self.error.log.iter();
+        let entries = self.log.iter();
         entries
             .map(|entry| RobotState::new(entry.state, self.version))
             .collect()
@@ -94,7 +105,7 @@ impl ControlLog {
     /// What had been sent before each state, `(N, ...)`; zeros before the first. `name` is
     /// `tau_J_d`, `q_c`, `dq_c`, `O_T_EE_c` or `O_dP_EE_c`.
     fn sent<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let commands = self.error.log.iter().map(|entry| &entry.command);
+        let commands = self.log.iter().map(|entry| &entry.command);
         let values: Vec<Bound<'py, PyAny>> = match name {
             "tau_J_d" => commands
                 .map(|sent| array(py, &sent.tau_J_d).into_any())
@@ -122,14 +133,37 @@ impl ControlLog {
 
     /// Comma-separated values, a line for each cycle; columns are named as by libfranka.
     fn to_csv(&self) -> String {
-        self.error.log.to_csv()
+        self.log.to_csv()
     }
 
     fn __len__(&self) -> usize {
-        self.error.log.len()
+        self.log.len()
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Written)> {
+        let entries = self.log.iter().map(serde_json::to_string);
+        let entries: Result<Vec<String>, _> = entries.collect();
+        let entries = entries.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let native = py.import("franka_async._native")?;
+        let make = native.getattr("_log_of_json")?;
+        Ok((make, (entries, self.version.number())))
     }
 
     fn __repr__(&self) -> String {
-        format!("<ControlLog of {} cycles>", self.error.log.len())
+        format!("<ControlLog of {} cycles>", self.log.len())
     }
+}
+
+/// The log that `pickle` wrote. An entry with numbers that JSON has no words for is left out.
+#[pyfunction]
+pub(crate) fn _log_of_json(entries: Vec<String>, version: u16) -> PyResult<ControlLog> {
+    let version = Version::from_number(version)
+        .ok_or_else(|| PyValueError::new_err(format!("got protocol version {version}")))?;
+    let entries = entries.iter();
+    let entries = entries.filter_map(|entry| serde_json::from_str::<LogEntry>(entry).ok());
+    Ok(ControlLog {
+        log: Arc::new(entries.collect()),
+        error: None,
+        version,
+    })
 }

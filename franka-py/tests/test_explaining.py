@@ -1,7 +1,11 @@
 """Why a robot stopped, of recordings and of errors."""
 
 import asyncio
+import copy
+import multiprocessing
+import pickle
 import xml.etree.ElementTree as ElementTree
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -78,6 +82,28 @@ def test_an_error_is_explained_with_its_log(hit: tuple[Path, ControlError]) -> N
     assert explanation.cycles == len(error.log) and explanation.end_host_time is None
     assert explanation.late == 0
     assert str(explain(error.log)) == str(explanation)
+
+
+def test_an_error_is_pickled_with_its_log(hit: tuple[Path, ControlError]) -> None:
+    _, error = hit
+    same: ControlError = pickle.loads(pickle.dumps(error))
+    assert type(same) is ControlError and str(same) == str(error)
+    for name in ("kind", "party", "entry", "errors", "move_status", "is_ready_for_more", "diagnosis", "findings"):
+        assert getattr(same, name) == getattr(error, name), name
+    assert len(same.log) == len(error.log) and same.to_csv() == error.to_csv()
+    assert same.log.states() == error.log.states()
+    np.testing.assert_array_equal(same.log.sent("tau_J_d"), error.log.sent("tau_J_d"))
+    assert copy.copy(error.log).to_csv() == error.to_csv()
+    with pytest.raises(ValueError, match="this log was pickled"):
+        explain(same)
+    # As another process hands it on.
+    with ProcessPoolExecutor(1, multiprocessing.get_context("spawn")) as pool:
+        raised = pool.submit(_raise, pickle.dumps(error)).exception()
+    assert isinstance(raised, ControlError) and raised.errors == error.errors and len(raised.log) == len(error.log)
+
+
+def _raise(error: bytes) -> None:
+    raise pickle.loads(error)
 
 
 def test_what_cannot_be_explained_is_said() -> None:

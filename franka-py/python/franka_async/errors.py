@@ -115,7 +115,7 @@ class ControlError(MotionError):
     """The robot's last word on the motion: ``reflex_aborted``, ``preempted``, ..."""
 
     log: ControlLog
-    """The last cycles of the motion."""
+    """The last cycles of the motion. One that was pickled can be read, but not given to ``explain``."""
 
     diagnosis: str | None
     """Which limit was exceeded, by how much, since when, and what to change; ``None`` if no limit was."""

@@ -124,6 +124,22 @@ impl ControlLog {
     }
 }
 
+/// A log with room for no more.
+impl FromIterator<LogEntry> for ControlLog {
+    fn from_iter<T: IntoIterator<Item = LogEntry>>(entries: T) -> Self {
+        let mut entries: Vec<LogEntry> = entries.into_iter().collect();
+        let len = entries.len();
+        if len > 0 {
+            entries.push(LogEntry::default());
+        }
+        Self {
+            entries: entries.into(),
+            next: len,
+            len,
+        }
+    }
+}
+
 impl PartialEq for ControlLog {
     fn eq(&self, other: &Self) -> bool {
         self.iter().eq(other.iter())
@@ -237,6 +253,7 @@ mod tests {
             (0, 3, vec![]),
         ] {
             let log = log(capacity, 1..=pushed);
+            assert_eq!(log.iter().copied().collect::<ControlLog>(), log);
             let times = |entry: &LogEntry| entry.state.message_id;
             assert_eq!(log.iter().map(times).collect::<Vec<_>>(), expected);
             assert_eq!((log.len(), log.capacity()), (expected.len(), capacity));
