@@ -1,6 +1,7 @@
 //! What a motion goes on until.
 
 use franka_async::condition::{self, Axis, Reaction};
+use franka_async::error::ConditionError;
 use pyo3::basic::CompareOp;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -21,10 +22,15 @@ impl Condition {
     /// # Errors
     /// `ValueError` for thresholds that cannot be, and for more than there is room for.
     fn new(condition: condition::Condition, text: String) -> PyResult<Self> {
-        match condition.check() {
-            Ok(()) => Ok(Self { condition, text }),
-            Err(error) => Err(PyValueError::new_err(error.to_string())),
-        }
+        let text = match condition.check() {
+            Ok(()) => return Ok(Self { condition, text }),
+            Err(ConditionError::Threshold { quantity, got }) => format!(
+                "threshold {got} for {}, expected a finite number, above 0 for a magnitude",
+                name(quantity)
+            ),
+            Err(error) => error.to_string(),
+        };
+        Err(PyValueError::new_err(text))
     }
 }
 
@@ -244,8 +250,21 @@ joint_quantities! {
     joint_velocity: JointVelocity;
 }
 
-/// Adds the quantities that have a name of their own to the module.
-pub(crate) fn add_quantities(module: &Bound<'_, PyModule>) -> PyResult<()> {
+/// What Python calls a quantity: `FORCE_Z`, `joint_torque(3)`.
+fn name(quantity: condition::Quantity) -> String {
+    use condition::Quantity as Q;
+    let known = named().find(|(_, known)| *known == quantity);
+    match (known, quantity) {
+        (Some((name, _)), _) => name,
+        (None, Q::JointTorque(joint)) => format!("joint_torque({joint})"),
+        (None, Q::JointPosition(joint)) => format!("joint_position({joint})"),
+        (None, Q::JointVelocity(joint)) => format!("joint_velocity({joint})"),
+        (None, quantity) => format!("{quantity:?}"),
+    }
+}
+
+/// The quantities that have a name of their own.
+fn named() -> impl Iterator<Item = (String, condition::Quantity)> {
     use condition::Quantity as Q;
     let axes = [("X", Axis::X), ("Y", Axis::Y), ("Z", Axis::Z)];
     type OfAxis = fn(Axis) -> Q;
@@ -263,11 +282,15 @@ pub(crate) fn add_quantities(module: &Bound<'_, PyModule>) -> PyResult<()> {
         ("SPEED", Q::Speed),
         ("ANGULAR_SPEED", Q::AngularSpeed),
     ];
-    let named = along.into_iter().flat_map(|(name, quantity)| {
+    let named = along.into_iter().flat_map(move |(name, quantity)| {
         axes.map(|(letter, axis)| (format!("{name}_{letter}"), quantity(axis)))
     });
-    let named = named.chain(plain.map(|(name, quantity)| (name.to_owned(), quantity)));
-    for (text, quantity) in named {
+    named.chain(plain.map(|(name, quantity)| (name.to_owned(), quantity)))
+}
+
+/// Adds the quantities that have a name of their own to the module.
+pub(crate) fn add_quantities(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    for (text, quantity) in named() {
         module.add(text.clone().as_str(), Quantity { quantity, text })?;
     }
     Ok(())

@@ -15,9 +15,9 @@ use std::time::Duration;
 
 use franka_async::record::{Column, Record};
 use futures::{Stream, StreamExt};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyIterator, PyList, PyTuple};
+use pyo3::types::{PyDict, PyIterator, PyList, PyString, PyTuple};
 use tokio::sync::broadcast::error::RecvError;
 use tokio::sync::{broadcast, watch};
 
@@ -35,7 +35,15 @@ impl Robot {
     /// block runs: see `Recording`. It keeps the first `longest` seconds. Raises `ValueError` for a
     /// column that is not known.
     #[pyo3(signature = (columns, *, longest = 3600.0))]
-    fn record(&self, columns: Vec<String>, longest: f64) -> PyResult<Recording> {
+    fn record(&self, columns: &Bound<'_, PyAny>, longest: f64) -> PyResult<Recording> {
+        let columns: Vec<String> = match columns.is_instance_of::<PyString>() {
+            true => {
+                let got = columns.repr()?;
+                let text = format!("columns is {got}, expected a list of names: [{got}]");
+                return Err(PyTypeError::new_err(text));
+            }
+            false => columns.extract()?,
+        };
         let mut chosen = Vec::with_capacity(columns.len());
         // The time of each row is there in any case.
         for name in columns.iter().filter(|name| *name != "time") {
