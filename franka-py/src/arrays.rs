@@ -4,9 +4,13 @@
 use franka_async::Pose;
 use franka_async::nalgebra::{Matrix4, SMatrix};
 use franka_async::pose;
-use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLikeDyn, PyUntypedArrayMethods};
+use numpy::{
+    PyArray1, PyArray2, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray,
+    PyUntypedArrayMethods,
+};
 use pyo3::exceptions::{PyException, PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 
 /// The numbers of an argument, with its shape. Row-major, whatever the order in memory.
 pub(crate) struct Numbers {
@@ -18,16 +22,14 @@ impl Numbers {
     /// Reads a number, a list (of lists) or an array, of the argument called `name`.
     ///
     /// # Errors
-    /// `TypeError` if it is anything else; an interrupt that comes meanwhile, as it is.
+    /// `TypeError` if it is anything else, such as text, truth values and complex numbers; an
+    /// interrupt that comes meanwhile, as it is.
     pub(crate) fn read(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let array: PyArrayLikeDyn<'_, f64, AllowTypeChange> =
-            argument.extract().map_err(|cause: PyErr| {
-                // Ctrl-C may come while numpy reads the argument.
-                if !cause.is_instance_of::<PyException>(argument.py()) {
-                    return cause;
-                }
-                PyTypeError::new_err(format!("{name} holds no numbers: {cause}"))
-            })?;
+        let array = match argument.cast::<PyArrayDyn<f64>>() {
+            Ok(array) => array.clone(),
+            Err(_) => converted(name, argument)?,
+        };
+        let array = array.readonly();
         let shape = array.shape().to_vec();
         let values = match array.as_slice() {
             Ok(values) if array.is_c_contiguous() => values.to_vec(),
@@ -35,6 +37,48 @@ impl Numbers {
         };
         Ok(Self { shape, values })
     }
+}
+
+/// What numpy makes of the argument called `name`.
+fn converted<'py>(
+    name: &str,
+    argument: &Bound<'py, PyAny>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let py = argument.py();
+    let got = |what: &str| PyTypeError::new_err(format!("{name} holds no numbers: got {what}"));
+    if argument.is_none() {
+        return Err(got("None"));
+    }
+    let no_numbers = |cause: PyErr| {
+        // Ctrl-C may come while numpy reads the argument.
+        if !cause.is_instance_of::<PyException>(py) {
+            return cause;
+        }
+        PyTypeError::new_err(format!("{name} holds no numbers: {cause}"))
+    };
+    let numpy = py.import("numpy")?;
+    let array = numpy.call_method1("asarray", (argument,));
+    let array = array.map_err(no_numbers)?;
+    match array.cast::<PyUntypedArray>()?.dtype().kind() {
+        // Of whatever size.
+        b'f' | b'i' | b'u' => {}
+        b'b' => return Err(got("truth values")),
+        b'c' => return Err(got("complex numbers")),
+        b'U' | b'S' => return Err(got("text")),
+        _ => {
+            for part in array.getattr("flat")?.try_iter()? {
+                let part = part?;
+                if part.is_none() {
+                    return Err(got("None"));
+                }
+                if part.is_instance_of::<PyString>() {
+                    return Err(got("text"));
+                }
+            }
+        }
+    }
+    let array = array.call_method1("astype", ("float64",));
+    Ok(array.map_err(no_numbers)?.cast_into()?)
 }
 
 /// Reads `N` numbers from the argument called `name`.
@@ -202,7 +246,6 @@ pub(crate) fn table<'py>(
     values: &[f64],
     width: usize,
 ) -> Bound<'py, PyArray2<f64>> {
-    use numpy::PyArrayMethods;
     let rows = values.len() / width.max(1);
     array(py, values)
         .reshape([rows, width])

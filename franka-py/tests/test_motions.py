@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import pickle
+from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -17,6 +20,7 @@ from franka_async import (
     Deviation,
     Gains,
     Joints,
+    Latest,
     Leash,
     Limits,
     MotionError,
@@ -27,6 +31,7 @@ from franka_async import (
     Sim,
     Tolerance,
     Waypoint,
+    condition,
 )
 from franka_async.condition import POSITION_Z, SPEED, elapsed, force_z, joint_position
 
@@ -162,6 +167,47 @@ def test_options_change_the_motion(robot: Robot) -> None:
         robot.move_by([0.0, 0.0, 0.02], speed=100.0).wait()
     with pytest.raises(MotionError, match="stiffness"):
         robot.move_by([0.0, 0.0, 0.02], gains=Gains(cartesian_stiffness=[1e5] * 6)).wait()
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda robot: robot.move_to(None), "^target holds no numbers: got None"),
+        (lambda robot: robot.move_by(None), "^way holds no numbers: got None"),
+        (lambda robot: robot.move_joints([0.0] * 6 + [None]), "^q holds no numbers: got None"),
+        (lambda robot: robot.move_joints(["0"] * 7), "^q holds no numbers: got text"),
+        (lambda robot: robot.move_joints([True] * 7), "^q holds no numbers: got truth values"),
+        (lambda robot: robot.move_joints(np.zeros(7) * 1j), "^q holds no numbers: got complex numbers"),
+        (lambda robot: robot.move_through([None]), "^waypoint 1 holds no numbers: got None"),
+        (lambda robot: robot.move_through([Waypoint(None)]), "^waypoint 1 holds no numbers: got None"),  # type: ignore[arg-type]
+        (lambda robot: Latest().set(None), "^target holds no numbers: got None"),  # type: ignore[arg-type]
+        (lambda robot: Joints(None), "^q holds no numbers: got None"),  # type: ignore[arg-type]
+        (lambda robot: robot.follow(iter([None])).wait(), "^a target holds no numbers: got None"),
+        (lambda robot: robot.record("q"), r"^columns is 'q', expected a list of names: \['q'\]"),
+    ],
+)
+def test_what_is_no_number_is_named(robot: Robot, call: Callable[[Any], Any], message: str) -> None:
+    with pytest.raises(TypeError, match=message):
+        call(robot)
+
+
+def test_numbers_of_any_kind_are_numbers(robot: Robot) -> None:
+    q = robot.state().q
+    kinds: list[Any] = [q.tolist(), tuple(q), q.astype(np.float32), np.rint(q).astype(int), [Fraction(x) for x in q], q[::-1][::-1]]
+    for same in kinds:
+        robot.move_joints(same).close()
+
+
+def test_a_threshold_is_named_as_in_python() -> None:
+    calls: list[tuple[Callable[[], object], str]] = [
+        (lambda: condition.FORCE_Z.beyond(-8.0), "FORCE_Z"),
+        (lambda: condition.force_z(-8.0), "FORCE_Z"),
+        (lambda: condition.SPEED > math.inf, "SPEED"),
+        (lambda: condition.joint_torque(3) > math.nan, r"joint_torque\(3\)"),
+    ]
+    for call, name in calls:
+        with pytest.raises(ValueError, match=f"for {name}, expected a finite number"):
+            call()
 
 
 def test_values_compare_and_print_and_pickle() -> None:
