@@ -227,16 +227,16 @@ fn collision_behavior(
         let [lower_torque, upper_torque, lower_force, upper_force] =
             arguments(&UNIFORM, thresholds, named)?;
         return Ok(CollisionBehavior::uniform(
-            vector(UNIFORM[0], &lower_torque)?,
-            vector(UNIFORM[1], &upper_torque)?,
-            vector(UNIFORM[2], &lower_force)?,
-            vector(UNIFORM[3], &upper_force)?,
+            threshold(UNIFORM[0], &lower_torque)?,
+            threshold(UNIFORM[1], &upper_torque)?,
+            threshold(UNIFORM[2], &lower_force)?,
+            threshold(UNIFORM[3], &upper_force)?,
         ));
     }
     let names = &COLLISION_THRESHOLDS;
     let given = arguments(names, thresholds, named)?;
-    let torque = |i: usize| vector(names[i], &given[i]);
-    let force = |i: usize| vector(names[i], &given[i]);
+    let torque = |i: usize| threshold(names[i], &given[i]);
+    let force = |i: usize| threshold(names[i], &given[i]);
     Ok(CollisionBehavior {
         lower_torque_thresholds_acceleration: torque(0)?,
         upper_torque_thresholds_acceleration: torque(1)?,
@@ -249,6 +249,21 @@ fn collision_behavior(
     })
 }
 
+/// What says the thresholds.
+const FORMS: &str = "expected 'careful', 'compliant' or 'insensitive'; four arrays, lower and \
+                     upper torques (7,), lower and upper forces (6,); or eight, as \
+                     COLLISION_THRESHOLDS names them";
+
+/// Reads one of the arrays.
+fn threshold<const N: usize>(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<[f64; N]> {
+    let shape = Numbers::read(name, argument)?.shape;
+    if shape != [N] {
+        let text = format!("{name} has the shape {shape:?}, not ({N},): {FORMS}");
+        return Err(PyValueError::new_err(text));
+    }
+    vector(name, argument)
+}
+
 fn preset(preset: &Bound<'_, PyAny>) -> PyResult<CollisionBehavior> {
     match preset.extract::<&str>() {
         Ok("careful") => Ok(CollisionBehavior::careful()),
@@ -256,10 +271,7 @@ fn preset(preset: &Bound<'_, PyAny>) -> PyResult<CollisionBehavior> {
         Ok("insensitive") => Ok(CollisionBehavior::insensitive()),
         _ => {
             let got = preset.repr()?;
-            let text = format!(
-                "got {got}, expected 'careful', 'compliant', 'insensitive', or four or eight arrays"
-            );
-            Err(PyValueError::new_err(text))
+            Err(PyValueError::new_err(format!("got {got}, {FORMS}")))
         }
     }
 }
@@ -276,8 +288,7 @@ fn arguments<'py, const N: usize>(
     let mut given: [Option<Bound<'py, PyAny>>; N] = [const { None }; N];
     if positional.len() > N {
         let got = positional.len();
-        let text = format!("got {got} arrays, expected a name, four or eight");
-        return Err(PyTypeError::new_err(text));
+        return Err(PyTypeError::new_err(format!("got {got} arrays, {FORMS}")));
     }
     for (place, value) in given.iter_mut().zip(positional.iter()) {
         *place = Some(value);
@@ -294,21 +305,21 @@ fn arguments<'py, const N: usize>(
         }
     }
     if let Some(missing) = given.iter().position(Option::is_none) {
-        let text = format!("{} is missing", names[missing]);
+        let text = format!("{} is missing, {FORMS}", names[missing]);
         return Err(PyTypeError::new_err(text));
     }
     Ok(given.map(|given| given.expect("none is missing")))
 }
 
-/// Reads an inertia, `(3, 3)`, and returns it column by column.
+/// Reads an inertia, `(3, 3)` or its nine numbers, and returns it column by column.
 ///
 /// # Errors
 /// `ValueError` for another shape, numbers that are not finite, and a matrix that is not symmetric.
 pub(crate) fn inertia(argument: &Bound<'_, PyAny>) -> PyResult<[f64; 9]> {
     let Numbers { shape, values } = Numbers::read("inertia", argument)?;
     let matrix: [f64; 9] = match values.try_into() {
-        Ok(matrix) if *shape == [3, 3] => matrix,
-        _ => return Err(unexpected_shape("inertia", &shape, "(3, 3)")),
+        Ok(matrix) if matches!(*shape, [3, 3] | [9]) => matrix,
+        _ => return Err(unexpected_shape("inertia", &shape, "(3, 3) or (9,)")),
     };
     let is_symmetric = [(1, 3), (2, 6), (5, 7)]
         .iter()

@@ -52,6 +52,12 @@ def test_frames_and_load_are_in_the_state_that_follows(franka_robot: Robot) -> N
         np.testing.assert_allclose(state.EE_T_K, frame, atol=1e-7)
         assert state.NE_T_EE[2, 3] == pytest.approx(0.05)
         assert state.m_load == pytest.approx(0.5)
+        # As the vendor writes it.
+        await robot.set_load(0.5, [0.0, 0.02, 0.03], 2.0 * inertia.ravel(order="F"))
+        async for event in events:
+            if event.kind == "load_changed":
+                break
+        np.testing.assert_allclose(event.inertia, 2.0 * inertia, rtol=1e-7)
 
     asyncio.run(main())
 
@@ -79,13 +85,15 @@ def test_a_refusal_of_the_robot_is_raised(fr3: Robot) -> None:
 @pytest.mark.parametrize(
     ("arguments", "named", "message"),
     [
-        (["gentle"], {}, "got 'gentle', expected 'careful', 'compliant', 'insensitive', or four or eight arrays"),
+        (["gentle"], {}, "got 'gentle', expected 'careful', 'compliant' or 'insensitive'; four arrays, lower and upper torques"),
         ([TORQUES], {}, "expected 'careful'"),
-        ([TORQUES, TORQUES], {}, "lower_force_thresholds is missing"),
-        ([TORQUES] * 9, {}, "got 9 arrays, expected a name, four or eight"),
+        ([TORQUES, TORQUES], {}, "lower_force_thresholds is missing, expected 'careful', .* lower and upper forces \\(6,\\); or eight"),
+        ([30.0] * 4, {}, r"lower_torque_thresholds has the shape \[\], not \(7,\): expected 'careful'.*; four arrays"),
+        ([30.0, 30.0], {}, "lower_force_thresholds is missing, expected 'careful'"),
+        ([TORQUES] * 9, {}, "got 9 arrays, expected 'careful'.*; four arrays.*; or eight"),
         ([], {"upper_torque": TORQUES}, "got upper_torque, expected some of lower_torque_thresholds_acceleration"),
         ([TORQUES], {"lower_torque_thresholds": TORQUES}, "got lower_torque_thresholds twice"),
-        ([TORQUES, FORCES, FORCES, FORCES], {}, r"upper_torque_thresholds has the shape \[6\], expected \(7,\)"),
+        ([TORQUES, FORCES, FORCES, FORCES], {}, r"upper_torque_thresholds has the shape \[6\], not \(7,\): expected"),
         ([[np.nan] * 7, TORQUES, FORCES, FORCES], {}, "lower_torque_thresholds holds NaN"),
     ],
 )
@@ -100,8 +108,10 @@ def test_loads_that_make_no_sense_are_refused() -> None:
         robot.set_load(-1.0)
     with pytest.raises(ValueError, match="expected a symmetric matrix"):
         robot.set_load(1.0, inertia=np.arange(9.0).reshape(3, 3))
-    with pytest.raises(ValueError, match=r"inertia has the shape \[9\], expected \(3, 3\)"):
-        robot.set_load(1.0, inertia=np.zeros(9))
+    with pytest.raises(ValueError, match="expected a symmetric matrix"):
+        robot.set_load(1.0, inertia=np.arange(9.0))
+    with pytest.raises(ValueError, match=r"inertia has the shape \[6\], expected \(3, 3\) or \(9,\)"):
+        robot.set_load(1.0, inertia=np.zeros(6))
 
 
 def test_nothing_is_sent_without_a_connection() -> None:
