@@ -9,9 +9,10 @@ from .. import errors
 
 
 def text_of(error: errors.FrankaError) -> str:
-    """The text of an error, without what the originals do not say: where there was no connection, and why."""
+    """The text of an error, without what the originals do not say: where there was no connection, and why; what was out of range."""
     text = str(error)
-    if isinstance(error, errors.ConnectError) and error.kind in ("refused", "connection_closed"):
+    kinds = ("refused", "connection_closed") if isinstance(error, errors.ConnectError) else ("out_of_range",)
+    if error.kind in kinds:
         return text.split(" (")[0]
     return text
 
