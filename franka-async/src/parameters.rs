@@ -26,6 +26,8 @@ impl Robot {
     /// [`insensitive`](CollisionBehavior::insensitive), or values of your own. A goal whose force
     /// cap is above them begins with a warning (`tracing`).
     ///
+    /// The vendor documents no range. The simulator refuses what is negative or not finite.
+    ///
     /// # Errors
     /// [`CommandError`].
     ///
@@ -82,6 +84,8 @@ impl Robot {
 
     /// Sets the stiffness frame in the end effector's, `EE_T_K`.
     ///
+    /// The vendor documents no range. The simulator refuses what is more than 2 m away.
+    ///
     /// # Errors
     /// [`CommandError`].
     ///
@@ -91,7 +95,8 @@ impl Robot {
         self.set(Request::SetEEToK(transform::array(&ee_t_k))).await
     }
 
-    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`.
+    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`. Its range is that of
+    /// [`Self::set_k`].
     ///
     /// # Errors
     /// [`CommandError`].
@@ -105,6 +110,10 @@ impl Robot {
 
     /// Declares the load beyond the end effector: mass `[kg]`, centre of mass in the flange frame
     /// `[m]`, inertia about it `[kg m^2]`, column-major.
+    ///
+    /// The vendor documents no range. The simulator refuses more than 10 kg, a centre more than 1 m
+    /// away, and an inertia that is not symmetric, not that of a body, or has a principal moment
+    /// above 1 kg m^2; its configuration has other bounds.
     ///
     /// # Errors
     /// [`CommandError`].

@@ -22,6 +22,8 @@ impl Robot {
     /// four twice: `..._acceleration` while the arm accelerates, and `..._nominal`, in the order of
     /// `COLLISION_THRESHOLDS`. Positional or by name.
     ///
+    /// The vendor documents no range of them. The simulator refuses what is negative.
+    ///
     /// Raises `ValueError`, `TypeError` and `CommandError`; a robot that moves refuses it. Once it
     /// has begun, the robot may carry it out even if it is cancelled.
     #[pyo3(signature = (*thresholds, **named))]
@@ -69,7 +71,8 @@ impl Robot {
         }))
     }
 
-    /// Sets the stiffness frame in the end effector's, `EE_T_K`: a pose. Raises and is cancelled as
+    /// Sets the stiffness frame in the end effector's, `EE_T_K`: a pose. The vendor documents no
+    /// range; the simulator refuses what is more than 2 m away. Raises and is cancelled as
     /// `set_collision_behavior`.
     #[expect(non_snake_case, reason = "the vendor's name")]
     fn set_k(&self, EE_T_K: &Bound<'_, PyAny>) -> PyResult<Operation> {
@@ -80,8 +83,8 @@ impl Robot {
         }))
     }
 
-    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`: a pose. Raises and is
-    /// cancelled as `set_collision_behavior`.
+    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`: a pose. Its range is
+    /// as that of `set_k`. Raises and is cancelled as `set_collision_behavior`.
     #[expect(non_snake_case, reason = "the vendor's name")]
     fn set_ee(&self, NE_T_EE: &Bound<'_, PyAny>) -> PyResult<Operation> {
         let pose = arrays::pose("NE_T_EE", NE_T_EE)?;
@@ -92,8 +95,11 @@ impl Robot {
     }
 
     /// Declares the load beyond the end effector: `mass`, kg; `center` of mass in the flange frame,
-    /// `(3,)` m; `inertia` about it, `(3, 3)` kg m^2, zero unless given. Raises and is cancelled as
-    /// `set_collision_behavior`.
+    /// `(3,)` m; `inertia` about it, `(3, 3)` or its nine numbers, kg m^2, zero unless given.
+    ///
+    /// The vendor documents no range. The simulator refuses more than 10 kg, a centre more than 1 m
+    /// away, and an inertia that no body has or with a principal moment above 1 kg m^2. Raises and
+    /// is cancelled as `set_collision_behavior`.
     #[pyo3(signature = (mass, center = None, inertia = None))]
     fn set_load(
         &self,
