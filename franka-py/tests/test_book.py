@@ -63,6 +63,7 @@ def test_the_functions_of_the_chapter_run(chapter: dict[str, Any], live: Sim, na
 def test_the_functions_of_the_page_on_franky_run(live: Sim) -> None:
     chapter = run("from-franky.md", skipped=1)  # the first is a table of both packages
     with sync.Robot(live.address, realtime="ignore") as robot:
+        assert chapter["up"](robot).duration < 2.0
         chapter["waypoints"](robot)
         chapter["until_contact"](robot)
         start = robot.pose()
