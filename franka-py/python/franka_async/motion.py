@@ -104,7 +104,8 @@ class MotionReport(Value):
     """How a motion went that did what it was to do. Times are in seconds."""
 
     duration: float
-    """From the first state of the motion to the arrival, by the robot's clock."""
+    """From the first state of the motion to the arrival, by the robot's clock. The time for which the arm then has to rest there, 0.25 s
+    unless ``settling`` says otherwise, is not in it; what is counted below includes it."""
 
     final_error: PoseError | None
     """Distance of the measured end effector from its target; ``None`` for a motion without one."""

@@ -25,6 +25,10 @@ pub type Outcome = Result<MotionReport, MotionError>;
 pub struct MotionReport {
     /// From the first state that the goal answered to the arrival, in the robot's time, pauses and
     /// all that held the arm up included; of a control function, to the end of the motion.
+    ///
+    /// It does not include the time for which the arm then has to rest there,
+    /// [`Settling::hold`](crate::session::Settling::hold), after which the motion resolves; what is
+    /// counted below does.
     pub duration: Duration,
     /// Distance of the measured end effector from its target; `None` for a motion without one.
     pub final_error: Option<PoseError>,
