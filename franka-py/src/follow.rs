@@ -46,7 +46,8 @@ impl Latest {
         Ok(())
     }
 
-    /// Ends the motions that follow it, at the target that was set last.
+    /// Ends the motions that follow it, at the target that was set last. Those of an arm whose
+    /// deadman is silent raise `held`.
     fn close(&self) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
     }

@@ -48,9 +48,11 @@ impl Sim {
     /// flange (a pose), its mass, kg, and its centre of mass in the flange frame, m: what the
     /// robot knows of. `load`, a tuple of mass and centre: what it does not know of. `hand`
     /// serves a Franka Hand and mounts it, `vacuum_gripper` a vacuum gripper, each at an
-    /// address of its own. `network`, a `Network` between robot and clients. `address`, where
-    /// to listen; the grippers then listen on the ports that follow, as on a robot.
-    /// `enforce_limits`, whether commands outside the limits end in a reflex.
+    /// address of its own: `Gripper(sim.hand_address)`, since `robot.gripper()` looks at the port
+    /// after the robot's, where the Hand is with `address` only. `network`, a `Network` between
+    /// robot and clients. `address`, where to listen; the grippers then listen on the ports that
+    /// follow, as on a robot. `enforce_limits`, whether commands outside the limits end in a
+    /// reflex.
     #[staticmethod]
     #[pyo3(signature = (**options))]
     fn fr3(py: Python<'_>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {

@@ -49,7 +49,7 @@ def test_chunks_are_followed(capsys: pytest.CaptureFixture[str]) -> None:
     assert float(line.split(" mm")[0]) < 20.0
 
 
-@pytest.mark.parametrize("name", ["careful", "touch", "follow_policy"])
+@pytest.mark.parametrize("name", ["careful", "touch", "follow_policy", "follow_moving", "watched"])
 def test_the_functions_of_the_chapter_run(chapter: dict[str, Any], live: Sim, name: str) -> None:
     function: Callable[[Robot], Awaitable[None]] = chapter[name]
 
