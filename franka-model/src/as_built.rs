@@ -93,7 +93,7 @@ impl AsBuilt {
         dynamics::gravity(&self.chain(q), &self.model.links_with(load), gravity_earth)
     }
 
-    /// As [`Model::forward_dynamics`].
+    /// As [`Model::forward_dynamics`], with an armature that may couple the joints: symmetric.
     #[allow(clippy::too_many_arguments)] // the terms of the equation of motion
     pub fn forward_dynamics(
         &self,
@@ -102,7 +102,7 @@ impl AsBuilt {
         tau: &JointVector,
         load: &Load,
         gravity_earth: &Vector3<f64>,
-        armature: &JointVector,
+        armature: &MassMatrix,
     ) -> Option<JointVector> {
         dynamics::forward_dynamics(
             &self.chain(q),

@@ -128,15 +128,12 @@ pub(crate) fn forward_dynamics(
     dq: &JointVector,
     tau: &JointVector,
     gravity_earth: &Vector3<f64>,
-    armature: &JointVector,
+    armature: &MassMatrix,
 ) -> Option<JointVector> {
     let bodies = placed(chain, links);
-    let (mut mass, gravity) = mass_and_gravity(chain, &bodies, gravity_earth);
+    let (mass, gravity) = mass_and_gravity(chain, &bodies, gravity_earth);
     let coriolis = LinkMotions::of(chain, dq, None, &Vector3::zeros()).torques(chain, &bodies);
-    for i in 0..7 {
-        mass[(i, i)] += armature[i];
-    }
-    let factor = Cholesky::new(mass)?;
+    let factor = Cholesky::new(mass + armature)?;
     Some(factor.solve(&(tau - coriolis - gravity)))
 }
 

@@ -172,7 +172,7 @@ impl Model {
             dq,
             tau,
             gravity_earth,
-            armature,
+            &MassMatrix::from_diagonal(armature),
         )
     }
 

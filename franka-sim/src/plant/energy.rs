@@ -2,7 +2,7 @@
 
 use franka_model::{GRAVITY_EARTH, JointVector, Load, Model, READY, RobotKind};
 
-use super::{DriveTrain, Plant, RigidArm};
+use super::{DriveTrain, External, Plant, RigidArm};
 use crate::Tool;
 use crate::arm::{Arm, EndStops, Friction};
 
@@ -68,7 +68,7 @@ struct Book {
 impl Book {
     fn step(&mut self, motor: &JointVector, dt: f64) {
         let before = *self.plant.q();
-        let none = JointVector::zeros();
+        let none = External::NONE;
         self.train.step(self.plant.as_mut(), motor, &none, dt);
         let way = self.plant.q() - before;
         let middle = before + way / 2.0;

@@ -10,12 +10,14 @@
 mod drive;
 #[cfg(test)]
 mod energy;
+mod external;
 mod fingers;
 #[cfg(feature = "mujoco")]
 mod mujoco;
 mod rigid;
 
 pub use drive::{DriveTrain, LinkTorque};
+pub use external::External;
 pub use fingers::FingerDrive;
 #[cfg(feature = "mujoco")]
 pub use mujoco::{Mount, MujocoArm, Scene, SceneError, SharedArm, shared_world};
@@ -49,10 +51,9 @@ pub trait Plant: Any + Debug + Send {
     /// Takes links, axes, gravity and end stops from `arm`.
     fn fit(&mut self, kind: RobotKind, arm: &Arm);
 
-    /// Advances by `dt` seconds under the torques of the drives and under torques from outside
-    /// (positive: they push the joint towards positive angles), `[N·m]`. What touches the arm in
-    /// the plant itself comes on top.
-    fn step(&mut self, drive: &LinkTorque, external: &JointVector, dt: f64);
+    /// Advances by `dt` seconds under the torques of the drives and under those from outside. What
+    /// touches the arm in the plant itself comes on top.
+    fn step(&mut self, drive: &LinkTorque, external: &External, dt: f64);
 
     /// Puts the arm at rest at `q`, `[rad]`, and returns the torques that hold it there against
     /// gravity, `[N·m]`.

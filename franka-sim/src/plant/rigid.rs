@@ -1,9 +1,9 @@
 //! The rigid-body arm.
 
-use franka_model::{AsBuilt, JointVector, Load, RobotKind};
+use franka_model::{AsBuilt, JointVector, Load, MassMatrix, RobotKind};
 use nalgebra::Vector3;
 
-use super::{LinkTorque, Plant};
+use super::{External, LinkTorque, Plant};
 use crate::arm::{Arm, EndStops};
 
 /// Rigid links that nothing is around.
@@ -11,14 +11,14 @@ use crate::arm::{Arm, EndStops};
 /// Each step solves, for the acceleration `a`,
 ///
 /// ```text
-/// (M + inertia + h·D + h²·K) a = torque + external − C dq − g − stops(q + h·dq, dq)
+/// (M + inertia + slope + h·D + h²·K) a = torque + external − C dq − g − stops(q + h·dq, dq)
 /// ```
 ///
-/// with the torque and the inertia of the drives, `D` the damping of drives and stops and `K` the
-/// stops' stiffness, then advances velocity before position. That is the implicit Euler rule for
-/// what is stiff (friction at rest, end stops) and the symplectic one for the rest, so the step
-/// stays stable however stiff those are, and a free arm keeps its energy (see the tests in
-/// `plant::energy`).
+/// with the torque and the inertia of the drives, the torque and the slope of what touches the
+/// links, `D` the damping of drives and stops and `K` the stops' stiffness, then advances velocity
+/// before position. That is the implicit Euler rule for what is stiff (friction at rest, end stops,
+/// springs of touches) and the symplectic one for the rest, so the step stays stable however stiff
+/// those are, and a free arm keeps its energy (see the tests in `plant::energy`).
 #[derive(Debug)]
 pub struct RigidArm {
     model: AsBuilt,
@@ -58,17 +58,22 @@ impl Plant for RigidArm {
         self.stops = arm.body.stops;
     }
 
-    fn step(&mut self, drive: &LinkTorque, external: &JointVector, dt: f64) {
+    fn step(&mut self, drive: &LinkTorque, external: &External, dt: f64) {
         let (stop, stop_slope) = self.stops.resistance(&self.q, &self.dq, dt);
+        let resisting = drive.inertia + (drive.damping + stop_slope) * dt;
+        let mut armature = MassMatrix::from_diagonal(&resisting);
+        if let Some(slope) = &external.slope {
+            armature += slope;
+        }
         let ddq = self
             .model
             .forward_dynamics(
                 &self.q,
                 &self.dq,
-                &(drive.torque + external - stop),
+                &(drive.torque + external.torque - stop),
                 &self.load,
                 &self.gravity_earth,
-                &(drive.inertia + (drive.damping + stop_slope) * dt),
+                &armature,
             )
             // No acceleration solves the equation. The robot notices non-finite values and stops.
             .unwrap_or_else(|| JointVector::repeat(f64::NAN));
@@ -111,7 +116,7 @@ mod tests {
     #[test]
     fn gravity_torque_holds_the_arm_still() {
         let (mut arm, mut train) = robot(&Arm::ideal(RobotKind::Fr3));
-        let none = JointVector::zeros();
+        let none = External::NONE;
         for _ in 0..4000 {
             let hold = gravity(&arm);
             train.step(&mut arm, &hold, &none, STEP);
@@ -127,7 +132,7 @@ mod tests {
         let motor = JointVector::from([5.0, -3.0, 2.0, 25.0, 0.5, 1.0, 0.1]);
         let before = arm.dq;
         let q = arm.q;
-        train.step(&mut arm, &motor, &JointVector::zeros(), STEP);
+        train.step(&mut arm, &motor, &External::NONE, STEP);
         let ddq = (arm.dq - before) / STEP;
         let model = Model::fr3();
         let links = model.inverse_dynamics(&q, &before, &ddq, &Load::NONE, &GRAVITY_EARTH);
@@ -142,7 +147,7 @@ mod tests {
         push[0] = 87.0;
         for _ in 0..20_000 {
             let hold = gravity(&arm);
-            train.step(&mut arm, &(hold + push), &JointVector::zeros(), STEP);
+            train.step(&mut arm, &(hold + push), &External::NONE, STEP);
         }
         assert!(arm.q[0] > limits.hard_upper[0] && arm.q[0] < limits.hard_upper[0] + 0.08);
         assert!(arm.dq[0].abs() < 1e-3, "{}", arm.dq[0]);
@@ -152,12 +157,12 @@ mod tests {
     fn the_light_last_joint_is_stable_under_a_strong_damper_held_for_a_millisecond() {
         let (mut arm, mut train) = robot(&Arm::ideal(RobotKind::Fr3));
         let kick = JointVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0]);
-        train.step(&mut arm, &kick, &JointVector::zeros(), 0.01);
+        train.step(&mut arm, &kick, &External::NONE, 0.01);
         for _ in 0..200 {
             let mut torque = gravity(&arm);
             torque[6] -= 15.0 * arm.dq[6];
             for _ in 0..4 {
-                train.step(&mut arm, &torque, &JointVector::zeros(), STEP);
+                train.step(&mut arm, &torque, &External::NONE, STEP);
             }
         }
         assert!(arm.dq[6].abs() < 1e-3, "{}", arm.dq[6]);

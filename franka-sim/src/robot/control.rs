@@ -122,8 +122,11 @@ impl Robot {
             };
             let motor = (torque + self.dynamics.gravity).zip_map(&limit, |t, l| t.clamp(-l, l));
             let (frames, (q, dq)) = (&self.settings.frames, (self.plant.q(), self.plant.dq()));
-            let external = self.touches.torque(&self.as_built, frames, q, dq, into);
+            let before = *dq;
+            let touches = &mut self.touches;
+            let external = touches.act(&self.as_built, frames, (q, dq), into, dt);
             self.train.step(self.plant.as_mut(), &motor, &external, dt);
+            touches.feel(&((self.plant.dq() - before) / dt));
             sensed += self.train.torque();
         }
         self.measure(&(sensed / f64::from(STEPS)), &dq);

@@ -11,6 +11,7 @@
 //! | `losing` | lost commands: extrapolated, and bridged or refused |
 //! | `contact`, `pushes`, `falling` | the estimate of what touches the arm, thresholds, reflexes, loads |
 //! | `modes`, `people` | recovery, user stop, brakes, guiding, safety functions, the errors of the robot itself, touches |
+//! | `firm` | grips, walls and blocked joints on every family of arms |
 //! | `setters` | ranges, modes, and the effect of stiffnesses |
 //! | `stiffest` | the stiffest springs that clients set |
 //! | `echo` | what the state contains of a motion |
@@ -26,6 +27,7 @@ mod contact;
 mod echo;
 mod falling;
 mod fer;
+mod firm;
 mod hand;
 mod losing;
 mod modes;

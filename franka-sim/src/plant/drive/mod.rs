@@ -5,8 +5,8 @@
 //!                          ripple, friction       T: tau_J reads   └ friction
 //! ```
 //!
-//! The plant solves `(M + inertia + dt·damping) q̈ = torque + external − bias − stops` with the
-//! torque, inertia and damping of [`LinkTorque`].
+//! The plant solves `(M + inertia + dt·damping + slope) q̈ = torque + external − bias − stops` with
+//! the torque, inertia and damping of [`LinkTorque`], and the torque and slope of [`External`].
 //!
 //! With rigid joints the felt rotor inertia `B` and all friction act on the link. With elastic
 //! ones of stiffness `K` and damping `D` the step is implicit: over `h` seconds, with
@@ -30,7 +30,7 @@ mod tests;
 
 use franka_model::JointVector;
 
-use super::Plant;
+use super::{External, Plant};
 use crate::arm::{Arm, Drive};
 use contact::{Contact, Tangent};
 
@@ -131,12 +131,12 @@ impl DriveTrain {
     }
 
     /// Advances drives and plant by `dt` seconds under the commanded torques, gravity included,
-    /// and under torques from outside, `[N·m]`.
+    /// `[N·m]`, and under those from outside.
     pub fn step(
         &mut self,
         plant: &mut dyn Plant,
         command: &JointVector,
-        external: &JointVector,
+        external: &External,
         dt: f64,
     ) {
         let motor = command - self.torque_offset - self.ripple();

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use super::DriveTrain;
 use crate::Tool;
 use crate::arm::{Arm, EndStops, Friction, Ripple, Sensors};
-use crate::plant::{Plant, RigidArm};
+use crate::plant::{External, Plant, RigidArm};
 
 /// The step that robots take, `[s]`.
 const STEP: f64 = 0.000_25;
@@ -54,7 +54,7 @@ impl Bench {
     }
 
     fn step(&mut self, command: &JointVector) {
-        let none = JointVector::zeros();
+        let none = External::NONE;
         self.train.step(self.plant.as_mut(), command, &none, STEP);
     }
 

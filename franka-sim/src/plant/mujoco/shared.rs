@@ -19,7 +19,7 @@ use nalgebra::Isometry3;
 use super::scene::{Places, Scene, SceneError};
 use super::{apply, body_pose, link_inertia, mjcf, read};
 use crate::arm;
-use crate::plant::{LinkTorque, Plant, STEPS};
+use crate::plant::{External, LinkTorque, Plant, STEPS};
 
 /// Where an arm stands in a world that it shares.
 #[derive(Debug, Clone, PartialEq)]
@@ -126,7 +126,7 @@ impl Plant for SharedArm {
         }
     }
 
-    fn step(&mut self, drive: &LinkTorque, external: &JointVector, dt: f64) {
+    fn step(&mut self, drive: &LinkTorque, external: &External, dt: f64) {
         let mut world = self.world();
         let push = Push {
             drive: *drive,
@@ -196,7 +196,7 @@ struct Standing {
 #[derive(Clone, Copy)]
 struct Push {
     drive: LinkTorque,
-    external: JointVector,
+    external: External,
 }
 
 impl Standing {
@@ -212,7 +212,7 @@ impl Standing {
             pending: VecDeque::new(),
             newest: Push {
                 drive: LinkTorque::ZERO,
-                external: JointVector::zeros(),
+                external: External::NONE,
             },
             missed: 0,
         }

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 use super::*;
 use crate::Tool;
 use crate::noise::Random;
-use crate::plant::{DriveTrain, RigidArm};
+use crate::plant::{DriveTrain, External, RigidArm};
 
 const STEP: f64 = 0.000_25;
 
@@ -118,7 +118,7 @@ fn five_seconds_of_torques_move_both_arms_alike() {
         let holding = rigid.place(&READY);
         let mut trains = [(); 2].map(|()| DriveTrain::new(&ideal, &READY, &holding));
         let (mut apart, mut travel) = (0.0_f64, 0.0_f64);
-        let none = JointVector::zeros();
+        let none = External::NONE;
         for step in 0..20_000 {
             // What the motors are told does not depend on what becomes of it.
             let time = f64::from(step) * STEP;
@@ -181,7 +181,7 @@ fn a_load_can_change_while_the_arm_moves() {
         torque: JointVector::repeat(1.0),
         ..LinkTorque::ZERO
     };
-    arm.step(&push, &JointVector::zeros(), 0.01);
+    arm.step(&push, &External::NONE, 0.01);
     let (q, dq) = (*arm.q(), *arm.dq());
     arm.attach(Tool::hand().load);
     assert_eq!((*arm.q(), *arm.dq()), (q, dq));
@@ -218,12 +218,12 @@ fn a_fall_is_the_rigid_arms_until_it_ends_on_the_table() {
         let mut free = RigidArm::new(kind, &ideal, READY, Load::NONE);
         let holding = free.place(&READY);
         let mut trains = [(); 2].map(|()| DriveTrain::new(&ideal, &READY, &holding));
-        let none = JointVector::zeros();
+        let (no_drive, none) = (JointVector::zeros(), External::NONE);
         let mut fall = 0;
-        while arm.contact_torque() == none {
+        while arm.contact_torque() == none.torque {
             assert!((arm.q() - free.q()).amax() < 1e-9, "{kind:?}");
-            trains[0].step(&mut arm, &none, &none, STEP);
-            trains[1].step(&mut free, &none, &none, STEP);
+            trains[0].step(&mut arm, &no_drive, &none, STEP);
+            trains[1].step(&mut free, &no_drive, &none, STEP);
             fall += 1;
             assert!(fall < 8000, "{kind:?}: nothing holds the arm up");
         }
@@ -232,8 +232,8 @@ fn a_fall_is_the_rigid_arms_until_it_ends_on_the_table() {
         for _ in 0..12_000 {
             contact = contact.max(arm.contact_torque().amax());
             sensed = sensed.max((trains[0].torque() - trains[1].torque()).amax());
-            trains[0].step(&mut arm, &none, &none, STEP);
-            trains[1].step(&mut free, &none, &none, STEP);
+            trains[0].step(&mut arm, &no_drive, &none, STEP);
+            trains[1].step(&mut free, &no_drive, &none, STEP);
             for link in 1..=7 {
                 let name = format!("franka_link{link}");
                 let height = arm.body_pose(&name).expect("a link").translation.z;

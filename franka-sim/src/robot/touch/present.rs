@@ -1,9 +1,13 @@
-//! The touches that act now, and the torques of each on the arm.
+//! The touches that act now, and what each does to the arm.
 
-use franka_model::{AsBuilt, CYCLE, EndEffector, JointVector, Twist, Wrench, rotation, transform};
+use franka_model::{
+    AsBuilt, CYCLE, EndEffector, Jacobian, JointVector, MassMatrix, Twist, Wrench, rotation,
+    transform,
+};
 use nalgebra::{Matrix3, Vector3};
 
 use super::{Effort, FIRM_JOINT, JOINT_INERTIA, Spring, Touch, TouchId};
+use crate::plant::External;
 use crate::signal::{halves, stack};
 
 /// Everything that touches the arm now.
@@ -20,6 +24,9 @@ struct Present {
     since: u64,
     /// Of a touch as a function of time, in this millisecond.
     wrench: Wrench,
+    /// The wrench in the newest step about its place, base axes, and how much less it is per unit
+    /// of joint acceleration.
+    step: (Wrench, Option<Jacobian>),
     /// What it has done to the arm in this millisecond: the mean of the last `steps` steps, about
     /// its place, base axes.
     felt: Wrench,
@@ -35,6 +42,7 @@ impl Touches {
             touch,
             since: now,
             wrench: Wrench::zeros(),
+            step: (Wrench::zeros(), None),
             felt: Wrench::zeros(),
             steps: 0,
         });
@@ -86,43 +94,49 @@ impl Touches {
         }
     }
 
-    /// Their torques on the joints in this state of the arm, `[N·m]`, so many seconds into the
-    /// millisecond.
-    pub(in crate::robot) fn torque(
+    /// What they do to the joints over the step of `dt` seconds that begins with this state of the
+    /// arm, so many seconds into the millisecond.
+    pub(in crate::robot) fn act(
         &mut self,
         model: &AsBuilt,
         frames: &EndEffector,
-        q: &JointVector,
-        dq: &JointVector,
+        (q, dq): (&JointVector, &JointVector),
         into: f64,
-    ) -> JointVector {
-        let mut sum = JointVector::zeros();
+        dt: f64,
+    ) -> External {
+        let acts = |present: &mut Present| present.act(model, frames, (q, dq), into, dt);
+        let none = External::NONE;
+        let touches = self.touches.iter_mut();
+        touches.map(acts).fold(none, |sum, one| sum.and(&one))
+    }
+
+    /// Takes in with which acceleration the step went by.
+    pub(in crate::robot) fn feel(&mut self, ddq: &JointVector) {
         for present in &mut self.touches {
-            sum += present.torque(model, frames, q, dq, into);
+            present.steps += 1;
+            let (wrench, slope) = &present.step;
+            let acted = slope.map_or(*wrench, |slope| wrench - slope * ddq);
+            present.felt += (acted - present.felt) / f64::from(present.steps);
         }
-        sum
     }
 }
 
 impl Present {
-    fn torque(
+    fn act(
         &mut self,
         model: &AsBuilt,
         frames: &EndEffector,
-        q: &JointVector,
-        dq: &JointVector,
+        (q, dq): (&JointVector, &JointVector),
         into: f64,
-    ) -> JointVector {
+        dt: f64,
+    ) -> External {
         let frame = self.touch.frame;
         match &mut self.touch.effort {
-            Effort::Torque(torque) => return *torque,
+            Effort::Torque(torque) => return External::from(*torque),
             Effort::Block { joint, angle } => {
-                let angle = angle.get_or_insert(q[*joint]);
-                let spring = Spring::damped(FIRM_JOINT, JOINT_INERTIA);
-                let mut torque = JointVector::zeros();
-                torque[*joint] =
-                    spring.stiffness * (*angle - q[*joint]) - spring.damping * dq[*joint];
-                return torque;
+                let joint = *joint;
+                let angle = *angle.get_or_insert(q[joint]);
+                return block(joint, angle - q[joint], dq[joint], dt);
             }
             _ => {}
         }
@@ -130,13 +144,23 @@ impl Present {
         let turn: Matrix3<f64> = pose.fixed_view::<3, 3>(0, 0).into_owned();
         let arm = turn * self.touch.offset;
         let position = Vector3::new(pose.m14, pose.m24, pose.m34) + arm;
-        let (linear, angular) = halves(&Twist::from(jacobian * dq));
-        let velocity = linear + angular.cross(&arm);
-        let (force, torque) = match &mut self.touch.effort {
-            Effort::Wrench(wrench) => halves(wrench),
-            Effort::OverTime(_) => halves(&self.wrench),
+        let jacobian = displaced(jacobian, &arm);
+        let (velocity, angular_velocity) = halves(&Twist::from(jacobian * dq));
+        let none = Vector3::zeros();
+        let slope_of = |spring: &Spring| Matrix3::identity() * spring.slope(dt);
+        // Force, torque, and how much less force and torque there is per unit of acceleration.
+        let (force, torque, slope) = match &mut self.touch.effort {
+            Effort::Wrench(wrench) => {
+                let (force, torque) = halves(wrench);
+                (force, torque, None)
+            }
+            Effort::OverTime(_) => {
+                let (force, torque) = halves(&self.wrench);
+                (force, torque, None)
+            }
             Effort::Spring { to, spring } => {
-                (spring.pull(*to - position, &velocity), Vector3::zeros())
+                let pull = spring.pull(*to - position, &velocity, dt);
+                (pull, none, Some((slope_of(spring), 0.0)))
             }
             Effort::Carry {
                 point,
@@ -145,8 +169,8 @@ impl Present {
                 ..
             } => {
                 let stretch = *point + *carried * into - position;
-                let pull = spring.pull(stretch, &(velocity - *carried));
-                (pull, Vector3::zeros())
+                let pull = spring.pull(stretch, &(velocity - *carried), dt);
+                (pull, none, Some((slope_of(spring), 0.0)))
             }
             Effort::Hold {
                 pose: held,
@@ -154,32 +178,130 @@ impl Present {
                 angular: turning,
             } => {
                 let Some(mut here) = transform::isometry(&pose) else {
-                    return JointVector::zeros();
+                    return External::NONE;
                 };
                 here.translation.vector = position;
                 let held = held.get_or_insert(here);
                 let way = held.translation.vector - position;
                 let off = rotation::error(&held.rotation, &here.rotation);
-                (linear.pull(way, &velocity), turning.pull(off, &angular))
+                let slope = (slope_of(linear), turning.slope(dt));
+                let force = linear.pull(way, &velocity, dt);
+                let torque = turning.pull(off, &angular_velocity, dt);
+                (force, torque, Some(slope))
             }
             Effort::Wall {
                 point,
                 normal,
                 spring,
             } => {
-                let depth = (*point - position).dot(normal);
-                // Nothing sticks to a wall.
-                let push = if depth > 0.0 {
-                    (spring.stiffness * depth - spring.damping * velocity.dot(normal)).max(0.0)
+                let across = *normal * normal.transpose();
+                let depth = across * (*point - position);
+                let push = spring.pull(depth, &(across * velocity), dt);
+                // Nothing sticks to a wall: it does not act on what is outside, or goes out faster
+                // than it follows. How the arm accelerates is not known yet: what is torn off the
+                // wall is pulled for one step, with the slope times the acceleration.
+                let is_behind = (depth - across * velocity * dt).dot(normal) > 0.0;
+                if !is_behind || push.dot(normal) <= 0.0 {
+                    (none, none, None)
                 } else {
-                    0.0
-                };
-                (*normal * push, Vector3::zeros())
+                    (push, none, Some((across * spring.slope(dt), 0.0)))
+                }
             }
-            Effort::Torque(_) | Effort::Block { .. } => return JointVector::zeros(),
+            Effort::Torque(_) | Effort::Block { .. } => return External::NONE,
         };
-        self.steps += 1;
-        self.felt += (stack(&force, &torque) - self.felt) / f64::from(self.steps);
-        jacobian.tr_mul(&stack(&force, &(torque + arm.cross(&force))))
+        let wrench = stack(&force, &torque);
+        let slope = slope.map(|(linear, angular)| {
+            let mut slope = jacobian * angular;
+            let upper = linear * jacobian.fixed_rows::<3>(0);
+            slope.fixed_rows_mut::<3>(0).copy_from(&upper);
+            slope
+        });
+        self.step = (wrench, slope);
+        External {
+            torque: jacobian.tr_mul(&wrench),
+            slope: slope.map(|slope| jacobian.tr_mul(&slope)),
+        }
+    }
+}
+
+/// Of a joint that is held at an angle that is so far ahead.
+fn block(joint: usize, ahead: f64, dq: f64, dt: f64) -> External {
+    let spring = Spring::damped(FIRM_JOINT, JOINT_INERTIA);
+    let mut torque = JointVector::zeros();
+    torque[joint] = spring.stiffness * (ahead - dq * dt) - spring.damping * dq;
+    let mut slope = MassMatrix::zeros();
+    slope[(joint, joint)] = spring.slope(dt);
+    External {
+        torque,
+        slope: Some(slope),
+    }
+}
+
+/// The Jacobian of a place at `arm` from the one that a Jacobian is of.
+fn displaced(mut jacobian: Jacobian, arm: &Vector3<f64>) -> Jacobian {
+    for mut joint in jacobian.column_iter_mut() {
+        let turning = joint.fixed_rows::<3>(3).cross(arm);
+        let mut linear = joint.fixed_rows_mut::<3>(0);
+        linear += turning;
+    }
+    jacobian
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::Arm;
+    use crate::plant::{LinkTorque, Plant, RigidArm};
+    use franka_model::{Frame, GRAVITY_EARTH, Load, Model, READY, RobotKind};
+
+    const STEP: f64 = 0.000_25;
+
+    #[test]
+    fn what_is_felt_is_what_accelerates_a_falling_arm() {
+        let (kind, frames) = (RobotKind::Fr3, EndEffector::default());
+        let arm = Arm::ideal(kind);
+        let as_built = arm.body.as_built(kind);
+        let model = Model::physically_consistent(kind);
+        let offset = Vector3::new(0.03, -0.02, 0.1);
+        let pose = model.pose(Frame::EndEffector, &READY, &frames);
+        let here = transform::isometry(&pose).expect("a pose") * nalgebra::Point3::from(offset);
+        let floor = here.coords - Vector3::new(0.0, 0.0, 0.001);
+        let touches = [
+            Touch::hold(),
+            Touch::hold().stiffness(1e6),
+            Touch::spring(here.coords + Vector3::repeat(0.01), 1e5),
+            Touch::carry(move |t| here.coords * (1.0 - t), 1e4),
+            Touch::wall(floor, Vector3::new(0.1, -0.2, 1.0)),
+            Touch::wrench(Wrench::new(1.0, 2.0, 3.0, 0.1, 0.2, 0.3)),
+        ];
+        for touch in touches {
+            let name = format!("{touch:?}");
+            let mut plant = RigidArm::new(kind, &arm, READY, Load::NONE);
+            let mut touches = Touches::default();
+            let id = touches.add(touch.offset(offset), 0);
+            let mut most = 0.0_f64;
+            // Ends before the end stops do something, too.
+            for step in 1..=100 {
+                // Each step is a millisecond to them, so that what is felt is that of the step.
+                touches.advance(step);
+                let (q, dq) = (*plant.q(), *plant.dq());
+                let external = touches.act(&as_built, &frames, (&q, &dq), 0.0, STEP);
+                plant.step(&LinkTorque::ZERO, &external, STEP);
+                let ddq = (plant.dq() - dq) / STEP;
+                touches.feel(&ddq);
+                let felt = touches.felt(id).expect("it lasts");
+                most = most.max(felt.amax());
+
+                let (force, torque) = halves(&felt);
+                let (pose, jacobian) = model.pose_and_jacobian(Frame::EndEffector, &q, &frames);
+                let lever = pose.fixed_view::<3, 3>(0, 0) * offset;
+                let at_frame = stack(&force, &(torque + lever.cross(&force)));
+                let acted = jacobian.tr_mul(&at_frame);
+                let expected = model.inverse_dynamics(&q, &dq, &ddq, &Load::NONE, &GRAVITY_EARTH);
+                let off = (acted - expected).amax();
+                assert!(off < 1e-6, "{name}, step {step}: {off} N·m");
+            }
+            assert!(most > 1.0, "{name}: {most}");
+        }
     }
 }

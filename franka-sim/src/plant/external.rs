@@ -1,0 +1,53 @@
+//! What acts on the links from outside.
+
+use franka_model::{JointVector, MassMatrix};
+
+/// What acts on the links from outside over one step: `torque − slope · q̈`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct External {
+    /// Positive torques push the joint towards positive angles, `[N·m]`.
+    pub torque: JointVector,
+    /// Of what resists the way and the velocity that the links gain in the step, as springs and
+    /// dampers do, `[kg·m²]`: symmetric, positive semidefinite. `None` if nothing does.
+    pub slope: Option<MassMatrix>,
+}
+
+impl External {
+    /// Nothing acts on the links.
+    pub const NONE: Self = Self {
+        torque: franka_model::joint_vector([0.0; 7]),
+        slope: None,
+    };
+
+    /// The diagonal of a diagonal slope that resists every acceleration at least as much.
+    #[cfg(feature = "mujoco")]
+    pub(super) fn diagonal(&self) -> JointVector {
+        let Some(slope) = self.slope else {
+            return JointVector::zeros();
+        };
+        // What is added makes a matrix that is diagonally dominant.
+        JointVector::from_fn(|i, _| slope.row(i).iter().map(|s| s.abs()).sum())
+    }
+
+    /// With something more that acts.
+    pub(crate) fn and(self, other: &Self) -> Self {
+        let slope = match (self.slope, other.slope) {
+            (Some(one), Some(another)) => Some(one + another),
+            (one, another) => one.or(another),
+        };
+        Self {
+            torque: self.torque + other.torque,
+            slope,
+        }
+    }
+}
+
+impl From<JointVector> for External {
+    /// Torques that nothing changes.
+    fn from(torque: JointVector) -> Self {
+        Self {
+            torque,
+            slope: None,
+        }
+    }
+}
