@@ -318,11 +318,11 @@ def test_the_latest_target_is_set_from_anywhere(sim: Sim) -> None:
         del latest
         await following
         assert np.linalg.norm(robot.pose()[:3, 3] - start[:3, 3]) < NEAR
-        with pytest.raises(MotionError) as caught:
+        with pytest.raises(MotionError, match="ended before the first one came") as caught:
             closed = Latest()
             closed.close()
             await robot.follow(closed)
-        assert caught.value.kind == "stopped"
+        assert caught.value.kind == "goal"
 
     run(sim, main)
 

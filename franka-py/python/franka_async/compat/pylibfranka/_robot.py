@@ -74,8 +74,14 @@ class ActiveControlBase:
             raise ValueError("Commanding value is infinite or NaN.")
         if isinstance(command, CartesianPose):
             values = np.reshape(values, (4, 4), order="F")
-        with translated():
-            self._control.write_once(values, command.motion_finished)
+        try:
+            with translated():
+                self._control.write_once(values, command.motion_finished)
+        except Exception as error:
+            # The thread that stops it may have it just now.
+            if self._is_preempted:
+                raise ControlException(PREEMPTED) from error
+            raise
         self._is_over = command.motion_finished
 
     def _preempt(self) -> None:
