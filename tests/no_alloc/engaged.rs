@@ -236,6 +236,7 @@ fn sessions_under_every_order_of_their_owners_allocate_and_free_nothing() {
             engaged.tick();
         }
         assert!(engaged.binds(Guard::Deadman));
+        engaged.run(1);
         engaged.go(up, OnArrival::Hold);
         engaged.run(200);
         assert!(!engaged.binds(Guard::Deadman));
