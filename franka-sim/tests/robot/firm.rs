@@ -9,11 +9,10 @@ use franka_sim::arm::Family;
 use franka_sim::config::Tool;
 use franka_sim::{Arm, Touch};
 
-/// The middle of each family, and some of each, with and without a Hand; every one in the next
-/// pose. What the arm is, too.
+/// The ideal arm, the middle of each family whose joints flex, and some of each, with and without a
+/// Hand; every one in the next pose. What the arm is, too.
 fn for_each_arm(seeds: u64, test: impl Fn(&str, &mut Pair)) {
     let families = [
-        ("nominal", Family::nominal()),
         ("realistic", Family::realistic()),
         ("bad", Family::bad()),
     ];
@@ -56,11 +55,11 @@ fn poses() -> [(&'static str, JointVector); 5] {
     ]
 }
 
-/// A second in which nothing happens.
+/// A while in which nothing happens: what is unstable is so within milliseconds.
 fn assert_still(name: &str, pair: &mut Pair) {
     let before = *pair.robot.q();
     let (mut fastest, mut farthest) = (0.0_f64, 0.0_f64);
-    for _ in 0..1000 {
+    for _ in 0..300 {
         pair.tick(None);
         fastest = fastest.max(pair.robot.dq().amax());
         farthest = farthest.max((pair.robot.q() - before).amax());
@@ -81,7 +80,7 @@ fn end_effector(pair: &Pair) -> Vector3<f64> {
 
 #[test]
 fn a_still_arm_stays_still_in_every_firm_grip() {
-    for_each_arm(3, |name, pair| {
+    for_each_arm(1, |name, pair| {
         for frame in [Frame::EndEffector, Frame::Flange, Frame::Joint4] {
             pair.robot.touch(Touch::hold().at(frame));
             assert_still(&format!("{name}, {frame:?}"), pair);
@@ -93,7 +92,7 @@ fn a_still_arm_stays_still_in_every_firm_grip() {
 
 #[test]
 fn a_still_arm_stays_still_while_any_joint_or_all_are_blocked() {
-    for_each_arm(1, |name, pair| {
+    for_each_arm(0, |name, pair| {
         for joint in 0..7 {
             pair.robot.touch(Touch::block(joint));
             assert_still(&format!("{name}, joint {}", joint + 1), pair);
@@ -106,7 +105,7 @@ fn a_still_arm_stays_still_while_any_joint_or_all_are_blocked() {
 
 #[test]
 fn a_still_arm_stays_still_in_the_stiffest_grip() {
-    for_each_arm(1, |name, pair| {
+    for_each_arm(0, |name, pair| {
         for stiffness in [1e5, 1e6, 1e8] {
             let pull = Touch::spring(end_effector(pair), stiffness);
             let here = end_effector(pair);
@@ -126,7 +125,7 @@ fn a_still_arm_stays_still_in_the_stiffest_grip() {
 
 #[test]
 fn a_grip_gives_way_by_force_over_stiffness_and_lets_the_robot_serve_again() {
-    for_each_arm(2, |name, pair| {
+    for_each_arm(0, |name, pair| {
         assert!(pair.robot.guide(true));
         let grip = pair.robot.touch(Touch::hold());
         pair.idle(500);
@@ -167,7 +166,7 @@ fn assert_serves(name: &str, pair: &mut Pair) {
 
 #[test]
 fn a_wall_stops_an_arm_that_is_pushed_into_it_and_does_not_pull() {
-    for_each_arm(2, |name, pair| {
+    for_each_arm(0, |name, pair| {
         assert!(pair.robot.guide(true));
         let wall = end_effector(pair) - Vector3::new(0.0, 0.0, 0.02);
         let wall = (pair.robot.touch(Touch::wall(wall, Vector3::z())), wall);
