@@ -107,14 +107,15 @@ impl Control {
     }
 
     /// Which of the robot's own controllers follows the commands; joint impedance by default.
-    /// Without effect where torques are commanded.
+    /// Without effect where torques are commanded. The external controller is that of
+    /// [`Self::with_torques`]: without torques it moves nothing.
     pub fn controller(mut self, controller: MoveControllerMode) -> Self {
         self.controller = controller;
         self
     }
 
     /// Adds torques beside the commands to the motion generator, in the place of the robot's own
-    /// controller.
+    /// controller. Control that has torques already goes by the new function alone.
     pub fn with_torques<R: Into<Next<Torques>>>(
         mut self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,

@@ -12,10 +12,7 @@ use franka_sim::{Arm, Touch};
 /// The ideal arm, the middle of each family whose joints flex, and some of each, with and without a
 /// Hand; every one in the next pose. What the arm is, too.
 fn for_each_arm(seeds: u64, test: impl Fn(&str, &mut Pair)) {
-    let families = [
-        ("realistic", Family::realistic()),
-        ("bad", Family::bad()),
-    ];
+    let families = [("realistic", Family::realistic()), ("bad", Family::bad())];
     let mut poses = poses().into_iter().cycle();
     for (tool, tool_name) in [(Tool::NONE, "bare"), (Tool::hand(), "Hand")] {
         let config = Config {
