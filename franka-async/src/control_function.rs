@@ -10,6 +10,7 @@ use franka_rt::control::{
 };
 use franka_rt::driver::Program;
 use franka_rt::lifecycle::NewMotion;
+use franka_rt::session::GoalError;
 use franka_rt::shaping::DEFAULT_CUTOFF_FREQUENCY;
 use franka_rt::together::StartTicket;
 
@@ -107,8 +108,8 @@ impl Control {
     }
 
     /// Which of the robot's own controllers follows the commands; joint impedance by default.
-    /// Without effect where torques are commanded. The external controller is that of
-    /// [`Self::with_torques`]: without torques it moves nothing.
+    /// Without effect where torques are commanded. The external one needs
+    /// [`Self::with_torques`].
     pub fn controller(mut self, controller: MoveControllerMode) -> Self {
         self.controller = controller;
         self
@@ -155,7 +156,10 @@ impl Control {
     /// Begins the motion without a future: it runs on, and its outcome is only logged.
     pub fn detach(self) {
         let canceller = self.canceller.clone();
-        canceller.begin(self.begin().into());
+        match self.begin() {
+            Ok(motion) => drop(canceller.begin(motion.into())),
+            Err(error) => tracing::warn!(%error, "the motion does not begin"),
+        }
     }
 
     /// Returns a handle that stops the motion from elsewhere.
@@ -163,18 +167,22 @@ impl Control {
         self.canceller.clone()
     }
 
-    fn begin(self) -> NewMotion {
+    fn begin(self) -> Result<NewMotion, GoalError> {
         let robot = self.canceller.robot();
         let version = robot.version();
         let shaper = Shaper::new(version, self.limit_rate, self.cutoff_frequency)
             .with_limits_of(robot.model().joint_limits());
         let request = self.callback.request(version, self.controller);
-        NewMotion::Program {
+        let is_external = request.controller == MoveControllerMode::ExternalController;
+        if is_external && !self.callback.commands_torques() {
+            return Err(GoalError::NoTorques);
+        }
+        Ok(NewMotion::Program {
             id: self.canceller.id(),
             program: Program::Callback(Box::new(self.callback.with_shaper(shaper))),
             request: Box::new(request),
             ticket: self.ticket,
-        }
+        })
     }
 }
 
@@ -183,6 +191,7 @@ impl IntoFuture for Control {
     type IntoFuture = Moving;
 
     fn into_future(self) -> Moving {
-        Moving::new(self.canceller.clone(), None, Ok(self.begin().into()))
+        let canceller = self.canceller.clone();
+        Moving::new(canceller, None, self.begin().map(Into::into))
     }
 }

@@ -92,6 +92,11 @@ impl Callback {
         }
     }
 
+    /// Whether it commands torques.
+    pub fn commands_torques(&self) -> bool {
+        self.torques.is_some()
+    }
+
     /// The request for a motion that it can run. `controller` is used where it commands no torques.
     pub fn request(&self, version: Version, controller: MoveControllerMode) -> MoveRequest {
         let controller = match &self.torques {

@@ -29,6 +29,9 @@ pub enum GoalError {
     /// A stream of targets has ended, and none came.
     #[error("the targets ended before the first one came")]
     NoTarget,
+    /// Commands under an external controller, which none is without torques beside them.
+    #[error("an external controller needs torques beside the commands, got none: `with_torques`")]
+    NoTorques,
     /// The target moves: there is no arrival to wait for.
     #[error("the target moves, so that the arm cannot come to rest at it")]
     Moves,
@@ -159,6 +162,7 @@ impl GoalError {
     pub fn entry(&self) -> &'static str {
         match self {
             Self::NoTarget => "goal-no-target",
+            Self::NoTorques => "goal-no-torques",
             Self::NotFinite { .. } => "goal-not-finite",
             Self::Moves => "goal-moves",
             Self::OutOfRange { .. } => "goal-out-of-range",
