@@ -8,6 +8,7 @@ use franka_async::control::{
     AbortReason, AsynchronousOptions, CartesianPose, CartesianVelocities, Finish, JointPositions,
     JointVelocities, Next, TargetStatus, Torques,
 };
+use franka_async::error::GoalError;
 use franka_async::state::{RobotMode, RobotState};
 use franka_async::{MotionError, Pose, Robot};
 use franka_proto::{MoveControllerMode, RequestError, RobotError};
@@ -332,4 +333,46 @@ async fn the_robot_itself_goes_from_target_to_target() {
     for robot in [robot, fer] {
         robot.shutdown().await;
     }
+}
+
+/// The robot ends the motion meanwhile, and nobody reads what it shows.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_function_that_does_not_return_is_named_and_not_the_link() {
+    let _alone = alone();
+    let (robot, sim) = by_the_clock(Sim::fr3().ideal()).await;
+    let (enter, entered) = tokio::sync::oneshot::channel();
+    let (release, held) = std::sync::mpsc::channel::<()>();
+    let (mut enter, mut calls) = (Some(enter), 0);
+    let floating = robot.control_torques(move |_, _| {
+        calls += 1;
+        if calls == 10 {
+            enter.take().expect("once").send(()).unwrap();
+            let _ = held.recv();
+        }
+        Torques([0.0; 7])
+    });
+    let floating = tokio::spawn(floating.into_future());
+    entered.await.unwrap();
+    sim.with(|robot| robot.trip(RobotError::JointReflex))
+        .await
+        .unwrap();
+    let error = floating.await.unwrap().unwrap_err();
+    assert!(matches!(error, MotionError::Hung { .. }), "{error:?}");
+    drop(release);
+    until(&robot, |state| state.robot_mode == RobotMode::Reflex).await;
+    robot.recover().await.unwrap();
+    robot.move_to(robot.pose()).await.unwrap();
+    robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn an_external_controller_without_torques_is_refused() {
+    let _alone = alone();
+    let (robot, _sim) = by_the_clock(Sim::fr3().ideal()).await;
+    let still = robot.control_joint_velocities(|_, _| JointVelocities([0.0; 7]).finish());
+    let refused = still
+        .controller(MoveControllerMode::ExternalController)
+        .await;
+    assert_eq!(refused, Err(GoalError::NoTorques.into()));
+    robot.shutdown().await;
 }

@@ -15,9 +15,10 @@ use std::time::Duration;
 use franka_proto::RobotState;
 use franka_rt::driver::{Driver, Event, Order};
 use franka_rt::event_fd::EventFd;
-use franka_rt::lifecycle::{CloseReason, Lifecycle, MotionError, Outcome, Output};
+use franka_rt::lifecycle::{CloseReason, END_TIMEOUT, Lifecycle, MotionError, Outcome, Output};
 use franka_rt::queue::{Receiver, Sender};
 use franka_rt::session::{GoalError, GoalId};
+use franka_rt::stats::Stats;
 use franka_rt::supervision::Seen;
 use franka_rt::thread::{Handle, Notice, Thread};
 use tokio::io::unix::AsyncFd;
@@ -43,6 +44,7 @@ pub(crate) struct Bridge {
     notices: Receiver<Notice<Event>>,
     publisher: Publisher,
     telemetry: Telemetry,
+    stats: Arc<Stats>,
     course: Course,
     thresholds: Thresholds,
     thread: Option<Thread<Driver>>,
@@ -61,9 +63,16 @@ pub(crate) struct Bridge {
     seen: Option<Seen>,
     /// `message_id` of the newest state when a silence was noticed, until one comes.
     silent_since: Option<u64>,
-    /// The lifecycle's deadline, and `message_id` of the newest state when it was set, and when
-    /// that was.
-    awaited: Option<(Duration, u64, Duration)>,
+    awaited: Option<Awaited>,
+}
+
+/// A deadline of the lifecycle.
+struct Awaited {
+    deadline: Duration,
+    /// When it was set, `message_id` of the newest state then, and the turns of the control thread.
+    since: Duration,
+    newest: u64,
+    turns: u64,
 }
 
 /// A bridge that is not yet running, with what it will receive.
@@ -109,7 +118,8 @@ impl Bridge {
                 handle.state_wakeups,
                 states,
             ),
-            telemetry: Telemetry::new(handle.stats),
+            telemetry: Telemetry::new(handle.stats.clone()),
+            stats: handle.stats,
             course,
             thresholds,
             thread: Some(handle.thread),
@@ -160,7 +170,7 @@ impl Bridge {
             }
             self.note_deadline();
             let deadline = [
-                self.awaited.map(|(after, ..)| self.started + after),
+                self.awaited.as_ref().map(|it| self.started + it.deadline),
                 closing,
             ];
             let deadline = deadline.into_iter().flatten().min();
@@ -190,7 +200,7 @@ impl Bridge {
                         break;
                     }
                     self.publisher.refresh();
-                    self.lifecycle.on_time(self.now(), self.silence());
+                    self.lifecycle.on_time(self.now(), self.unseen());
                 }
             }
         }
@@ -208,20 +218,28 @@ impl Bridge {
     /// Notes since when a deadline is waited for.
     fn note_deadline(&mut self) {
         let deadline = self.lifecycle.deadline();
-        if deadline == self.awaited.map(|(deadline, ..)| deadline) {
+        if deadline == self.awaited.as_ref().map(|it| it.deadline) {
             return;
         }
         self.publisher.refresh();
-        let newest = self.publisher.state().message_id;
-        self.awaited = deadline.map(|deadline| (deadline, newest, self.now()));
+        self.awaited = deadline.map(|deadline| Awaited {
+            deadline,
+            since: self.now(),
+            newest: self.publisher.state().message_id,
+            turns: self.stats.turns.get(),
+        });
     }
 
-    /// For how long no state has come, if none has since the deadline was set; zero otherwise.
-    fn silence(&self) -> Duration {
-        let newest = self.publisher.state().message_id;
-        let silent = self.awaited.filter(|(_, before, _)| *before == newest);
-        silent.map_or(Duration::ZERO, |(.., since)| {
-            self.now().saturating_sub(since)
+    /// Why no state that came since the deadline was set could show anything.
+    fn unseen(&self) -> Option<MotionError> {
+        let awaited = self.awaited.as_ref()?;
+        let silence = self.now().saturating_sub(awaited.since);
+        if self.publisher.state().message_id != awaited.newest || silence < END_TIMEOUT / 2 {
+            return None;
+        }
+        Some(match self.stats.turns.get() == awaited.turns {
+            true => MotionError::Hung { silence },
+            false => MotionError::LinkLost { silence },
         })
     }
 

@@ -52,7 +52,8 @@ pub struct Record {
     /// Time until the reference meets the goal's target or the last point of its chunk, or rests
     /// where it brakes or is paused; zero at the target and under a guiding hand.
     pub remaining: Duration,
-    /// Commanded joint torques without gravity and friction, `[N m]`.
+    /// Commanded joint torques without gravity and friction, `[N m]`; zero under active control,
+    /// whose commands leave after the cycle.
     pub tau_c: [f64; 7],
     /// Part of it that compensates friction and bias, before the guards, `[N m]`; zero outside
     /// target control.

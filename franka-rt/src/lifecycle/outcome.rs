@@ -173,6 +173,17 @@ pub enum MotionError {
         /// For how long, when it was given up.
         silence: Duration,
     },
+    /// Caller: the control thread has run no cycle for so long, and the robot has ended the motion
+    /// for want of commands. A control function has not returned, or this computer is held up.
+    #[error(
+        "the control thread has run no cycle for {} ms: its function has not returned, or this \
+         computer holds it up",
+        .silence.as_millis()
+    )]
+    Hung {
+        /// For how long, at least.
+        silence: Duration,
+    },
     /// Robot: it refused to start the motion.
     #[error("{0}")]
     Rejected(Refusal),
@@ -294,6 +305,7 @@ impl MotionError {
             Self::GivenUp { .. } => "motion-given-up",
             Self::Panicked { .. } => "motion-panicked",
             Self::Stalled { .. } => "motion-stalled",
+            Self::Hung { .. } => "motion-hung",
             Self::Rejected(refusal) => refusal.entry(),
             Self::Control(error) => error.entry(),
             Self::NotReady { why, .. } => why.entry(),
@@ -324,7 +336,8 @@ impl MotionError {
             | Self::Invalid(_)
             | Self::GivenUp { .. }
             | Self::Panicked { .. }
-            | Self::Stalled { .. } => Party::Caller,
+            | Self::Stalled { .. }
+            | Self::Hung { .. } => Party::Caller,
             Self::TargetNotReached(short) if short.limited.is_some() => Party::Caller,
             Self::Rejected(_) | Self::Control(_) | Self::TargetNotReached(_) => Party::Robot,
             Self::AfterReaction { error, .. } => error.party(),

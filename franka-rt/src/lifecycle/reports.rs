@@ -215,20 +215,18 @@ impl Lifecycle {
     }
 
     /// Checks the deadline at `now`. If neither side of the motion has ended by then, the robot is
-    /// told to stop and has [`END_TIMEOUT`] more; otherwise the motion is given up. A robot of
-    /// which no state has come for so long, `silence`, that none could show the end is not to
-    /// blame: the motion resolves as [`MotionError::LinkLost`], even before the link timeout.
-    pub fn on_time(&mut self, now: Duration, silence: Duration) {
+    /// told to stop and has [`END_TIMEOUT`] more; otherwise the motion is given up. The robot is
+    /// not to blame if no state could be seen, for this reason, `unseen`: the motion resolves so.
+    pub fn on_time(&mut self, now: Duration, unseen: Option<MotionError>) {
         if self.deadline().is_none_or(|deadline| now < deadline) {
             return;
         }
-        let lost = (silence >= END_TIMEOUT / 2).then_some(MotionError::LinkLost { silence });
-        let current = match (&mut self.phase, lost) {
-            (LifecyclePhase::UnderWay(_), Some(lost)) => return self.give_up(lost, now),
+        let current = match (&mut self.phase, unseen) {
+            (LifecyclePhase::UnderWay(_), Some(unseen)) => return self.give_up(unseen, now),
             (LifecyclePhase::UnderWay(current), None) => current,
-            (LifecyclePhase::Abandoned { deadline, .. }, lost) => {
+            (LifecyclePhase::Abandoned { deadline, .. }, unseen) => {
                 *deadline = None;
-                return self.resolve_next(lost.unwrap_or(STILL_SHOWN));
+                return self.resolve_next(unseen.unwrap_or(STILL_SHOWN));
             }
             (
                 LifecyclePhase::Idle

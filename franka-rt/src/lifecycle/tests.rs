@@ -186,7 +186,7 @@ fn a_motion_waits_for_the_end_of_one_that_was_given_up_and_says_so_if_that_does_
         .lifecycle
         .deadline()
         .expect("it does not wait for ever");
-    pair.lifecycle.on_time(deadline, Duration::ZERO);
+    pair.lifecycle.on_time(deadline, None);
     assert_eq!(begin(&mut pair, 4), Err(STILL_SHOWN));
     assert_eq!(
         pair.resolved,

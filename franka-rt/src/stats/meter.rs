@@ -45,6 +45,7 @@ impl Meter {
         let (overran, overran_reader) = slot::slot();
         let (motion, motion_reader) = slot::slot();
         let stats = Stats {
+            turns: Counter::default(),
             states: Counter::default(),
             commands: Counter::default(),
             skipped: Counter::default(),

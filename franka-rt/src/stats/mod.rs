@@ -41,6 +41,9 @@ use crate::slot::{Read, SlotReader, Words};
 /// What the loop has counted and measured since it started.
 #[derive(Debug)]
 pub struct Stats {
+    /// Turns of the loop, with a state or without: while they stand still, a control function does
+    /// not return, or the thread is held up.
+    pub turns: Counter,
     /// States received and given to the driver.
     pub states: Counter,
     /// Commands sent.

@@ -54,6 +54,7 @@ impl<C: Core> Cycle<C> {
     /// Waits for a state, up to a tick, and runs one cycle. Returns whether a readable state came.
     pub(super) fn turn(&mut self) -> bool {
         let begun = Instant::now();
+        self.stats().turns.add(1);
         let reception = self.exchange.receive();
         let now = Instant::now();
         self.laps = Laps::start(now);
