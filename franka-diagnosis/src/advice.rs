@@ -44,7 +44,7 @@ impl Advice {
         use Commander::{Active, Asynchronous, Function, Goals};
         match (self, commander) {
             (Self::Smooth, Function) => {
-                "commands that go on in position, velocity and acceleration; limit_rate(true) takes up small steps"
+                "commands that go on in position, velocity and acceleration; limit_rate(true) takes up small steps of joints"
             }
             (Self::Smooth, Active) => {
                 "commands that go on in position, velocity and acceleration: nothing limits what is written"
