@@ -59,8 +59,8 @@
 //! 200 ms. Any viewer can stop the arm.
 //!
 //! The budget of a joint motion keeps every point of the arm below the speed that was asked for,
-//! 0.25 m/s at most. That of the end effector bounds the end effector; 100 times per second the
-//! server looks at the measured speeds of all joints and ends the hold above 0.25 m/s.
+//! 0.25 m/s at most. That of the end effector bounds the end effector; the control thread
+//! ends the hold in the cycle in which a joint, the flange or the end effector is above 0.25 m/s.
 //!
 //! A browser is neither an enabling device nor an emergency stop.
 //!
