@@ -167,14 +167,9 @@ impl<C> Active<C> {
             let turned = lease.turn();
             // The motion is over for the cycle, or the thread is: the bridge knows why.
             let is_over = turned.is_err() || lease.core().is_watching();
-            // Or it was given up while nothing was read.
-            let given_up = self.outcome.as_mut().map(oneshot::Receiver::try_recv);
-            let outcome = match given_up {
-                Some(Ok(outcome)) => {
-                    (self.lease, self.outcome) = (None, None);
-                    Some(outcome)
-                }
-                _ => is_over.then(|| self.end()),
+            let outcome = match self.given_up() {
+                None => is_over.then(|| self.end()),
+                given_up => given_up,
             };
             match outcome {
                 Some(Ok(_)) => return Err(ActiveError::Finished),
@@ -194,6 +189,11 @@ impl<C> Active<C> {
         if self.outcome.is_none() {
             return Err(ActiveError::Finished);
         }
+        match self.given_up() {
+            Some(Ok(_)) => return Err(ActiveError::Finished),
+            Some(Err(error)) => return Err(error.into()),
+            None => {}
+        }
         let (command, finished) = match next.into_parts() {
             Ok(parts) => parts,
             Err(code) => {
@@ -206,6 +206,13 @@ impl<C> Active<C> {
             return Ok(Some(self.end()?));
         }
         Ok(None)
+    }
+
+    /// How the motion ended, if it was given up while nothing was read. The cycle then goes back.
+    fn given_up(&mut self) -> Option<Outcome> {
+        let outcome = self.outcome.as_mut()?.try_recv().ok()?;
+        (self.lease, self.outcome) = (None, None);
+        Some(outcome)
     }
 
     /// The cycle, which the first call takes over.

@@ -166,7 +166,7 @@ pub enum ActiveError {
     #[error(transparent)]
     Motion(#[from] MotionError),
     /// The motion has ended as asked: its last command was written before.
-    #[error("writeOnce must not be called after the motion has finished.")]
+    #[error("the motion has finished, and takes neither reads nor commands: begin a new one")]
     Finished,
     /// The command was not sent; the motion goes on.
     #[error(transparent)]
