@@ -19,6 +19,7 @@ use axum::routing::{get, post};
 use axum::{Json, Router};
 use clap::Parser;
 use franka_async::connection::CancellationToken;
+use franka_async::error::Party;
 use franka_async::nalgebra::Translation3;
 use franka_async::{MotionError, Offset, Robot, metrics};
 use franka_examples::{Job, Serving, serve_until_told};
@@ -158,9 +159,9 @@ impl Service {
 fn refuse(error: MotionError) -> Refused {
     let status = match error {
         MotionError::Goal(_) => StatusCode::UNPROCESSABLE_ENTITY,
-        MotionError::LinkLost { .. } | MotionError::ConnectionClosed { .. } => {
-            StatusCode::SERVICE_UNAVAILABLE
-        }
+        MotionError::ConnectionClosed { .. } => StatusCode::SERVICE_UNAVAILABLE,
+        // The link is lost, or a supervised robot is away.
+        _ if error.party() == Party::Link => StatusCode::SERVICE_UNAVAILABLE,
         MotionError::Violation(_) | MotionError::Protocol { .. } => StatusCode::BAD_GATEWAY,
         // Something else has the arm, stopped it, or the robot has to be recovered first.
         _ => StatusCode::CONFLICT,

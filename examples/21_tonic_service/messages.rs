@@ -1,6 +1,7 @@
 //! The messages of the service, and what they are made of.
 
 use franka_async::diagnosis::Diagnose;
+use franka_async::error::Party;
 use franka_async::state::RobotState;
 use franka_async::{MotionError, Robot, pose};
 use prost::Message;
@@ -64,10 +65,12 @@ pub(crate) fn status(error: MotionError) -> Status {
             };
             return with_detail(Code::FailedPrecondition, text, &reflex);
         }
+        MotionError::ConnectionClosed { .. } => Code::Unavailable,
+        // The link is lost, or a supervised robot is away.
+        _ if error.party() == Party::Link => Code::Unavailable,
         MotionError::Rejected(_) | MotionError::NotReady { .. } | MotionError::Busy => {
             Code::FailedPrecondition
         }
-        MotionError::LinkLost { .. } | MotionError::ConnectionClosed { .. } => Code::Unavailable,
         MotionError::Violation(_) | MotionError::Protocol { .. } => Code::Internal,
         _ => Code::Aborted, // stopped, superseded, given up: the arm rests or goes on
     };
