@@ -9,12 +9,14 @@
 //! there: a burst leaves the simulator faster than the driver's thread wakes up.
 
 use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 use franka_async::control::{Finish as _, Torques};
+use franka_sim::network::Conditions;
 use franka_sim::{Network, Sim};
 use franka_tests::cycle_counts::CycleCounts;
 
-use crate::{ahead_of_the_client, alone};
+use crate::{ahead_of_the_client, alone, by_the_clock};
 
 /// A state that has waited out a stall is answered late, whatever the client: some 14 of 1000
 /// cycles.
@@ -49,6 +51,31 @@ async fn the_stalls_of_an_fer_are_bridged_and_make_commands_late() {
     );
     // No machine is better than the robot's network.
     assert!(counts.rate() < 0.995, "{counts:?}");
+}
+
+/// An answer may be on its way when the next cycle is due: it is waited for as well.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn no_command_is_lost_behind_a_cable_where_commands_are_waited_for() {
+    let _alone = alone();
+    let cable = Network::new(1, Conditions::cable(), Conditions::cable());
+    let (robot, _sim) = by_the_clock(Sim::fer().ideal().network(cable)).await;
+    let mut cycles = 0;
+    let least = Arc::new(Mutex::new(1.0_f64));
+    let noted = Arc::clone(&least);
+    let motion = robot.control_torques(move |state, _| {
+        cycles += 1;
+        std::thread::sleep(Duration::from_micros(100) * (cycles % 12));
+        // The first commands may have been late; the rate is that of the last 100 ms.
+        if cycles > 200 {
+            let mut least = noted.lock().expect("no panic");
+            *least = least.min(state.control_command_success_rate);
+        }
+        Torques([0.0; 7]).finish_if(cycles >= 2000)
+    });
+    motion.await.expect("the robot has all commands");
+    robot.shutdown().await;
+    let least = *least.lock().expect("no panic");
+    assert_eq!(least, 1.0);
 }
 
 /// How long, unless told otherwise.

@@ -61,6 +61,11 @@ impl Cycle {
                     Answer::Awaited => clock.waited(Instant::now()),
                     Answer::End => return clock.pace().log(),
                 }
+                while let Some(arrival) = self.robot.answer_arrives(clock.at(Instant::now())) {
+                    self.sleep_until(arrival, &mut clock);
+                    self.robot.relay(clock.at(Instant::now()));
+                    clock.waited(Instant::now());
+                }
             }
             for _ in 0..clock.begin(Instant::now()) {
                 let now = clock.at(Instant::now());

@@ -168,6 +168,13 @@ impl<D: Device> DeviceServer<D> {
         }
     }
 
+    /// When a network hands the device the command that it awaits, if that is on its way.
+    pub(super) fn answer_arrives(&mut self, now: Instant) -> Option<Instant> {
+        let awaited = self.awaits() != Awaited::Nothing;
+        let relay = self.relay.as_mut().filter(|_| awaited)?;
+        relay.answer_arrives(now)
+    }
+
     /// When a network hands the next state to the client.
     pub(super) fn next_arrival(&self) -> Option<Instant> {
         self.relay.as_ref().and_then(Relay::next_arrival)

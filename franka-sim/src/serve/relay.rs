@@ -107,6 +107,17 @@ impl Relay {
         self.newest.is_some() && !self.answered
     }
 
+    /// When the answer to that state arrives, if it is under way and soon there.
+    pub(super) fn answer_arrives(&mut self, now: Instant) -> Option<Instant> {
+        let soon = self.time(now) + SOON;
+        let next = self
+            .network
+            .to_robot
+            .next_arrival()
+            .filter(|_| self.answered)?;
+        (next <= soon).then(|| self.origin + next)
+    }
+
     /// When the next state arrives.
     pub(super) fn next_arrival(&self) -> Option<Instant> {
         let next = self.network.to_client.next_arrival();
@@ -126,6 +137,10 @@ impl Relay {
 fn message_id(datagram: &[u8]) -> Option<u64> {
     datagram.first_chunk().map(|id| u64::from_le_bytes(*id))
 }
+
+/// What a command may be on its way where commands are waited for: one that takes longer is late
+/// by the network's doing, and not by the client's.
+const SOON: Duration = Duration::from_micros(500);
 
 /// Time between two looks at the socket, and about what datagrams are later than the network has
 /// it.
