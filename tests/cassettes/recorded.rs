@@ -108,9 +108,10 @@ pub(crate) async fn ends_in_a_reflex(addresses: Addresses, trip: impl AsyncFnOnc
     let robot = connect(addresses).await;
     let mut q = robot.state().q;
     q[6] += 0.5;
+    // Before the motion: what is played may be over before this task goes on.
+    let mut states = robot.state_stream();
     let motion = robot.move_joints(q).speed(0.1).into_future();
     let motion = tokio::spawn(motion);
-    let mut states = robot.state_stream();
     while !states
         .next()
         .await
