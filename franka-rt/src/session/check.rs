@@ -8,183 +8,12 @@ use franka_model::{EndEffector, JointVector, Model, Twist, inverse_kinematics};
 use franka_otg::AxisLimits;
 use franka_proto::{RobotState, Version};
 
-use crate::law::{GainError, Law};
-use crate::session::condition::ConditionError;
+use crate::law::Law;
 use crate::session::guard::speed_cap;
 use crate::session::{
-    Backend, Budget, Chunk, ForceCap, Goal, KeepOut, Leash, OnArrival, Settling, Target, Watchdog,
+    Budget, ForceCap, Goal, GoalError, KeepOut, Leash, OnArrival, Settling, Target, Watchdog,
     approach,
 };
-
-/// Why a goal is not accepted. Nothing has moved.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum GoalError {
-    /// The target has a number that is not finite.
-    #[error("a number of the target's {what} is not finite")]
-    NotFinite {
-        /// Which part of the target.
-        what: &'static str,
-    },
-    /// A stream of targets has ended, and none came.
-    #[error("the targets ended before the first one came")]
-    NoTarget,
-    /// Commands under an external controller, which none is without torques beside them.
-    #[error("an external controller needs torques beside the commands, got none: `with_torques`")]
-    NoTorques,
-    /// The target moves: there is no arrival to wait for.
-    #[error("the target moves, so that the arm cannot come to rest at it")]
-    Moves,
-    /// A joint position lies outside the joint's range.
-    #[error("joint {joint}: {got} rad, expected between {lower:.4} and {upper:.4}")]
-    OutOfRange {
-        /// The joint, from 1.
-        joint: usize,
-        /// The position asked for, `[rad]`.
-        got: f64,
-        /// Lower end of the range, `[rad]`.
-        lower: f64,
-        /// Upper end of the range, `[rad]`.
-        upper: f64,
-    },
-    /// No joint positions inside their ranges put the end effector there.
-    #[error("no joint positions inside their ranges reach {} with that orientation", place([*x, *y, *z]))]
-    Unreachable {
-        /// Position asked for, base frame, `[m]`.
-        x: f64,
-        /// See `x`.
-        y: f64,
-        /// See `x`.
-        z: f64,
-    },
-    /// A limit of the budget is not positive, or as good as zero, or exceeds the robot's.
-    #[error("{what} limit {got}, expected above 0 and at most {most}")]
-    Budget {
-        /// Which limit.
-        what: &'static str,
-        /// The value given.
-        got: f64,
-        /// What the robot accepts.
-        most: f64,
-    },
-    /// A speed is not positive, or takes a limit beyond the robot's.
-    #[error(
-        "speed {got}, expected between {least} and {most:.3} times the limits of the motion",
-        least = Budget::SPEED_MIN
-    )]
-    Speed {
-        /// The factor given.
-        got: f64,
-        /// The greatest factor with which all limits stay inside the robot's.
-        most: f64,
-    },
-    /// A stiffness or damping is out of bounds.
-    #[error(transparent)]
-    Gains(#[from] GainError),
-    /// Gains whose joint springs act only in the null space of the end effector have no spring at
-    /// the end effector: nothing would take the arm to its target.
-    #[error("no spring at the end effector, and those of the joints act in its null space only")]
-    Unheld,
-    /// A number of the goal is outside what is accepted.
-    #[error("{what} is {got} {unit}, expected between {least} and {most}")]
-    Number {
-        /// Which number.
-        what: &'static str,
-        /// The value given.
-        got: f64,
-        /// Its unit.
-        unit: &'static str,
-        /// The least that is accepted.
-        least: f64,
-        /// The most that is accepted.
-        most: f64,
-    },
-    /// The last point of a chunk has passed: the arm has nothing left to follow of it.
-    #[error("the last point of the chunk passed {} ms ago", .by.as_millis())]
-    Late {
-        /// How long ago, by the robot's clock.
-        by: Duration,
-    },
-    /// The times of a chunk count from one that the robot does not come to for long: of another
-    /// clock.
-    #[error("the chunk counts from {} ms after the robot's newest state, expected {} ms at most, by the robot's clock", .by.as_millis(), Chunk::OFFSET_MAX.as_millis())]
-    Ahead {
-        /// How far ahead of that state.
-        by: Duration,
-    },
-    /// A chunk names an observation from before that of the chunk that is followed.
-    #[error("the chunk was observed {} ms before the one that is followed", .by.as_millis())]
-    Outdated {
-        /// How long before.
-        by: Duration,
-    },
-    /// Too many chunks came within a few cycles of the control thread.
-    #[error(transparent)]
-    Chunks(#[from] TooManyChunks),
-    /// The backend of the session cannot do what the goal asks for.
-    #[error("{backend} cannot take {got}, expected {expected}")]
-    Backend {
-        /// The backend.
-        backend: Backend,
-        /// What it cannot do.
-        got: &'static str,
-        /// What can take it, or what can be taken.
-        expected: &'static str,
-    },
-    /// A region to keep out of is invalid, or one too many.
-    #[error("region {region} to keep out of {why}")]
-    KeepOut {
-        /// Which one, from 1.
-        region: usize,
-        /// What is wrong with it.
-        why: &'static str,
-    },
-    /// The condition of a reaction is not accepted, or what follows it.
-    #[error(transparent)]
-    Condition(#[from] ConditionError),
-    /// A silence of a watchdog or a deadman is shorter than a lossy network may bring by itself.
-    #[error("silence of {} ms, expected at least {} ms", .got.as_millis(), Goal::SILENCE_MIN.as_millis())]
-    Silence {
-        /// The time given.
-        got: Duration,
-    },
-    /// An object that is held is to go somewhere else than to a pose.
-    #[error("an object that is held can only be taken to a pose")]
-    Grasp,
-    /// The robot's state names an end effector that is not a rigid transformation, or a load that
-    /// is not finite.
-    #[error("the robot's state names an end effector or a load that cannot be")]
-    Tool,
-}
-
-impl GoalError {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
-    pub fn entry(&self) -> &'static str {
-        match self {
-            Self::NoTarget => "goal-no-target",
-            Self::NoTorques => "goal-no-torques",
-            Self::NotFinite { .. } => "goal-not-finite",
-            Self::Moves => "goal-moves",
-            Self::OutOfRange { .. } => "goal-out-of-range",
-            Self::Unreachable { .. } => "goal-unreachable",
-            Self::Budget { .. } => "goal-budget",
-            Self::Speed { .. } => "goal-speed",
-            Self::Gains(_) => "goal-gains",
-            Self::Unheld => "goal-unheld",
-            Self::Number { .. } => "goal-number",
-            Self::Late { .. } => "goal-late",
-            Self::Ahead { .. } => "goal-ahead",
-            Self::Outdated { .. } => "goal-outdated",
-            Self::Chunks(_) => "goal-chunks",
-            Self::Backend { .. } => "goal-backend",
-            Self::KeepOut { .. } => "goal-keep-out",
-            Self::Condition(_) => "goal-condition",
-            Self::Silence { .. } => "goal-silence",
-            Self::Grasp => "goal-grasp",
-            Self::Tool => "goal-tool",
-        }
-    }
-}
 
 impl Goal {
     /// Checks the goal for a robot in `state`.
@@ -323,11 +152,6 @@ pub(super) fn target(to: &Target, model: &Model, state: &RobotState) -> Result<(
     }
 }
 
-/// Chunks came faster than the control thread takes them up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{} chunks are under way already", Chunk::UNDER_WAY_MAX)]
-pub struct TooManyChunks;
-
 /// Checks regions to keep out of, and gives them the form of a session.
 pub(crate) fn check_keep_out(regions: &[Obstacle]) -> Result<KeepOut, GoalError> {
     let mut checked = KeepOut::default();
@@ -401,15 +225,6 @@ fn speed(what: &'static str, unit: &'static str, got: f64, most: f64) -> Result<
         least,
         most,
     })
-}
-
-/// A position in an error's text.
-fn place(position: [f64; 3]) -> String {
-    let [x, y, z] = position;
-    if position.iter().any(|x| x.abs() > 10.0) {
-        return format!("({x:.3e}, {y:.3e}, {z:.3e}) m (expected metres)");
-    }
-    format!("({x:.4}, {y:.4}, {z:.4}) m")
 }
 
 /// Checks the silence that a watchdog or a deadman bears.

@@ -29,6 +29,7 @@ pub mod condition;
 mod course;
 mod effort;
 mod goal;
+mod goal_error;
 mod guard;
 mod guide;
 mod joints;
@@ -62,12 +63,12 @@ use crate::together::{Gate, StartFault};
 
 pub use backend::{Backend, Controller, Setpoints};
 pub use budget::Budget;
-pub use check::{GoalError, TooManyChunks};
 pub use chunk::{
     Blocked, Chunk, ChunkError, ChunkReader, ChunkWriter, Fate, Full, PathError, Preview, Returned,
     Waypoint, chunk_ring,
 };
 pub use goal::{Free, Goal, GoalId, OnArrival, Target};
+pub use goal_error::{GoalError, TooManyChunks};
 pub use guard::clearance::{KEEP_OUT_MAX, KEEP_OUT_STOP, KeepOut, SELF_STOP, SLOW_ZONE};
 pub(crate) use guard::deadman::Pulse;
 pub use guard::deadman::{Deadman, DeadmanMonitor};
