@@ -81,9 +81,7 @@ async fn a_lost_link_ends_the_nod() {
         }
     })
     .await;
-    let error = nod(&robot, 0.1)
-        .await
-        .expect_err("nobody knows where the arm is");
+    let error = nod(&robot, 0.1).await.expect_err("the link is lost");
     assert!(matches!(error, MotionError::LinkLost { .. }), "{error}");
     drop(release);
 }

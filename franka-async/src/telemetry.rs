@@ -13,18 +13,18 @@ pub(crate) struct Telemetry {
     stats: Arc<Stats>,
     /// Overruns that were told.
     told: u64,
-    warnings: Pace,
+    warnings: Backoff,
 }
 
 /// Ever longer times between warnings of what goes on.
 #[derive(Default)]
-struct Pace {
+struct Backoff {
     last: Option<Instant>,
     /// From then on until the next one, at least.
     interval: Duration,
 }
 
-impl Pace {
+impl Backoff {
     /// Whether a warning is due now, which it is taken for.
     fn take(&mut self, now: Instant) -> bool {
         let since = self.last.map(|last| now.duration_since(last));
@@ -43,7 +43,7 @@ impl Telemetry {
         Self {
             stats,
             told: 0,
-            warnings: Pace::default(),
+            warnings: Backoff::default(),
         }
     }
 
@@ -126,8 +126,8 @@ mod tests {
     #[test]
     fn what_goes_on_is_warned_of_ever_more_rarely_until_it_pauses() {
         let begin = Instant::now();
-        let mut pace = Pace::default();
-        let mut due = |second: u64| pace.take(begin + Duration::from_secs(second));
+        let mut backoff = Backoff::default();
+        let mut due = |second: u64| backoff.take(begin + Duration::from_secs(second));
         let told: Vec<u64> = (0..130).filter(|second| due(*second)).collect();
         assert_eq!(told, [0, 1, 3, 7, 15, 31, 63, 95, 127]);
         let told: Vec<u64> = (300..310).filter(|second| due(*second)).collect();

@@ -11,9 +11,7 @@ use franka_proto::{
     CommandId, MoveRequest, RecoveryStatus, Reply, Request, RobotState, Version, Violation,
 };
 use franka_rt::driver::{Driver, MotionId, Program, Record};
-use franka_rt::lifecycle::{
-    CloseReason, END_TIMEOUT, Lifecycle, MotionError, NewMotion, Outcome, Output,
-};
+use franka_rt::lifecycle::{CloseReason, Lifecycle, MotionError, NewMotion, Outcome, Output};
 use franka_rt::session::{Chunk, GoalId, Waypoint};
 use franka_rt::stats::{Arrival, CycleTimes};
 
@@ -213,8 +211,7 @@ impl DriverStack {
             self.lifecycle.on_event(event, self.now);
         }
         let silence = self.now.saturating_sub(self.heard);
-        let lost = MotionError::LinkLost { silence };
-        let unseen = (silence >= END_TIMEOUT / 2).then_some(lost);
+        let unseen = Lifecycle::unseen(silence, true);
         self.lifecycle.on_time(self.now, unseen);
         self.carry_out()
     }

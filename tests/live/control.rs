@@ -335,7 +335,7 @@ async fn the_robot_itself_goes_from_target_to_target() {
     }
 }
 
-/// The robot ends the motion meanwhile, and nobody reads what it shows.
+/// The robot ends the motion meanwhile. Its states are not read.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_function_that_does_not_return_is_named_and_not_the_link() {
     let _alone = alone();

@@ -228,7 +228,7 @@ fn without_features(workspace: &Workspace) -> anyhow::Result<()> {
     let mut arguments = packages.map(|name| format!("--package={name}")).to_vec();
     arguments.push("--no-default-features".to_owned());
     // Other features, other dependencies: what the tests have built is of no use here.
-    arguments.push(format!("--target-dir={}", bare_target(workspace).display()));
+    arguments.push(format!("--target-dir={}", bare_folder(workspace).display()));
     clippy(workspace, &arguments)
 }
 
@@ -247,7 +247,7 @@ fn no_std(workspace: &Workspace) -> anyhow::Result<Outcome> {
         let mut command = workspace.cargo();
         command.arg("check").arg("--manifest-path");
         command.arg(package.join("Cargo.toml")).arg("--target-dir");
-        command.arg(bare_target(workspace));
+        command.arg(bare_folder(workspace));
         command.args(target.map(|target| format!("--target={target}")));
         workspace.run(&mut command)?;
     }
@@ -262,7 +262,7 @@ fn no_std(workspace: &Workspace) -> anyhow::Result<Outcome> {
 
 /// Where what is built without features goes, beside all else and at the same time: cargo builds
 /// one thing at a time in a folder.
-fn bare_target(workspace: &Workspace) -> PathBuf {
+fn bare_folder(workspace: &Workspace) -> PathBuf {
     workspace.target().join("bare")
 }
 

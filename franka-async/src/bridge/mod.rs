@@ -15,7 +15,7 @@ use std::time::Duration;
 use franka_proto::RobotState;
 use franka_rt::driver::{Driver, Event, Order};
 use franka_rt::event_fd::EventFd;
-use franka_rt::lifecycle::{CloseReason, END_TIMEOUT, Lifecycle, MotionError, Outcome, Output};
+use franka_rt::lifecycle::{CloseReason, Lifecycle, MotionError, Outcome, Output};
 use franka_rt::queue::{Receiver, Sender};
 use franka_rt::session::{GoalError, GoalId};
 use franka_rt::stats::Stats;
@@ -233,14 +233,11 @@ impl Bridge {
     /// Why no state that came since the deadline was set could show anything.
     fn unseen(&self) -> Option<MotionError> {
         let awaited = self.awaited.as_ref()?;
-        let silence = self.now().saturating_sub(awaited.since);
-        if self.publisher.state().message_id != awaited.newest || silence < END_TIMEOUT / 2 {
+        if self.publisher.state().message_id != awaited.newest {
             return None;
         }
-        Some(match self.stats.turns.get() == awaited.turns {
-            true => MotionError::Hung { silence },
-            false => MotionError::LinkLost { silence },
-        })
+        let silence = self.now().saturating_sub(awaited.since);
+        Lifecycle::unseen(silence, self.stats.turns.get() != awaited.turns)
     }
 
     /// Carries out what the lifecycle has decided, in its order.

@@ -28,7 +28,7 @@ pub enum CommandError {
         /// How long the answer was awaited.
         deadline: Duration,
     },
-    /// Link: the robot's states stay away, so that nobody knows what has become of the command.
+    /// Link: no robot state comes, so it is unknown whether the command was carried out.
     #[error("no answer that a state confirms: no robot state for {} ms", .silence.as_millis())]
     LinkLost {
         /// The silence so far, at least.

@@ -29,7 +29,9 @@ pub enum RecordingError {
         source: Arc<io::Error>,
     },
     /// A chunk is damaged. Those after it can be read.
-    #[error("the chunk at byte {offset} is damaged: {reason}; a recovered copy goes on behind it")]
+    #[error(
+        "the chunk at byte {offset} is damaged: {reason}; `franka recover` makes a copy without it"
+    )]
     Chunk {
         /// Where it begins.
         offset: u64,

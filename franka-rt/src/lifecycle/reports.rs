@@ -214,9 +214,19 @@ impl Lifecycle {
         }
     }
 
+    /// What to say of a motion whose end was not seen, if no state has come for `silence`: `None`
+    /// if that is too short to matter. `turning` is whether the control thread has gone on
+    /// meanwhile.
+    pub fn unseen(silence: Duration, turning: bool) -> Option<MotionError> {
+        (silence >= END_TIMEOUT / 2).then_some(match turning {
+            true => MotionError::LinkLost { silence },
+            false => MotionError::Hung { silence },
+        })
+    }
+
     /// Checks the deadline at `now`. If neither side of the motion has ended by then, the robot is
-    /// told to stop and has [`END_TIMEOUT`] more; otherwise the motion is given up. The robot is
-    /// not to blame if no state could be seen, for this reason, `unseen`: the motion resolves so.
+    /// told to stop and has [`END_TIMEOUT`] more; otherwise the motion is given up. If no state was
+    /// seen, it resolves as [`unseen`](Self::unseen) says.
     pub fn on_time(&mut self, now: Duration, unseen: Option<MotionError>) {
         if self.deadline().is_none_or(|deadline| now < deadline) {
             return;

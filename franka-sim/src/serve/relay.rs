@@ -109,7 +109,7 @@ impl Relay {
 
     /// When the answer to that state arrives, if it is under way and soon there.
     pub(super) fn answer_arrives(&mut self, now: Instant) -> Option<Instant> {
-        let soon = self.time(now) + SOON;
+        let soon = self.time(now) + ON_ITS_WAY_MAX;
         let next = self
             .network
             .to_robot
@@ -138,9 +138,9 @@ fn message_id(datagram: &[u8]) -> Option<u64> {
     datagram.first_chunk().map(|id| u64::from_le_bytes(*id))
 }
 
-/// What a command may be on its way where commands are waited for: one that takes longer is late
-/// by the network's doing, and not by the client's.
-const SOON: Duration = Duration::from_micros(500);
+/// How long a command that is on its way is waited for. One that takes longer is late because of
+/// the network, and not of the client.
+const ON_ITS_WAY_MAX: Duration = Duration::from_micros(500);
 
 /// Time between two looks at the socket, and about what datagrams are later than the network has
 /// it.
