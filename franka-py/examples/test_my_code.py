@@ -3,7 +3,7 @@
 import asyncio
 
 import pytest
-from franka_async import MotionError, Robot, Sim
+from franka_async import ControlError, MotionError, Robot, Sim
 
 
 async def nod(robot: Robot, depth: float = 0.04) -> None:
@@ -22,11 +22,19 @@ def test_a_nod_ends_where_it_began(franka_robot: Robot) -> None:
 
 
 @pytest.mark.franka(ideal=True, seed=7)
-def test_a_reflex_is_not_hidden(fr3: Robot, sim_fr3: Sim) -> None:
-    """Virtual time is as fast as the computer, so a fault is there before the motion begins."""
+def test_a_pressed_user_stop_is_not_hidden(fr3: Robot, sim_fr3: Sim) -> None:
     sim_fr3.press_user_stop()
     with pytest.raises(MotionError):
         asyncio.run(nod(fr3))
+
+
+def test_a_reflex_in_mid_motion_can_be_recovered_from(fr3: Robot, sim_fr3: Sim) -> None:
+    """By the robot's own time: in virtual time, a motion may be over before a program sees it move."""
+    sim_fr3.trip("cartesian_reflex", once_moving=True)
+    with pytest.raises(ControlError, match="cartesian_reflex"):
+        asyncio.run(nod(fr3, depth=0.1))
+    fr3.recover().wait()
+    asyncio.run(nod(fr3))
 
 
 def test_a_deep_nod_is_refused(fr3: Robot) -> None:

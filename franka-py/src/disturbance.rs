@@ -3,7 +3,6 @@
 use franka_async::model::Frame;
 use franka_async::nalgebra::{UnitVector3, Vector3};
 use franka_async::state::RobotError;
-use franka_sim::TouchId;
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -11,6 +10,7 @@ use pyo3::types::PyAny;
 
 use crate::arrays::{array, pose_array, vector};
 use crate::model::arguments;
+use crate::once_moving::Begun;
 use crate::operation::seconds;
 use crate::simulator::Sim;
 
@@ -18,22 +18,23 @@ use crate::simulator::Sim;
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Touch {
     sim: Py<Sim>,
-    id: TouchId,
+    begun: Begun,
 }
 
 #[pymethods]
 impl Touch {
-    /// Ends it. Returns whether it was still there.
+    /// Ends it, also before it has begun. Returns whether it was still there.
     fn release(&self, py: Python<'_>) -> PyResult<bool> {
-        let id = self.id;
-        self.sim.get().robot(py, move |robot| robot.release(id))
+        let begun = self.begun.clone();
+        self.sim.get().robot(py, move |robot| begun.release(robot))
     }
 
     /// The wrench that it exerts on the arm now, base axes, `(6,)` N and N m; `None` if it is over,
-    /// or acts on joints.
+    /// has not begun, or acts on joints.
     fn felt<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
-        let id = self.id;
-        let felt = self.sim.get().robot(py, move |robot| robot.felt(id))?;
+        let begun = self.begun.clone();
+        let felt = move |robot: &mut franka_sim::Robot| begun.id().and_then(|id| robot.felt(id));
+        let felt = self.sim.get().robot(py, felt)?;
         Ok(felt.map(|wrench| array(py, wrench.as_slice())))
     }
 }
@@ -43,7 +44,7 @@ fn touch(
     sim: &Bound<'_, Sim>,
     touch: franka_sim::Touch,
     at: Option<(&str, Option<&Bound<'_, PyAny>>)>,
-    duration: Option<f64>,
+    (duration, once_moving): (Option<f64>, bool),
 ) -> PyResult<Touch> {
     let mut touch = touch;
     if let Some((frame, offset)) = at {
@@ -55,63 +56,72 @@ fn touch(
         let time = seconds("duration", duration)?.as_millis();
         touch = touch.lasting(u64::try_from(time).unwrap_or(u64::MAX));
     }
-    let id = sim.get().robot(sim.py(), move |robot| robot.touch(touch))?;
+    let begun = Begun::default();
+    let begin = begun.clone();
+    let begin = move |robot: &mut franka_sim::Robot| begin.begin(robot, touch);
+    sim.get().disturb(sim.py(), once_moving, begin)?;
     let sim = sim.clone().unbind();
-    Ok(Touch { sim, id })
+    Ok(Touch { sim, begun })
 }
 
 #[pymethods]
 impl Sim {
     /// Pushes the arm `at` a frame (`ee`, `flange`, `joint4`, ...), `offset` from its origin in its
     /// axes, m, with a force, base axes, N, and a torque, N m, for `duration` seconds of its
-    /// own clock; until it is released if `None`.
-    #[pyo3(signature = (force, torque = None, *, duration = None, at = "ee", offset = None))]
+    /// own clock; until it is released if `None`. It begins now or, `once_moving`, in the
+    /// millisecond in which a joint is faster than 0.05 rad/s: in virtual time, where a motion
+    /// may be over before a program sees it move.
+    #[pyo3(signature = (force, torque = None, *, duration = None, once_moving = false, at = "ee", offset = None))]
     fn push(
         this: &Bound<'_, Self>,
         force: &Bound<'_, PyAny>,
         torque: Option<&Bound<'_, PyAny>>,
         duration: Option<f64>,
+        once_moving: bool,
         at: &str,
         offset: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Touch> {
         let [x, y, z] = vector("force", force)?;
         let [a, b, c] = torque.map_or(Ok([0.0; 3]), |torque| vector("torque", torque))?;
         let wrench = franka_sim::Touch::wrench([x, y, z, a, b, c].into());
-        touch(this, wrench, Some((at, offset)), duration)
+        touch(this, wrench, Some((at, offset)), (duration, once_moving))
     }
 
     /// Pushes the joints with torques, 7 numbers, N m; otherwise like `push`.
-    #[pyo3(signature = (torques, *, duration = None))]
+    #[pyo3(signature = (torques, *, duration = None, once_moving = false))]
     fn push_joints(
         this: &Bound<'_, Self>,
         torques: &Bound<'_, PyAny>,
         duration: Option<f64>,
+        once_moving: bool,
     ) -> PyResult<Touch> {
         let torques = franka_sim::Touch::torque(vector::<7>("torques", torques)?.into());
-        touch(this, torques, None, duration)
+        touch(this, torques, None, (duration, once_moving))
     }
 
     /// Pulls the arm to the point `to`, base frame, m, by a spring of this stiffness, N/m;
     /// otherwise like `push`.
-    #[pyo3(signature = (to, stiffness, *, duration = None, at = "ee", offset = None))]
+    #[pyo3(signature = (to, stiffness, *, duration = None, once_moving = false, at = "ee", offset = None))]
     fn pull(
         this: &Bound<'_, Self>,
         to: &Bound<'_, PyAny>,
         stiffness: f64,
         duration: Option<f64>,
+        once_moving: bool,
         at: &str,
         offset: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Touch> {
         let to = Vector3::from(vector::<3>("to", to)?);
         let spring = franka_sim::Touch::spring(to, positive("stiffness", stiffness)?);
-        touch(this, spring, Some((at, offset)), duration)
+        touch(this, spring, Some((at, offset)), (duration, once_moving))
     }
 
     /// Grips the arm firmly where it is now; otherwise like `push`.
-    #[pyo3(signature = (*, duration = None, at = "ee", offset = None))]
+    #[pyo3(signature = (*, duration = None, once_moving = false, at = "ee", offset = None))]
     fn hold(
         this: &Bound<'_, Self>,
         duration: Option<f64>,
+        once_moving: bool,
         at: &str,
         offset: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Touch> {
@@ -119,28 +129,39 @@ impl Sim {
             this,
             franka_sim::Touch::hold(),
             Some((at, offset)),
-            duration,
+            (duration, once_moving),
         )
     }
 
     /// Blocks a joint, 1 to 7, at its angle of now.
-    #[pyo3(signature = (joint, *, duration = None))]
-    fn block(this: &Bound<'_, Self>, joint: usize, duration: Option<f64>) -> PyResult<Touch> {
+    #[pyo3(signature = (joint, *, duration = None, once_moving = false))]
+    fn block(
+        this: &Bound<'_, Self>,
+        joint: usize,
+        duration: Option<f64>,
+        once_moving: bool,
+    ) -> PyResult<Touch> {
         if !(1..=7).contains(&joint) {
             let text = format!("joint is {joint}, expected 1 to 7");
             return Err(PyValueError::new_err(text));
         }
-        touch(this, franka_sim::Touch::block(joint - 1), None, duration)
+        touch(
+            this,
+            franka_sim::Touch::block(joint - 1),
+            None,
+            (duration, once_moving),
+        )
     }
 
     /// Puts a wall in the way of the end effector: through `point`, base frame, m, with a `normal`
     /// out of it.
-    #[pyo3(signature = (point, normal, *, duration = None, at = "ee", offset = None))]
+    #[pyo3(signature = (point, normal, *, duration = None, once_moving = false, at = "ee", offset = None))]
     fn wall(
         this: &Bound<'_, Self>,
         point: &Bound<'_, PyAny>,
         normal: &Bound<'_, PyAny>,
         duration: Option<f64>,
+        once_moving: bool,
         at: &str,
         offset: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Touch> {
@@ -148,18 +169,22 @@ impl Sim {
         let normal = UnitVector3::try_new(vector::<3>("normal", normal)?.into(), 1e-9)
             .ok_or_else(|| PyValueError::new_err("normal has no length"))?;
         let wall = franka_sim::Touch::wall(point, normal.into_inner());
-        touch(this, wall, Some((at, offset)), duration)
+        touch(this, wall, Some((at, offset)), (duration, once_moving))
     }
 
-    /// Ends every touch.
+    /// Ends every touch, and drops all that was to begin once the arm moves.
     fn let_go(&self, py: Python<'_>) -> PyResult<()> {
-        self.robot(py, |robot| robot.let_go())
+        let waiting = self.once_moving.clone();
+        self.robot(py, move |robot| {
+            waiting.clear();
+            robot.let_go();
+        })
     }
 
-    /// Presses the user stop, or releases it.
-    #[pyo3(signature = (pressed = true))]
-    fn press_user_stop(&self, py: Python<'_>, pressed: bool) -> PyResult<()> {
-        self.robot(py, move |robot| robot.press_user_stop(pressed))
+    /// Presses the user stop, or releases it; `once_moving` as of `push`.
+    #[pyo3(signature = (pressed = true, *, once_moving = false))]
+    fn press_user_stop(&self, py: Python<'_>, pressed: bool, once_moving: bool) -> PyResult<()> {
+        self.disturb(py, once_moving, move |robot| robot.press_user_stop(pressed))
     }
 
     /// Activates a safety function that forbids motion, as set up in Desk, or deactivates it.
@@ -184,12 +209,13 @@ impl Sim {
     }
 
     /// Raises an error of the robot, by the vendor's name, such as `cartesian_reflex`: it stops
-    /// itself.
-    fn trip(&self, py: Python<'_>, error: &str) -> PyResult<()> {
+    /// itself. `once_moving` as of `push`.
+    #[pyo3(signature = (error, *, once_moving = false))]
+    fn trip(&self, py: Python<'_>, error: &str, once_moving: bool) -> PyResult<()> {
         let found = RobotError::from_name(error).ok_or_else(|| {
             PyValueError::new_err(format!("error is {error:?}, which no error is called"))
         })?;
-        self.robot(py, move |robot| robot.trip(found))
+        self.disturb(py, once_moving, move |robot| robot.trip(found))
     }
 
     /// Performs the recovery that takes a person.

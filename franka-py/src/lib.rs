@@ -35,6 +35,7 @@ mod log;
 mod logging;
 mod model;
 mod motion;
+mod once_moving;
 mod operation;
 mod options;
 mod otg;

@@ -15,6 +15,7 @@ use pyo3::types::{PyAny, PyDict};
 
 use crate::arrays::{pose, vector};
 use crate::model::arguments;
+use crate::once_moving::OnceMoving;
 use crate::operation::{Operation, seconds};
 use crate::options::Keywords;
 use crate::runtime::{self, Threaded};
@@ -27,6 +28,7 @@ use crate::state::RobotState;
 pub(crate) struct Sim {
     /// `None` once it has been stopped.
     running: Threaded<Mutex<Option<Running>>>,
+    pub(crate) once_moving: OnceMoving,
     kind: RobotKind,
     address: String,
     hand_address: Option<String>,
@@ -88,7 +90,8 @@ impl Sim {
                 }
             };
             let mut keywords = Keywords::new("Sim.in_step", options)?;
-            sims.push((kind, configured(kind, &mut keywords)?));
+            let (sim, once_moving) = watched(configured(kind, &mut keywords)?);
+            sims.push(((kind, once_moving), sim));
             keywords.end()?;
         }
         let (kinds, sims): (Vec<_>, Vec<_>) = sims.into_iter().unzip();
@@ -182,17 +185,18 @@ impl Sim {
         options: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let mut keywords = Keywords::new(name, options)?;
-        let sim = configured(kind, &mut keywords)?;
+        let (sim, once_moving) = watched(configured(kind, &mut keywords)?);
         keywords.end()?;
         let running = runtime::blocking(py, sim.start())?.map_err(PyOSError::new_err)?;
-        Ok(Self::new(kind, running))
+        Ok(Self::new((kind, once_moving), running))
     }
 
-    fn new(kind: RobotKind, running: Running) -> Self {
+    fn new((kind, once_moving): (RobotKind, OnceMoving), running: Running) -> Self {
         let hand = running.hand().map(|hand| hand.addr().to_string());
         let gripper = running.vacuum_gripper();
         Self {
             kind,
+            once_moving,
             address: running.addr().to_string(),
             hand_address: hand,
             vacuum_gripper_address: gripper.map(|gripper| gripper.addr().to_string()),
@@ -232,6 +236,31 @@ impl Sim {
     ) -> PyResult<R> {
         self.with(py, async |running| running.with(act).await)
     }
+
+    /// Does something to the robot between two of its milliseconds: now, or once its arm moves.
+    ///
+    /// # Errors
+    /// As [`Self::with`].
+    pub(crate) fn disturb(
+        &self,
+        py: Python<'_>,
+        once_moving: bool,
+        act: impl FnOnce(&mut franka_sim::Robot) + Send + 'static,
+    ) -> PyResult<()> {
+        let waiting = self.once_moving.clone();
+        self.robot(py, move |robot| match once_moving {
+            true => waiting.push(act),
+            false => act(robot),
+        })
+    }
+}
+
+/// A robot, and what is to happen to it once its arm moves.
+fn watched(sim: franka_sim::Sim) -> (franka_sim::Sim, OnceMoving) {
+    let once_moving = OnceMoving::default();
+    let waiting = once_moving.clone();
+    let sim = sim.every_millisecond(move |robot| waiting.look_at(robot));
+    (sim, once_moving)
 }
 
 /// The same robots, which begin each of their milliseconds together.

@@ -89,4 +89,4 @@ def test_an_example_runs(name: str, runs: dict[str, Future[subprocess.CompletedP
 def test_the_tests_of_an_example_pass() -> None:
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(DIRECTORY / "test_my_code.py")]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, env={**os.environ, "PYTEST_ADDOPTS": ""})
-    assert done.returncode == 0 and "4 passed" in done.stdout, done.stdout
+    assert done.returncode == 0 and "5 passed" in done.stdout, done.stdout

@@ -106,6 +106,33 @@ def test_touches_act_until_they_are_released() -> None:
                 wrong()
 
 
+def test_a_disturbance_may_wait_until_the_arm_moves(sim: Sim, robot: Robot) -> None:
+    """It comes in mid-motion, by the robot's own time: in virtual time, in which a program may see no motion at all."""
+
+    def lift() -> float:
+        """By how much the hand has gone up when a motion by 0.1 m was stopped."""
+        before = robot.pose()[2, 3]
+        with pytest.raises(ControlError):
+            robot.move_by([0.0, 0.0, 0.1]).wait()
+        return float(sim.true_pose()[2, 3] - before)
+
+    sim.trip("joint_reflex", once_moving=True)
+    sim.hold(once_moving=True)
+    assert 0.0 < lift() < 0.03
+    sim.let_go()
+    robot.recover().wait()
+    sim.press_user_stop(once_moving=True)
+    assert 0.0 < lift() < 0.03
+    sim.press_user_stop(False)
+    until(lambda: robot.state().robot_mode == "idle")
+    # What was taken back does not come.
+    push = sim.push([0.0, 0.0, -200.0], once_moving=True)
+    assert push.felt() is None and push.release() and not push.release()
+    sim.trip("joint_reflex", once_moving=True)
+    sim.let_go()
+    assert robot.move_by([0.0, 0.0, -0.05]).wait().final_error is not None
+
+
 def test_people_at_the_robot(sim: Sim, robot: Robot) -> None:
     assert sim.guide() and robot.state().robot_mode in ("guiding", "idle")
     until(lambda: robot.state().robot_mode == "guiding")

@@ -21,6 +21,9 @@ class Stream(Generic[T]):
     def __init__(self, source: Source) -> None:
         self._source = source
 
+    def __repr__(self) -> str:
+        return "<Stream: items as they come, by 'async for' or 'for'>"
+
     def __aiter__(self) -> Stream[T]:
         return self
 
