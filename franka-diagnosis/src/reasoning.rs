@@ -1,6 +1,8 @@
 //! How the reason of a reflex is worked out: from errors to a finding, from a finding to its
 //! causes, from causes to advice.
 
+use core::time::Duration;
+
 use franka_proto::{Errors, RobotError as E};
 
 use super::advice::Advice;
@@ -244,13 +246,16 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
         Category::Link => {
             let late = lost_cycles::late_commands(evidence);
             let lost = lost_cycles::lost_packets(evidence);
-            // Commands that left too late have not reached the robot in time, either. States that
-            // were all had, but late, may have been held up on their way.
-            let slow = evidence
-                .statistics
-                .is_some_and(|counts| is_slow(counts.worst_turnaround));
-            let by_host = matches!(lost, Some(Cause::LostPackets { states: 0, unanswered, .. })
-                if unanswered > 0 || slow);
+            // Commands that left too late have not reached the robot in time, either, and states
+            // are lost that nobody reads for as long as an answer takes. States that were all had,
+            // but late, may have been held up on their way.
+            let turnaround = evidence.statistics.map(|counts| counts.worst_turnaround);
+            let turnaround = turnaround.unwrap_or_default();
+            let by_host = matches!(lost, Some(Cause::LostPackets { states, unanswered, longest_run, .. })
+            if match states {
+                0 => unanswered > 0 || is_slow(turnaround),
+                _ => turnaround >= Duration::from_millis(longest_run),
+            });
             let (first, second) = if by_host { (late, lost) } else { (lost, late) };
             causes.extend(first);
             causes.extend(second);
@@ -302,7 +307,7 @@ pub(super) fn advice(error: E, causes: &[Cause]) -> Vec<Advice> {
     let by_cause = causes.iter().map(|cause| match cause {
         Cause::LostPackets {
             states, commands, ..
-        } if *states > 0 || (*commands > 0 && !late) => Advice::Network,
+        } if !late && (*states > 0 || *commands > 0) => Advice::Network,
         Cause::LostPackets { .. } | Cause::LateCommands { .. } => Advice::Host,
         Cause::WrongStart { .. } => Advice::StartWhereItIs,
         Cause::FinishedMoving { .. } => Advice::FinishAtRest,
@@ -332,17 +337,18 @@ fn by_error(error: E) -> Advice {
         | E::JointMotionGeneratorPositionLimitsViolation
         | E::CartesianMotionGeneratorJointPositionLimitsViolation => Advice::StayInRange,
         E::JointMotionGeneratorVelocityLimitsViolation
-        | E::CartesianMotionGeneratorVelocityLimitsViolation => Advice::SlowDown,
+        | E::CartesianMotionGeneratorVelocityLimitsViolation
+        | E::CartesianMotionGeneratorJointVelocityLimitsViolation => Advice::SlowDown,
         E::SelfCollisionAvoidanceViolation => Advice::StayClearOfItself,
         E::InstabilityDetected => Advice::SofterGains,
         E::TauJRangeViolation | E::PowerLimitViolation => Advice::LessEffort,
         _ => match category(error) {
             Category::Link => Advice::Network,
             Category::Start => Advice::StartWhereItIs,
-            Category::Command => Advice::Smooth,
+            Category::Command | Category::Inverse => Advice::Smooth,
             Category::Contact => Advice::Thresholds,
             Category::Desk => Advice::Desk,
-            Category::Inverse | Category::Arm => Advice::SlowDown,
+            Category::Arm => Advice::SlowDown,
         },
     }
 }

@@ -224,6 +224,23 @@ fn states_that_a_slow_function_skips_are_not_lost() {
 }
 
 #[test]
+fn states_that_are_lost_while_a_function_does_not_return_are_this_hosts_doing() {
+    let told = |turnaround| {
+        let story = Story::of(Model::fr3(), Generator::None);
+        let mut counts = MotionStatistics::default();
+        counts.overruns = 50;
+        counts.worst_turnaround = Duration::from_millis(turnaround);
+        let errors = [E::CommunicationConstraintsViolation];
+        let gap = |state: &mut franka_proto::RobotState| state.message_id += 200;
+        let diagnosis = story.stop_counted(Some(&counts), &errors, |_, _| {}, gap);
+        let lost = |cause: &Cause| matches!(cause, Cause::LostPackets { states: 200, .. });
+        (diagnosis.causes.iter().position(lost), diagnosis.advice)
+    };
+    assert_eq!(told(250), (Some(1), vec![Advice::Host]));
+    assert_eq!(told(5), (Some(0), vec![Advice::Network, Advice::Host]));
+}
+
+#[test]
 fn a_jerk_that_is_too_large_comes_before_an_acceleration_that_nearly_is() {
     let mut story = Story::of(Model::fr3(), Generator::JointVelocity);
     story.entries.last_mut().unwrap().state.ddq_d[0] = -9.0;
