@@ -5,7 +5,7 @@
 use std::time::Duration;
 
 use franka_model::transform;
-use franka_proto::{CollisionBehavior, Filters, Load, Request, VirtualWall};
+use franka_proto::{CollisionBehavior, Filters, Load, Request, RobotState, VirtualWall};
 
 use crate::command_channel::{Channel, Response};
 use crate::error::CommandError;
@@ -19,6 +19,9 @@ const RECOVERY: Duration = Duration::from_secs(30);
 
 /// How much longer than the link timeout a robot that recovers may be silent.
 const SILENT: Duration = Duration::from_secs(3);
+
+/// How many milliseconds after the answer states are looked through for what was set.
+const SHOWN_MS: u64 = 200;
 
 impl Robot {
     /// Sets the torques and forces at which the robot reports contact (lower) and stops itself
@@ -82,46 +85,55 @@ impl Robot {
         .await
     }
 
-    /// Sets the stiffness frame in the end effector's, `EE_T_K`.
+    /// Sets the stiffness frame in the end effector's, `EE_T_K`. Resolves when a state shows it, as
+    /// what is computed next is computed from states.
     ///
     /// The vendor documents no range. The simulator refuses what is more than 2 m away.
     ///
     /// # Errors
-    /// [`CommandError`].
+    /// [`CommandError`]; [`CommandError::LinkLost`] if the robot answers and its states stay away.
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
     pub async fn set_k(&self, ee_t_k: Pose) -> Result<(), CommandError> {
-        self.set(Request::SetEEToK(transform::array(&ee_t_k))).await
+        let frame = transform::array(&ee_t_k);
+        let shows = |state: &RobotState| is_near(&state.EE_T_K, &frame);
+        self.set_shown(Request::SetEEToK(frame), shows).await
     }
 
-    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`. Its range is that of
-    /// [`Self::set_k`].
+    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`. Its range, and when it
+    /// resolves, are those of [`Self::set_k`].
     ///
     /// # Errors
-    /// [`CommandError`].
+    /// Those of [`Self::set_k`].
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
     pub async fn set_ee(&self, ne_t_ee: Pose) -> Result<(), CommandError> {
-        self.set(Request::SetNEToEE(transform::array(&ne_t_ee)))
-            .await
+        let frame = transform::array(&ne_t_ee);
+        let shows = |state: &RobotState| is_near(&state.NE_T_EE, &frame);
+        self.set_shown(Request::SetNEToEE(frame), shows).await
     }
 
     /// Declares the load beyond the end effector: mass `[kg]`, centre of mass in the flange frame
-    /// `[m]`, inertia about it `[kg m^2]`, column-major.
+    /// `[m]`, inertia about it `[kg m^2]`, column-major. Resolves when a state shows it.
     ///
     /// The vendor documents no range. The simulator refuses more than 10 kg, a centre more than 1 m
     /// away, and an inertia that is not symmetric, not that of a body, or has a principal moment
     /// above 1 kg m^2; its configuration has other bounds.
     ///
     /// # Errors
-    /// [`CommandError`].
+    /// Those of [`Self::set_k`].
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
     pub async fn set_load(&self, load: Load) -> Result<(), CommandError> {
-        self.set(Request::SetLoad(load)).await
+        let shows = |state: &RobotState| {
+            is_near(&[state.m_load], &[load.m_load])
+                && is_near(&state.F_x_Cload, &load.F_x_Cload)
+                && is_near(&state.I_load, &load.I_load)
+        };
+        self.set_shown(Request::SetLoad(load), shows).await
     }
 
     /// Recovers from a reflex (`AutomaticErrorRecovery`) and resolves when the robot takes motions
@@ -190,6 +202,34 @@ impl Robot {
     async fn set(&self, request: Request) -> Result<(), CommandError> {
         self.channel().call(request, ANSWER).await.map(|_| ())
     }
+
+    /// Sets what motions compute with, and waits for a state that shows it. The answer comes by
+    /// another way than states: a motion that begins before would take the new tool for the old
+    /// one.
+    async fn set_shown(
+        &self,
+        request: Request,
+        shows: impl Fn(&RobotState) -> bool,
+    ) -> Result<(), CommandError> {
+        let link = self.link();
+        link.channel.call(request, ANSWER).await?;
+        let mut states = link.newest.changes();
+        let answered = states.borrow().message_id;
+        // A robot that rounds the numbers never shows them. Closed: whatever is next says so.
+        let shown = states.wait_for(|state| shows(state) || state.message_id > answered + SHOWN_MS);
+        tokio::select! {
+            _ = shown => Ok(()),
+            silence = link.stays_silent(Duration::ZERO) => Err(CommandError::LinkLost { silence }),
+        }
+    }
+}
+
+/// Whether a state, which may be of single precision, shows these numbers.
+fn is_near<const N: usize>(shown: &[f64; N], set: &[f64; N]) -> bool {
+    shown
+        .iter()
+        .zip(set)
+        .all(|(shown, set)| (shown - set).abs() < 1e-5)
 }
 
 /// Has the robot recover from a reflex.

@@ -72,8 +72,8 @@ impl Robot {
     }
 
     /// Sets the stiffness frame in the end effector's, `EE_T_K`: a pose. The vendor documents no
-    /// range; the simulator refuses what is more than 2 m away. Raises and is cancelled as
-    /// `set_collision_behavior`.
+    /// range; the simulator refuses what is more than 2 m away. Resolves when a state shows it.
+    /// Raises and is cancelled as `set_collision_behavior`.
     #[expect(non_snake_case, reason = "the vendor's name")]
     fn set_k(&self, EE_T_K: &Bound<'_, PyAny>) -> PyResult<Operation> {
         let pose = arrays::pose("EE_T_K", EE_T_K)?;
@@ -83,8 +83,9 @@ impl Robot {
         }))
     }
 
-    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`: a pose. Its range is
-    /// as that of `set_k`. Raises and is cancelled as `set_collision_behavior`.
+    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`: a pose. Its range,
+    /// and when it resolves, are as of `set_k`. Raises and is cancelled as
+    /// `set_collision_behavior`.
     #[expect(non_snake_case, reason = "the vendor's name")]
     fn set_ee(&self, NE_T_EE: &Bound<'_, PyAny>) -> PyResult<Operation> {
         let pose = arrays::pose("NE_T_EE", NE_T_EE)?;
@@ -98,8 +99,8 @@ impl Robot {
     /// `(3,)` m; `inertia` about it, `(3, 3)` or its nine numbers, kg m^2, zero unless given.
     ///
     /// The vendor documents no range. The simulator refuses more than 10 kg, a centre more than 1 m
-    /// away, and an inertia that no body has or with a principal moment above 1 kg m^2. Raises and
-    /// is cancelled as `set_collision_behavior`.
+    /// away, and an inertia that no body has or with a principal moment above 1 kg m^2. Resolves
+    /// when a state shows it. Raises and is cancelled as `set_collision_behavior`.
     #[pyo3(signature = (mass, center = None, inertia = None))]
     fn set_load(
         &self,

@@ -7,8 +7,9 @@
 use std::future::IntoFuture;
 use std::time::Duration;
 
+use franka_async::settings::Load;
 use franka_async::state::RobotError;
-use franka_async::{MotionError, Robot};
+use franka_async::{MotionError, Pose, Robot};
 use franka_sim::{Network, Running, Sim, Tool};
 use franka_tests::mishaps;
 use tokio::time::timeout;
@@ -55,6 +56,29 @@ async fn travel(sim: Sim, network: Network, speed: f64) -> Seen {
     };
     robot.shutdown().await;
     seen
+}
+
+/// States that are a tenth of a second old still have the frames and the load of before.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn what_was_set_is_in_the_state_when_its_setter_resolves() {
+    let _alone = alone();
+    for sim in [Sim::fr3(), Sim::fer()] {
+        let (robot, _sim) = behind(mishaps::delay(Duration::from_millis(100)), sim).await;
+        let frame = Pose::translation(0.0, 0.0, 0.1);
+        let z = robot.pose().translation.z;
+        robot.set_ee(frame).await.expect("at rest");
+        assert!((z - robot.pose().translation.z - 0.1).abs() < 1e-3);
+        robot.set_k(frame).await.expect("at rest");
+        assert!((robot.state().EE_T_K[14] - 0.1).abs() < 1e-6);
+        let load = Load {
+            m_load: 0.3,
+            F_x_Cload: [0.0, 0.01, 0.1],
+            I_load: [0.0; 9],
+        };
+        robot.set_load(load).await.expect("at rest");
+        assert!((robot.state().m_load - 0.3).abs() < 1e-6);
+        robot.shutdown().await;
+    }
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
