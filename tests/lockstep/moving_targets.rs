@@ -91,25 +91,29 @@ fn without_news_the_arm_stops_on_the_way_of_its_target_and_goes_on_with_the_next
 
 /// The figures of `docs/src/services.md`.
 #[test]
-fn a_target_that_stops_at_once_is_overshot_and_come_back_to() {
-    for (speed, fading, expected) in [
-        (0.05, 0.0, 3.0),
-        (0.1, 0.0, 12.0),
-        (0.2, 0.0, 58.0),
-        (0.1, 0.3, 0.4),
+fn a_target_that_leaps_into_motion_or_out_of_it_is_chased_and_overshot() {
+    for (speed, growing, fading, expected, fastest) in [
+        (0.05, 0.0, 0.0, 3.0, 0.074),
+        (0.1, 0.0, 0.0, 12.0, 0.19),
+        (0.2, 0.0, 0.0, 58.0, 0.3),
+        (0.1, 0.0, 0.3, 0.4, 0.19),
+        (0.1, 0.35, 0.3, 0.4, 0.117),
+        (0.2, 0.7, 0.7, 0.7, 0.206),
     ] {
         let mut lockstep = realistic();
         let session = lockstep.engage();
         let start = lockstep.arm_pose();
         let (mut way, mut beyond, mut goal) = (0.0, 0.0_f64, None);
-        for ms in 0..4000_u64 {
-            let since = ms as f64 * 1e-3 - 1.0;
-            let left = if since < 0.0 {
-                1.0
-            } else {
-                1.0 - since / fading
+        let (mut top, mut before) = (0.0_f64, start.translation.vector);
+        for ms in 0..5000_u64 {
+            let since = |begin: f64| ms as f64 * 1e-3 - begin;
+            let share = |since: f64, time: f64| match since {
+                _ if since < 0.0 => 0.0,
+                _ if since >= time => 1.0,
+                _ => since / time,
             };
-            let velocity = speed * left.max(0.0);
+            let velocity =
+                speed * (share(since(0.0), growing) - share(since(1.0 + growing), fading));
             way += velocity * 1e-3;
             let pose = Translation3::new(0.0, way, 0.0) * start;
             let target = Target::from((pose, Twist::new(0.0, velocity, 0.0, 0.0, 0.0, 0.0)));
@@ -119,17 +123,25 @@ fn a_target_that_stops_at_once_is_overshot_and_come_back_to() {
                 Some(_) => {}
             }
             lockstep.tick();
-            let off = lockstep.arm_pose().translation.y - start.translation.y - way;
-            if velocity == 0.0 {
+            let hand = lockstep.arm_pose().translation;
+            let off = hand.y - start.translation.y - way;
+            if since(1.0) >= 0.0 && velocity == 0.0 {
                 beyond = beyond.max(off * 1e3);
             }
-            assert!(ms < 3990 || off.abs() < 1e-3, "{off} m from the target");
+            if ms % 40 == 0 {
+                top = top.max((hand.vector - before).norm() / 0.04);
+                before = hand.vector;
+            }
+            assert!(ms < 4990 || off.abs() < 1e-3, "{off} m from the target");
         }
-        println!("{speed} m/s, fading in {fading} s: {beyond:.1} mm beyond");
+        println!(
+            "{speed} m/s, growing in {growing} s, fading in {fading} s: {top:.3} m/s, {beyond:.1} mm beyond"
+        );
         assert!(
             (beyond - expected).abs() < 0.3 + 0.1 * expected,
             "{speed} m/s: {beyond} mm"
         );
+        assert!((top - fastest).abs() < 0.1 * fastest, "{speed}: {top} m/s");
     }
 }
 
