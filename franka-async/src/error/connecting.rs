@@ -191,7 +191,7 @@ fn likely(reason: &CloseReason) -> &'static str {
         | CloseReason::Io {
             kind: io::ErrorKind::ConnectionReset,
             ..
-        } => " (before it answered: another client may be connected)",
+        } => " (before it answered: another client may be connected, or another device be there)",
         _ => "",
     }
 }

@@ -143,6 +143,10 @@ pub(super) fn target(to: &Target, model: &Model, state: &RobotState) -> Result<(
             {
                 return Err(GoalError::NotFinite { what: "pose" });
             }
+            let length = pose.rotation.coords.norm();
+            if (length - 1.0).abs() > LENGTH_ERROR {
+                return Err(GoalError::NotRotation { length });
+            }
             check_reach(pose, &ee, model, &state.q.into()).map_err(|()| GoalError::Unreachable {
                 x: p.x,
                 y: p.y,
@@ -269,6 +273,9 @@ fn check_reach(
         .map(|_| ())
         .map_err(|_| ())
 }
+
+/// How far the length of a quaternion may be from 1: products of many drift.
+const LENGTH_ERROR: f64 = 1e-3;
 
 /// Least limit that is accepted: plans within smaller ones are too long to be made.
 const LIMIT_MIN: f64 = 1e-20;

@@ -76,7 +76,7 @@ pub enum GoalError {
     #[error("no spring at the end effector, and those of the joints act in its null space only")]
     Unheld,
     /// A number of the goal is outside what is accepted.
-    #[error("{what} is {got} {unit}, expected between {least} and {most}")]
+    #[error("{what} is {got} {unit}, expected {}", between(*.least, *.most))]
     Number {
         /// Which number.
         what: &'static str,
@@ -88,6 +88,12 @@ pub enum GoalError {
         least: f64,
         /// The most that is accepted.
         most: f64,
+    },
+    /// The quaternion of the target is not that of a rotation.
+    #[error("the quaternion of the target has the length {length}, expected 1")]
+    NotRotation {
+        /// Its length.
+        length: f64,
     },
     /// The last point of a chunk has passed: the arm has nothing left to follow of it.
     #[error("the last point of the chunk passed {} ms ago", .by.as_millis())]
@@ -154,6 +160,7 @@ impl GoalError {
             Self::NoTarget => "goal-no-target",
             Self::NoTorques => "goal-no-torques",
             Self::NotFinite { .. } => "goal-not-finite",
+            Self::NotRotation { .. } => "goal-not-rotation",
             Self::Moves => "goal-moves",
             Self::OutOfRange { .. } => "goal-out-of-range",
             Self::Unreachable { .. } => "goal-unreachable",
@@ -189,3 +196,12 @@ fn place(position: [f64; 3]) -> String {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{} chunks are under way already", Chunk::UNDER_WAY_MAX)]
 pub struct TooManyChunks;
+
+/// What is accepted, in words.
+fn between(least: f64, most: f64) -> String {
+    if most.is_infinite() {
+        format!("at least {least}")
+    } else {
+        format!("between {least} and {most}")
+    }
+}
