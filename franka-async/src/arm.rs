@@ -129,8 +129,10 @@ impl Robot {
         let goal = tuning.apply(goal);
         let (begin, began) = oneshot::channel();
         let (end, ended) = watch::channel(None);
+        let pulse = engagement.deadman.as_ref().map(DeadmanMonitor::pulse);
+        let settings = (tuning, pulse);
         let arm = Arm {
-            session: Arc::new(Session::new(self.clone(), goal.id, tuning, ended)),
+            session: Arc::new(Session::new(self.clone(), goal.id, settings, ended)),
         };
         self.send(Input::Begin {
             motion: NewMotion::Session {
@@ -210,10 +212,10 @@ impl Arm {
     /// where an offset leads that comes faster than the goal before is taken.
     ///
     /// # Errors
-    /// [`MotionError::Goal`] for a goal that is not accepted, and what ended the session.
+    /// As of [`Self::set`].
     pub fn try_set(&self, destination: impl Into<Destination>) -> Result<(), MotionError> {
         let destination = destination.into();
-        self.session.check()?;
+        self.session.check_goal()?;
         let (robot, waiting) = (self.robot(), &self.session.waiting);
         let mut goal = self.goal(destination.kind());
         if matches!(destination, Destination::Target(_)) || waiting.is_empty() {

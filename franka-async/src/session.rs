@@ -4,7 +4,7 @@ use std::future::Future;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use franka_rt::lifecycle::{MotionError, Outcome, Tuning};
-use franka_rt::session::GoalId;
+use franka_rt::session::{GoalId, Lapse, Pulse};
 use tokio::sync::{oneshot, watch};
 
 use crate::input::{Input, Waiting, unserved};
@@ -17,6 +17,8 @@ pub(crate) struct Session {
     robot: Robot,
     id: GoalId,
     tuning: Mutex<Tuning>,
+    /// Of the deadman that it is bound to.
+    pulse: Option<Arc<Pulse>>,
     /// What was set without waiting.
     pub(crate) waiting: Waiting,
     ended: watch::Receiver<Option<Outcome>>,
@@ -27,13 +29,14 @@ impl Session {
     pub(crate) fn new(
         robot: Robot,
         id: GoalId,
-        tuning: Tuning,
+        (tuning, pulse): (Tuning, Option<Arc<Pulse>>),
         ended: watch::Receiver<Option<Outcome>>,
     ) -> Self {
         Self {
             robot,
             id,
             tuning: Mutex::new(tuning),
+            pulse,
             waiting: Waiting::default(),
             ended,
         }
@@ -68,6 +71,15 @@ impl Session {
             None => Ok(()),
             Some(Ok(_)) => Err(MotionError::Disengaged),
             Some(Err(error)) => Err(error.clone()),
+        }
+    }
+
+    /// As [`Self::check`], and what a goal is answered with while a deadman holds the arm.
+    pub(crate) fn check_goal(&self) -> Result<(), MotionError> {
+        self.check()?;
+        match &self.pulse {
+            Some(pulse) if pulse.is_silent() => Err(MotionError::Held(Lapse::Deadman)),
+            _ => Ok(()),
         }
     }
 

@@ -99,6 +99,7 @@ fn what_is_beside_motions_is_there_for_a_plain_thread() {
     drop(deadman);
     let held = arm.move_by(Offset::base([0.0, 0.0, 0.05])).wait();
     assert_eq!(held, Err(MotionError::Held(Lapse::Deadman)));
+    assert_eq!(arm.try_set(robot.pose()), held.map(|_| ()));
     arm.disengage().wait().unwrap();
 
     let mut time = Duration::ZERO;

@@ -70,8 +70,7 @@ pub use chunk::{
 pub use goal::{Free, Goal, GoalId, OnArrival, Target};
 pub use goal_error::{GoalError, TooManyChunks};
 pub use guard::clearance::{KEEP_OUT_MAX, KEEP_OUT_STOP, KeepOut, SELF_STOP, SLOW_ZONE};
-pub(crate) use guard::deadman::Pulse;
-pub use guard::deadman::{Deadman, DeadmanMonitor};
+pub use guard::deadman::{Deadman, DeadmanMonitor, Pulse};
 pub use guard::deviation::Deviation;
 pub use guard::force_cap::ForceCap;
 pub use guard::lead::Lead;

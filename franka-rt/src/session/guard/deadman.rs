@@ -12,7 +12,7 @@ const NEVER: u64 = u64::MAX - 1;
 
 /// What the two ends of a deadman share.
 #[derive(Debug)]
-pub(crate) struct Pulse {
+pub struct Pulse {
     /// How often the token was kept alive.
     beats: AtomicU64,
     /// The count at which it was last found silent.
@@ -21,7 +21,7 @@ pub(crate) struct Pulse {
 
 impl Pulse {
     /// Whether the control thread has found the token silent, and it was not kept alive since.
-    pub(crate) fn is_silent(&self) -> bool {
+    pub fn is_silent(&self) -> bool {
         // Relaxed, as below.
         self.beats.load(Ordering::Relaxed) == self.silent.load(Ordering::Relaxed)
     }
@@ -113,7 +113,7 @@ impl DeadmanMonitor {
     }
 
     /// What is known of the token outside the control thread.
-    pub(crate) fn pulse(&self) -> Arc<Pulse> {
+    pub fn pulse(&self) -> Arc<Pulse> {
         self.pulse.clone()
     }
 }
