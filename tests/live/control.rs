@@ -8,11 +8,12 @@ use franka_async::control::{
     AbortReason, AsynchronousOptions, CartesianPose, CartesianVelocities, Finish, JointPositions,
     JointVelocities, Next, TargetStatus, Torques,
 };
-use franka_async::error::GoalError;
+use franka_async::error::{CommandError, GoalError};
 use franka_async::state::{RobotMode, RobotState};
 use franka_async::{MotionError, Pose, Robot};
 use franka_proto::{MoveControllerMode, RequestError, RobotError};
 use franka_sim::{Running, Sim, Tool};
+use tokio::time::timeout;
 
 use crate::{SOON, alone, at_the_clients_pace, by_the_clock, under_way, until};
 
@@ -358,11 +359,42 @@ async fn a_function_that_does_not_return_is_named_and_not_the_link() {
         .unwrap();
     let error = floating.await.unwrap().unwrap_err();
     assert!(matches!(error, MotionError::Hung { .. }), "{error:?}");
+    let silent = robot.recover().await.unwrap_err();
+    assert!(matches!(silent, CommandError::LinkLost { .. }), "{silent}");
+    for _ in 0..2 {
+        let error = robot.move_to(robot.pose()).await.unwrap_err();
+        assert!(matches!(error, MotionError::Hung { .. }), "{error:?}");
+    }
     drop(release);
     until(&robot, |state| state.robot_mode == RobotMode::Reflex).await;
     robot.recover().await.unwrap();
     robot.move_to(robot.pose()).await.unwrap();
     robot.shutdown().await;
+}
+
+#[test]
+fn a_function_that_never_returns_keeps_neither_the_connection_nor_the_program() {
+    let _alone = alone();
+    let (forever, held) = std::sync::mpsc::channel::<()>();
+    let runtime = tokio::runtime::Runtime::new().unwrap();
+    runtime.block_on(async {
+        let (robot, _sim) = by_the_clock(Sim::fr3().ideal()).await;
+        let (enter, entered) = tokio::sync::oneshot::channel();
+        let mut enter = Some(enter);
+        let stuck = robot.control_torques(move |_, _| {
+            if let Some(enter) = enter.take() {
+                enter.send(()).unwrap();
+                let _ = held.recv();
+            }
+            Torques([0.0; 7])
+        });
+        let stuck = tokio::spawn(stuck.into_future());
+        entered.await.unwrap();
+        timeout(SOON, robot.shutdown()).await.expect("it ends");
+        drop(stuck);
+    });
+    drop(runtime); // waits for what blocks a thread of it
+    drop(forever);
 }
 
 #[tokio::test(flavor = "multi_thread")]

@@ -22,6 +22,9 @@ const CLOSING_TIMEOUT: Duration = Duration::from_secs(15);
 /// the thread that brakes it ends.
 const BRAKING_TIMEOUT: Duration = Duration::from_secs(3);
 
+/// Time that the control thread gets to end, which takes it a cycle.
+const ENDING_TIMEOUT: Duration = Duration::from_secs(2);
+
 impl Bridge {
     /// Brakes what moves. Returns when to give up on it.
     pub(super) fn begin_closing(&mut self) -> Instant {
@@ -71,13 +74,31 @@ impl Bridge {
         if let Some(connection) = self.connection.take() {
             connection.close().await;
         }
-        if let Some(thread) = self.thread.take() {
+        if !self.ends().await {
+            // Left to itself: whoever waits for it waits for ever.
+            tracing::error!("the control thread does not end: its function has not returned");
+        } else if let Some(thread) = self.thread.take() {
             match tokio::task::spawn_blocking(move || thread.join()).await {
                 Ok(Ok(_)) => {}
                 Ok(Err(panicked)) => tracing::error!(%panicked, "control thread"),
                 Err(error) => tracing::error!(%error, "control thread"),
             }
         }
+    }
+
+    /// Has the thread stop, and returns whether it has ended within [`ENDING_TIMEOUT`].
+    async fn ends(&mut self) -> bool {
+        if let Some(thread) = &self.thread {
+            thread.stop();
+        }
+        let deadline = Instant::now() + ENDING_TIMEOUT;
+        while !self.thread_has_ended() {
+            let woken = tokio::time::timeout_at(deadline, woken(&self.wake)).await;
+            if !matches!(woken, Ok(Ok(()))) {
+                return false;
+            }
+        }
+        true
     }
 
     /// Waits until an arm that is being braked rests, for [`BRAKING_TIMEOUT`] at most.

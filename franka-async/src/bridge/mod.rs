@@ -266,6 +266,10 @@ impl Bridge {
                     {
                         result = Err(error.into());
                     }
+                    if let Err(MotionError::Hung { silence }) = &result {
+                        // No state is read until the control thread goes on.
+                        self.publisher.tell_silence(*silence);
+                    }
                     self.supervisor.on_ended(goal, &result);
                     match self.replies.remove(&goal) {
                         Some((replies, span)) => {

@@ -127,8 +127,10 @@ enum LifecyclePhase {
     /// comes waits for that.
     Abandoned {
         motion: MotionId,
-        /// Until when the next motion waits; `None` after that: new motions are then refused.
+        /// Until when the next motion waits.
         deadline: Option<Duration>,
+        /// What new motions are refused with after that.
+        why: MotionError,
     },
     /// A thread that has borrowed the cycle does not run it, so that no motion can run.
     Stalled {
@@ -145,8 +147,11 @@ enum LifecyclePhase {
 
 impl LifecyclePhase {
     fn abandoned(motion: MotionId, now: Duration) -> Self {
-        let deadline = Some(now + END_TIMEOUT);
-        Self::Abandoned { motion, deadline }
+        Self::Abandoned {
+            motion,
+            deadline: Some(now + END_TIMEOUT),
+            why: STILL_SHOWN,
+        }
     }
 }
 
@@ -253,7 +258,11 @@ impl Lifecycle {
                 reason: reason.clone(),
             }),
             LifecyclePhase::Stalled { .. } => Err(MotionError::Busy),
-            LifecyclePhase::Abandoned { deadline: None, .. } => Err(STILL_SHOWN),
+            LifecyclePhase::Abandoned {
+                deadline: None,
+                why,
+                ..
+            } => Err(why.clone()),
             LifecyclePhase::Idle
             | LifecyclePhase::UnderWay(_)
             | LifecyclePhase::Abandoned { .. } => Ok(()),

@@ -234,9 +234,11 @@ impl Lifecycle {
         let current = match (&mut self.phase, unseen) {
             (LifecyclePhase::UnderWay(_), Some(unseen)) => return self.give_up(unseen, now),
             (LifecyclePhase::UnderWay(current), None) => current,
-            (LifecyclePhase::Abandoned { deadline, .. }, unseen) => {
+            (LifecyclePhase::Abandoned { deadline, why, .. }, unseen) => {
                 *deadline = None;
-                return self.resolve_next(unseen.unwrap_or(STILL_SHOWN));
+                *why = unseen.unwrap_or(STILL_SHOWN);
+                let why = why.clone();
+                return self.resolve_next(why);
             }
             (
                 LifecyclePhase::Idle
