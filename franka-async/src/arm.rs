@@ -23,6 +23,7 @@ use crate::options::{GoalOptions, goal_options};
 use crate::progress::Reference;
 use crate::robot::Robot;
 use crate::session::Session;
+use crate::user_value::UserValue;
 
 /// Options of a session of target control; see [`Robot::engage`]. The default holds with the gains
 /// of each kind of goal and the default budget.
@@ -86,7 +87,9 @@ impl Engage {
     /// it is not called again, and the session goes on. For records outside the thread see
     /// [`Robot::records`].
     pub fn observer(mut self, function: impl FnMut(&Record, &RobotState) + Send + 'static) -> Self {
-        self.engagement.observer = Some(Observer::new(function));
+        let mut function = UserValue::new("an observer", function);
+        let observer = Observer::new(move |record, state| (*function)(record, state));
+        self.engagement.observer = Some(observer);
         self
     }
 }

@@ -14,6 +14,7 @@ use tokio_util::sync::CancellationToken;
 use crate::dial::TCP_TIMEOUT;
 use crate::endpoint::Endpoint;
 use crate::robot::Robot;
+use crate::user_value::UserValue;
 
 /// Which protocol versions to accept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -203,7 +204,8 @@ impl Builder {
         mut self,
         agrees: impl Fn(&Reflex) -> bool + Send + Sync + 'static,
     ) -> Self {
-        self.ask = Some(Ask(Arc::new(agrees)));
+        let agrees = UserValue::new("the function that agrees to recoveries", agrees);
+        self.ask = Some(Ask(Arc::new(move |reflex| (*agrees)(reflex))));
         self
     }
 

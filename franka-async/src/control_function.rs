@@ -17,6 +17,7 @@ use franka_rt::together::StartTicket;
 use crate::cancel::Canceller;
 use crate::move_to::Moving;
 use crate::robot::Robot;
+use crate::user_value::UserValue;
 
 impl Robot {
     /// Control by torques alone: `function` gets every state, and the robot's time since the state
@@ -31,7 +32,10 @@ impl Robot {
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
     ) -> Control {
-        Control::new(self.clone(), Callback::torques(self.version(), function))
+        Control::new(
+            self.clone(),
+            Callback::torques(self.version(), kept(function)),
+        )
     }
 
     /// Control by joint positions for the robot's own controller; see [`Self::control_torques`] for
@@ -72,7 +76,10 @@ impl Robot {
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
     ) -> Control {
-        Control::new(self.clone(), Callback::motion(self.version(), function))
+        Control::new(
+            self.clone(),
+            Callback::motion(self.version(), kept(function)),
+        )
     }
 }
 
@@ -121,7 +128,7 @@ impl Control {
         mut self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
     ) -> Self {
-        self.callback = self.callback.with_torques(function);
+        self.callback = self.callback.with_torques(kept(function));
         self
     }
 
@@ -184,6 +191,14 @@ impl Control {
             ticket: self.ticket,
         })
     }
+}
+
+/// The same function, which the bridge can free whatever it has captured.
+fn kept<R>(
+    function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
+) -> impl FnMut(&RobotState, Duration) -> R + Send + 'static {
+    let mut function = UserValue::new("a control function", function);
+    move |state: &RobotState, step| (*function)(state, step)
 }
 
 impl IntoFuture for Control {

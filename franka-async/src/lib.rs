@@ -441,6 +441,7 @@ mod tally;
 pub mod team;
 mod telemetry;
 mod thresholds;
+mod user_value;
 pub mod vacuum;
 mod vacuum_gripper;
 

@@ -40,7 +40,7 @@ pub mod exchange;
 pub mod identify;
 pub mod law;
 pub mod lifecycle;
-mod panic;
+pub mod panic;
 pub mod queue;
 pub mod sched;
 pub mod session;

@@ -1,10 +1,27 @@
-//! What a panic said.
+//! Panics of the user's code: what they said, and destructors that panic.
 
 use core::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The text that came with a panic, if it was text.
 pub(crate) fn message(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<&str>().copied();
     let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
     text.unwrap_or("no text came with it").to_owned()
+}
+
+/// Frees a value of the user's. For other threads than the control thread.
+///
+/// # Errors
+/// The message of the panic, if its destructor panics.
+pub fn free<T>(value: T) -> Result<(), String> {
+    // Nothing sees what a destructor leaves half done.
+    let freed = catch_unwind(AssertUnwindSafe(|| drop(value)));
+    freed.map_err(|payload| {
+        let text = message(&*payload);
+        let payload_freed = catch_unwind(AssertUnwindSafe(|| drop(payload)));
+        // A payload whose destructor panics as well: its successor may do so without end.
+        payload_freed.unwrap_or_else(core::mem::forget);
+        text
+    })
 }

@@ -10,11 +10,13 @@ use franka_async::control::{
 };
 use franka_async::error::{CommandError, GoalError};
 use franka_async::state::{RobotMode, RobotState};
-use franka_async::{MotionError, Pose, Robot};
+use franka_async::{Engage, MotionError, Pose, Robot};
 use franka_proto::{MoveControllerMode, RequestError, RobotError};
 use franka_sim::{Running, Sim, Tool};
 use tokio::time::timeout;
+use tracing::Level;
 
+use crate::telemetry::{listen, told};
 use crate::{SOON, alone, at_the_clients_pace, by_the_clock, under_way, until};
 
 /// A simulated robot of each kind with its hand, at the pace of the client's answers, and a handle
@@ -191,6 +193,70 @@ async fn a_panic_or_a_bad_number_stops_the_motion_and_the_thread_lives_on() {
         let up = Pose::translation(0.0, 0.0, 0.02) * robot.pose();
         robot.move_to(up).await.expect("the thread goes on");
         robot.shutdown().await;
+    }
+}
+
+/// What a function has captured, and cannot be freed without a panic.
+struct Bad;
+
+impl Drop for Bad {
+    fn drop(&mut self) {
+        panic!("a bug of the user's, where it is freed");
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn captured_values_that_panic_where_they_are_freed_end_nothing_else() {
+    let _alone = alone();
+    listen();
+    for (robot, _sim) in each().await {
+        let mut bad = Some(Bad);
+        let held = robot.control_joint_velocities(move |_, _| {
+            assert!(bad.as_mut().is_some());
+            JointVelocities([0.0; 7])
+        });
+        let held = tokio::spawn(held.into_future());
+        under_way(&robot).await;
+        // One that is refused is freed, too.
+        let bad = Bad;
+        let refused = robot.control_torques(move |_, _| {
+            let _ = &bad;
+            Torques([0.0; 7])
+        });
+        assert_eq!(refused.await, Err(MotionError::Busy));
+        robot.stop().await.expect("the arm rests");
+        assert_eq!(held.await.unwrap(), Err(MotionError::Stopped));
+
+        let (bad, mut calls) = (Bad, 0);
+        let floating = robot.control_torques(move |_, _| {
+            let _ = &bad;
+            calls += 1;
+            Torques([0.0; 7]).finish_if(calls == 50)
+        });
+        floating.await.expect("it has finished");
+        let bad = Bad;
+        let failing = robot.control_joint_velocities(move |_, _| -> JointVelocities {
+            let _ = &bad;
+            panic!("a bug of the user's, where it runs");
+        });
+        let text = "the control function panicked: a bug of the user's, where it runs";
+        assert_eq!(failing.await.unwrap_err().to_string(), text);
+        robot.recover().await.unwrap();
+
+        let bad = Bad;
+        let engage = Engage::default().observer(move |_, _| {
+            let _ = &bad;
+        });
+        let arm = robot.engage(engage).await.expect("the bridge lives on");
+        arm.disengage().await.unwrap();
+        let up = Pose::translation(0.0, 0.0, 0.02) * robot.pose();
+        robot.move_to(up).await.expect("the bridge lives on");
+        robot.shutdown().await;
+        let warned = told("panic");
+        let text = "a bug of the user's, where it is freed";
+        assert!(warned.iter().all(|told| told.level == Level::WARN));
+        assert!(warned.iter().all(|told| told.fields["panic"] == text));
+        assert_eq!(warned.len(), 5, "each is told once");
     }
 }
 

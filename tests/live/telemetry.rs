@@ -23,11 +23,11 @@ use tracing_subscriber::util::SubscriberInitExt;
 use crate::{SOON, ahead_of_the_client, alone};
 
 /// One event, with the thread that it came from and the spans that it is in, the outermost first.
-struct Told {
+pub(crate) struct Told {
     thread: String,
     spans: Vec<&'static str>,
-    level: Level,
-    fields: BTreeMap<&'static str, String>,
+    pub(crate) level: Level,
+    pub(crate) fields: BTreeMap<&'static str, String>,
 }
 
 /// Everything told in this process.
@@ -59,14 +59,14 @@ impl<S: Subscriber + for<'a> LookupSpan<'a>> Layer<S> for Listener {
     }
 }
 
-fn listen() {
+pub(crate) fn listen() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| tracing_subscriber::registry().with(Listener).init());
     TOLD.lock().unwrap_or_else(PoisonError::into_inner).clear();
 }
 
 /// What was told since [`listen`] by events that have this field.
-fn told(field: &str) -> Vec<Told> {
+pub(crate) fn told(field: &str) -> Vec<Told> {
     let told = std::mem::take(&mut *TOLD.lock().unwrap_or_else(PoisonError::into_inner));
     told.into_iter()
         .filter(|told| told.fields.contains_key(field))

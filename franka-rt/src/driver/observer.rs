@@ -7,6 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use franka_proto::RobotState;
 
 use super::Record;
+use crate::panic;
 
 type Function = dyn FnMut(&Record, &RobotState) + Send;
 
@@ -39,6 +40,14 @@ impl Observer {
         let seen = catch_unwind(AssertUnwindSafe(|| (self.function)(record, state)));
         self.panicked = seen.err();
         self.panicked.is_some()
+    }
+}
+
+/// Elsewhere: see [`Event::Ended`](super::Event::Ended).
+impl Drop for Observer {
+    fn drop(&mut self) {
+        // That it panicked was told.
+        let _ = panic::free(self.panicked.take());
     }
 }
 

@@ -206,9 +206,12 @@ impl From<Failure> for MotionError {
         match failure {
             Failure::Invalid(invalid) => Self::Invalid(invalid),
             Failure::GivenUp(code) => Self::GivenUp { code },
-            Failure::Panicked(payload) => Self::Panicked {
-                message: panic::message(&*payload),
-            },
+            Failure::Panicked(payload) => {
+                let message = panic::message(&*payload);
+                // What is told is the panic itself, not one of its payload.
+                let _ = panic::free(payload);
+                Self::Panicked { message }
+            }
         }
     }
 }

@@ -1,0 +1,76 @@
+//! Values of the user's that others free.
+
+use std::ops::{Deref, DerefMut};
+
+use franka_rt::panic;
+
+/// A function of the user's, with what it has captured, that is freed by whoever holds it last: the
+/// bridge, once its motion has ended or was refused, or another task.
+///
+/// If its destructor panics, that is logged, and whoever freed it goes on: the end of one motion
+/// must not end the connection.
+#[derive(Debug)]
+pub(crate) struct UserValue<T> {
+    /// `None` only while it is dropped.
+    value: Option<T>,
+    /// What it is, for the log.
+    what: &'static str,
+}
+
+impl<T> UserValue<T> {
+    pub(crate) fn new(what: &'static str, value: T) -> Self {
+        let value = Some(value);
+        Self { value, what }
+    }
+}
+
+const PRESENT: &str = "it is taken where it is dropped, and nowhere else";
+
+impl<T> Deref for UserValue<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        self.value.as_ref().expect(PRESENT)
+    }
+}
+
+impl<T> DerefMut for UserValue<T> {
+    fn deref_mut(&mut self) -> &mut T {
+        self.value.as_mut().expect(PRESENT)
+    }
+}
+
+impl<T> Drop for UserValue<T> {
+    fn drop(&mut self) {
+        if let Err(message) = panic::free(self.value.take()) {
+            let what = self.what;
+            tracing::warn!(panic = %message, "what {what} has captured panicked when it was freed");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_destructor_that_panics_harms_nobody() {
+        struct Bad;
+        impl Drop for Bad {
+            fn drop(&mut self) {
+                panic!("a bug of the user's");
+            }
+        }
+        struct Worse;
+        impl Drop for Worse {
+            fn drop(&mut self) {
+                std::panic::panic_any(Bad);
+            }
+        }
+        drop(UserValue::new("a function", Bad));
+        drop(UserValue::new("a function", Worse));
+        let mut count = UserValue::new("a number", 7);
+        *count += 1;
+        assert_eq!(*count, 8);
+    }
+}
