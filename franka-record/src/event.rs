@@ -14,7 +14,8 @@ use crate::HostTime;
 pub struct Event {
     /// When this host had word of it.
     pub time: HostTime,
-    /// The robot's clock of the newest cycle before it, `[ms]`; 0 if there was none.
+    /// The robot's clock of the newest cycle before it, `[ms]`. If there was none, that of when the
+    /// robot was attached; 0 if that is not known.
     pub robot_time: u64,
     /// What happened.
     pub kind: EventKind,

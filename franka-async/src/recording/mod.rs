@@ -191,6 +191,8 @@ impl Recorder {
             kind: robot.model().kind(),
             urdf: urdf.ok().filter(|text| !text.is_empty()),
             metadata: metadata(robot, &track),
+            // What is asked for next may come before the first cycle.
+            robot_time: robot.state().message_id,
         };
         let id = self.next.fetch_add(1, Ordering::Relaxed);
         self.entries.with(|tracks| {

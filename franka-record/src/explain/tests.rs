@@ -322,6 +322,8 @@ fn events_tell_goals_and_the_diagnosis() {
         .map(|moment| moment.text.as_str())
         .collect();
     assert_eq!(goals, ["goal 7: move_to", "goal 7: reflex: reflex"]);
+    let first = explanation.timeline.first().map(|moment| moment.time);
+    assert_eq!(first, Some(explanation.first));
     let cause = explanation.cause.as_ref().expect("a reflex");
     assert_eq!(cause.text, "joint 2: external torque");
     let error = explanation.peaks.following_error.expect("a reference");

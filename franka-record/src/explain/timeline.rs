@@ -75,6 +75,11 @@ impl Timeline {
             self.add(time, MomentKind::Loss, text);
         }
         let is_first = self.mode.is_none();
+        if is_first {
+            // The first goal may be given before the first cycle comes.
+            let moments = self.moments.iter_mut();
+            moments.for_each(|moment| moment.time = moment.time.max(time));
+        }
         if self.mode != Some(state.robot_mode) {
             let text = match self.mode {
                 Some(mode) => format!("mode {mode} -> {}", state.robot_mode),
@@ -181,7 +186,6 @@ impl Timeline {
             }
             kind => kind.to_string(),
         };
-        // The first goal may be given before the first cycle comes.
         self.add(event.robot_time.max(first), kind, text);
     }
 

@@ -31,6 +31,8 @@ pub(super) struct Encoder {
     cycle: franka::Cycle,
     /// As in the newest cycle; `None` before the first.
     seen: Option<Seen>,
+    /// The robot's clock before the first cycle, `[ms]`; 0 if it is not known.
+    attached: u64,
     tool: Option<franka::Tool>,
     /// When the channels of a lower rate are due again.
     slow_due: HostTime,
@@ -55,6 +57,7 @@ impl Encoder {
             model: Model::of(robot.kind),
             cycle: franka::Cycle::default(),
             seen: None,
+            attached: robot.robot_time,
             tool: None,
             slow_due: HostTime::default(),
         }
@@ -144,7 +147,7 @@ impl Encoder {
     pub(super) fn event(&self, event: &Event, out: &mut Vec<Message>) {
         let mut message = franka::Event::from(event);
         if message.robot_time == 0 {
-            message.robot_time = self.seen.map_or(0, |seen| seen.robot_time);
+            message.robot_time = self.seen.map_or(self.attached, |seen| seen.robot_time);
         }
         self.put(Topic::Event, event.time, &message, out);
         if let Some(last) = out.last_mut() {

@@ -196,6 +196,9 @@ pub struct Robot {
     pub urdf: Option<String>,
     /// What else is known of it: address, version, options. For the metadata.
     pub metadata: BTreeMap<String, String>,
+    /// The robot's clock when it is attached, `[ms]`, which events before the first cycle have; 0
+    /// if it is not known.
+    pub robot_time: u64,
 }
 
 impl Robot {
@@ -206,6 +209,7 @@ impl Robot {
             kind,
             urdf: None,
             metadata: BTreeMap::new(),
+            robot_time: 0,
         }
     }
 

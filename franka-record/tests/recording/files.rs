@@ -5,7 +5,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use franka_model::RobotKind;
-use franka_record::event::{Ending, Outcome};
+use franka_record::event::{Ending, Note, Outcome};
 use franka_record::recorder::{BlackBox, RecordError, RecordOptions, Recorder, Robot, Rotation};
 use franka_record::{EventKind, Recording};
 
@@ -55,6 +55,41 @@ fn cycles_of_other_connections_follow_those_of_the_first() {
     let times: Vec<_> = cycles.map(|cycle| cycle.unwrap().record.time).collect();
     let expected: Vec<_> = (1..=1000).chain(1..=300).chain(1..=200).collect();
     assert_eq!(times, expected);
+}
+
+#[test]
+fn what_happens_before_the_first_cycle_has_the_time_at_which_the_robot_was_attached() {
+    let scratch = Scratch::new();
+    let path = scratch.path("run.mcap");
+    let recorder = Recorder::to_file(&path, quick()).unwrap();
+    let begun = Instant::now();
+    let robot = Robot {
+        robot_time: 104_506,
+        ..Robot::new(RobotKind::Fr3)
+    };
+    let (mut arm, handle) = Arm::attach(&recorder, robot);
+    let remark = |text: &str| {
+        EventKind::Note(Note {
+            text: text.into(),
+            ..Note::default()
+        })
+    };
+    handle.event_at(handle.clock().at(begun), remark("before"));
+    arm.run(&recorder, 100);
+    let after = begun + Duration::from_secs(1);
+    handle.event_at(handle.clock().at(after), remark("after"));
+    recorder.finish().unwrap();
+    let recording = Recording::open(&path).unwrap();
+    let events = recording.robot("").unwrap().events();
+    let noted = events
+        .map(Result::unwrap)
+        .filter_map(|event| match event.kind {
+            EventKind::Note(note) => Some((note.text, event.robot_time)),
+            _ => None,
+        });
+    let noted: Vec<_> = noted.collect();
+    let expected = [("before".to_owned(), 104_506), ("after".to_owned(), 100)];
+    assert_eq!(noted, expected);
 }
 
 #[test]

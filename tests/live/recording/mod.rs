@@ -112,6 +112,7 @@ async fn a_motion_is_recorded_with_every_cycle_and_what_was_asked_for() {
         let (robot, _sim) = at_the_clients_pace(sim.ideal().tool(Tool::hand())).await;
         let folder = Folder::new();
         let recorder = folder.recorder();
+        let attached = robot.state().message_id;
         recorder.attach(&robot, roomy()).await.unwrap();
         let behavior = CollisionBehavior::careful();
         robot.set_collision_behavior(behavior).await.unwrap();
@@ -127,6 +128,9 @@ async fn a_motion_is_recorded_with_every_cycle_and_what_was_asked_for() {
         assert_eq!(cycles.len() as u64, status.cycles);
         assert_no_gap(&cycles);
         assert!(cycles.is_sorted_by_key(|cycle| cycle.time));
+        // Also of what is asked for before the first cycle has come.
+        let times: Vec<_> = events.iter().map(|event| event.robot_time).collect();
+        assert!(times.iter().all(|time| *time >= attached), "{times:?}");
         let moving: Vec<_> = cycles
             .iter()
             .filter(|cycle| cycle.record.goal > 0)
