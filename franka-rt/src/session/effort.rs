@@ -151,14 +151,14 @@ impl Effort {
     }
 
     /// The torques of one cycle, `[N m]`; `dynamics` is taken at the measured positions and
-    /// velocities.
+    /// velocities. `met` is whether the goal has reacted to something that it has met.
     pub(super) fn step(
         &mut self,
         reference: &Reference,
         state: &RobotState,
         dynamics: &Dynamics,
         limits: &JointLimits,
-        resistance: Resistance,
+        (resistance, met): (Resistance, bool),
         bindings: &mut Bindings,
     ) -> JointVector {
         let (q, dq) = (JointVector::from(state.q), JointVector::from(state.dq));
@@ -185,6 +185,7 @@ impl Effort {
             springs: &springs,
             bounds: &tuning.compensation,
             held: self.bound || leashed || resistance == Resistance::Yield,
+            met,
             ending: resistance == Resistance::Release,
         });
         let springs = springs + self.compensated;

@@ -5,6 +5,7 @@ mod backends;
 mod contact;
 mod edges;
 mod free;
+mod pushed;
 mod sessions;
 
 use std::time::Duration;

@@ -26,7 +26,9 @@
 //! The sum is bounded by [`Gains::compensation`](crate::law::Gains::compensation) for each joint,
 //! and counts as part of the springs under clamp and force cap. Where something holds the arm, i.e.
 //! springs demand more than that bound or a guard binds, nothing is learned, the torques against
-//! friction at rest are let go, and the integral goes back to what held the arm at rest.
+//! friction at rest are let go, and the integral goes back to what held the arm at rest. Nor is
+//! anything learned once a goal has reacted to what it met, until the next goal: what pushes the arm
+//! then is neither friction nor a load, and later motions would be short of their targets by it.
 
 mod learned;
 
@@ -96,6 +98,8 @@ pub(crate) struct Demand<'a> {
     pub(crate) bounds: &'a [f64; 7],
     /// Whether a guard of the interaction binds.
     pub(crate) held: bool,
+    /// Whether the goal has reacted to something that the arm has met: nothing is learned.
+    pub(crate) met: bool,
     /// Whether the motion is about to end, without a torque.
     pub(crate) ending: bool,
 }
@@ -228,7 +232,7 @@ impl Compensation {
         let steady = v.abs() > MOVING && demand.ddq_ref[i].abs() < STEADY;
         // One that runs into something stops long before its springs demand more than friction.
         let keeps_up = demand.dq[i] * v.signum() > KEEPS_UP * v.abs();
-        if self.free < 1.0 || !steady || !keeps_up {
+        if demand.met || self.free < 1.0 || !steady || !keeps_up {
             return;
         }
         let bound = demand.bounds[i];
@@ -335,6 +339,7 @@ mod tests {
             springs: &JointVector::repeat(spring),
             bounds: &BOUNDS,
             held,
+            met: false,
             ending: false,
         };
         this.step(&demand)[0]
@@ -419,6 +424,7 @@ mod tests {
                 springs: &JointVector::zeros(),
                 bounds: &BOUNDS,
                 held: false,
+                met: false,
                 ending: cycle >= 200,
             };
             let now = this.step(&demand)[0];
@@ -451,6 +457,7 @@ mod tests {
                 springs: &JointVector::zeros(),
                 bounds: &BOUNDS.map(|most| most * f64::from(cycle) / 300.0),
                 held: false,
+                met: false,
                 ending: false,
             };
             let now = this.step(&demand)[0];

@@ -397,6 +397,7 @@ impl RunningSession {
         } else {
             self.held_back.saturating_sub(1)
         };
+        let met = self.reacted().is_some();
         let answer = match &mut self.drive {
             Drive::Torques(effort) => {
                 let limits = model.joint_limits();
@@ -411,7 +412,7 @@ impl RunningSession {
                     state,
                     &dynamics,
                     limits,
-                    resistance,
+                    (resistance, met),
                     &mut bindings,
                 );
                 SessionCommand::Torques(Torques(tau.into()))
