@@ -7,8 +7,10 @@ use franka_rt::driver::Commander;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Advice {
-    /// Commands have to go on without a leap.
+    /// Commands to the motion generator have to go on without a leap.
     Smooth,
+    /// Torques have to go on without a step.
+    SmoothTorques,
     /// They are too fast, although they do not leap.
     SlowDown,
     /// The first command has to be where the robot is.
@@ -44,15 +46,24 @@ impl Advice {
         use Commander::{Active, Asynchronous, Function, Goals};
         match (self, commander) {
             (Self::Smooth, Function) => {
-                "commands that go on in position, velocity and acceleration; limit_rate(true) takes up small steps of joints"
+                "commands that go on in position, velocity and acceleration; limit_rate(true) takes up small steps of \
+                 joints, not of poses"
             }
             (Self::Smooth, Active) => {
                 "commands that go on in position, velocity and acceleration: nothing limits what is written"
             }
-            (Self::Smooth | Self::SlowDown, Goals) => {
+            (Self::SmoothTorques, Function) => {
+                "torques without steps that begin and end at zero; limit_rate(true) makes ramps of steps"
+            }
+            (Self::SmoothTorques, Active) => {
+                "torques without steps that begin and end at zero: nothing limits what is written"
+            }
+            (Self::Smooth | Self::SmoothTorques | Self::SlowDown, Goals) => {
                 "speed below 1 or limits with less velocity and acceleration, or softer gains"
             }
-            (Self::Smooth | Self::SlowDown, Asynchronous) => "lower maximum_joint_velocities",
+            (Self::Smooth | Self::SmoothTorques | Self::SlowDown, Asynchronous) => {
+                "lower maximum_joint_velocities"
+            }
             (Self::SlowDown, Function | Active) => {
                 "less speed and acceleration; of a torque law, smaller torques or more damping"
             }

@@ -57,7 +57,7 @@ fn offset(sample: &Sample<'_>, error: RobotError) -> Option<(Subject, f64)> {
 }
 
 /// How the command leaps that a finding is about, if it does.
-pub(super) fn leap(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
+fn leap(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     if !evidence.commander.commands_every_cycle() {
         return None;
     }
@@ -175,34 +175,70 @@ fn leap_of(
     }
 }
 
-/// Whether the finding is about a last command that moves: standing still would have had to follow
-/// it.
-pub(super) fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
+/// How the command of a finding broke the rules: by a leap, or, as the last one, by moving, for
+/// standing still would have had to follow it.
+pub(super) fn leap_or_finish(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
+    let leap = leap(evidence, finding);
+    match finished_moving(evidence, finding) {
+        // A wrong start comes first, and so does a leap that is half of the velocity or more.
+        Some((finish, of_leap)) => {
+            let is_start = matches!(leap, Some(Cause::WrongStart { .. }));
+            leap.filter(|_| is_start || of_leap).or(Some(finish))
+        }
+        None => leap.or_else(|| finished_accelerating(evidence, finding)),
+    }
+}
+
+/// The command that a finding about differences is about, if it is the last of the motion.
+fn last_command<'a>(evidence: &Evidence<'a>, finding: &Finding) -> Option<Sample<'a>> {
+    let of_differences = matches!(finding.quantity, Quantity::Acceleration | Quantity::Jerk);
     let every_cycle = evidence.commander.commands_every_cycle();
     let sample = evidence.sample(finding.since)?;
-    if !every_cycle || !sample.is_finished() {
-        return None;
-    }
-    let cycle = sample.cycle();
-    let moves = |subject, velocity: f64| {
-        (velocity != 0.0).then_some(Cause::FinishedMoving {
-            subject,
-            velocity,
-            cycle,
-        })
-    };
-    match (commanded::joints(&sample), commanded::cartesian(&sample)) {
-        (Some((_, motion)), _) => {
+    (of_differences && every_cycle && sample.is_finished()).then_some(sample)
+}
+
+/// That the last command moves, and whether half of its velocity or more is its own change.
+fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Option<(Cause, bool)> {
+    let sample = last_command(evidence, finding)?;
+    let (subject, velocity, acceleration) = match commanded::joints(&sample) {
+        Some((_, motion)) => {
             let joint = motion.velocity.iamax();
-            moves(Subject::joint(joint), motion.velocity[joint])
+            let acceleration = motion.acceleration[joint];
+            (Subject::joint(joint), motion.velocity[joint], acceleration)
         }
-        (None, Some(_)) => {
+        None => {
+            let (_, motion) = commanded::cartesian(&sample)?;
             let speeds = commanded::cartesian_readings_of(evidence.model, &sample, Which::Velocity);
             let fastest = speeds.iter().max_by(|a, b| a.score.total_cmp(&b.score))?;
-            moves(fastest.subject, fastest.value)
+            let offset = usize::from(matches!(fastest.subject, Subject::Rotation(_))) * 3;
+            let acceleration = motion.acceleration.fixed_rows::<3>(offset).norm();
+            (fastest.subject, fastest.value, acceleration)
         }
-        (None, None) => None,
-    }
+    };
+    let finish = Cause::FinishedMoving {
+        subject,
+        velocity,
+        cycle: sample.cycle(),
+    };
+    let of_leap = 2.0 * acceleration.abs() * CYCLE >= velocity.abs();
+    (velocity.abs() > STANDSTILL).then_some((finish, of_leap))
+}
+
+/// The step to rest of the acceleration of a last command of the joints that hardly moves.
+fn finished_accelerating(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
+    let sample = last_command(evidence, finding)?;
+    let (_, motion) = commanded::joints(&sample)?;
+    let Subject::Joint(number) = finding.subject else {
+        return None;
+    };
+    let jerk = motion.at_rest_next().jerk[usize::from(number) - 1];
+    let limit = evidence.model.joint_limits().jerk[usize::from(number) - 1];
+    (jerk.abs() > limit).then_some(Cause::TargetStep {
+        subject: finding.subject,
+        quantity: Quantity::Acceleration,
+        size: jerk * CYCLE,
+        cycle: sample.cycle(),
+    })
 }
 
 /// That the last command of a motion came before the arm, which the client's torques lead, had
@@ -262,6 +298,10 @@ fn component<const N: usize>(motion: &Derivatives<N>, index: usize) -> Derivativ
 
 /// Measured joint velocity, `[rad/s]`, above which an arm does not rest: the simulator's choice.
 const AT_REST: f64 = 0.1;
+
+/// Commanded velocity, `[rad/s]` or `[m/s]`, up to which a motion may end: a stop within one cycle
+/// is then less jerk than any limit of the arms.
+const STANDSTILL: f64 = 0.003;
 
 /// What the limiter lets pass is nearer than this to what is allowed, as a share of it.
 const LIMITED: f64 = 2e-3;

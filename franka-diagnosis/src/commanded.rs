@@ -35,7 +35,7 @@ impl<const N: usize> Derivatives<N> {
     }
 
     /// Standing still from one cycle to the next, as a finished command does.
-    fn at_rest_next(&self) -> Self {
+    pub(super) fn at_rest_next(&self) -> Self {
         Self::of(SVector::zeros(), self.velocity, self.acceleration)
     }
 }

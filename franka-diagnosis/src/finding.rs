@@ -297,7 +297,7 @@ impl fmt::Display for Origin {
 }
 
 impl fmt::Display for Finding {
-    /// `joint 4: commanded acceleration 250 rad/s^2, limit 12.5 rad/s^2 (20 times)`.
+    /// `joint 4: commanded acceleration 250 rad/s^2, limit 12.5 rad/s^2 (20 times as much)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {
             subject,
@@ -326,7 +326,11 @@ impl fmt::Display for Finding {
                     }
                     _ if excess <= 0.0 => write!(f, ", at the limit of {limit}"),
                     Some(times) if times > 1.1 => {
-                        write!(f, ", limit {limit} ({} times)", Digits(round(times)))
+                        write!(
+                            f,
+                            ", limit {limit} ({} times as much)",
+                            Digits(round(times))
+                        )
                     }
                     _ => {
                         let excess = quantity.of(subject, excess);
@@ -375,7 +379,7 @@ mod tests {
             ),
             (
                 finding(Quantity::Velocity, 3.93, Bound::AtMost(2.62)),
-                "joint 4: measured velocity 3.93 rad/s, limit 2.62 rad/s (1.5 times)",
+                "joint 4: measured velocity 3.93 rad/s, limit 2.62 rad/s (1.5 times as much)",
             ),
             (
                 finding(Quantity::Jerk, 4900.0, Bound::AtMost(5000.0)),

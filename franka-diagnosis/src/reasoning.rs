@@ -267,8 +267,7 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
                 causes.extend(lost_cycles::late_commands(evidence));
             }
             causes.extend(match finding {
-                Some(finding) => command_steps::finished_moving(evidence, finding)
-                    .or_else(|| command_steps::leap(evidence, finding)),
+                Some(finding) => command_steps::leap_or_finish(evidence, finding),
                 None => command_steps::finished_before_the_arm(evidence, error),
             });
             causes.extend(posture::singularity(evidence));
@@ -311,6 +310,10 @@ pub(super) fn advice(error: E, causes: &[Cause]) -> Vec<Advice> {
         Cause::LostPackets { .. } | Cause::LateCommands { .. } => Advice::Host,
         Cause::WrongStart { .. } => Advice::StartWhereItIs,
         Cause::FinishedMoving { .. } => Advice::FinishAtRest,
+        Cause::TargetStep {
+            quantity: Quantity::Torque,
+            ..
+        } => Advice::SmoothTorques,
         Cause::TargetStep { .. } => Advice::Smooth,
         Cause::Contact { .. } if of_arm => Advice::GiveWay,
         Cause::Contact { .. } => Advice::Thresholds,
@@ -339,6 +342,7 @@ fn by_error(error: E) -> Advice {
         E::JointMotionGeneratorVelocityLimitsViolation
         | E::CartesianMotionGeneratorVelocityLimitsViolation
         | E::CartesianMotionGeneratorJointVelocityLimitsViolation => Advice::SlowDown,
+        E::ControllerTorqueDiscontinuity => Advice::SmoothTorques,
         E::SelfCollisionAvoidanceViolation => Advice::StayClearOfItself,
         E::InstabilityDetected => Advice::SofterGains,
         E::TauJRangeViolation | E::PowerLimitViolation => Advice::LessEffort,

@@ -22,7 +22,7 @@ fn the_advice_names_settings_that_the_commander_has() {
             |_| {},
         );
         assert_eq!(diagnosis.commander, commander);
-        assert_eq!(diagnosis.advice, [Advice::Smooth]);
+        assert_eq!(diagnosis.advice, [Advice::SmoothTorques]);
         let text = diagnosis.to_string();
         for (setting, whose) in [
             ("limit_rate", Commander::Function),
@@ -34,8 +34,46 @@ fn the_advice_names_settings_that_the_commander_has() {
     }
 }
 
-const EVERY_ADVICE: [Advice; 14] = [
+#[test]
+fn a_torque_step_is_advised_in_torques() {
+    for commander in [Commander::Function, Commander::Active] {
+        let error = E::ControllerTorqueDiscontinuity;
+        let step = |torque: f64| {
+            let story = Story::of(Model::fr3(), Generator::None).by(commander);
+            let diagnosis = story.stop(&[error], |_, command| command.tau_J_d[3] = torque, |_| {});
+            assert_eq!(diagnosis.advice, [Advice::SmoothTorques]);
+            (diagnosis.causes.len(), diagnosis.to_string())
+        };
+        let (causes, text) = step(8.0);
+        assert_eq!(causes, 1);
+        assert!(
+            text.contains("limit 1000 N m/s (8 times as much)"),
+            "{text}"
+        );
+        assert!(text.contains("change: torques without steps"), "{text}");
+        let ramps = text.contains("limit_rate(true) makes ramps of steps");
+        assert_eq!(ramps, commander == Commander::Function, "{text}");
+        for of_positions in ["position", "acceleration", "steps of joints"] {
+            assert!(!text.contains(of_positions), "{text}");
+        }
+        // The advice follows from the error, too, where the log shows no step.
+        assert_eq!(step(0.0).0, 0);
+    }
+}
+
+#[test]
+fn the_limiter_is_promised_for_steps_of_joints_only() {
+    let story = Story::of(Model::fr3(), Generator::CartesianPosition);
+    let error = E::CartesianMotionGeneratorAccelerationDiscontinuity;
+    let diagnosis = story.stop(&[error], |_, command| command.O_T_EE_c[14] += 0.001, |_| {});
+    assert_eq!(diagnosis.advice, [Advice::Smooth]);
+    let text = diagnosis.to_string();
+    assert!(text.contains("steps of joints, not of poses"), "{text}");
+}
+
+const EVERY_ADVICE: [Advice; 15] = [
     Advice::Smooth,
+    Advice::SmoothTorques,
     Advice::SlowDown,
     Advice::StartWhereItIs,
     Advice::FinishAtRest,

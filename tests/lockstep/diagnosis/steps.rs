@@ -35,7 +35,7 @@ fn a_step_in_torque_names_the_joint_the_rate_and_the_cycle() {
             cycle,
         };
         assert_eq!(diagnosis.causes, [step]);
-        assert_eq!(diagnosis.advice, [Advice::Smooth]);
+        assert_eq!(diagnosis.advice, [Advice::SmoothTorques]);
     });
 }
 
