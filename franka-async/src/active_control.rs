@@ -119,7 +119,7 @@ impl Robot {
 ///
 /// Commands pass no filter and no limiter. All methods block; none may be called from async code.
 /// Nothing is raised but the driver's own thread: real-time scheduling of the calling thread is up
-/// to the caller, see [`franka_rt::sched`].
+/// to the caller, see [`Scheduling::enter`](crate::realtime::Scheduling::enter).
 ///
 /// **Dropping it** before the last command has the robot stop.
 #[derive(Debug)]

@@ -91,6 +91,9 @@ impl Robot {
 /// [`MotionError::Busy`](crate::MotionError::Busy) while anything else controls the arm, and so is
 /// everything else while it does. **Dropping the future has the robot stop**; the function may
 /// still be called for the few cycles that this takes.
+///
+/// `.await` takes it as it is; what takes a future, as `tokio::spawn`, `tokio::time::timeout` and
+/// `block_on` do, takes its `.into_future()`.
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited or detached"]
 pub struct Control {

@@ -18,7 +18,7 @@ use franka_proto::gripper::{Grasp, Move, Request, State, Version};
 /// closes the connection; what is grasped by then stays grasped.
 ///
 /// Actions have no deadline, since some take long: a move that an obstacle blocks, minutes. Put
-/// [`tokio::time::timeout`] around one to give it up, which stops it. A Hand that is out of reach
+/// `tokio::time::timeout` around one to give it up, which stops it. A Hand that is out of reach
 /// ends them by the connection's keepalive, within seconds.
 ///
 /// Connecting needs a Tokio runtime with I/O and time enabled, which then runs the task of the

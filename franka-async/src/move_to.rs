@@ -26,6 +26,9 @@ use crate::session::Session;
 /// A motion that has not begun: nothing is sent before it is awaited or detached. A clone is a
 /// motion of its own, with its own [`handle`](Self::handle) and without the
 /// [`start_with`](Self::start_with) of the original.
+///
+/// `.await` takes it as it is; what takes a future, as `tokio::spawn`, `tokio::time::timeout` and
+/// `block_on` do, takes its `.into_future()`.
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited or detached"]
 pub struct Motion {

@@ -15,7 +15,7 @@ pub const DISTORTION_MAX: f64 = 1e-3;
 /// The rigid transform nearest to `matrix`.
 ///
 /// `None` if an element is not finite, the last row is not `0 0 0 1`, or the rotation block is
-/// further than [`DISTORTION_MAX`] from every rotation (mirrored, scaled, sheared).
+/// further than `DISTORTION_MAX` (1e-3) from every rotation (mirrored, scaled, sheared).
 pub fn isometry(matrix: &Matrix4<f64>) -> Option<Isometry3<f64>> {
     let last_row = [matrix.m41, matrix.m42, matrix.m43, matrix.m44];
     if last_row != [0.0, 0.0, 0.0, 1.0] {

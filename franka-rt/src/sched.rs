@@ -44,11 +44,11 @@ pub struct Scheduling {
     /// would fail.
     pub lock_memory: bool,
     /// Stack to touch before the loop starts, in bytes, so that no cycle has a page fault there: at
-    /// most [`PREFAULT_MAX`], [`PREFAULT_DEFAULT`] by default. The thread gets a larger one by a
-    /// reserve. Control functions of the user's run on this stack.
+    /// most 64 MiB (`PREFAULT_MAX`), 512 KiB by default (`PREFAULT_DEFAULT`). The thread gets a
+    /// larger one by a reserve. Control functions of the user's run on this stack.
     pub prefault_stack: usize,
     /// How long a receive polls the network card's queue before it sleeps (`SO_BUSY_POLL`), in
-    /// whole microseconds and at most [`BUSY_POLL_MAX`]; not at all if `None`.
+    /// whole microseconds and at most 900 (`BUSY_POLL_MAX`); not at all if `None`.
     ///
     /// Saves the latency of interrupt and wake-up, and occupies the processor while it polls. Only
     /// cards whose driver takes part are polled: the loopback device is not. Raising it above the

@@ -11,7 +11,8 @@
 //! thread may try again with [`SlotReader::read_retry`].
 //!
 //! ```
-//! use franka_rt::slot::{self, Read};
+//! # use franka_rt::slot;
+//! use slot::Read;
 //!
 //! let (mut writer, mut reader) = slot::slot::<[u64; 2]>();
 //! assert_eq!(reader.read_newer(), Read::Same);

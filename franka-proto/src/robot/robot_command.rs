@@ -51,8 +51,8 @@ impl RobotCommand {
     /// Writes the datagram for the robot into `buffer` and returns its length in bytes.
     ///
     /// # Errors
-    /// [`EncodeError::Buffer`] if `buffer` is too short ([`RobotCommand::MAX_SIZE`] always does);
-    /// [`EncodeError::Unsupported`] if the version cannot say `torque_command_finished`. `buffer`
+    /// `EncodeError::Buffer` if `buffer` is too short ([`RobotCommand::MAX_SIZE`] always does);
+    /// `EncodeError::Unsupported` if the version cannot say `torque_command_finished`. `buffer`
     /// is then untouched.
     pub fn encode(&self, version: Version, buffer: &mut [u8]) -> Result<usize, EncodeError> {
         (version.table().command_codec.encode)(self, buffer)

@@ -52,7 +52,7 @@ impl Version {
 
     /// The motion generator to ask for when the client commands torques alone.
     ///
-    /// Protocol 10 has [`MoveGeneratorMode::None`], and the motion ends with
+    /// Protocol 10 has `MoveGeneratorMode::None`, and the motion ends with
     /// `torque_command_finished`. In protocol 5 a joint velocity generator runs beside the torques:
     /// it gets zeros, and its `motion_generation_finished` ends the motion.
     #[must_use]

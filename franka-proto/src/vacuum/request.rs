@@ -79,7 +79,7 @@ impl Profile {
     /// The profile of a wire byte.
     ///
     /// # Errors
-    /// [`UndefinedProfile`] if the byte is above 3.
+    /// `UndefinedProfile` if the byte is above 3.
     pub fn from_byte(byte: u8) -> Result<Self, UndefinedProfile> {
         let all = [Self::P0, Self::P1, Self::P2, Self::P3];
         let profile = all.get(usize::from(byte));

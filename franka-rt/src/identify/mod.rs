@@ -6,7 +6,7 @@
 //!                                   later connections: Lifecycle::knowing <---'
 //! ```
 //!
-//! A [`Plan`] says what would move. While its motions run, a [`Fit`] takes the record of every
+//! A `Plan` says what would move. While its motions run, a `Fit` takes the record of every
 //! cycle. In steady motion a joint takes `direction * friction + bias + G(q) load`: a bias that
 //! changes with the pose as the gravity of a load does is a load, the rest belongs to the joint.
 //! What the robot was told of a load counts as part of it. Nothing here is sent to a robot.
@@ -47,7 +47,7 @@ impl fmt::Display for Estimate {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IdentifiedJoint {
-    /// Friction at [`Plan::SPEED`], viscous part included, beyond what the robot compensates
+    /// Friction at `Plan::SPEED`, viscous part included, beyond what the robot compensates
     /// itself, `[N m]`.
     pub friction: Estimate,
     /// Torque that it takes in either direction and in every pose, such as the zero error of its
@@ -84,7 +84,7 @@ impl IdentifiedLoad {
     }
 }
 
-/// What the motions of a [`Plan`] have shown of an arm.
+/// What the motions of a `Plan` have shown of an arm.
 ///
 /// `Display` is a table to read. With the feature `serde` it can be stored.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -20,7 +20,7 @@ pub struct Plan {
     reach: Reach,
 }
 
-/// One motion of a [`Plan`], from rest to rest. `Display` is a line that announces it.
+/// One motion of a `Plan`, from rest to rest. `Display` is a line that announces it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedMotion {
     /// Joint positions before it, `[rad]`.

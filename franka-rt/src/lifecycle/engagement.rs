@@ -66,7 +66,8 @@ pub struct Tuning {
     pub leash: Option<Leash>,
     /// How far the arm may be pushed off its way.
     pub deviation: Option<Deviation>,
-    /// Where the arm's free direction goes, joint positions in `[rad]`: see [`Goal::posture`].
+    /// Where the arm's free direction goes, joint positions in `[rad]`: as the `posture` of a goal
+    /// says it.
     pub posture: Option<[f64; 7]>,
 }
 

@@ -58,7 +58,8 @@ pub struct MotionReport {
     /// The least time that was left until the next state was due when a command departed. `None`,
     /// as below, if no command left.
     pub slack_min: Option<Slack>,
-    /// Commands that left only after the next state was due.
+    /// Commands that left only after the next state was due. No cause for alarm on a simulator that
+    /// waits for commands, which has them in time all the same.
     pub overruns: u64,
     /// The cycle that took longest, and in what.
     pub worst_cycle: Option<CycleTimes>,

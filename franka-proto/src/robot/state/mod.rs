@@ -149,8 +149,8 @@ impl RobotState {
     /// are left out.
     ///
     /// # Errors
-    /// [`EncodeError::Buffer`] if `buffer` is too short ([`RobotState::MAX_SIZE`] always does);
-    /// [`EncodeError::Unsupported`] if the version lacks the motion generator mode. `buffer` is
+    /// `EncodeError::Buffer` if `buffer` is too short ([`RobotState::MAX_SIZE`] always does);
+    /// `EncodeError::Unsupported` if the version lacks the motion generator mode. `buffer` is
     /// then untouched.
     pub fn encode(&self, version: Version, buffer: &mut [u8]) -> Result<usize, EncodeError> {
         (version.table().state_codec.encode)(self, buffer)
