@@ -234,6 +234,19 @@ def test_values_compare_and_print_and_pickle() -> None:
             Budget(**{name: wrong})  # type: ignore[arg-type]
 
 
+def test_another_stiffness_of_the_joints_keeps_the_damping_ratio() -> None:
+    preset = Gains.joint()
+    soft = preset.with_joint_stiffness(np.array(preset.joint_stiffness) / 4.0)
+    assert soft.joint_damping == pytest.approx(np.array(preset.joint_damping) / 2.0)
+    assert soft.cartesian_stiffness == preset.cartesian_stiffness
+    assert Gains(joint_stiffness=[0.0] * 7).with_joint_stiffness(preset.joint_stiffness) == Gains(
+        joint_stiffness=preset.joint_stiffness, joint_damping=preset.joint_damping
+    )
+    assert preset.with_joint_stiffness([-1.0] * 7).joint_damping == (0.0,) * 7  # refused when a motion begins
+    with pytest.raises(ValueError, match=r"joint_stiffness has the shape \[3\], expected \(7,\)"):
+        preset.with_joint_stiffness([100.0] * 3)
+
+
 def test_a_report_has_what_happened(robot: Robot) -> None:
     report = robot.move_by([0.0, 0.0, 0.02]).wait()
     assert report.duration > 0.2 and report.lost_states == 0 and 0.0 < report.success_rate_min <= 1.0

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from . import _native
@@ -206,6 +207,20 @@ class Gains:
     def with_cartesian_stiffness(self, stiffness: ArrayLike) -> Gains:
         """The same with another stiffness at the end effector, 6 numbers; dampings keep their ratio."""
         return Gains(**_native._softened(self, stiffness))
+
+    def with_joint_stiffness(self, stiffness: ArrayLike) -> Gains:
+        """The same with another stiffness of the joints, 7 numbers, N m/rad; dampings keep their ratio.
+
+        A joint without a spring takes its ratio from ``Gains.joint()``.
+        """
+        preset = Gains.joint()
+        wanted = _native._row("joint_stiffness", stiffness, 7).tolist()
+        damping = []
+        for joint, spring in enumerate(wanted):
+            ratio_of = self if self.joint_stiffness[joint] > 0.0 else preset
+            factor = math.sqrt(max(spring, 0.0) / ratio_of.joint_stiffness[joint])
+            damping.append(ratio_of.joint_damping[joint] * factor)
+        return replace(self, joint_stiffness=wanted, joint_damping=damping)
 
 
 @dataclass(frozen=True)
