@@ -27,7 +27,8 @@ impl Robot {
     /// Sets the torques and forces at which the robot reports contact (lower) and stops itself
     /// (upper): [`CollisionBehavior::careful`], [`compliant`](CollisionBehavior::compliant),
     /// [`insensitive`](CollisionBehavior::insensitive), or values of your own. A goal whose force
-    /// cap is above them begins with a warning (`tracing`).
+    /// cap is above them begins with a warning (`tracing`). Below about 10 N the friction of an arm
+    /// that touches nothing is enough for a reflex.
     ///
     /// The vendor documents no range. The simulator refuses what is negative or not finite.
     ///

@@ -211,7 +211,7 @@ impl Robot {
     ///
     /// # Errors
     /// [`MotionError`] if the motion ended otherwise, for instance by a reflex;
-    /// [`MotionError::Superseded`] by a goal that came after the stop;
+    /// [`MotionError::Superseded`] by a goal that came after the stop, say of another task;
     /// [`MotionError::LinkLost`] if the robot has been silent for the link timeout, and
     /// [`MotionError::ConnectionClosed`] if there is no connection: it is unknown whether the arm
     /// rests.

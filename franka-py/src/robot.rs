@@ -165,13 +165,14 @@ impl Robot {
         Ok(self.connected()?.version().number())
     }
 
-    /// The newest state, without waiting.
+    /// The newest state, without waiting, however old it is: once the link is gone the last one
+    /// stays. `health()` tells.
     fn state(&self) -> PyResult<RobotState> {
         let robot = self.connected()?;
         Ok(RobotState::new(robot.state(), robot.version()))
     }
 
-    /// The measured pose of the end effector in the base frame, `(4, 4)`.
+    /// The measured pose of the end effector in the base frame, `(4, 4)`, of the newest state.
     fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         Ok(pose_array(py, &self.connected()?.pose()))
     }
@@ -188,9 +189,10 @@ impl Robot {
     }
 
     /// Brakes whatever moves, and waits until the arm rests and the motion has ended; that one
-    /// raises `MotionError` of the kind `stopped` at once, while the arm still brakes. Raises
-    /// `MotionError` if it is unknown whether the arm rests: `link_lost`, `connection_closed`. Once
-    /// it has begun, it goes on even if it is cancelled.
+    /// raises `MotionError` of the kind `stopped` at once, while the arm still brakes. A motion
+    /// that another task asks for meanwhile takes over: `stop` then raises `MotionError` of the
+    /// kind `superseded`. It raises others if it is unknown whether the arm rests: `link_lost`,
+    /// `connection_closed`. Once it has begun, it goes on even if it is cancelled.
     fn stop(&self) -> PyResult<Operation> {
         let robot = self.connected()?;
         Ok(Operation::new(

@@ -20,7 +20,8 @@ impl Robot {
     /// presses); or four arrays: `lower_torque_thresholds`, `upper_torque_thresholds`, `(7,)` N m,
     /// `lower_force_thresholds`, `upper_force_thresholds`, `(6,)` N and N m; or eight, each of the
     /// four twice: `..._acceleration` while the arm accelerates, and `..._nominal`, in the order of
-    /// `COLLISION_THRESHOLDS`. Positional or by name.
+    /// `COLLISION_THRESHOLDS`. Positional or by name. Below about 10 N the friction of an arm that
+    /// touches nothing is enough for a reflex.
     ///
     /// The vendor documents no range of them. The simulator refuses what is negative.
     ///

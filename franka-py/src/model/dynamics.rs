@@ -35,7 +35,8 @@ impl Model {
     ///
     /// A load has the mass `m_total` in kg, its centre of mass `F_x_Ctotal` in the flange frame,
     /// `(3,)` m, and its inertia about that in flange axes, `I_total`, `(3, 3)` kg m^2, as states
-    /// have them. So everywhere.
+    /// have them. So everywhere. There is none unless given, nor a tool: what a robot carries is
+    /// passed from its state.
     #[pyo3(signature = (q, I_total = None, m_total = 0.0, F_x_Ctotal = None))]
     fn mass<'py>(
         &self,
@@ -52,7 +53,8 @@ impl Model {
         }))
     }
 
-    /// Torques of Coriolis and centrifugal forces, `(7,)` or `(n, 7)` N m.
+    /// Torques of Coriolis and centrifugal forces, `(7,)` or `(n, 7)` N m. Without tool and load
+    /// unless given, as of `mass`.
     #[pyo3(signature = (q, dq, I_total = None, m_total = 0.0, F_x_Ctotal = None))]
     fn coriolis<'py>(
         &self,
@@ -74,7 +76,7 @@ impl Model {
 
     /// Torques that hold the arm still against gravity, `(7,)` or `(n, 7)` N m. `gravity_earth` is
     /// the gravitational acceleration in the base frame, `(3,)` m/s^2, that of an upright robot
-    /// unless given.
+    /// unless given. Without tool and load unless given, as of `mass`.
     #[pyo3(signature = (q, m_total = 0.0, F_x_Ctotal = None, gravity_earth = None))]
     fn gravity<'py>(
         &self,
@@ -94,7 +96,7 @@ impl Model {
     }
 
     /// Pose, Jacobian, mass, Coriolis and gravity torques from one pass, for the end effector
-    /// `F_T_EE`.
+    /// `F_T_EE`, the identity unless given. Without tool and load unless given, as of `mass`.
     #[pyo3(signature = (q, dq, *, F_T_EE = None, I_total = None, m_total = 0.0, F_x_Ctotal = None, gravity_earth = None))]
     #[allow(clippy::too_many_arguments)] // each is named by the caller
     fn dynamics<'py>(
@@ -136,7 +138,8 @@ impl Model {
         })
     }
 
-    /// Torques for the accelerations `ddq`, `M ddq + C dq + g`: `(7,)` or `(n, 7)` N m.
+    /// Torques for the accelerations `ddq`, `M ddq + C dq + g`: `(7,)` or `(n, 7)` N m. Without
+    /// tool and load unless given, as of `mass`.
     #[pyo3(signature = (q, dq, ddq, *, I_total = None, m_total = 0.0, F_x_Ctotal = None, gravity_earth = None))]
     #[allow(clippy::too_many_arguments)] // each is named by the caller
     fn inverse_dynamics<'py>(
@@ -164,7 +167,8 @@ impl Model {
 
     /// Accelerations under the joint torques `tau`, gravity included: `(7,)` or `(n, 7)` rad/s^2.
     /// `armature` is the inertia of the rotors felt at the joints, `(7,)` kg m^2, none unless
-    /// given. Where mass and armature make no physical arm, the result is NaN.
+    /// given. Where mass and armature make no physical arm, the result is NaN. Without tool and
+    /// load unless given, as of `mass`.
     #[pyo3(signature = (q, dq, tau, *, I_total = None, m_total = 0.0, F_x_Ctotal = None, gravity_earth = None, armature = None))]
     #[allow(clippy::too_many_arguments)] // each is named by the caller
     fn forward_dynamics<'py>(

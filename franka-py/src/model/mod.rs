@@ -95,6 +95,9 @@ impl Model {
     }
 
     /// The pose of `frame` in the base frame, `(4, 4)` or `(n, 4, 4)`.
+    ///
+    /// `F_T_EE` and `EE_T_K` are the identity unless given, whatever tool a robot has: pass those
+    /// of its state for its own `ee` and `stiffness`. `Robot.pose_at` has the former.
     #[pyo3(signature = (frame, q, F_T_EE = None, EE_T_K = None))]
     #[allow(non_snake_case)]
     fn pose<'py>(
@@ -111,7 +114,7 @@ impl Model {
     }
 
     /// Twist of `frame` per joint velocity, in base axes about the frame's origin, linear rows
-    /// first: `(6, 7)` or `(n, 6, 7)`.
+    /// first: `(6, 7)` or `(n, 6, 7)`. Tools as of `pose`: the identity unless given.
     #[pyo3(signature = (frame, q, F_T_EE = None, EE_T_K = None))]
     #[allow(non_snake_case)]
     fn zero_jacobian<'py>(
@@ -130,7 +133,7 @@ impl Model {
         }))
     }
 
-    /// `zero_jacobian` in the frame's own axes.
+    /// `zero_jacobian` in the frame's own axes. Tools as of `pose`: the identity unless given.
     #[pyo3(signature = (frame, q, F_T_EE = None, EE_T_K = None))]
     #[allow(non_snake_case)]
     fn body_jacobian<'py>(
