@@ -67,8 +67,12 @@ def test_the_functions_of_the_page_on_franky_run(live: Sim) -> None:
         chapter["waypoints"](robot)
         chapter["until_contact"](robot)
         start = robot.pose()
-        chapter["at_velocity"](robot, [0.0, 0.05, 0.0, 0.0, 0.0, 0.0], 1.5)
+        chapter["at_velocity"](robot, [0.0, 0.05, 0.0, 0.0, 0.0, 0.3], 1.5)
         assert robot.pose()[1, 3] > start[1, 3] + 0.005
+        assert robot.pose()[1, 0] > start[1, 0] + 0.05
+        chapter["joints_at_velocity"](robot, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.3], 1.5)
+        chapter["redirected"](robot, robot.pose() @ chapter["by"](0.02, 0.0, 0.0), start)
+        assert abs(robot.pose() - start).max() < 0.01
 
 
 def test_a_reflex_is_explained_and_recovered_from(
