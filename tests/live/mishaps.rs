@@ -152,6 +152,25 @@ async fn a_cut_is_bridged() {
     assert!(seen.lost > 0, "{seen:?}");
 }
 
+/// The newest state that the client has is of the time before the motion: it has nothing to answer,
+/// and virtual time goes on.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_motion_whose_first_states_are_lost_begins_after_the_cut() {
+    let _alone = alone();
+    let (robot, sim) = behind(Network::perfect(), Sim::fr3().ideal()).await;
+    let cut = |network: &mut Option<Network>, now| {
+        let network = network.as_mut().expect("there is one");
+        network.to_client.cut(now..now + Duration::from_millis(300));
+    };
+    sim.with_network(cut).await.expect("it runs");
+    let mut q = robot.state().q;
+    q[0] += 0.1;
+    let moving = robot.move_joints(q).into_future();
+    let arrived = timeout(SOON, moving).await.expect("it resolves");
+    arrived.expect("it arrives");
+    robot.shutdown().await;
+}
+
 /// Of a motion that lasts beyond the cut, on a robot that minds.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_cut_of_too_many_commands_is_a_reflex_to_recover_from() {

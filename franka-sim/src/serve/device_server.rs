@@ -145,6 +145,10 @@ impl<D: Device> DeviceServer<D> {
                 None => publish(&self.socket, datagram.bytes, listener),
             }
         }
+        let asks = self.awaits() != Awaited::Nothing;
+        if let Some(relay) = &mut self.relay {
+            relay.note_asking(asks);
+        }
         self.deliver_states(now);
         self.send_replies();
         true

@@ -15,6 +15,10 @@ pub(super) struct Relay {
     latest: Duration,
     /// Where the client listens, once a state has been sent there.
     listener: Option<SocketAddr>,
+    /// `message_id` of the newest state that was sent.
+    sent: Option<u64>,
+    /// That of the first one in a row up to there that asks for a command.
+    asking: Option<u64>,
     /// `message_id` of the newest state that has reached the client.
     newest: Option<u64>,
     /// Whether a command that answers that state has been read from the socket.
@@ -28,6 +32,8 @@ impl Relay {
             origin: Instant::now(),
             latest: Duration::ZERO,
             listener: None,
+            sent: None,
+            asking: None,
             newest: None,
             answered: false,
         }
@@ -67,8 +73,18 @@ impl Relay {
     /// A state for the client that listens there.
     pub(super) fn send_state(&mut self, now: Instant, datagram: &[u8], listener: SocketAddr) {
         self.listener = Some(listener);
+        self.sent = message_id(datagram);
         let time = self.time(now);
         self.network.to_client.send(time, datagram);
+    }
+
+    /// Takes note of whether the state that was just sent asks for a command.
+    pub(super) fn note_asking(&mut self, asks: bool) {
+        self.asking = if asks {
+            self.asking.or(self.sent)
+        } else {
+            None
+        };
     }
 
     /// The next state that has arrived, and where.
@@ -99,12 +115,14 @@ impl Relay {
     /// Forgets what is under way: it was of a client that has gone.
     pub(super) fn clear(&mut self) {
         self.network.clear();
-        (self.listener, self.newest, self.answered) = (None, None, false);
+        (self.listener, self.sent, self.asking) = (None, None, None);
+        (self.newest, self.answered) = (None, false);
     }
 
-    /// Whether the client has a state that it has not answered.
+    /// Whether the client has a state that asks for a command and has not answered the newest one
+    /// that it has.
     pub(super) fn is_unanswered(&self) -> bool {
-        self.newest.is_some() && !self.answered
+        self.asking.is_some() && self.newest >= self.asking && !self.answered
     }
 
     /// When the answer to that state arrives, if it is under way and soon there.
