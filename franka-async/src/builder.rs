@@ -93,7 +93,9 @@ impl Builder {
         self
     }
 
-    /// `SCHED_FIFO` priority of the control thread, 1 to 99; the system's highest by default.
+    /// `SCHED_FIFO` priority of the control thread, 1 to 99; the system's highest by default. What
+    /// the system refuses, another number included, is an error under [`Realtime::Enforce`] and
+    /// done without under [`Realtime::Ignore`].
     pub fn priority(mut self, priority: i32) -> Self {
         self.scheduling.priority = Some(priority);
         self
@@ -146,7 +148,8 @@ impl Builder {
     /// by default. More than that is for a simulated robot on a busy host, which may hold it up for
     /// as long. Anything else is refused as
     /// [`ConnectError::LinkTimeout`](crate::error::ConnectError::LinkTimeout). It is noticed late
-    /// by a quarter of it at most.
+    /// by a quarter of it at most. A motion that no state shows for 5 s after it was asked for fails
+    /// all the same.
     pub fn link_timeout(mut self, timeout: Duration) -> Self {
         self.link_timeout = timeout;
         self

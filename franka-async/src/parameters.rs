@@ -201,6 +201,7 @@ impl Robot {
     }
 
     async fn set(&self, request: Request) -> Result<(), CommandError> {
+        check_finite(&request)?;
         self.channel().call(request, ANSWER).await.map(|_| ())
     }
 
@@ -212,8 +213,8 @@ impl Robot {
         request: Request,
         shows: impl Fn(&RobotState) -> bool,
     ) -> Result<(), CommandError> {
+        self.set(request).await?;
         let link = self.link();
-        link.channel.call(request, ANSWER).await?;
         let mut states = link.newest.changes();
         let answered = states.borrow().message_id;
         // A robot that rounds the numbers never shows them. Closed: whatever is next says so.
@@ -222,6 +223,43 @@ impl Robot {
             _ = shown => Ok(()),
             silence = link.stays_silent(Duration::ZERO) => Err(CommandError::LinkLost { silence }),
         }
+    }
+}
+
+/// Refuses numbers of which a robot can make nothing. What it takes is for the robot to say.
+fn check_finite(request: &Request) -> Result<(), CommandError> {
+    let all_finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+    let (what, is_finite) = match request {
+        Request::SetCollisionBehavior(CollisionBehavior {
+            lower_torque_thresholds_acceleration: a,
+            upper_torque_thresholds_acceleration: b,
+            lower_torque_thresholds_nominal: c,
+            upper_torque_thresholds_nominal: d,
+            lower_force_thresholds_acceleration: e,
+            upper_force_thresholds_acceleration: f,
+            lower_force_thresholds_nominal: g,
+            upper_force_thresholds_nominal: h,
+        }) => {
+            let torques = [a, b, c, d].into_iter().all(|values| all_finite(values));
+            let forces = [e, f, g, h].into_iter().all(|values| all_finite(values));
+            ("thresholds", torques && forces)
+        }
+        Request::SetJointImpedance(stiffness) => ("stiffness", all_finite(stiffness)),
+        Request::SetCartesianImpedance(stiffness) => ("stiffness", all_finite(stiffness)),
+        Request::SetEEToK(frame) | Request::SetNEToEE(frame) => ("frame", all_finite(frame)),
+        Request::SetLoad(Load {
+            m_load,
+            F_x_Cload,
+            I_load,
+        }) => (
+            "load",
+            m_load.is_finite() && all_finite(F_x_Cload) && all_finite(I_load),
+        ),
+        _ => return Ok(()),
+    };
+    match is_finite {
+        true => Ok(()),
+        false => Err(CommandError::NotFinite { what }),
     }
 }
 

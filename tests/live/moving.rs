@@ -172,6 +172,12 @@ async fn parameters_are_taken_at_rest_and_refused_in_motion() {
     robot.recover().await.unwrap();
     assert!(robot.urdf().await.unwrap().contains("<robot"));
 
+    let load = Load {
+        m_load: f64::NAN,
+        ..load
+    };
+    let refused = robot.set_load(load).await.unwrap_err();
+    assert_eq!(refused.to_string(), "a number of the load is not finite");
     let invalid = robot.set_joint_impedance([-1.0; 7]).await.unwrap_err();
     let CommandError::Refused(refusal) = invalid else {
         panic!("{invalid:?}")

@@ -20,6 +20,12 @@ pub enum CommandError {
     /// Caller: the protocol version has no such command. Nothing was sent.
     #[error(transparent)]
     Request(#[from] RequestError),
+    /// Caller: a number is not finite. Nothing was sent.
+    #[error("a number of the {what} is not finite")]
+    NotFinite {
+        /// Of what.
+        what: &'static str,
+    },
     /// Robot or link: no answer in time. The robot may carry the command out all the same.
     #[error("no answer to {command} within {} ms", .deadline.as_millis())]
     Timeout {
@@ -51,6 +57,7 @@ impl CommandError {
         match self {
             Self::Refused(refusal) => refusal.entry(),
             Self::Request(_) => "command-request",
+            Self::NotFinite { .. } => "command-not-finite",
             Self::Timeout { .. } => "command-timeout",
             Self::LinkLost { .. } => "command-link-lost",
             Self::Violation(_) => "command-violation",
@@ -62,7 +69,7 @@ impl CommandError {
     pub fn party(&self) -> Party {
         match self {
             Self::Refused(_) => Party::Robot,
-            Self::Request(_) => Party::Caller,
+            Self::Request(_) | Self::NotFinite { .. } => Party::Caller,
             Self::Timeout { .. } | Self::LinkLost { .. } => Party::Link,
             Self::ConnectionClosed { reason } => reason.party(),
             Self::Violation(_) => Party::Peer,
