@@ -148,8 +148,7 @@ impl Builder {
     /// by default. More than that is for a simulated robot on a busy host, which may hold it up for
     /// as long. Anything else is refused as
     /// [`ConnectError::LinkTimeout`](crate::error::ConnectError::LinkTimeout). It is noticed late
-    /// by a quarter of it at most. A motion that no state shows for 5 s after it was asked for fails
-    /// all the same.
+    /// by a quarter of it at most. A motion that no state shows within 5 s fails all the same.
     pub fn link_timeout(mut self, timeout: Duration) -> Self {
         self.link_timeout = timeout;
         self

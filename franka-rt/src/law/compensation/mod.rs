@@ -27,8 +27,8 @@
 //! and counts as part of the springs under clamp and force cap. Where something holds the arm, i.e.
 //! springs demand more than that bound or a guard binds, nothing is learned, the torques against
 //! friction at rest are let go, and the integral goes back to what held the arm at rest. Nor is
-//! anything learned once a goal has reacted to what it met, until the next goal: what pushes the arm
-//! then is neither friction nor a load, and later motions would be short of their targets by it.
+//! anything learned once a goal has reacted to what it met, until the next goal: what pushes the
+//! arm then is neither friction nor a load, and later motions would be short of their targets.
 
 mod learned;
 
