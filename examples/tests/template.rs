@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use franka_async::MotionError;
 use franka_async::prelude::*;
-use franka_sim::{Running, Sim};
+use franka_sim::{Network, Running, Sim};
 
 /// What is tested: the hand goes down by `depth`, in metres, and back.
 async fn nod(robot: &Robot, depth: f64) -> Result<(), MotionError> {
@@ -84,4 +84,57 @@ async fn a_lost_link_ends_the_nod() {
     let error = nod(&robot, 0.1).await.expect_err("the link is lost");
     assert!(matches!(error, MotionError::LinkLost { .. }), "{error}");
     drop(release);
+}
+
+/// The network is cut for 100 ms of the robot's time, both ways. Only a task can cut it: the robot
+/// stands still in its first moving millisecond until one has asked for that.
+#[tokio::test]
+async fn a_cut_network_ends_the_nod() {
+    let (tell, moving) = tokio::sync::oneshot::channel();
+    let (go_on, held) = std::sync::mpsc::channel::<()>();
+    let mut tell = Some(tell);
+    let (robot, sim) = disturbed(move |robot| {
+        if moves(robot)
+            && let Some(tell) = tell.take()
+        {
+            let _ = tell.send(());
+            let _ = held.recv();
+        }
+    })
+    .await;
+    let cut = async {
+        moving.await.expect("it moves");
+        let cut = sim.with_network(|network, now| {
+            let network = network.get_or_insert_with(Network::perfect);
+            network.to_client.cut(now..now + Duration::from_millis(100));
+            network.to_robot.cut(now..now + Duration::from_millis(100));
+        });
+        // In this order: asked for, and then the robot goes on.
+        let (cut, ()) = tokio::join!(biased; cut, async { drop(go_on) });
+        cut.expect("the robot runs");
+    };
+    let (nodded, ()) = tokio::join!(nod(&robot, 0.1), cut);
+    let error = nodded.expect_err("its commands are lost").to_string();
+    assert!(
+        error.contains("communication_constraints_violation"),
+        "{error}"
+    );
+}
+
+/// The simulation ends in mid-motion, sockets included, as at a robot whose power fails.
+#[tokio::test]
+async fn a_robot_that_is_gone_ends_the_nod() {
+    let (robot, sim) = disturbed(|robot| {
+        if moves(robot) {
+            // Like `panic!`, but prints nothing.
+            std::panic::resume_unwind(Box::new("the robot is gone"));
+        }
+    })
+    .await;
+    let error = nod(&robot, 0.1).await.expect_err("the robot is gone");
+    assert!(
+        matches!(error, MotionError::ConnectionClosed { .. }),
+        "{error}"
+    );
+    sim.ended().await;
 }

@@ -126,7 +126,7 @@ impl Running {
     }
 
     /// Completes when the simulation has ended by itself, which only a panic brings about: in the
-    /// simulator, or in what [`with`](Self::with) was given.
+    /// simulator, or in what [`with`](Self::with) or [`Sim::every_millisecond`] was given.
     ///
     /// # Cancel safety
     /// Dropping the future has no effect.
