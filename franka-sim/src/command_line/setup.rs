@@ -5,6 +5,7 @@ use std::fs;
 use std::net::SocketAddr;
 
 use bytes::Bytes;
+use franka_model::limits::JointLimits;
 use franka_model::{JointVector, Load, RobotKind};
 use nalgebra::{Matrix3, Vector3};
 
@@ -36,7 +37,7 @@ impl Arguments {
             ..Config::default()
         };
         if let Some(q) = self.q {
-            config.q = JointVector::from(q);
+            config.q = possible(kind, q.into())?;
         }
         if self.hand {
             config.tool = Tool::hand();
@@ -187,6 +188,22 @@ impl NetworkKind {
 /// The longest model library: what a message carries.
 const LIBRARY_MAX: usize = franka_proto::framing::MAX_MESSAGE_SIZE - 64;
 
+/// Joint positions, where the joints can be.
+fn possible(kind: RobotKind, q: JointVector) -> Result<JointVector, String> {
+    let limits = JointLimits::of(kind);
+    let (lower, upper) = (&limits.hard_lower, &limits.hard_upper);
+    match (0..7).find(|&i| q[i] < lower[i] || q[i] > upper[i]) {
+        None => Ok(q),
+        Some(i) => Err(format!(
+            "joint {} of --q is {} rad, expected {} to {}",
+            i + 1,
+            q[i],
+            lower[i],
+            upper[i]
+        )),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::time::Duration;
@@ -197,6 +214,13 @@ mod tests {
 
     fn parsed(arguments: &[&str]) -> Arguments {
         Arguments::try_parse_from([&["franka-sim"], arguments].concat()).expect("valid")
+    }
+
+    #[test]
+    fn joints_are_where_they_can_be() {
+        let error = parsed(&["--q", "0,0,0,-2,0,9,0"]).config();
+        let error = error.expect_err("out of range");
+        assert!(error.contains("joint 6 of --q is 9 rad"), "{error}");
     }
 
     #[test]
