@@ -3,7 +3,7 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use franka_async::connection::Endpoint;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::errors::misuse;
@@ -128,6 +128,19 @@ macro_rules! device_methods {
 }
 
 pub(crate) use device_methods;
+
+/// The address of a device, `what`, which the simulator has with the option `option` only.
+///
+/// # Errors
+/// `TypeError` if there is none.
+pub(crate) fn given<'a>(address: Option<&'a str>, what: &str, option: &str) -> PyResult<&'a str> {
+    address.ok_or_else(|| {
+        PyTypeError::new_err(format!(
+            "address is None, expected host or host:port: a simulator has a {what} with \
+             {option}=True only"
+        ))
+    })
+}
 
 /// Checks the argument called `name`, which has a unit.
 ///

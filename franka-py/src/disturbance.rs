@@ -137,17 +137,18 @@ impl Sim {
     #[pyo3(signature = (joint, *, duration = None, once_moving = false))]
     fn block(
         this: &Bound<'_, Self>,
-        joint: usize,
+        joint: i64,
         duration: Option<f64>,
         once_moving: bool,
     ) -> PyResult<Touch> {
-        if !(1..=7).contains(&joint) {
+        let number = usize::try_from(joint).ok();
+        let Some(number @ 1..=7) = number else {
             let text = format!("joint is {joint}, expected 1 to 7");
             return Err(PyValueError::new_err(text));
-        }
+        };
         touch(
             this,
-            franka_sim::Touch::block(joint - 1),
+            franka_sim::Touch::block(number - 1),
             None,
             (duration, once_moving),
         )
@@ -213,7 +214,8 @@ impl Sim {
     #[pyo3(signature = (error, *, once_moving = false))]
     fn trip(&self, py: Python<'_>, error: &str, once_moving: bool) -> PyResult<()> {
         let found = RobotError::from_name(error).ok_or_else(|| {
-            PyValueError::new_err(format!("error is {error:?}, which no error is called"))
+            let names = "a name such as 'joint_reflex': the book's Errors by cause has all of them";
+            PyValueError::new_err(format!("error is {error:?}, expected {names}"))
         })?;
         self.disturb(py, once_moving, move |robot| robot.trip(found))
     }
@@ -223,9 +225,10 @@ impl Sim {
         self.robot(py, |robot| robot.recover_manually())
     }
 
-    /// Puts the arm to joint positions, 7 numbers, rad, at rest.
+    /// Puts the arm to joint positions, 7 numbers, rad, at rest. Raises `ValueError` where a joint
+    /// cannot be.
     fn place(&self, py: Python<'_>, q: &Bound<'_, PyAny>) -> PyResult<()> {
-        let q = vector::<7>("q", q)?.into();
+        let q = self.positions(q)?;
         self.robot(py, move |robot| robot.place(&q))
     }
 

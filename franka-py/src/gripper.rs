@@ -5,7 +5,7 @@ use franka_async::gripper::{self, Grasp};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
-use crate::device::{Device, at_least_zero, device_methods};
+use crate::device::{Device, at_least_zero, device_methods, given};
 use crate::operation::Operation;
 use crate::robot::Robot;
 use crate::stream::stream;
@@ -35,7 +35,8 @@ device_methods!(Gripper, gripper::Gripper, "Gripper.connect");
 impl Robot {
     /// The Franka Hand of this robot, at its host and the port after the robot's; it is yet to be
     /// connected: `async with robot.gripper() as gripper:`. That of a simulator on a free port has
-    /// another one: `Gripper(sim.hand_address)`.
+    /// another one, and nothing or something else listens at this: `Gripper(sim.hand_address)`, of
+    /// a `Sim` with `hand=True`.
     fn gripper(&self) -> Gripper {
         Gripper::new(self.beside(1))
     }
@@ -46,8 +47,9 @@ impl Gripper {
     /// Describes a connection to the Hand at `address`, `host` or `host:port`; nothing is sent yet.
     /// The port is 1338 unless given.
     #[new]
-    fn python_new(address: &str) -> Self {
-        Self::new(address)
+    #[pyo3(signature = (address))]
+    fn python_new(address: Option<&str>) -> PyResult<Self> {
+        Ok(Self::new(given(address, "Hand", "hand")?))
     }
 
     /// The newest state, without waiting.

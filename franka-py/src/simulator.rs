@@ -4,12 +4,12 @@ use std::net::SocketAddr;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use franka_async::model::{Load, RobotKind};
+use franka_async::model::{JointVector, Load, Model, RobotKind};
 use franka_sim::arm::{Arm, Family};
 use franka_sim::network::{Conditions, Loss, Network, Stalls};
 use franka_sim::{Fingers, Running, Stopped, Suction, Tool};
 use futures::future::try_join_all;
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::{PyAttributeError, PyOSError, PyOverflowError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyAny, PyDict};
 
@@ -46,14 +46,14 @@ impl Sim {
     /// on the wall. `arm`, `ideal`, `nominal`, `realistic` or `bad`: a good arm for tests that
     /// need exactness, or worse ones; with `arm_seed`, one that is drawn at random from such
     /// arms; `ideal=True` is `arm="ideal"`. `seed` of all other randomness. `q`,
-    /// joint positions at the start, 7 numbers, rad. `tool`, `hand` or a tuple of its frame on the
-    /// flange (a pose), its mass, kg, and its centre of mass in the flange frame, m: what the
-    /// robot knows of. `load`, a tuple of mass and centre: what it does not know of. `hand`
-    /// serves a Franka Hand and mounts it, `vacuum_gripper` a vacuum gripper, each at an
-    /// address of its own: `Gripper(sim.hand_address)`, since `robot.gripper()` looks at the port
-    /// after the robot's, where the Hand is with `address` only. `network`, a `Network` between
-    /// robot and clients. `address`, where to listen; the grippers then listen on the ports that
-    /// follow, as on a robot. `enforce_limits`, whether commands outside the limits end in a
+    /// joint positions at the start, 7 numbers, rad, where the joints can be. `tool`, `hand` or a
+    /// tuple of its frame on the flange (a pose), its mass, kg, and its centre of mass in the
+    /// flange frame, m: what the robot knows of. `load`, a tuple of mass and centre: what it does
+    /// not know of. `hand` serves a Franka Hand and mounts it, `vacuum_gripper` a vacuum gripper,
+    /// each at an address of its own: `Gripper(sim.hand_address)`, since `robot.gripper()` looks at
+    /// the port after the robot's, where the Hand is with `address` only. `network`, a `Network`
+    /// between robot and clients. `address`, where to listen; the grippers then listen on the ports
+    /// that follow, as on a robot. `enforce_limits`, whether commands outside the limits end in a
     /// reflex.
     #[staticmethod]
     #[pyo3(signature = (**options))]
@@ -253,6 +253,14 @@ impl Sim {
             false => act(robot),
         })
     }
+
+    /// Reads joint positions, where the joints of this robot can be.
+    ///
+    /// # Errors
+    /// As [`positions`].
+    pub(crate) fn positions(&self, q: &Bound<'_, PyAny>) -> PyResult<JointVector> {
+        positions(self.kind, q)
+    }
 }
 
 /// A robot, and what is to happen to it once its arm moves.
@@ -281,9 +289,10 @@ fn configured(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<franka_s
         _ => franka_sim::Sim::fr3(),
     };
     sim = sim.arm(arm(kind, keywords)?);
-    let seed: Option<u64> = keywords.value("seed")?;
+    let seed = keywords.take("seed")?;
+    let seed = seed.map(|seed| self::seed("seed", &seed)).transpose()?;
     let q = keywords.take("q")?;
-    let q: Option<[f64; 7]> = q.map(|q| vector("q", &q)).transpose()?;
+    let q = q.map(|q| positions(kind, &q)).transpose()?;
     let load = keywords
         .take("load")?
         .map(|load| self::load(&load))
@@ -291,7 +300,7 @@ fn configured(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<franka_s
     let enforce_limits: Option<bool> = keywords.value("enforce_limits")?;
     sim = sim.configure(|config| {
         config.seed = seed.unwrap_or(config.seed);
-        config.q = q.map_or(config.q, Into::into);
+        config.q = q.unwrap_or(config.q);
         config.payload = load.unwrap_or(config.payload);
         config.enforce_limits = enforce_limits.unwrap_or(config.enforce_limits);
     });
@@ -329,6 +338,37 @@ fn configured(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<franka_s
     Ok(sim)
 }
 
+/// Reads joint positions, where the joints of such a robot can be.
+///
+/// # Errors
+/// As [`vector`], and `ValueError` outside the ranges of the joints.
+fn positions(kind: RobotKind, q: &Bound<'_, PyAny>) -> PyResult<JointVector> {
+    let q = JointVector::from(vector::<7>("q", q)?);
+    let limits = Model::physically_consistent(kind).joint_limits();
+    let (lower, upper) = (&limits.hard_lower, &limits.hard_upper);
+    match (0..7).find(|i| q[*i] < lower[*i] || q[*i] > upper[*i]) {
+        None => Ok(q),
+        Some(i) => Err(PyValueError::new_err(format!(
+            "joint {} of q is {} rad, expected {} to {}",
+            i + 1,
+            q[i],
+            lower[i],
+            upper[i]
+        ))),
+    }
+}
+
+/// Reads a seed from the argument called `name`.
+fn seed(name: &str, seed: &Bound<'_, PyAny>) -> PyResult<u64> {
+    seed.extract().map_err(|error: PyErr| {
+        let text = format!("{name} is {seed}, expected an integer from 0 to 2^64 - 1");
+        match error.is_instance_of::<PyOverflowError>(seed.py()) {
+            true => PyValueError::new_err(text),
+            false => PyTypeError::new_err(text),
+        }
+    })
+}
+
 /// Reads where to listen.
 fn address(text: &str) -> PyResult<SocketAddr> {
     text.parse().map_err(|_| {
@@ -340,7 +380,8 @@ fn address(text: &str) -> PyResult<SocketAddr> {
 /// The arm that `arm`, `arm_seed` and `ideal` choose.
 fn arm(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<Arm> {
     let arm: Option<String> = keywords.value("arm")?;
-    let seed: Option<u64> = keywords.value("arm_seed")?;
+    let seed = keywords.take("arm_seed")?;
+    let seed = seed.map(|seed| self::seed("arm_seed", &seed)).transpose()?;
     let is_ideal = keywords.value("ideal")?.unwrap_or(false);
     let name = match arm.as_deref() {
         Some(name) if is_ideal && name != "ideal" => {
@@ -398,39 +439,53 @@ fn tool(tool: &Bound<'_, PyAny>) -> PyResult<Tool> {
     })
 }
 
-/// `franka_async.simulation.Network`.
-#[derive(FromPyObject)]
-struct NetworkFields {
-    loss: f64,
-    delay: f64,
-    jitter: f64,
-    duplication: f64,
-    stalls: bool,
-    cuts: Vec<(f64, f64)>,
-    seed: u64,
+/// The field `name` of a `franka_async.Network`.
+fn field<'py, T>(network: &Bound<'py, PyAny>, name: &str, expected: &str) -> PyResult<T>
+where
+    T: for<'a> FromPyObject<'a, 'py>,
+{
+    let value = network.getattr(name).map_err(|error| {
+        if error.is_instance_of::<PyAttributeError>(network.py()) {
+            PyTypeError::new_err(format!("network is {network:?}, expected a Network"))
+        } else {
+            error
+        }
+    })?;
+    value.extract().map_err(|_| {
+        PyTypeError::new_err(format!(
+            "{name} of network is {value:?}, expected {expected}"
+        ))
+    })
 }
 
+/// Reads a `franka_async.Network`.
 fn network(network: &Bound<'_, PyAny>) -> PyResult<Network> {
-    let fields: NetworkFields = network.extract()?;
-    for (name, share) in [("loss", fields.loss), ("duplication", fields.duplication)] {
+    let number = |name| field::<f64>(network, name, "a number");
+    let (loss, duplication) = (number("loss")?, number("duplication")?);
+    let (delay, jitter) = (number("delay")?, number("jitter")?);
+    let stalls: bool = field(network, "stalls", "True or False")?;
+    let cuts = "pairs of seconds, from and to, such as [(1.0, 1.1)]";
+    let cuts: Vec<(f64, f64)> = field(network, "cuts", cuts)?;
+    let seed = self::seed("seed of network", &field(network, "seed", "an integer")?)?;
+    for (name, share) in [("loss", loss), ("duplication", duplication)] {
         if !(0.0..=1.0).contains(&share) {
             let text = format!("{name} is {share}, expected a share from 0 to 1");
             return Err(PyValueError::new_err(text));
         }
     }
     let conditions = Conditions {
-        loss: Loss::Independent(fields.loss),
-        delay: seconds("delay", fields.delay)?,
-        jitter: seconds("jitter", fields.jitter)?,
-        duplication: fields.duplication,
+        loss: Loss::Independent(loss),
+        delay: seconds("delay", delay)?,
+        jitter: seconds("jitter", jitter)?,
+        duplication,
         ..Conditions::default()
     };
     let to_client = Conditions {
-        stalls: fields.stalls.then_some(Stalls::FER),
+        stalls: stalls.then_some(Stalls::FER),
         ..conditions
     };
-    let mut network = Network::new(fields.seed, to_client, conditions);
-    for (from, to) in fields.cuts {
+    let mut network = Network::new(seed, to_client, conditions);
+    for (from, to) in cuts {
         let time = seconds("a cut", from)?..seconds("a cut", to)?;
         network.to_client.cut(time.clone());
         network.to_robot.cut(time);

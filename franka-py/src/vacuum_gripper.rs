@@ -6,7 +6,7 @@ use pyo3::IntoPyObjectExt;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::device::{Device, device_methods};
+use crate::device::{Device, device_methods, given};
 use crate::errors::variant;
 use crate::operation::{Operation, seconds};
 use crate::robot::Robot;
@@ -44,8 +44,13 @@ impl VacuumGripper {
     /// Describes a connection to the gripper at `address`, `host` or `host:port`; nothing is sent
     /// yet. The port is 1339 unless given.
     #[new]
-    fn python_new(address: &str) -> Self {
-        Self::new(address)
+    #[pyo3(signature = (address))]
+    fn python_new(address: Option<&str>) -> PyResult<Self> {
+        Ok(Self::new(given(
+            address,
+            "vacuum gripper",
+            "vacuum_gripper",
+        )?))
     }
 
     /// The newest state, without waiting.

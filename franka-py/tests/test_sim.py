@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import connection, outcome, until
 
-from franka_async import ControlError, FrankaError, MotionError, Network, Robot, Sim
+from franka_async import ControlError, FrankaError, Gripper, MotionError, Network, Robot, Sim, VacuumGripper
 
 
 def test_it_runs_in_both_kinds_of_blocks() -> None:
@@ -69,6 +69,12 @@ def test_options_that_make_no_sense_are_refused() -> None:
         ({"address": "here"}, ValueError, "IP address"),
         ({"virtual": True}, TypeError, "unexpected keyword argument 'virtual'"),
         ({"load": (-1.0, [0.0, 0.0, 0.0])}, ValueError, "-1"),
+        ({"q": [0.0, 0.0, 9.0, -2.0, 0.0, 2.0, 0.0]}, ValueError, "joint 3 of q is 9 rad, expected -2.9"),
+        ({"seed": -1}, ValueError, "seed is -1, expected an integer from 0"),
+        ({"seed": "one"}, TypeError, "seed is one, expected an integer"),
+        ({"network": Network(seed=-1)}, ValueError, "seed of network is -1"),
+        ({"network": Network(cuts=3)}, TypeError, "cuts of network is 3, expected pairs of seconds"),  # type: ignore[arg-type]
+        ({"network": 3}, TypeError, "network is 3, expected a Network"),
     ]:
         with pytest.raises(kind, match=text):
             Sim.fr3(**options)  # type: ignore[arg-type]
@@ -98,6 +104,8 @@ def test_touches_act_until_they_are_released() -> None:
             lambda: sim.push([1.0, 2.0]),
             lambda: sim.push([0.0, 0.0, 1.0], at="elbow"),  # type: ignore[arg-type]
             lambda: sim.block(0),
+            lambda: sim.block(-1),
+            lambda: sim.place([9.0] * 7),
             lambda: sim.pull([0.0, 0.0, 0.0], -5.0),
             lambda: sim.wall([0.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
             lambda: sim.trip("no_such_error"),
@@ -131,6 +139,13 @@ def test_a_disturbance_may_wait_until_the_arm_moves(sim: Sim, robot: Robot) -> N
     sim.trip("joint_reflex", once_moving=True)
     sim.let_go()
     assert robot.move_by([0.0, 0.0, -0.05]).wait().final_error is not None
+
+
+def test_a_simulator_without_grippers_has_no_address_of_them(sim: Sim) -> None:
+    with pytest.raises(TypeError, match="has a Hand with hand=True only"):
+        Gripper(sim.hand_address)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="has a vacuum gripper with vacuum_gripper=True only"):
+        VacuumGripper(sim.vacuum_gripper_address)  # type: ignore[arg-type]
 
 
 def test_people_at_the_robot(sim: Sim, robot: Robot) -> None:

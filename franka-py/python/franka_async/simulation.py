@@ -28,7 +28,7 @@ class Network:
     """Whether states stall as in the network interface of a Franka Emika Robot: 2 to 7 ms, seven times a second."""
 
     cuts: Sequence[tuple[float, float]] = ()
-    """When nothing arrives: from and to, s since the robot's start."""
+    """When nothing arrives: pairs of seconds, from and to, since the robot began; a ``state().time`` of 101.5 s is 1.5 s then."""
 
     seed: int = 1
     """Seed of all this."""
