@@ -59,7 +59,8 @@ fn touch(
     let begun = Begun::default();
     let begin = begun.clone();
     let begin = move |robot: &mut franka_sim::Robot| begin.begin(robot, touch);
-    sim.get().disturb(sim.py(), once_moving, begin)?;
+    let waits = once_moving.then(|| Some(begun.clone()));
+    sim.get().disturb(sim.py(), waits, begin)?;
     let sim = sim.clone().unbind();
     Ok(Touch { sim, begun })
 }
@@ -70,7 +71,7 @@ impl Sim {
     /// axes, m, with a force, base axes, N, and a torque, N m, for `duration` seconds of its
     /// own clock; until it is released if `None`. It begins now or, `once_moving`, in the
     /// millisecond in which a joint is faster than 0.05 rad/s: in virtual time, where a motion
-    /// may be over before a program sees it move.
+    /// may be over before a program sees it move. Without a motion it never begins: see `waiting`.
     #[pyo3(signature = (force, torque = None, *, duration = None, once_moving = false, at = "ee", offset = None))]
     fn push(
         this: &Bound<'_, Self>,
@@ -185,7 +186,8 @@ impl Sim {
     /// Presses the user stop, or releases it; `once_moving` as of `push`.
     #[pyo3(signature = (pressed = true, *, once_moving = false))]
     fn press_user_stop(&self, py: Python<'_>, pressed: bool, once_moving: bool) -> PyResult<()> {
-        self.disturb(py, once_moving, move |robot| robot.press_user_stop(pressed))
+        let press = move |robot: &mut franka_sim::Robot| robot.press_user_stop(pressed);
+        self.disturb(py, once_moving.then_some(None), press)
     }
 
     /// Activates a safety function that forbids motion, as set up in Desk, or deactivates it.
@@ -217,7 +219,8 @@ impl Sim {
             let names = "a name such as 'joint_reflex': the book's Errors by cause has all of them";
             PyValueError::new_err(format!("error is {error:?}, expected {names}"))
         })?;
-        self.disturb(py, once_moving, move |robot| robot.trip(found))
+        let trip = move |robot: &mut franka_sim::Robot| robot.trip(found);
+        self.disturb(py, once_moving.then_some(None), trip)
     }
 
     /// Performs the recovery that takes a person.

@@ -6,30 +6,46 @@ use franka_sim::{Robot, TouchId};
 
 /// What waits for the arm to move, in order. Clones are of the same robot.
 #[derive(Clone, Default)]
-pub(crate) struct OnceMoving(Arc<Mutex<Vec<Job>>>);
+pub(crate) struct OnceMoving(Arc<Mutex<Vec<Waiting>>>);
 
-type Job = Box<dyn FnOnce(&mut Robot) + Send>;
+struct Waiting {
+    job: Box<dyn FnOnce(&mut Robot) + Send>,
+    /// The touch that `job` begins, if it begins one.
+    touch: Option<Begun>,
+}
 
 impl OnceMoving {
-    /// Has `job` done before the first millisecond at which the arm moves.
-    pub(crate) fn push(&self, job: impl FnOnce(&mut Robot) + Send + 'static) {
-        self.jobs().push(Box::new(job));
+    /// Has `job` done before the first millisecond at which the arm moves. `touch` is what it
+    /// begins, which may be released before.
+    pub(crate) fn push(&self, job: impl FnOnce(&mut Robot) + Send + 'static, touch: Option<Begun>) {
+        let job = Box::new(job);
+        self.waiting().push(Waiting { job, touch });
+    }
+
+    /// How many wait, without touches that were released.
+    pub(crate) fn count(&self) -> usize {
+        let waits = |touch: &Begun| matches!(*touch.stage(), Stage::Waits);
+        let waiting = self.waiting();
+        let live = waiting
+            .iter()
+            .filter(|one| one.touch.as_ref().is_none_or(waits));
+        live.count()
     }
 
     /// Drops all that waits.
     pub(crate) fn clear(&self) {
-        self.jobs().clear();
+        self.waiting().clear();
     }
 
     /// To be called before each millisecond of the robot.
     pub(crate) fn look_at(&self, robot: &mut Robot) {
-        let mut jobs = self.jobs();
-        if !jobs.is_empty() && robot.dq().amax() > MOVING {
-            jobs.drain(..).for_each(|job| job(robot));
+        let mut waiting = self.waiting();
+        if !waiting.is_empty() && robot.dq().amax() > MOVING {
+            waiting.drain(..).for_each(|one| (one.job)(robot));
         }
     }
 
-    fn jobs(&self) -> MutexGuard<'_, Vec<Job>> {
+    fn waiting(&self) -> MutexGuard<'_, Vec<Waiting>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

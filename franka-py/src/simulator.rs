@@ -15,7 +15,7 @@ use pyo3::types::{PyAny, PyDict};
 
 use crate::arrays::{pose, vector};
 use crate::model::arguments;
-use crate::once_moving::OnceMoving;
+use crate::once_moving::{Begun, OnceMoving};
 use crate::operation::{Operation, seconds};
 use crate::options::Keywords;
 use crate::runtime::{self, Threaded};
@@ -136,8 +136,28 @@ impl Sim {
         Ok(RobotState::new(state, version))
     }
 
-    /// Stops the simulation. Connections to it are lost. Without effect if it has stopped.
-    fn stop(&self, py: Python<'_>) -> PyResult<()> {
+    /// How many of the calls with `once_moving=True` still wait for a motion, without those that
+    /// `let_go()` or `release()` took back.
+    #[getter]
+    fn waiting(&self) -> usize {
+        self.once_moving.count()
+    }
+
+    /// Stops the simulation: now or, `once_moving`, in mid-motion, as of `push`. Connections to it
+    /// are lost. Without effect if it has stopped.
+    #[pyo3(signature = (*, once_moving = false))]
+    fn stop(&self, py: Python<'_>, once_moving: bool) -> PyResult<()> {
+        if once_moving {
+            let stop = self.disturb(py, Some(None), |_| {
+                // Ends the thread of the robot, and with it sockets and connections; `panic!` would
+                // print something, too.
+                std::panic::resume_unwind(Box::new("stopped"))
+            });
+            return match stop {
+                Err(error) if error.is_instance_of::<PyOSError>(py) => Ok(()),
+                other => other,
+            };
+        }
         let runtime = runtime::runtime()?;
         py.detach(|| {
             let running = self.running().take();
@@ -154,7 +174,7 @@ impl Sim {
 
     #[pyo3(signature = (*_exception))]
     fn __exit__(&self, py: Python<'_>, _exception: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.stop(py)
+        self.stop(py, false)
     }
 
     fn __aenter__(this: Py<Self>) -> Operation {
@@ -237,20 +257,21 @@ impl Sim {
         self.with(py, async |running| running.with(act).await)
     }
 
-    /// Does something to the robot between two of its milliseconds: now, or once its arm moves.
+    /// Does something to the robot between two of its milliseconds: now or, with `once_moving`,
+    /// once its arm moves. `once_moving` has the touch that it begins, if it begins one.
     ///
     /// # Errors
     /// As [`Self::with`].
     pub(crate) fn disturb(
         &self,
         py: Python<'_>,
-        once_moving: bool,
+        once_moving: Option<Option<Begun>>,
         act: impl FnOnce(&mut franka_sim::Robot) + Send + 'static,
     ) -> PyResult<()> {
         let waiting = self.once_moving.clone();
         self.robot(py, move |robot| match once_moving {
-            true => waiting.push(act),
-            false => act(robot),
+            Some(touch) => waiting.push(act, touch),
+            None => act(robot),
         })
     }
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import connection, outcome, until
 
-from franka_async import ControlError, FrankaError, Gripper, MotionError, Network, Robot, Sim, VacuumGripper
+from franka_async import ControlError, FrankaError, Gripper, MotionError, Network, Robot, Sim, VacuumGripper, sync
 
 
 def test_it_runs_in_both_kinds_of_blocks() -> None:
@@ -136,9 +136,19 @@ def test_a_disturbance_may_wait_until_the_arm_moves(sim: Sim, robot: Robot) -> N
     # What was taken back does not come.
     push = sim.push([0.0, 0.0, -200.0], once_moving=True)
     assert push.felt() is None and push.release() and not push.release()
+    assert sim.waiting == 0
     sim.trip("joint_reflex", once_moving=True)
+    assert sim.waiting == 1
     sim.let_go()
     assert robot.move_by([0.0, 0.0, -0.05]).wait().final_error is not None
+    # And as the last one the robot is gone.
+    sim.stop(once_moving=True)
+    with pytest.raises(MotionError) as caught:
+        robot.move_by([0.0, 0.0, 0.1]).wait()
+    assert caught.value.kind == "connection_closed" and sim.waiting == 0
+    with pytest.raises(OSError, match="stopped"):
+        sim.state()
+    sim.stop(once_moving=True)
 
 
 def test_a_simulator_without_grippers_has_no_address_of_them(sim: Sim) -> None:
@@ -146,6 +156,15 @@ def test_a_simulator_without_grippers_has_no_address_of_them(sim: Sim) -> None:
         Gripper(sim.hand_address)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="has a vacuum gripper with vacuum_gripper=True only"):
         VacuumGripper(sim.vacuum_gripper_address)  # type: ignore[arg-type]
+
+
+def test_a_network_is_cut_in_mid_motion_by_the_clock_on_the_wall() -> None:
+    """Without virtual time, in which nobody knows when a motion begins: a slow one lasts from before the cut until after it."""
+    cut = Network(cuts=[(2.0, 2.1)])
+    with Sim.fr3(patience=0.5, network=cut) as sim, sync.Robot(sim.address, realtime="ignore", link_timeout=10.0) as robot:
+        with pytest.raises(ControlError, match="communication_constraints_violation"):
+            robot.move_by([0.0, 0.0, -0.1], speed=0.1)
+        assert sim.state().time > 102.0
 
 
 def test_people_at_the_robot(sim: Sim, robot: Robot) -> None:

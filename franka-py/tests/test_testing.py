@@ -66,6 +66,23 @@ def test_a_wrong_parameter_says_what_was_expected(pytester: pytest.Pytester) -> 
     result.stdout.fnmatch_lines(["*franka_options is 'perfect', expected 'ideal', 'realistic' or a dict*"])
 
 
+def test_what_waited_in_vain_for_a_motion_fails_the_test(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(
+        """
+        def test_moves_nothing(sim_fr3, fr3):
+            sim_fr3.push([0.0, 0.0, -200.0], once_moving=True).release()
+            sim_fr3.trip("joint_reflex", once_moving=True)
+
+        def test_takes_it_back(sim_fr3):
+            sim_fr3.trip("joint_reflex", once_moving=True)
+            sim_fr3.let_go()
+        """
+    )
+    result = pytester.runpytest()
+    result.assert_outcomes(passed=2, errors=1)
+    result.stdout.fnmatch_lines(["*1 of once_moving=True still wait*"])
+
+
 def test_a_failing_test_still_shuts_the_robot_down(pytester: pytest.Pytester) -> None:
     pytester.makepyfile(
         """

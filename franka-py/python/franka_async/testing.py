@@ -24,6 +24,8 @@ So does a parameter: ``ideal``, ``realistic``, or a ``dict`` of arguments::
         fr3.move_by([0.0, 0.0, 0.05]).wait()
 
 In a test that is a coroutine, ``await`` stands in the place of ``wait()``.
+
+A test fails at its end if something with ``once_moving=True`` still waits for a motion: what it was to disturb has not been disturbed.
 """
 
 from __future__ import annotations
@@ -67,6 +69,9 @@ def _sim(kind: str, options: dict[str, Any]) -> Iterator[Sim]:
 
     with getattr(franka_async.Sim, kind)(**options) as sim:
         yield sim
+        if sim.waiting:
+            text = f"{sim.waiting} of once_moving=True still wait: the arm has not moved since; sim.let_go() takes them back"
+            pytest.fail(text, pytrace=False)
 
 
 def _robot(sim: Sim) -> Iterator[Robot]:
