@@ -20,9 +20,9 @@ def up(robot: Robot, height: float) -> NDArray[np.float64]:
 
 
 async def moves(robots: tuple[Robot, ...], motion: asyncio.Future[list[MotionReport]]) -> None:
-    """Waits until each of the arms has been seen to move. The motion takes far longer than that."""
+    """Waits until each of the arms is led somewhere: measured velocities are noisy at rest. The motion takes far longer than that."""
     for robot in robots:
-        while np.abs(robot.state().dq).max() < 2e-3:
+        while (reference := robot.reference()) is None or np.abs(reference.dq).max() < 2e-3:
             assert not motion.done()
             await asyncio.sleep(0)
 
