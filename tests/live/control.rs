@@ -432,7 +432,8 @@ async fn a_function_that_does_not_return_is_named_and_not_the_link() {
         assert!(matches!(error, MotionError::Hung { .. }), "{error:?}");
     }
     drop(release);
-    until(&robot, |state| state.robot_mode == RobotMode::Reflex).await;
+    // The robot has recovered, as it was told to. States of before may be dropped unread.
+    until(&robot, |state| state.robot_mode == RobotMode::Idle).await;
     robot.recover().await.unwrap();
     robot.move_to(robot.pose()).await.unwrap();
     robot.shutdown().await;
