@@ -246,16 +246,22 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
         Category::Link => {
             let late = lost_cycles::late_commands(evidence);
             let lost = lost_cycles::lost_packets(evidence);
-            // Commands that left too late have not reached the robot in time, either, and states
-            // are lost that nobody reads for as long as an answer takes. States that were all had,
-            // but late, may have been held up on their way.
+            // A command that left too late has not reached the robot in time, either. A thread that
+            // does not read states loses them. States that came late, and all of them, may have
+            // been held up on their way.
             let turnaround = evidence.statistics.map(|counts| counts.worst_turnaround);
             let turnaround = turnaround.unwrap_or_default();
-            let by_host = matches!(lost, Some(Cause::LostPackets { states, unanswered, longest_run, .. })
-            if match states {
-                0 => unanswered > 0 || is_slow(turnaround),
-                _ => turnaround >= Duration::from_millis(longest_run),
-            });
+            let by_host = match lost {
+                Some(Cause::LostPackets {
+                    states: 0,
+                    unanswered,
+                    ..
+                }) => unanswered > 0 || is_slow(turnaround),
+                Some(Cause::LostPackets { longest_run, .. }) => {
+                    turnaround >= Duration::from_millis(longest_run)
+                }
+                _ => false,
+            };
             let (first, second) = if by_host { (late, lost) } else { (lost, late) };
             causes.extend(first);
             causes.extend(second);

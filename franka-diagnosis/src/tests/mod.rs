@@ -3,6 +3,8 @@
 mod arm;
 mod commander;
 mod commands;
+mod finishing;
+mod lost_cycles;
 mod nothing;
 
 use franka_model::{EndEffector, Frame, JointVector, Model, READY, layout};
