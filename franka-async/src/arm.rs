@@ -133,9 +133,9 @@ impl Robot {
         let (begin, began) = oneshot::channel();
         let (end, ended) = watch::channel(None);
         let pulse = engagement.deadman.as_ref().map(DeadmanMonitor::pulse);
-        let settings = (tuning, pulse);
+        let session = Session::new(self.clone(), goal.id, tuning, pulse, ended);
         let arm = Arm {
-            session: Arc::new(Session::new(self.clone(), goal.id, settings, ended)),
+            session: Arc::new(session),
         };
         self.send(Input::Begin {
             motion: NewMotion::Session {

@@ -29,7 +29,8 @@ impl Session {
     pub(crate) fn new(
         robot: Robot,
         id: GoalId,
-        (tuning, pulse): (Tuning, Option<Arc<Pulse>>),
+        tuning: Tuning,
+        pulse: Option<Arc<Pulse>>,
         ended: watch::Receiver<Option<Outcome>>,
     ) -> Self {
         Self {

@@ -1,14 +1,14 @@
-//! Values of the user's that others free.
+//! Values of the user's that tasks of the driver free.
 
 use std::ops::{Deref, DerefMut};
 
 use franka_rt::panic;
 
-/// A function of the user's, with what it has captured, that is freed by whoever holds it last: the
-/// bridge, once its motion has ended or was refused, or another task.
+/// A function of the user's, with what it has captured. The bridge frees it when its motion has
+/// ended or was refused, or another task does.
 ///
-/// If its destructor panics, that is logged, and whoever freed it goes on: the end of one motion
-/// must not end the connection.
+/// A panic of its destructor is logged and goes no further: it must not end the task that frees it,
+/// and with that the connection.
 #[derive(Debug)]
 pub(crate) struct UserValue<T> {
     /// `None` only while it is dropped.

@@ -80,6 +80,11 @@ impl JointLimits {
     pub fn contains(&self, q: &JointVector) -> bool {
         (0..7).all(|i| self.lower[i] <= q[i] && q[i] <= self.upper[i])
     }
+
+    /// The first joint (0 to 6) that is not within `hard_lower` and `hard_upper`, also for NaN.
+    pub fn outside_hard(&self, q: &JointVector) -> Option<usize> {
+        (0..7).find(|&i| !(self.hard_lower[i]..=self.hard_upper[i]).contains(&q[i]))
+    }
 }
 
 /// Bounds on a motion along one coordinate, or on the norm of a vector of them.

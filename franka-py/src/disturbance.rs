@@ -1,8 +1,11 @@
 //! What people and objects do to a simulated robot.
 
+use std::sync::{Arc, OnceLock};
+
 use franka_async::model::Frame;
 use franka_async::nalgebra::{UnitVector3, Vector3};
 use franka_async::state::RobotError;
+use franka_sim::TouchId;
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -10,7 +13,7 @@ use pyo3::types::PyAny;
 
 use crate::arrays::{array, pose_array, vector};
 use crate::model::arguments;
-use crate::once_moving::Begun;
+use crate::once_moving::JobId;
 use crate::operation::seconds;
 use crate::simulator::Sim;
 
@@ -18,22 +21,29 @@ use crate::simulator::Sim;
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Touch {
     sim: Py<Sim>,
-    begun: Begun,
+    /// What begins it, if it waited for the arm to move.
+    waits: Option<JobId>,
+    /// Set when it begins.
+    id: Arc<OnceLock<TouchId>>,
 }
 
 #[pymethods]
 impl Touch {
     /// Ends it, also before it has begun. Returns whether it was still there.
     fn release(&self, py: Python<'_>) -> PyResult<bool> {
-        let begun = self.begun.clone();
-        self.sim.get().robot(py, move |robot| begun.release(robot))
+        let sim = self.sim.get();
+        let (once_moving, waits, id) = (sim.once_moving.clone(), self.waits, self.id.clone());
+        sim.robot(py, move |robot| {
+            waits.is_some_and(|job| once_moving.take_back(job))
+                || id.get().is_some_and(|id| robot.release(*id))
+        })
     }
 
     /// The wrench that it exerts on the arm now, base axes, `(6,)` N and N m; `None` if it is over,
     /// has not begun, or acts on joints.
     fn felt<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
-        let begun = self.begun.clone();
-        let felt = move |robot: &mut franka_sim::Robot| begun.id().and_then(|id| robot.felt(id));
+        let id = self.id.clone();
+        let felt = move |robot: &mut franka_sim::Robot| id.get().and_then(|id| robot.felt(*id));
         let felt = self.sim.get().robot(py, felt)?;
         Ok(felt.map(|wrench| array(py, wrench.as_slice())))
     }
@@ -56,13 +66,15 @@ fn touch(
         let time = seconds("duration", duration)?.as_millis();
         touch = touch.lasting(u64::try_from(time).unwrap_or(u64::MAX));
     }
-    let begun = Begun::default();
-    let begin = begun.clone();
-    let begin = move |robot: &mut franka_sim::Robot| begin.begin(robot, touch);
-    let waits = once_moving.then(|| Some(begun.clone()));
-    sim.get().disturb(sim.py(), waits, begin)?;
+    let id = Arc::new(OnceLock::new());
+    let begun = id.clone();
+    let begin = move |robot: &mut franka_sim::Robot| {
+        // It begins once.
+        let _ = begun.set(robot.touch(touch));
+    };
+    let waits = sim.get().disturb(sim.py(), once_moving, begin)?;
     let sim = sim.clone().unbind();
-    Ok(Touch { sim, begun })
+    Ok(Touch { sim, waits, id })
 }
 
 #[pymethods]
@@ -187,7 +199,7 @@ impl Sim {
     #[pyo3(signature = (pressed = true, *, once_moving = false))]
     fn press_user_stop(&self, py: Python<'_>, pressed: bool, once_moving: bool) -> PyResult<()> {
         let press = move |robot: &mut franka_sim::Robot| robot.press_user_stop(pressed);
-        self.disturb(py, once_moving.then_some(None), press)
+        self.disturb(py, once_moving, press).map(drop)
     }
 
     /// Activates a safety function that forbids motion, as set up in Desk, or deactivates it.
@@ -220,7 +232,7 @@ impl Sim {
             PyValueError::new_err(format!("error is {error:?}, expected {names}"))
         })?;
         let trip = move |robot: &mut franka_sim::Robot| robot.trip(found);
-        self.disturb(py, once_moving.then_some(None), trip)
+        self.disturb(py, once_moving, trip).map(drop)
     }
 
     /// Performs the recovery that takes a person.

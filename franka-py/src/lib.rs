@@ -48,6 +48,7 @@ mod robot;
 mod runtime;
 mod settings;
 mod simulator;
+mod simulator_options;
 mod start;
 mod state;
 mod state_views;

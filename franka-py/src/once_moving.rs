@@ -2,98 +2,62 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use franka_sim::{Robot, TouchId};
+use franka_sim::Robot;
 
 /// What waits for the arm to move, in order. Clones are of the same robot.
 #[derive(Clone, Default)]
-pub(crate) struct OnceMoving(Arc<Mutex<Vec<Waiting>>>);
+pub(crate) struct OnceMoving(Arc<Mutex<Waiting>>);
 
+#[derive(Default)]
 struct Waiting {
-    job: Box<dyn FnOnce(&mut Robot) + Send>,
-    /// The touch that `job` begins, if it begins one.
-    touch: Option<Begun>,
+    jobs: Vec<(JobId, Job)>,
+    /// How many there were.
+    count: u64,
 }
 
+type Job = Box<dyn FnOnce(&mut Robot) + Send>;
+
+/// Names a job, to take it back.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) struct JobId(u64);
+
 impl OnceMoving {
-    /// Has `job` done before the first millisecond at which the arm moves. `touch` is what it
-    /// begins, which may be released before.
-    pub(crate) fn push(&self, job: impl FnOnce(&mut Robot) + Send + 'static, touch: Option<Begun>) {
-        let job = Box::new(job);
-        self.waiting().push(Waiting { job, touch });
+    /// Has `job` done before the first millisecond at which the arm moves.
+    pub(crate) fn push(&self, job: impl FnOnce(&mut Robot) + Send + 'static) -> JobId {
+        let mut waiting = self.waiting();
+        waiting.count += 1;
+        let id = JobId(waiting.count);
+        waiting.jobs.push((id, Box::new(job)));
+        id
     }
 
-    /// How many wait, without touches that were released.
+    /// Takes a job back. Returns whether it still waited.
+    pub(crate) fn take_back(&self, id: JobId) -> bool {
+        let jobs = &mut self.waiting().jobs;
+        let before = jobs.len();
+        jobs.retain(|(other, _)| *other != id);
+        jobs.len() < before
+    }
+
+    /// How many jobs wait.
     pub(crate) fn count(&self) -> usize {
-        let waits = |touch: &Begun| matches!(*touch.stage(), Stage::Waits);
-        let waiting = self.waiting();
-        let live = waiting
-            .iter()
-            .filter(|one| one.touch.as_ref().is_none_or(waits));
-        live.count()
+        self.waiting().jobs.len()
     }
 
-    /// Drops all that waits.
+    /// Takes all jobs back.
     pub(crate) fn clear(&self) {
-        self.waiting().clear();
+        self.waiting().jobs.clear();
     }
 
     /// To be called before each millisecond of the robot.
     pub(crate) fn look_at(&self, robot: &mut Robot) {
         let mut waiting = self.waiting();
-        if !waiting.is_empty() && robot.dq().amax() > MOVING {
-            waiting.drain(..).for_each(|one| (one.job)(robot));
+        if !waiting.jobs.is_empty() && robot.dq().amax() > MOVING {
+            waiting.jobs.drain(..).for_each(|(_, job)| job(robot));
         }
     }
 
-    fn waiting(&self) -> MutexGuard<'_, Vec<Waiting>> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-}
-
-/// A touch that has begun, or that begins when the arm moves.
-#[derive(Clone, Default)]
-pub(crate) struct Begun(Arc<Mutex<Stage>>);
-
-#[derive(Default)]
-enum Stage {
-    #[default]
-    Waits,
-    Acts(TouchId),
-    /// Released before it had begun.
-    Dropped,
-}
-
-impl Begun {
-    /// Begins it, unless it was released.
-    pub(crate) fn begin(&self, robot: &mut Robot, touch: franka_sim::Touch) {
-        let mut stage = self.stage();
-        if let Stage::Waits = *stage {
-            *stage = Stage::Acts(robot.touch(touch));
-        }
-    }
-
-    /// Ends it. Returns whether it was still there.
-    pub(crate) fn release(&self, robot: &mut Robot) -> bool {
-        let mut stage = self.stage();
-        match *stage {
-            Stage::Acts(id) => robot.release(id),
-            Stage::Waits => {
-                *stage = Stage::Dropped;
-                true
-            }
-            Stage::Dropped => false,
-        }
-    }
-
-    /// What it is called by the robot, if it has begun.
-    pub(crate) fn id(&self) -> Option<TouchId> {
-        match *self.stage() {
-            Stage::Acts(id) => Some(id),
-            Stage::Waits | Stage::Dropped => None,
-        }
-    }
-
-    fn stage(&self) -> MutexGuard<'_, Stage> {
+    fn waiting(&self) -> MutexGuard<'_, Waiting> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,24 +1,19 @@
 //! A simulated robot in the process.
 
-use std::net::SocketAddr;
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
 
-use franka_async::model::{JointVector, Load, Model, RobotKind};
-use franka_sim::arm::{Arm, Family};
-use franka_sim::network::{Conditions, Loss, Network, Stalls};
-use franka_sim::{Fingers, Running, Stopped, Suction, Tool};
+use franka_async::model::{JointVector, RobotKind};
+use franka_sim::{Running, Stopped};
 use futures::future::try_join_all;
-use pyo3::exceptions::{PyAttributeError, PyOSError, PyOverflowError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyAny, PyDict};
 
-use crate::arrays::{pose, vector};
-use crate::model::arguments;
-use crate::once_moving::{Begun, OnceMoving};
-use crate::operation::{Operation, seconds};
+use crate::once_moving::{JobId, OnceMoving};
+use crate::operation::Operation;
 use crate::options::Keywords;
 use crate::runtime::{self, Threaded};
+use crate::simulator_options::{configured, positions};
 use crate::state::RobotState;
 
 /// A simulated robot on a free port of this host, from the call on until `stop()` or the end of the
@@ -148,14 +143,14 @@ impl Sim {
     #[pyo3(signature = (*, once_moving = false))]
     fn stop(&self, py: Python<'_>, once_moving: bool) -> PyResult<()> {
         if once_moving {
-            let stop = self.disturb(py, Some(None), |_| {
+            let stop = self.disturb(py, true, |_| {
                 // Ends the thread of the robot, and with it sockets and connections; `panic!` would
                 // print something, too.
                 std::panic::resume_unwind(Box::new("stopped"))
             });
             return match stop {
                 Err(error) if error.is_instance_of::<PyOSError>(py) => Ok(()),
-                other => other,
+                other => other.map(drop),
             };
         }
         let runtime = runtime::runtime()?;
@@ -257,21 +252,24 @@ impl Sim {
         self.with(py, async |running| running.with(act).await)
     }
 
-    /// Does something to the robot between two of its milliseconds: now or, with `once_moving`,
-    /// once its arm moves. `once_moving` has the touch that it begins, if it begins one.
+    /// Does something to the robot between two of its milliseconds: now or, `once_moving`, once
+    /// its arm moves. Returns what then waits.
     ///
     /// # Errors
     /// As [`Self::with`].
     pub(crate) fn disturb(
         &self,
         py: Python<'_>,
-        once_moving: Option<Option<Begun>>,
+        once_moving: bool,
         act: impl FnOnce(&mut franka_sim::Robot) + Send + 'static,
-    ) -> PyResult<()> {
+    ) -> PyResult<Option<JobId>> {
         let waiting = self.once_moving.clone();
-        self.robot(py, move |robot| match once_moving {
-            Some(touch) => waiting.push(act, touch),
-            None => act(robot),
+        self.robot(py, move |robot| {
+            if once_moving {
+                return Some(waiting.push(act));
+            }
+            act(robot);
+            None
         })
     }
 
@@ -302,217 +300,3 @@ fn together<const N: usize>(sims: Vec<franka_sim::Sim>) -> Vec<franka_sim::Sim> 
     };
     franka_sim::Sim::in_step(sims).into()
 }
-
-/// The robot that the keyword arguments describe.
-fn configured(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<franka_sim::Sim> {
-    let mut sim = match kind {
-        RobotKind::Fer => franka_sim::Sim::fer(),
-        _ => franka_sim::Sim::fr3(),
-    };
-    sim = sim.arm(arm(kind, keywords)?);
-    let seed = keywords.take("seed")?;
-    let seed = seed.map(|seed| self::seed("seed", &seed)).transpose()?;
-    let q = keywords.take("q")?;
-    let q = q.map(|q| positions(kind, &q)).transpose()?;
-    let load = keywords
-        .take("load")?
-        .map(|load| self::load(&load))
-        .transpose()?;
-    let enforce_limits: Option<bool> = keywords.value("enforce_limits")?;
-    sim = sim.configure(|config| {
-        config.seed = seed.unwrap_or(config.seed);
-        config.q = q.unwrap_or(config.q);
-        config.payload = load.unwrap_or(config.payload);
-        config.enforce_limits = enforce_limits.unwrap_or(config.enforce_limits);
-    });
-    let address = keywords.value::<String>("address")?;
-    let address = address.map(|text| self::address(&text)).transpose()?;
-    if let Some(address) = address {
-        sim = sim.bind(address);
-    }
-    // As on a robot; beside a free one they are free, too.
-    let gripper_port = |place: u16| match address.map_or(0, |address| address.port()) {
-        0 => 0,
-        port => port.checked_add(place).unwrap_or(0),
-    };
-    if keywords.value("hand")?.unwrap_or(false) {
-        let port = gripper_port(1);
-        sim = sim.tool(Tool::hand()).hand(Fingers::new(), port);
-    }
-    if let Some(tool) = keywords.take("tool")? {
-        sim = sim.tool(self::tool(&tool)?);
-    }
-    if keywords.value("vacuum_gripper")?.unwrap_or(false) {
-        sim = sim.vacuum_gripper(Suction::new(), gripper_port(2));
-    }
-    let patience: Option<f64> = keywords.value("patience")?;
-    let patience = patience.map(|patience| seconds("patience", patience));
-    let patience = patience.transpose()?;
-    if keywords.value("virtual_time")?.unwrap_or(false) {
-        sim = sim.virtual_time(patience.unwrap_or(PATIENCE));
-    } else if let Some(patience) = patience {
-        sim = sim.wait_for_commands(patience);
-    }
-    if let Some(network) = keywords.take("network")? {
-        sim = sim.network(self::network(&network)?);
-    }
-    Ok(sim)
-}
-
-/// Reads joint positions, where the joints of such a robot can be.
-///
-/// # Errors
-/// As [`vector`], and `ValueError` outside the ranges of the joints.
-fn positions(kind: RobotKind, q: &Bound<'_, PyAny>) -> PyResult<JointVector> {
-    let q = JointVector::from(vector::<7>("q", q)?);
-    let limits = Model::physically_consistent(kind).joint_limits();
-    let (lower, upper) = (&limits.hard_lower, &limits.hard_upper);
-    match (0..7).find(|i| q[*i] < lower[*i] || q[*i] > upper[*i]) {
-        None => Ok(q),
-        Some(i) => Err(PyValueError::new_err(format!(
-            "joint {} of q is {} rad, expected {} to {}",
-            i + 1,
-            q[i],
-            lower[i],
-            upper[i]
-        ))),
-    }
-}
-
-/// Reads a seed from the argument called `name`.
-fn seed(name: &str, seed: &Bound<'_, PyAny>) -> PyResult<u64> {
-    seed.extract().map_err(|error: PyErr| {
-        let text = format!("{name} is {seed}, expected an integer from 0 to 2^64 - 1");
-        match error.is_instance_of::<PyOverflowError>(seed.py()) {
-            true => PyValueError::new_err(text),
-            false => PyTypeError::new_err(text),
-        }
-    })
-}
-
-/// Reads where to listen.
-fn address(text: &str) -> PyResult<SocketAddr> {
-    text.parse().map_err(|_| {
-        let text = format!("address is {text:?}, expected an IP address and a port");
-        PyValueError::new_err(text)
-    })
-}
-
-/// The arm that `arm`, `arm_seed` and `ideal` choose.
-fn arm(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<Arm> {
-    let arm: Option<String> = keywords.value("arm")?;
-    let seed = keywords.take("arm_seed")?;
-    let seed = seed.map(|seed| self::seed("arm_seed", &seed)).transpose()?;
-    let is_ideal = keywords.value("ideal")?.unwrap_or(false);
-    let name = match arm.as_deref() {
-        Some(name) if is_ideal && name != "ideal" => {
-            let text = format!("arm is {name:?} and ideal is True: expected one of them");
-            return Err(PyValueError::new_err(text));
-        }
-        _ if is_ideal => "ideal",
-        name => name.unwrap_or("realistic"),
-    };
-    let family = match name {
-        "ideal" if seed.is_none() => return Ok(Arm::ideal(kind)),
-        "nominal" => Family::nominal(),
-        "realistic" => Family::realistic(),
-        "bad" => Family::bad(),
-        _ => {
-            let expected = "'ideal' (without arm_seed), 'nominal', 'realistic' or 'bad'";
-            let text = format!("arm is {name:?}, expected {expected}");
-            return Err(PyValueError::new_err(text));
-        }
-    };
-    Ok(match seed {
-        Some(seed) => Arm::sample(kind, seed, &family),
-        None => Arm::central(kind, &family),
-    })
-}
-
-/// Reads a load: a tuple of mass, kg, and centre of mass in the flange frame, m; or with its
-/// inertia.
-fn load(load: &Bound<'_, PyAny>) -> PyResult<Load> {
-    let (mass, center, inertia) = match load.extract::<(f64, Bound<'_, PyAny>)>() {
-        Ok((mass, center)) => (mass, center, None),
-        Err(_) => {
-            let (mass, center, inertia): (f64, Bound<'_, PyAny>, Bound<'_, PyAny>) =
-                load.extract()?;
-            (mass, center, Some(inertia))
-        }
-    };
-    arguments::load(inertia.as_ref(), mass, Some(&center))
-}
-
-/// Reads a tool: `hand`, or a tuple of its frame on the flange, its mass and its centre of mass.
-fn tool(tool: &Bound<'_, PyAny>) -> PyResult<Tool> {
-    if let Ok(name) = tool.extract::<String>() {
-        if name == "hand" {
-            return Ok(Tool::hand());
-        }
-        let text = format!("tool is {name:?}, expected 'hand' or a tuple (frame, mass, center)");
-        return Err(PyValueError::new_err(text));
-    }
-    let (frame, mass, center): (Bound<'_, PyAny>, f64, Bound<'_, PyAny>) = tool.extract()?;
-    Ok(Tool {
-        f_t_ne: pose("the frame of tool", &frame)?.to_homogeneous(),
-        load: arguments::load(None, mass, Some(&center))?,
-        has_hand_shape: false,
-    })
-}
-
-/// The field `name` of a `franka_async.Network`.
-fn field<'py, T>(network: &Bound<'py, PyAny>, name: &str, expected: &str) -> PyResult<T>
-where
-    T: for<'a> FromPyObject<'a, 'py>,
-{
-    let value = network.getattr(name).map_err(|error| {
-        if error.is_instance_of::<PyAttributeError>(network.py()) {
-            PyTypeError::new_err(format!("network is {network:?}, expected a Network"))
-        } else {
-            error
-        }
-    })?;
-    value.extract().map_err(|_| {
-        PyTypeError::new_err(format!(
-            "{name} of network is {value:?}, expected {expected}"
-        ))
-    })
-}
-
-/// Reads a `franka_async.Network`.
-fn network(network: &Bound<'_, PyAny>) -> PyResult<Network> {
-    let number = |name| field::<f64>(network, name, "a number");
-    let (loss, duplication) = (number("loss")?, number("duplication")?);
-    let (delay, jitter) = (number("delay")?, number("jitter")?);
-    let stalls: bool = field(network, "stalls", "True or False")?;
-    let cuts = "pairs of seconds, from and to, such as [(1.0, 1.1)]";
-    let cuts: Vec<(f64, f64)> = field(network, "cuts", cuts)?;
-    let seed = self::seed("seed of network", &field(network, "seed", "an integer")?)?;
-    for (name, share) in [("loss", loss), ("duplication", duplication)] {
-        if !(0.0..=1.0).contains(&share) {
-            let text = format!("{name} is {share}, expected a share from 0 to 1");
-            return Err(PyValueError::new_err(text));
-        }
-    }
-    let conditions = Conditions {
-        loss: Loss::Independent(loss),
-        delay: seconds("delay", delay)?,
-        jitter: seconds("jitter", jitter)?,
-        duplication,
-        ..Conditions::default()
-    };
-    let to_client = Conditions {
-        stalls: stalls.then_some(Stalls::FER),
-        ..conditions
-    };
-    let mut network = Network::new(seed, to_client, conditions);
-    for (from, to) in cuts {
-        let time = seconds("a cut", from)?..seconds("a cut", to)?;
-        network.to_client.cut(time.clone());
-        network.to_robot.cut(time);
-    }
-    Ok(network)
-}
-
-/// How long a simulated robot in virtual time waits for a command.
-const PATIENCE: Duration = Duration::from_millis(500);

@@ -211,6 +211,25 @@ async fn a_robot_that_does_not_begin_is_told_to_stop_and_given_up() {
     }
 }
 
+/// As one may that rounds the numbers that it is given.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_load_that_no_state_shows_is_waited_for_and_no_longer_than_some_states() {
+    let _alone = alone();
+    let peer = Peer::start(Manners {
+        request: |command| match command {
+            Some(Command::SetLoad) => Treatment::Answer(0),
+            _ => Treatment::Pass,
+        },
+        ..Manners::default()
+    });
+    let robot = peer.connect().await;
+    let begun = robot.state().message_id;
+    robot.set_load(LOAD).await.unwrap();
+    assert!(robot.state().message_id > begun + 200);
+    assert_eq!(robot.state().m_load, 0.0);
+    robot.shutdown().await;
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn a_robot_that_reads_no_requests_holds_up_no_stop() {
     let _alone = alone();

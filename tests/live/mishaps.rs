@@ -7,6 +7,7 @@
 use std::future::IntoFuture;
 use std::time::Duration;
 
+use franka_async::error::CommandError;
 use franka_async::settings::Load;
 use franka_async::state::RobotError;
 use franka_async::{MotionError, Pose, Robot};
@@ -150,6 +151,28 @@ async fn a_cut_is_bridged() {
     let _alone = alone();
     let seen = travel(Sim::fr3().ideal(), cuts(16), 0.1).await;
     assert!(seen.lost > 0, "{seen:?}");
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_load_that_is_answered_and_never_shown_is_a_lost_link() {
+    let _alone = alone();
+    let (robot, sim) = behind(Network::perfect(), Sim::fr3().ideal()).await;
+    let cut = |network: &mut Option<Network>, now| {
+        let network = network.as_mut().expect("there is one");
+        network
+            .to_client
+            .cut(now..now + Duration::from_secs(100_000));
+    };
+    sim.with_network(cut).await.expect("it runs");
+    let load = Load {
+        m_load: 0.3,
+        F_x_Cload: [0.0; 3],
+        I_load: [0.0; 9],
+    };
+    let lost = timeout(SOON, robot.set_load(load)).await.expect("it ends");
+    let lost = lost.unwrap_err();
+    assert!(matches!(lost, CommandError::LinkLost { .. }), "{lost}");
+    robot.shutdown().await;
 }
 
 /// The newest state that the client has is of the time before the motion: it has nothing to answer,

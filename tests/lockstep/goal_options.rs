@@ -7,10 +7,11 @@ use franka_model::{JointVector, RobotKind, Wrench};
 use franka_rt::law::Gains;
 use franka_rt::lifecycle::{MotionError, NewMotion, Party, Tuning};
 use franka_rt::session::{
-    Deviation, Goal, GoalError, GoalId, Guard, Lapse, Leash, OnArrival, Settling, Target, Waypoint,
+    Deviation, Goal, GoalError, GoalId, Guard, Lapse, Lead, Leash, OnArrival, Settling, Target,
+    Waypoint,
 };
 use franka_sim::Arm;
-use nalgebra::{Isometry3, Translation3};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 
 /// Runs the test on a realistic arm of each kind.
 fn for_each_arm(test: impl Fn(&dyn Fn() -> Lockstep)) {
@@ -435,7 +436,26 @@ fn numbers_out_of_bounds_are_named_with_what_is_accepted() {
         posture: Some([0.0; 7]),
         ..goal
     };
+    let lead = Goal {
+        lead: Some(Lead {
+            translation: 0.0,
+            rotation: 0.3,
+            joints: 0.3,
+        }),
+        ..goal
+    };
+    let mut twice = start;
+    twice.rotation = UnitQuaternion::new_unchecked(start.rotation.into_inner() * 2.0);
+    let twice = Goal {
+        target: Target::Pose(twice),
+        ..goal
+    };
     for (refused, says) in [
+        (lead, "lead is 0 m, expected at least 0.000001"),
+        (
+            twice,
+            "the quaternion of the target has the length 2, expected 1",
+        ),
         (
             leash(0.004),
             "leash is 0.004 m, expected between 0.005 and 0.1",
@@ -468,7 +488,10 @@ fn numbers_out_of_bounds_are_named_with_what_is_accepted() {
         assert!(matches!(
             error,
             MotionError::Goal(
-                GoalError::Number { .. } | GoalError::Gains(_) | GoalError::OutOfRange { .. }
+                GoalError::Number { .. }
+                    | GoalError::NotRotation { .. }
+                    | GoalError::Gains(_)
+                    | GoalError::OutOfRange { .. }
             )
         ));
     }

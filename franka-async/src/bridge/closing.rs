@@ -75,7 +75,7 @@ impl Bridge {
             connection.close().await;
         }
         if !self.ends().await {
-            // Left to itself: whoever waits for it waits for ever.
+            // It goes on without this connection: a thread cannot be ended from outside.
             tracing::error!("the control thread does not end: its function has not returned");
         } else if let Some(thread) = self.thread.take() {
             match tokio::task::spawn_blocking(move || thread.join()).await {

@@ -45,6 +45,10 @@ pub(crate) fn run(
     wait("the page of the left robot", || {
         Ok(page.state()?["endEffector"].is_array())
     })?;
+    // This server was started without permission to move an arm.
+    wait("why the page takes no command", || {
+        page.shows("lease", "View only")
+    })?;
     let marked = "return document.querySelector('#robots [aria-current]').textContent";
     ensure!(page.run(marked)? == "left", "the tab is not marked");
     page.run("[...document.querySelectorAll('#robots a')].at(-1).click()")?;

@@ -97,7 +97,7 @@ impl Lifecycle {
             },
             (
                 LifecyclePhase::Abandoned {
-                    deadline: Some(_), ..
+                    deadline: Ok(_), ..
                 },
                 None,
             ) => Goal::new(id, Target::Rest, on_arrival, self.model.joint_limits()),

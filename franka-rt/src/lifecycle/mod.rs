@@ -53,7 +53,6 @@ use crate::law::compensation::Learned;
 use crate::session::{Backend, Chunk, Goal, GoalId, KeepOut, Margin};
 
 use current_motion::CurrentMotion;
-use ending::STILL_SHOWN;
 
 pub use close_reason::CloseReason;
 pub use engagement::{Engagement, Tuning};
@@ -127,10 +126,8 @@ enum LifecyclePhase {
     /// comes waits for that.
     Abandoned {
         motion: MotionId,
-        /// Until when the next motion waits.
-        deadline: Option<Duration>,
-        /// What new motions are refused with after that.
-        why: MotionError,
+        /// Until when the next motion waits; after that, what new ones are refused with.
+        deadline: Result<Duration, MotionError>,
     },
     /// A thread that has borrowed the cycle does not run it, so that no motion can run.
     Stalled {
@@ -147,11 +144,8 @@ enum LifecyclePhase {
 
 impl LifecyclePhase {
     fn abandoned(motion: MotionId, now: Duration) -> Self {
-        Self::Abandoned {
-            motion,
-            deadline: Some(now + END_TIMEOUT),
-            why: STILL_SHOWN,
-        }
+        let deadline = Ok(now + END_TIMEOUT);
+        Self::Abandoned { motion, deadline }
     }
 }
 
@@ -217,12 +211,12 @@ impl Lifecycle {
     /// Returns whether no motion is under way and none waits. The arm may still brake after the end
     /// of the connection: see [`Self::is_braking`].
     pub fn is_idle(&self) -> bool {
-        match self.phase {
+        match &self.phase {
             LifecyclePhase::Idle
             | LifecyclePhase::Stalled { .. }
             | LifecyclePhase::Closed { .. } => true,
             // One that has passed its deadline is not waited for.
-            LifecyclePhase::Abandoned { deadline, .. } => deadline.is_none(),
+            LifecyclePhase::Abandoned { deadline, .. } => deadline.is_err(),
             LifecyclePhase::UnderWay(_) => false,
         }
     }
@@ -259,9 +253,7 @@ impl Lifecycle {
             }),
             LifecyclePhase::Stalled { .. } => Err(MotionError::Busy),
             LifecyclePhase::Abandoned {
-                deadline: None,
-                why,
-                ..
+                deadline: Err(why), ..
             } => Err(why.clone()),
             LifecyclePhase::Idle
             | LifecyclePhase::UnderWay(_)

@@ -207,7 +207,7 @@ impl Lifecycle {
     pub fn deadline(&self) -> Option<Duration> {
         match &self.phase {
             LifecyclePhase::UnderWay(current) => current.deadline,
-            LifecyclePhase::Abandoned { deadline, .. } => *deadline,
+            LifecyclePhase::Abandoned { deadline, .. } => deadline.as_ref().ok().copied(),
             LifecyclePhase::Idle
             | LifecyclePhase::Stalled { .. }
             | LifecyclePhase::Closed { .. } => None,
@@ -234,10 +234,9 @@ impl Lifecycle {
         let current = match (&mut self.phase, unseen) {
             (LifecyclePhase::UnderWay(_), Some(unseen)) => return self.give_up(unseen, now),
             (LifecyclePhase::UnderWay(current), None) => current,
-            (LifecyclePhase::Abandoned { deadline, why, .. }, unseen) => {
-                *deadline = None;
-                *why = unseen.unwrap_or(STILL_SHOWN);
-                let why = why.clone();
+            (LifecyclePhase::Abandoned { deadline, .. }, unseen) => {
+                let why = unseen.unwrap_or(STILL_SHOWN);
+                *deadline = Err(why.clone());
                 return self.resolve_next(why);
             }
             (

@@ -3,6 +3,7 @@
 use franka_model::READY;
 use franka_proto::{CommandId, MoveStatus, RobotMode, RobotState, Violation};
 
+use super::ending::STILL_SHOWN;
 use super::*;
 use crate::control::{Failure, Modes};
 use crate::driver::{Driver, Event};

@@ -191,15 +191,14 @@ const LIBRARY_MAX: usize = franka_proto::framing::MAX_MESSAGE_SIZE - 64;
 /// Joint positions, where the joints can be.
 fn possible(kind: RobotKind, q: JointVector) -> Result<JointVector, String> {
     let limits = JointLimits::of(kind);
-    let (lower, upper) = (&limits.hard_lower, &limits.hard_upper);
-    match (0..7).find(|&i| q[i] < lower[i] || q[i] > upper[i]) {
+    match limits.outside_hard(&q) {
         None => Ok(q),
         Some(i) => Err(format!(
             "joint {} of --q is {} rad, expected {} to {}",
             i + 1,
             q[i],
-            lower[i],
-            upper[i]
+            limits.hard_lower[i],
+            limits.hard_upper[i]
         )),
     }
 }

@@ -259,7 +259,7 @@ impl ActiveMotion {
             if !target.iter().all(|value| value.is_finite()) {
                 return Verdict::Invalid;
             }
-            if rules.limits && !within(&target, arm.model.joint_limits()) {
+            if rules.limits && arm.model.joint_limits().outside_hard(&target).is_some() {
                 return Verdict::Broken(RobotError::JointPositionLimitsViolation.into());
             }
             generator.go_to(&target, &desired.joints);
@@ -318,10 +318,6 @@ fn enforced(errors: Errors, rules: Rules) -> Errors {
         .iter()
         .filter(|&error| error == RobotError::CartesianPositionMotionGeneratorInvalidFrameFlag)
         .collect()
-}
-
-fn within(q: &JointVector, limits: &JointLimits) -> bool {
-    (0..7).all(|i| (limits.hard_lower[i]..=limits.hard_upper[i]).contains(&q[i]))
 }
 
 /// A step of exactly 1 N·m per cycle is allowed, also when the sum rounds, `[N·m/s]`.
