@@ -286,8 +286,10 @@ impl Machine {
         let archive = archive::tar(&content.portable(&name), release.epoch)?;
         artefacts.add(&format!("{name}.tar.gz"), &gzip(&archive)?)?;
         let for_debian = self.for_debian()?;
-        let package = debian::package(release, for_debian, &content)?;
-        let package = artefacts.add(&debian::file_name(release, for_debian), &package)?;
+        // One per architecture: of the static program, which is built first, if that is there.
+        let package = artefacts.add_first(&debian::file_name(release, for_debian), || {
+            debian::package(release, for_debian, &content)
+        })?;
         if self.is_static() {
             parts.push(Part {
                 architecture: for_debian.architecture,
@@ -296,7 +298,10 @@ impl Machine {
             });
         }
         let count = bill.count();
-        let package = debian::check(workspace, &package)?;
+        let package = match package {
+            Some(package) => debian::check(workspace, &package)?,
+            None => "is that of the static program".to_owned(),
+        };
         Ok(format!("{count} crates in its bill; package {package}"))
     }
 
@@ -348,6 +353,18 @@ impl Artefacts {
         Ok(file)
     }
 
+    /// Adds what is made, unless there is a file of this name.
+    fn add_first(
+        &mut self,
+        name: &str,
+        make: impl FnOnce() -> anyhow::Result<Vec<u8>>,
+    ) -> anyhow::Result<Option<PathBuf>> {
+        if self.sums.iter().any(|(other, _)| other == name) {
+            return Ok(None);
+        }
+        self.add(name, &make()?).map(Some)
+    }
+
     /// Writes the checksums, as `sha256sum --check` reads them; returns where all of it is.
     fn end(mut self) -> anyhow::Result<PathBuf> {
         self.sums.sort();
@@ -374,4 +391,30 @@ fn cargo_home() -> anyhow::Result<PathBuf> {
     }
     let home = env::var_os("HOME").context("neither CARGO_HOME nor HOME is set")?;
     Ok(PathBuf::from(home).join(".cargo"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_file_of_a_name_is_the_one() -> anyhow::Result<()> {
+        let name = format!("franka-xtask-{}-artefacts", std::process::id());
+        let directory = env::temp_dir().join(name);
+        fs::create_dir_all(&directory)?;
+        let mut artefacts = Artefacts {
+            directory: directory.clone(),
+            sums: Vec::new(),
+        };
+        let first = artefacts.add_first("a.deb", || Ok(b"static".to_vec()))?;
+        assert_eq!(fs::read(first.expect("the first"))?, b"static");
+        let second = artefacts.add_first("a.deb", || unreachable!("it is not made"))?;
+        assert_eq!(second, None);
+        artefacts.add("a.deb", b"twice").unwrap_err();
+        artefacts.end()?;
+        let sums = fs::read_to_string(directory.join("SHA256SUMS"))?;
+        assert_eq!(sums, format!("{}  a.deb\n", hash(b"static")));
+        fs::remove_dir_all(directory)?;
+        Ok(())
+    }
 }
