@@ -16,7 +16,7 @@ def motion(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFact
     with getattr(Sim, request.param)(virtual_time=True, patience=0.25) as sim:
         with sync.Robot(sim.address, **PATIENT) as robot, sync.Recorder.to_file(path) as recorder:
             recorder.attach(robot)
-            with robot.engage() as arm, recorder.episode("up", task="move up"):
+            with recorder.episode("up", task="move up"), robot.engage() as arm:
                 arm.move_by([0.0, 0.0, 0.05])
     recording = RecordingFile.open(path)
     [episode] = recording.episodes()

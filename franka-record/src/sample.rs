@@ -83,6 +83,17 @@ impl Sample {
     }
 }
 
+/// The samples from the first to the last in which the arm was told where to be; all of them if it
+/// never was.
+pub(crate) fn told(samples: &[Sample]) -> &[Sample] {
+    let is_told = |sample: &Sample| sample.q_ref.is_some();
+    let first = samples.iter().position(is_told);
+    let last = samples.iter().rposition(is_told);
+    first
+        .zip(last)
+        .map_or(samples, |(first, last)| &samples[first..=last])
+}
+
 /// The pose a `share` of the way from `a` to `b`.
 fn between(a: &Isometry3<f64>, b: &Isometry3<f64>, share: f64) -> Isometry3<f64> {
     // There is no shorter arc to the opposite orientation.

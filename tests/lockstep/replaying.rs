@@ -169,6 +169,30 @@ fn an_arm_whose_host_stops_in_mid_replay_comes_to_rest() {
 }
 
 #[test]
+fn cycles_before_and_after_the_arm_is_told_where_to_be_are_left_out() {
+    let samples = recorded(RobotKind::Fr3);
+    let told = 30..samples.len() - 20;
+    let mut edged = samples.clone();
+    for (i, sample) in edged.iter_mut().enumerate() {
+        sample.q_ref = sample.q_ref.filter(|_| told.contains(&i));
+    }
+    let made = |samples: &[Sample], source| {
+        let plan = plan(
+            RobotKind::Fr3,
+            samples,
+            ReplayOptions::default().source(source),
+        );
+        (plan.start(), plan.duration())
+    };
+    let inner = made(&samples[told], ReplaySource::Reference);
+    assert_eq!(made(&edged, ReplaySource::Reference), inner);
+    // Where it was is known of all of them.
+    let whole = made(&samples, ReplaySource::Measured);
+    assert_eq!(made(&edged, ReplaySource::Measured), whole);
+    assert!(whole.1 > inner.1);
+}
+
+#[test]
 fn what_is_no_motion_of_this_arm_is_refused_before_anything_moves() {
     let samples = recorded(RobotKind::Fr3);
     let model = Model::of(RobotKind::Fr3);
@@ -212,6 +236,11 @@ fn what_is_no_motion_of_this_arm_is_refused_before_anything_moves() {
     });
     assert!(matches!(
         refused(fr3, &free, options),
+        ReplayError::Uncontrolled { .. }
+    ));
+    let untold = changed(&|_, it| it.q_ref = None);
+    assert!(matches!(
+        refused(fr3, &untold, options),
         ReplayError::Uncontrolled { .. }
     ));
     let wild = changed(&|i, it| {

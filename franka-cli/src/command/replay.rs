@@ -2,9 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use franka_async::recording::{Sample, Samples};
-use franka_async::replay::{
-    ReplayError, ReplayOptions, ReplayPlan, ReplayReport, ReplaySource, ReplayTargets,
-};
+use franka_async::replay::{ReplayOptions, ReplayPlan, ReplayReport, ReplaySource, ReplayTargets};
 use serde_json::json;
 
 use super::explain::Recorded;
@@ -44,26 +42,12 @@ enum Source {
     Measured,
 }
 
-/// The samples from the first to the last in which the arm was told where to be.
-fn controlled(samples: &[Sample]) -> &[Sample] {
-    let is_controlled = |sample: &Sample| sample.q_ref.is_some();
-    let first = samples.iter().position(is_controlled);
-    let last = samples.iter().rposition(is_controlled);
-    first
-        .zip(last)
-        .map_or(samples, |(first, last)| &samples[first..=last])
-}
-
 impl Replay {
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
         let (recording, name, model) = self.recorded.open()?;
         let robot = recording.robot(&name)?;
         let samples = Samples::new(robot.cycles(), robot.gripper_states());
         let samples: Vec<Sample> = samples.collect::<Result<_, _>>()?;
-        let samples = match self.source {
-            Source::Reference => controlled(&samples),
-            Source::Measured => &samples[..],
-        };
         let mut options = ReplayOptions::default().speed(self.speed);
         if let Source::Measured = self.source {
             options = options.source(ReplaySource::Measured);
@@ -72,18 +56,12 @@ impl Replay {
             options = options.targets(ReplayTargets::Poses);
         }
         let moving = self.how.begin(&self.which).await?;
-        let plan = ReplayPlan::new(model.kind(), samples, options, moving.robot.model());
+        let plan = ReplayPlan::new(model.kind(), &samples, options, moving.robot.model());
         let outcome = match plan {
             Ok(plan) => self.replay(&moving, &plan).await,
             Err(error) => {
                 let failure = Failure::new(Ending::Failed, error.to_string());
-                let advice = match error {
-                    ReplayError::Uncontrolled { .. } => {
-                        "--source measured follows where the arm was."
-                    }
-                    _ => "Nothing has moved.",
-                };
-                Err(failure.advice(advice).into())
+                Err(failure.advice("Nothing has moved.").into())
             }
         };
         let report = moving.end(outcome).await?;

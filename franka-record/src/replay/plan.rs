@@ -9,7 +9,7 @@ use franka_rt::session::{Budget, Chunk};
 use nalgebra::Isometry3;
 
 use super::error::{GAP_MAX, ReplayError};
-use crate::sample::Sample;
+use crate::sample::{Sample, told};
 
 /// Time between targets.
 pub(super) const PERIOD: Duration = Duration::from_millis(10);
@@ -38,7 +38,8 @@ pub struct ReplayOptions {
 /// What of a recording the arm follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ReplaySource {
-    /// Where the arm was to be.
+    /// Where the arm was to be; without what was recorded before it was first told so, and after it
+    /// was last.
     #[default]
     Reference,
     /// Where it was, averaged over 40 ms: for arms that were moved by hand, or by torques.
@@ -127,6 +128,10 @@ impl ReplayPlan {
         if !(ReplayOptions::SPEED_MIN..=1.0).contains(&options.speed) {
             return Err(ReplayError::Speed { got: options.speed });
         }
+        let samples = match options.source {
+            ReplaySource::Reference => told(samples),
+            ReplaySource::Measured => samples,
+        };
         check_times(samples)?;
         let followed = followed(samples, options.source)?;
         let measured: Vec<_> = samples.iter().map(|sample| sample.q).collect();

@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Vector4};
 
 use super::Action;
-use crate::sample::Sample;
+use crate::sample::{Sample, told};
 
 /// Names of the numbers of a state or an action: joints, pose of the end effector (position and
 /// quaternion), and the width of the gripper where there is one.
@@ -44,7 +44,10 @@ impl Frames {
     ) -> Result<Self, String> {
         let (at_frames, last) = match action {
             Action::Measured => resampled(samples, fps)?,
-            Action::Reference => resampled(commanded(samples)?, fps)?,
+            Action::Reference => {
+                let samples: Vec<_> = samples.into_iter().collect();
+                resampled(told(&samples).iter().copied(), fps)?
+            }
         };
         let states = at_frames.iter().map(measured);
         let state = rows(states, gripper, None)?;
@@ -72,21 +75,6 @@ fn measured(sample: &Sample) -> Result<Moment, String> {
         pose: sample.pose,
         width: sample.width,
     })
-}
-
-/// The samples from the first to the last that have a reference.
-fn commanded(samples: impl IntoIterator<Item = Sample>) -> Result<Vec<Sample>, String> {
-    let is_free = |sample: &Sample| sample.q_ref.is_none() || sample.pose_ref.is_none();
-    let mut samples: Vec<_> = samples.into_iter().collect();
-    let first = samples.iter().position(|sample| !is_free(sample));
-    match (first, samples.first()) {
-        (None, Some(sample)) => return Err(uncontrolled(sample)),
-        (begin, _) => drop(samples.drain(..begin.unwrap_or(0))),
-    }
-    while samples.last().is_some_and(is_free) {
-        samples.pop();
-    }
-    Ok(samples)
 }
 
 fn uncontrolled(sample: &Sample) -> String {
