@@ -344,9 +344,12 @@ impl Artefacts {
         })
     }
 
+    fn has(&self, name: &str) -> bool {
+        self.sums.iter().any(|(other, _)| other == name)
+    }
+
     fn add(&mut self, name: &str, content: &[u8]) -> anyhow::Result<PathBuf> {
-        let same = self.sums.iter().any(|(other, _)| other == name);
-        ensure!(!same, "two files are named {name}");
+        ensure!(!self.has(name), "two files are named {name}");
         let file = self.directory.join(name);
         fs::write(&file, content)?;
         self.sums.push((name.to_owned(), hash(content)));
@@ -359,7 +362,7 @@ impl Artefacts {
         name: &str,
         make: impl FnOnce() -> anyhow::Result<Vec<u8>>,
     ) -> anyhow::Result<Option<PathBuf>> {
-        if self.sums.iter().any(|(other, _)| other == name) {
+        if self.has(name) {
             return Ok(None);
         }
         self.add(name, &make()?).map(Some)
