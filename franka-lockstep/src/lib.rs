@@ -31,6 +31,7 @@ use std::time::Duration;
 
 use franka_model::{Model, RobotKind};
 use franka_proto::RobotCommand;
+pub use franka_rt::control::Callback;
 use franka_rt::control::{Command, WriteError};
 pub use franka_rt::lifecycle::Outcome;
 use franka_rt::session::Guard;
@@ -39,7 +40,7 @@ use franka_sim::{Config, Robot};
 pub use driver_stack::DriverStack;
 pub use guarded::{Guarded, Workload};
 pub use link::Link;
-pub use poses::{pose_of, self_distance, set_in_motion};
+pub use poses::{force_of, pose_of, self_distance, set_in_motion};
 pub use several::{outcomes_of, turned};
 pub use supervised::{Asked, Supervised};
 pub use wander::Wander;

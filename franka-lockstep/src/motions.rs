@@ -1,6 +1,6 @@
 //! Motions of the client: begun, changed, ended, and awaited in virtual time.
 
-use franka_proto::{MoveRequest, Request};
+use franka_proto::{MoveControllerMode, MoveRequest, Request};
 use franka_rt::control::Callback;
 use franka_rt::driver::Program;
 use franka_rt::lifecycle::{MotionError, NewMotion};
@@ -83,6 +83,17 @@ impl Lockstep {
     ) -> Result<GoalId, MotionError> {
         self.guard = None;
         self.client.control(program, request)
+    }
+
+    /// Starts a control function, beside the robot's joint impedance controller where it commands
+    /// no torques. As [`Self::control`].
+    ///
+    /// # Errors
+    /// As the lifecycle.
+    pub fn control_function(&mut self, function: Callback) -> Result<GoalId, MotionError> {
+        let controller = MoveControllerMode::JointImpedance;
+        let request = function.request(self.client.version(), controller);
+        self.control(Program::Callback(Box::new(function)), request)
     }
 
     /// Brakes and returns the id of the stop; `None` if nothing moves.

@@ -3,7 +3,7 @@
 use franka_model::collision::Shape;
 use franka_model::{EndEffector, Frame, JointVector, Model, Twist, transform};
 use franka_rt::session::Target;
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Vector3};
 use rand::Rng;
 
 use super::Lockstep;
@@ -36,6 +36,19 @@ impl Lockstep {
 pub fn pose_of(q: &JointVector, ee: &EndEffector) -> Isometry3<f64> {
     let pose = Model::fr3().pose(Frame::EndEffector, q, ee);
     transform::isometry(&pose).expect("a rigid end effector")
+}
+
+/// The force on the flange that these joint torques stand for, in the axes of the base, `[N]`: with
+/// the least wrench that they can be told from.
+///
+/// # Panics
+/// At a singularity.
+pub fn force_of(q: &JointVector, torques: &JointVector) -> Vector3<f64> {
+    let flange = EndEffector::default();
+    let (_, jacobian) = Model::fr3().pose_and_jacobian(Frame::EndEffector, q, &flange);
+    let square = jacobian * jacobian.transpose();
+    let wrench = square.try_inverse().expect("no singularity") * jacobian * torques;
+    wrench.fixed_rows::<3>(0).into_owned()
 }
 
 /// The smallest distance between links that are three or more apart in the chain, `[m]`; the Hand

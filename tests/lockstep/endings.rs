@@ -4,11 +4,9 @@ use std::sync::mpsc;
 
 use franka_lockstep::{Link, Lockstep, for_each_robot};
 use franka_model::{READY, Twist, Wrench};
-use franka_proto::{
-    CollisionBehavior, MoveControllerMode, MoveStatus, Request, RobotError, RobotMode, Status,
-};
+use franka_proto::{CollisionBehavior, MoveStatus, Request, RobotError, RobotMode, Status};
 use franka_rt::control::{Callback, Torques};
-use franka_rt::driver::{LINK_TIMEOUT, Program};
+use franka_rt::driver::LINK_TIMEOUT;
 use franka_rt::lifecycle::{CloseReason, MotionError};
 use franka_rt::session::{GoalError, Guard, OnArrival, Target};
 use nalgebra::Translation3;
@@ -335,9 +333,7 @@ fn a_control_function_gets_no_more_states_after_an_unreadable_reply() {
             calls.send(()).expect("the test listens");
             Torques([0.0; 7])
         });
-        let request = callback.request(version, MoveControllerMode::JointImpedance);
-        let program = Program::Callback(Box::new(callback));
-        let work = lockstep.control(program, request).expect("nothing moves");
+        let work = lockstep.control_function(callback).expect("nothing moves");
         lockstep.run(50);
         assert!(called.try_iter().count() > 10);
         lockstep.client.violate();

@@ -11,9 +11,8 @@ use std::time::Duration;
 
 use franka_lockstep::{Link, Lockstep};
 use franka_model::RobotKind;
-use franka_proto::{MoveControllerMode, Version};
+use franka_proto::Version;
 use franka_rt::control::{Callback, Finish, Torques};
-use franka_rt::driver::Program;
 use franka_sim::Network;
 use franka_sim::network::Conditions;
 use franka_tests::cycle_counts::CycleCounts;
@@ -30,10 +29,8 @@ fn communicate(network: Network, turnaround: Duration, cycles: u64) -> CycleCoun
         counts.note(state, step);
         Torques([0.0; 7]).finish_if(counts.cycles >= cycles)
     });
-    let request = callback.request(Version::V5, MoveControllerMode::JointImpedance);
-    let id = lockstep
-        .control(Program::Callback(Box::new(callback)), request)
-        .expect("nothing else runs");
+    let id = lockstep.control_function(callback);
+    let id = id.expect("nothing else runs");
     let outcome = lockstep.until_resolved(id, cycles + 1000);
     outcome.expect("the robot bridges such gaps");
     *counts.lock().expect("no panic")

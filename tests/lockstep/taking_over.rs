@@ -2,9 +2,9 @@
 
 use franka_lockstep::Lockstep;
 use franka_model::READY;
-use franka_proto::{MoveControllerMode, RobotError, RobotMode};
+use franka_proto::{RobotError, RobotMode};
 use franka_rt::control::{Callback, Finish, Next, Torques};
-use franka_rt::driver::{Activity, LINK_TIMEOUT, Program};
+use franka_rt::driver::{Activity, LINK_TIMEOUT};
 use franka_rt::lifecycle::{CloseReason, MotionError, START_TIMEOUT};
 use franka_rt::session::{GoalId, OnArrival, PoseError, Target};
 use nalgebra::Translation3;
@@ -111,8 +111,7 @@ fn hold(lockstep: &mut Lockstep) -> Result<GoalId, MotionError> {
             torques.finish()
         }
     });
-    let request = function.request(version, MoveControllerMode::JointImpedance);
-    lockstep.control(Program::Callback(Box::new(function)), request)
+    lockstep.control_function(function)
 }
 
 #[test]

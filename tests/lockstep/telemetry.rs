@@ -4,9 +4,8 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use franka_lockstep::{Link, Lockstep, Outcome};
-use franka_proto::{MoveControllerMode, Version};
+use franka_proto::Version;
 use franka_rt::control::{Callback, Finish, Torques};
-use franka_rt::driver::Program;
 use franka_rt::session::Target;
 use nalgebra::Translation3;
 
@@ -34,23 +33,19 @@ fn watch(
 }
 
 /// A program that commands zero torques for so many milliseconds of the robot's time.
-fn nothing_for(milliseconds: u64) -> (Program, franka_proto::MoveRequest) {
+fn nothing_for(milliseconds: u64) -> Callback {
     let mut time = Duration::ZERO;
-    let callback = Callback::torques(Version::V10, move |_, step| {
+    Callback::torques(Version::V10, move |_, step| {
         time += step;
         Torques([0.0; 7]).finish_if(time >= Duration::from_millis(milliseconds))
-    });
-    let request = callback.request(Version::V10, MoveControllerMode::JointImpedance);
-    (Program::Callback(Box::new(callback)), request)
+    })
 }
 
 #[test]
 fn the_report_counts_the_states_that_the_link_drops() {
     let mut lockstep = Lockstep::ready();
-    let (program, request) = nothing_for(800);
-    let id = lockstep
-        .control(program, request)
-        .expect("nothing else runs");
+    let id = lockstep.control_function(nothing_for(800));
+    let id = id.expect("nothing else runs");
     lockstep.run(100);
     let mut dropped = 0;
     for (burst, pause) in [(1, 30), (3, 50), (7, 40), (2, 200)] {
@@ -98,10 +93,8 @@ fn the_success_rate_of_the_report_is_that_of_the_states() {
 #[test]
 fn states_superseded_by_a_newer_one_count_as_skipped() {
     let mut lockstep = Lockstep::ready();
-    let (program, request) = nothing_for(400);
-    let id = lockstep
-        .control(program, request)
-        .expect("nothing else runs");
+    let id = lockstep.control_function(nothing_for(400));
+    let id = id.expect("nothing else runs");
     lockstep.run(100);
     // As when the control thread finds three states and answers the newest: of five missing states,
     // two never arrived.

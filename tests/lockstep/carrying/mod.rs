@@ -5,8 +5,8 @@ mod held_back;
 
 use std::any::Any;
 
-use franka_lockstep::{Lockstep, outcomes_of, pose_of};
-use franka_model::{EndEffector, Frame, Model, READY, RobotKind};
+use franka_lockstep::{Lockstep, force_of, outcomes_of, pose_of};
+use franka_model::{EndEffector, READY, RobotKind};
 use franka_proto::{CollisionBehavior, Request};
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{ForceCap, Goal, GoalId, OnArrival, Target, Tolerance};
@@ -157,12 +157,7 @@ impl Carriers {
     /// What the bar does to a flange, in the axes of the world, `[N]`.
     fn force_on(&self, member: usize) -> Vector3<f64> {
         let q = self.robots[member].robot.q();
-        let ee = EndEffector::default();
-        let (_, jacobian) = Model::fr3().pose_and_jacobian(Frame::EndEffector, q, &ee);
-        let square = jacobian * jacobian.transpose();
-        let torque = self.arm(member).contact_torque();
-        let wrench = square.try_inverse().expect("no singularity") * jacobian * torque;
-        bases()[member].rotation * wrench.fixed_rows::<3>(0).into_owned()
+        bases()[member].rotation * force_of(q, &self.arm(member).contact_torque())
     }
 
     /// The force with which the arms pull at each other through the bar, `[N]`: what neither

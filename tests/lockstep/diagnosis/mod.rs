@@ -6,9 +6,8 @@ mod steps;
 
 use franka_diagnosis::{Diagnose, Diagnosis, Origin, Quantity, Subject};
 use franka_lockstep::Lockstep;
-use franka_proto::{MoveControllerMode, RobotError};
+use franka_proto::RobotError;
 use franka_rt::control::{Callback, JointVelocities, Shaper};
-use franka_rt::driver::Program;
 use franka_rt::session::GoalId;
 
 /// Cycles before the fault: enough for a success rate over a hundred of them, and for a log that
@@ -19,9 +18,7 @@ const QUIET: u32 = 150;
 pub(crate) fn begin(lockstep: &mut Lockstep, callback: Callback) -> GoalId {
     let version = lockstep.client.version();
     let callback = callback.with_shaper(Shaper::new(version, false, 1000.0));
-    let request = callback.request(version, MoveControllerMode::JointImpedance);
-    let program = Program::Callback(Box::new(callback));
-    lockstep.control(program, request).expect("nothing moves")
+    lockstep.control_function(callback).expect("nothing moves")
 }
 
 /// Begins a motion under a function that returns the joint velocities, `[rad/s]`, of each cycle,

@@ -2,9 +2,7 @@
 
 use super::{assert_stays, turned};
 use franka_lockstep::{Lockstep, for_each_robot};
-use franka_proto::MoveControllerMode;
 use franka_rt::control::{Callback, Torques};
-use franka_rt::driver::Program;
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{GoalId, OnArrival};
 
@@ -107,9 +105,7 @@ fn a_session_that_waits_for_a_program_is_stopped_with_it() {
         let mut lockstep = ready();
         let version = lockstep.client.version();
         let still = Callback::torques(version, |_, _| Torques([0.0; 7]));
-        let request = still.request(version, MoveControllerMode::JointImpedance);
-        let program = Program::Callback(Box::new(still));
-        let program = lockstep.control(program, request).expect("nothing moves");
+        let program = lockstep.control_function(still).expect("nothing moves");
         lockstep.run(100);
         lockstep.cancel(program);
         let session = ask(&mut lockstep).expect("the arm is let go");
