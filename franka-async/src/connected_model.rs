@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use franka_model::{Model, RobotKind};
+use franka_model::Model;
 #[cfg(feature = "urdf")]
 use franka_proto::Command;
 use franka_proto::{Architecture, Request, System, Version};
@@ -17,6 +17,7 @@ use crate::error::ModelError;
 #[cfg(feature = "urdf")]
 use crate::parameters;
 use crate::robot::Robot;
+use crate::state_model::nominal;
 
 /// Time for a library to come over the network.
 const DOWNLOAD: Duration = Duration::from_secs(30);
@@ -40,15 +41,6 @@ pub(crate) async fn of(
 #[cfg(not(feature = "urdf"))]
 pub(crate) async fn of(version: Version, _: &Channel, _: &Builder) -> Result<Model, ConnectError> {
     Ok(nominal(version))
-}
-
-/// The constants of the robot that speaks `version`: a version belongs to one kind.
-fn nominal(version: Version) -> Model {
-    let kind = match version {
-        Version::V5 => RobotKind::Fer,
-        Version::V10 => RobotKind::Fr3,
-    };
-    Model::of(kind).clone()
 }
 
 impl Robot {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use franka_model::{Dynamics, EndEffector, Load, Model};
+use franka_model::{Dynamics, EndEffector, Load, Model, RobotKind};
 use franka_proto::{RobotState, Version};
 
 /// The model of one robot, asked by its states: each has the joint positions and velocities, and
@@ -37,6 +37,12 @@ impl StateModel {
         Self { model, version }
     }
 
+    /// The constants of the robot that speaks `version`, without a robot: for tests of a law. An
+    /// arm that describes itself has its own, [`Robot::state_model`](crate::Robot::state_model).
+    pub fn nominal(version: Version) -> Self {
+        Self::new(Arc::new(nominal(version)), version)
+    }
+
     /// Pose and Jacobian of the end effector, mass matrix, Coriolis and gravity torques, in one
     /// pass over the arm.
     pub fn dynamics(&self, state: &RobotState) -> Dynamics {
@@ -64,6 +70,15 @@ impl StateModel {
     pub fn model(&self) -> &Model {
         &self.model
     }
+}
+
+/// The constants of the robot that speaks `version`: a version belongs to one kind.
+pub(crate) fn nominal(version: Version) -> Model {
+    let kind = match version {
+        Version::V5 => RobotKind::Fer,
+        Version::V10 => RobotKind::Fr3,
+    };
+    Model::of(kind).clone()
 }
 
 #[cfg(test)]

@@ -43,7 +43,12 @@ const NAMESAKES: [&str; 9] = [
 const IN_PYTHON: &str = "franka-py/tests/rust_names.txt";
 
 /// Crates of ours that programs depend on.
-const FOR_PROGRAMS: [&str; 3] = ["franka-async", "franka-sim", "franka-examples"];
+const FOR_PROGRAMS: [&str; 4] = [
+    "franka-async",
+    "franka-sim",
+    "franka-lockstep",
+    "franka-examples",
+];
 
 /// Fails with every name that is out of place.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
