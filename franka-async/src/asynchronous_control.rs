@@ -53,7 +53,7 @@ impl Robot {
     ) -> Result<AsynchronousControl, MotionError> {
         let version = self.version();
         if !version.has_asynchronous_motion() {
-            let what = "an asynchronous motion";
+            let what = "asynchronous motion";
             return Err(RequestError::Unsupported { what, version }.into());
         }
         let (program, targets) = AsynchronousPositions::new();

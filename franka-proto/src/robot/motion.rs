@@ -213,11 +213,11 @@ fn encode<A: AsynchronousPart>(
 ) -> Result<Outgoing, RequestError> {
     let generator = request.generator as u32;
     if generator as usize >= A::GENERATORS {
-        let what = "a motion without a generator";
+        let what = "motion without a generator";
         return Err(RequestError::Unsupported { what, version });
     }
     let asynchronous = A::of(request.asynchronous).ok_or(RequestError::Unsupported {
-        what: "an asynchronous motion",
+        what: "asynchronous motion",
         version,
     })?;
     let payload = wire::service::MoveRequest {

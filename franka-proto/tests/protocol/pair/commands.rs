@@ -45,8 +45,14 @@ fn what_a_version_lacks_is_refused_before_a_byte_is_made() {
         MoveGeneratorMode::JointPosition,
     );
     asynchronous.asynchronous = Some([1.0; 7]);
-    for request in [Request::GetRobotModel, torques, Request::Move(asynchronous)] {
+    for (request, what) in [
+        (Request::GetRobotModel, "Get Robot Model"),
+        (torques, "motion without a generator"),
+        (Request::Move(asynchronous), "asynchronous motion"),
+    ] {
         let error = pair.client.request(&request).unwrap_err();
+        let expected = format!("protocol 5 (Franka Emika Robot) has no {what}");
+        assert_eq!(error.to_string(), expected);
         assert!(
             matches!(error, RequestError::Unsupported { version, .. } if version == Version::V5),
             "{error:?}"
