@@ -99,7 +99,7 @@ fn a_reflex_ends_the_motion_with_its_name_and_recovery_allows_the_next() {
         );
         assert_eq!(
             error.to_string(),
-            r#"libfranka: Move command rejected: command not possible in the current mode ("Reflex")!"#
+            r#"libfranka: Move command rejected: command not possible in the current mode ("Reflex")! (`recover` first)"#
         );
 
         lockstep.run(500);

@@ -6,7 +6,9 @@ use core::time::Duration;
 use std::sync::Arc;
 
 use franka_model::Model;
-use franka_proto::{ControlFailure, Errors, MoveStatus, Refusal, RequestError, Status, Violation};
+use franka_proto::{
+    ControlFailure, Errors, MoveStatus, Refusal, RequestError, RobotMode, Status, Violation,
+};
 
 use super::{CloseReason, Unready};
 use crate::driver::{Commander, ControlLog, Ended};
@@ -185,8 +187,8 @@ pub enum MotionError {
         /// For how long, at least.
         silence: Duration,
     },
-    /// Robot: it refused to start the motion.
-    #[error("{0}")]
+    /// Robot: it refused to start the motion. libfranka's text, and after a reflex what to do.
+    #[error("{}{}", .0, recover_first(.0))]
     Rejected(Refusal),
     /// Robot: it ended the motion: a reflex, a user stop, another client's stop, a safety function.
     /// Clear the cause; after a reflex, recover.
@@ -347,6 +349,15 @@ impl MotionError {
             Self::ConnectionClosed { reason } => reason.party(),
             Self::Violation(_) | Self::Protocol { .. } => Party::Peer,
         }
+    }
+}
+
+/// What to do about a robot that refuses in the mode "Reflex".
+fn recover_first(refusal: &Refusal) -> &'static str {
+    let not_possible = Status::Move(MoveStatus::CommandNotPossibleRejected);
+    match (refusal.status() == not_possible, refusal.mode()) {
+        (true, RobotMode::Reflex) => " (`recover` first)",
+        _ => "",
     }
 }
 

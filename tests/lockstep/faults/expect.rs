@@ -53,8 +53,13 @@ impl Expect {
                 };
                 let status = Status::Move(MoveStatus::CommandNotPossibleRejected);
                 assert_eq!(refusal.status(), status);
+                let recover = if *mode == "Reflex" {
+                    " (`recover` first)"
+                } else {
+                    ""
+                };
                 format!(
-                    "libfranka: Move command rejected: command not possible in the current mode (\"{mode}\")!"
+                    "libfranka: Move command rejected: command not possible in the current mode (\"{mode}\")!{recover}"
                 )
             }
             Self::Reflex { certain, possible } => {

@@ -9,9 +9,10 @@ from .. import errors
 
 
 def text_of(error: errors.FrankaError) -> str:
-    """The text of an error, without what the originals do not say: where there was no connection, and why; what was out of range."""
-    text = str(error)
-    kinds = ("refused", "connection_closed") if isinstance(error, errors.ConnectError) else ("out_of_range",)
+    """The text of an error, without what the originals do not say: where there was no connection, and why; what was out of range; what to do."""
+    text = str(error).removesuffix(" (`recover` first)")
+    is_connecting = isinstance(error, errors.ConnectError)
+    kinds = ("refused", "connection_closed", "realtime") if is_connecting else ("out_of_range", "invalid_argument")
     if error.kind in kinds:
         return text.split(" (")[0]
     return text
