@@ -114,7 +114,8 @@ fn scenario_5_a_generator_with_torques_needs_both_commands() {
         assert_eq!(
             text(pair.write(command(true, false), false)),
             "Torque command missing, please use writeOnce(const MotionGeneratorType& \
-             motion_generator_input, const Torques& control_input) for external controllers."
+             motion_generator_input, const Torques& control_input) for external controllers. \
+             (here `write_motion_and_torques`)"
         );
         assert_eq!(text(pair.write(command(false, true), false)), PARTIAL);
 

@@ -10,7 +10,7 @@ use crate::shaping::{InvalidCommand, check};
 #[derive(Clone, Copy, Debug)]
 pub struct ActiveControl;
 
-/// Why a command was not sent. Texts are those of libfranka 0.21, `active_control*.h` and
+/// Why a command was not sent. Texts begin as those of libfranka 0.21, `active_control*.h` and
 /// `robot_impl.cpp`.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -24,7 +24,7 @@ pub enum WriteError {
     /// A motion command without the torques that the motion wants with it.
     #[error(
         "Torque command missing, please use writeOnce(const MotionGeneratorType& motion_generator_input, const Torques& \
-         control_input) for external controllers."
+         control_input) for external controllers. (here `write_motion_and_torques`)"
     )]
     TorquesMissing,
     /// A command of a kind that the motion does not take.
