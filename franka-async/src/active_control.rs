@@ -131,6 +131,8 @@ pub struct Active<C> {
     lease: Option<Lease>,
     /// `None` once the end is known.
     outcome: Option<oneshot::Receiver<Outcome>>,
+    /// What ended the motion, if it did not end as asked.
+    error: Option<MotionError>,
     /// `message_id` of the newest state read.
     previous: Option<u64>,
     commands: PhantomData<fn(C)>,
@@ -147,6 +149,7 @@ impl<C> Active<C> {
             lender: robot.link().lender.clone(),
             lease: None,
             outcome: Some(outcome),
+            error: None,
             previous: None,
             commands: PhantomData,
         })
@@ -157,10 +160,11 @@ impl<C> Active<C> {
     ///
     /// # Errors
     /// [`ActiveError::Motion`] when the robot has ended the motion, or has been silent for the link
-    /// timeout; [`ActiveError::Finished`] after the last command.
+    /// timeout; [`ActiveError::Ended`] in later calls; [`ActiveError::Finished`] after the last
+    /// command.
     pub fn read_once(&mut self) -> Result<(RobotState, Duration), ActiveError> {
         if self.outcome.is_none() {
-            return Err(ActiveError::Finished);
+            return Err(self.over());
         }
         loop {
             let lease = self.lease()?;
@@ -187,7 +191,7 @@ impl<C> Active<C> {
     /// Sends a command; the last one also waits until the robot has ended the motion.
     fn write(&mut self, next: Next<Command>) -> Result<Option<MotionReport>, ActiveError> {
         if self.outcome.is_none() {
-            return Err(ActiveError::Finished);
+            return Err(self.over());
         }
         match self.given_up() {
             Some(Ok(_)) => return Err(ActiveError::Finished),
@@ -198,7 +202,8 @@ impl<C> Active<C> {
             Ok(parts) => parts,
             Err(code) => {
                 self.stop();
-                return Err(MotionError::GivenUp { code }.into());
+                let error = self.error.insert(MotionError::GivenUp { code });
+                return Err(error.clone().into());
             }
         };
         self.lease()?.write(&command, finished)?;
@@ -212,7 +217,20 @@ impl<C> Active<C> {
     fn given_up(&mut self) -> Option<Outcome> {
         let outcome = self.outcome.as_mut()?.try_recv().ok()?;
         (self.lease, self.outcome) = (None, None);
-        Some(outcome)
+        Some(self.noted(outcome))
+    }
+
+    /// Remembers how the motion ended, for the calls that follow.
+    fn noted<T>(&mut self, end: Result<T, MotionError>) -> Result<T, MotionError> {
+        self.error = end.as_ref().err().cloned();
+        end
+    }
+
+    /// The error of a call after the end.
+    fn over(&self) -> ActiveError {
+        self.error
+            .clone()
+            .map_or(ActiveError::Finished, ActiveError::Ended)
     }
 
     /// The cycle, which the first call takes over.
@@ -237,10 +255,11 @@ impl<C> Active<C> {
     /// Gives the cycle back and waits for the end of the motion.
     fn end(&mut self) -> Outcome {
         self.lease = None;
-        match self.outcome.take() {
+        let end = match self.outcome.take() {
             Some(outcome) => outcome.blocking_recv().unwrap_or_else(unserved),
             None => Err(MotionError::Stopped),
-        }
+        };
+        self.noted(end)
     }
 }
 

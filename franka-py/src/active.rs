@@ -132,8 +132,8 @@ impl ActiveControl {
     /// robot's time since the state read before, in seconds: 0 at first, and more than 0.001 after
     /// a loss.
     ///
-    /// Raises `MotionError` with what ended the motion, and `ActiveError` of the kind `finished`
-    /// after the last command.
+    /// Raises `MotionError` with what ended the motion, and `ActiveError` of the kind `ended` when
+    /// read again after that, `finished` after the last command.
     fn read_once(&self, py: Python<'_>) -> PyResult<(RobotState, f64)> {
         let read = py.detach(|| {
             let mut guard = self.take_turn()?;

@@ -106,6 +106,9 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
             exception.setattr("is_ready_for_more", !control.is_reflex())?;
             set_control(&exception, control)?;
         }
+        Error::Active(ActiveError::Ended(error)) => {
+            exception.setattr("is_ready_for_more", error.is_ready_for_more())?;
+        }
         Error::Active(_) => exception.setattr("is_ready_for_more", true)?,
         _ => {}
     }

@@ -111,7 +111,7 @@ async fn what_the_motion_does_not_take_is_refused_and_it_goes_on() {
     }
 }
 
-/// Reads and writes until something ends it.
+/// Reads and writes until something ends it, and once more.
 fn until_it_ends(mut control: Active<Torques>) -> ActiveError {
     loop {
         let cycle = control.read_once().and_then(|(state, _)| {
@@ -119,6 +119,22 @@ fn until_it_ends(mut control: Active<Torques>) -> ActiveError {
             control.write_once(Torques(damping))
         });
         if let Err(error) = cycle {
+            let ActiveError::Motion(ended) = &error else {
+                panic!("{error:?}")
+            };
+            let again = control.write_once(Torques([0.0; 7])).unwrap_err();
+            assert_eq!(again, ActiveError::Ended(ended.clone()));
+            assert_eq!(control.read_once(), Err(again.clone()));
+            let is_reflex = ended.control().is_some_and(|error| error.is_reflex());
+            let recover = if is_reflex {
+                ", `recover` before the next"
+            } else {
+                ""
+            };
+            assert_eq!(
+                again.to_string(),
+                format!("the motion has ended{recover}: {ended}")
+            );
             return error;
         }
     }
@@ -210,7 +226,11 @@ async fn a_thread_that_hangs_is_reported_and_gives_the_connection_back_when_it_g
         control.read_once().unwrap();
         hanging.recv().unwrap();
         let error = control.write_once(Torques([0.0; 7])).unwrap_err();
-        assert_eq!(control.read_once(), Err(ActiveError::Finished));
+        let ended = control.read_once().unwrap_err();
+        assert!(matches!(
+            ended,
+            ActiveError::Ended(MotionError::Stalled { .. })
+        ));
         error
     });
     let reading = robot.read(|_| std::ops::ControlFlow::<()>::Continue(()));

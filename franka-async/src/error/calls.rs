@@ -184,6 +184,9 @@ pub enum ActiveError {
 }
 
 impl ActiveError {
+    /// The motion has ended otherwise than asked, as an earlier call has returned.
+    #[error("the motion has ended{}: {}", if needs_recovery(.0) { RECOVER } else { "" }, .0)]
+    Ended(MotionError),
     /// Returns the name of its row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
@@ -199,7 +202,8 @@ impl ActiveError {
         match self {
             Self::Motion(error) => error.party(),
             Self::Write(WriteFault::Link(_)) => Party::Link,
-            Self::Finished | Self::Write(_) | Self::Borrow(_) => Party::Caller,
+            Self::Ended(_) | Self::Finished | Self::Write(_) | Self::Borrow(_) => Party::Caller,
+            Self::Ended(_) => "active-ended",
         }
     }
 }
@@ -216,6 +220,13 @@ pub enum IdentifyError {
     Moved {
         /// The joint, 1 to 7.
         joint: usize,
+/// Whether the robot stopped itself.
+fn needs_recovery(error: &MotionError) -> bool {
+    error.control().is_some_and(|error| error.is_reflex())
+}
+
+const RECOVER: &str = ", `recover` before the next";
+
         /// Where it is, `[rad]`.
         got: f64,
         /// Where it was, `[rad]`.
