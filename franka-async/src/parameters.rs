@@ -5,7 +5,9 @@
 use std::time::Duration;
 
 use franka_model::transform;
-use franka_proto::{CollisionBehavior, Filters, Load, Request, RobotState, VirtualWall};
+use franka_proto::{
+    CollisionBehavior, Filters, Load, Request, RobotState, SetterStatus, Status, VirtualWall,
+};
 
 use crate::command_channel::{Channel, Response};
 use crate::error::CommandError;
@@ -202,7 +204,10 @@ impl Robot {
 
     async fn set(&self, request: Request) -> Result<(), CommandError> {
         check_finite(&request)?;
-        self.channel().call(request, ANSWER).await.map(|_| ())
+        match self.channel().call(request, ANSWER).await {
+            Ok(_) => Ok(()),
+            Err(error) => Err(explained(error, &request)),
+        }
     }
 
     /// Sets what motions compute with, and waits for a state that shows it. The answer comes by
@@ -228,8 +233,7 @@ impl Robot {
 
 /// Refuses numbers of which a robot can make nothing. What it takes is for the robot to say.
 fn check_finite(request: &Request) -> Result<(), CommandError> {
-    let all_finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
-    let (what, is_finite) = match request {
+    let parts: &[(&'static str, &[f64])] = match request {
         Request::SetCollisionBehavior(CollisionBehavior {
             lower_torque_thresholds_acceleration: a,
             upper_torque_thresholds_acceleration: b,
@@ -239,28 +243,65 @@ fn check_finite(request: &Request) -> Result<(), CommandError> {
             upper_force_thresholds_acceleration: f,
             lower_force_thresholds_nominal: g,
             upper_force_thresholds_nominal: h,
-        }) => {
-            let torques = [a, b, c, d].into_iter().all(|values| all_finite(values));
-            let forces = [e, f, g, h].into_iter().all(|values| all_finite(values));
-            ("thresholds", torques && forces)
-        }
-        Request::SetJointImpedance(stiffness) => ("stiffness", all_finite(stiffness)),
-        Request::SetCartesianImpedance(stiffness) => ("stiffness", all_finite(stiffness)),
-        Request::SetEEToK(frame) | Request::SetNEToEE(frame) => ("frame", all_finite(frame)),
+        }) => &[
+            ("lower_torque_thresholds_acceleration", a),
+            ("upper_torque_thresholds_acceleration", b),
+            ("lower_torque_thresholds_nominal", c),
+            ("upper_torque_thresholds_nominal", d),
+            ("lower_force_thresholds_acceleration", e),
+            ("upper_force_thresholds_acceleration", f),
+            ("lower_force_thresholds_nominal", g),
+            ("upper_force_thresholds_nominal", h),
+        ],
+        Request::SetJointImpedance(stiffness) => &[("joint stiffness", stiffness)],
+        Request::SetCartesianImpedance(stiffness) => &[("Cartesian stiffness", stiffness)],
+        Request::SetEEToK(frame) => &[("stiffness frame", frame)],
+        Request::SetNEToEE(frame) => &[("end effector", frame)],
         Request::SetLoad(Load {
             m_load,
             F_x_Cload,
             I_load,
-        }) => (
-            "load",
-            m_load.is_finite() && all_finite(F_x_Cload) && all_finite(I_load),
-        ),
+        }) => &[
+            ("m_load", core::slice::from_ref(m_load)),
+            ("F_x_Cload", F_x_Cload),
+            ("I_load", I_load),
+        ],
         _ => return Ok(()),
     };
-    match is_finite {
-        true => Ok(()),
-        false => Err(CommandError::NotFinite { what }),
+    for &(what, values) in parts {
+        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+            let number = index + 1;
+            return Err(CommandError::NotFinite { what, number });
+        }
     }
+    Ok(())
+}
+
+/// Adds to an answer that names no number what was sent, and what is documented.
+fn explained(error: CommandError, request: &Request) -> CommandError {
+    let invalid = Status::Setter(SetterStatus::InvalidArgumentRejected);
+    let refusal = match error {
+        CommandError::Refused(refusal) if refusal.status() == invalid => refusal,
+        other => return other,
+    };
+    let why = match request {
+        Request::SetCollisionBehavior(got) => format!("got {got:?}, expected 0 or more"),
+        Request::SetJointImpedance(got) => format!("got {got:?}, expected 0 to 14250 N m/rad each"),
+        Request::SetCartesianImpedance(got) => format!(
+            "got {got:?}, expected 10 to 3000 N/m for x y z and 1 to 300 N m/rad for roll pitch yaw"
+        ),
+        Request::SetEEToK(got) | Request::SetNEToEE(got) => {
+            let [x, y, z] = [got[12], got[13], got[14]];
+            format!("got a frame at [{x}, {y}, {z}] m; the vendor documents no range")
+        }
+        Request::SetLoad(got) => format!(
+            "got {got:?}, expected 0 kg or more, a centre in m in the flange frame and a symmetric \
+             inertia about it in kg m^2"
+        ),
+        Request::SetFilters(got) => format!("got {got:?}, expected 1 to 1000 Hz each"),
+        _ => return CommandError::Refused(refusal),
+    };
+    CommandError::InvalidArgument { refusal, why }
 }
 
 /// Whether a state, which may be of single precision, shows these numbers.

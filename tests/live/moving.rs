@@ -177,14 +177,28 @@ async fn parameters_are_taken_at_rest_and_refused_in_motion() {
         ..load
     };
     let refused = robot.set_load(load).await.unwrap_err();
-    assert_eq!(refused.to_string(), "a number of the load is not finite");
+    assert_eq!(refused.to_string(), "number 1 of m_load is not finite");
     let invalid = robot.set_joint_impedance([-1.0; 7]).await.unwrap_err();
-    let CommandError::Refused(refusal) = invalid else {
+    assert_eq!(
+        invalid.to_string(),
+        "libfranka: Set Joint Impedance command rejected: invalid argument! (got [-1.0, -1.0, -1.0, \
+         -1.0, -1.0, -1.0, -1.0], expected 0 to 14250 N m/rad each)"
+    );
+    let load = Load {
+        m_load: -1.0,
+        ..load
+    };
+    let invalid = robot.set_load(load).await.unwrap_err();
+    let CommandError::InvalidArgument { refusal, why } = invalid else {
         panic!("{invalid:?}")
     };
     assert_eq!(
         refusal.status(),
         Status::Setter(SetterStatus::InvalidArgumentRejected)
+    );
+    assert!(
+        why.contains("m_load: -1.0") && why.contains("expected 0 kg or more"),
+        "{why}"
     );
 
     crate::long_way(&robot).detach();

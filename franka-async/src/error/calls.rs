@@ -17,14 +17,24 @@ pub enum CommandError {
     /// Robot: it refused, or gave up.
     #[error(transparent)]
     Refused(#[from] Refusal),
+    /// Caller: the robot takes no such number. Nothing has changed.
+    #[error("{refusal} ({why})")]
+    InvalidArgument {
+        /// What the robot answered.
+        refusal: Refusal,
+        /// What was asked for, and what is documented.
+        why: String,
+    },
     /// Caller: the protocol version has no such command. Nothing was sent.
     #[error(transparent)]
     Request(#[from] RequestError),
     /// Caller: a number is not finite. Nothing was sent.
-    #[error("a number of the {what} is not finite")]
+    #[error("number {number} of {what} is not finite")]
     NotFinite {
         /// Of what.
         what: &'static str,
+        /// Which one, from 1.
+        number: usize,
     },
     /// Robot or link: no answer in time. The robot may carry the command out all the same.
     #[error("no answer to {command} within {} ms", .deadline.as_millis())]
@@ -55,7 +65,7 @@ impl CommandError {
     /// Returns the name of its row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
-            Self::Refused(refusal) => refusal.entry(),
+            Self::Refused(refusal) | Self::InvalidArgument { refusal, .. } => refusal.entry(),
             Self::Request(_) => "command-request",
             Self::NotFinite { .. } => "command-not-finite",
             Self::Timeout { .. } => "command-timeout",
@@ -69,7 +79,9 @@ impl CommandError {
     pub fn party(&self) -> Party {
         match self {
             Self::Refused(_) => Party::Robot,
-            Self::Request(_) | Self::NotFinite { .. } => Party::Caller,
+            Self::Request(_) | Self::NotFinite { .. } | Self::InvalidArgument { .. } => {
+                Party::Caller
+            }
             Self::Timeout { .. } | Self::LinkLost { .. } => Party::Link,
             Self::ConnectionClosed { reason } => reason.party(),
             Self::Violation(_) => Party::Peer,
@@ -172,6 +184,9 @@ pub enum ActiveError {
     /// The motion has ended, and how.
     #[error(transparent)]
     Motion(#[from] MotionError),
+    /// The motion has ended otherwise than asked, as an earlier call has returned.
+    #[error("the motion has ended{}: {}", if needs_recovery(.0) { RECOVER } else { "" }, .0)]
+    Ended(MotionError),
     /// The motion has ended as asked: its last command was written before.
     #[error("the motion has finished, and takes neither reads nor commands: begin a new one")]
     Finished,
@@ -184,13 +199,11 @@ pub enum ActiveError {
 }
 
 impl ActiveError {
-    /// The motion has ended otherwise than asked, as an earlier call has returned.
-    #[error("the motion has ended{}: {}", if needs_recovery(.0) { RECOVER } else { "" }, .0)]
-    Ended(MotionError),
     /// Returns the name of its row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Motion(error) => error.entry(),
+            Self::Ended(_) => "active-ended",
             Self::Finished => "active-finished",
             Self::Write(_) => "active-write",
             Self::Borrow(_) => "active-borrow",
@@ -203,10 +216,16 @@ impl ActiveError {
             Self::Motion(error) => error.party(),
             Self::Write(WriteFault::Link(_)) => Party::Link,
             Self::Ended(_) | Self::Finished | Self::Write(_) | Self::Borrow(_) => Party::Caller,
-            Self::Ended(_) => "active-ended",
         }
     }
 }
+
+/// Whether the robot stopped itself.
+fn needs_recovery(error: &MotionError) -> bool {
+    error.control().is_some_and(|error| error.is_reflex())
+}
+
+const RECOVER: &str = ", `recover` before the next";
 
 /// Why an arm was not identified.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -220,13 +239,6 @@ pub enum IdentifyError {
     Moved {
         /// The joint, 1 to 7.
         joint: usize,
-/// Whether the robot stopped itself.
-fn needs_recovery(error: &MotionError) -> bool {
-    error.control().is_some_and(|error| error.is_reflex())
-}
-
-const RECOVER: &str = ", `recover` before the next";
-
         /// Where it is, `[rad]`.
         got: f64,
         /// Where it was, `[rad]`.
