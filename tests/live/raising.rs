@@ -143,7 +143,10 @@ async fn what_is_enforced_and_refused_connects_nothing_and_raises_nobody() {
     };
     assert_eq!(
         error.to_string(),
-        format!("libfranka: unable to set realtime scheduling: {why}")
+        format!(
+            "libfranka: unable to set realtime scheduling: {why} (for a simulator: \
+             `Realtime::Ignore`, in Python `realtime=\"ignore\"`)"
+        )
     );
     for thread in threads().into_values() {
         assert_eq!((thread.policy, thread.priority), (0, 0), "{thread:?}");

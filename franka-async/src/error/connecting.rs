@@ -17,6 +17,9 @@ use franka_rt::thread::{LinkFault, StartError};
 use super::CommandError;
 use crate::endpoint::EndpointError;
 
+/// What a program without an arm does instead.
+const IGNORE: &str = " (for a simulator: `Realtime::Ignore`, in Python `realtime=\"ignore\"`)";
+
 /// Why there is no connection: to a robot, unless `P` says otherwise. Nothing is left behind;
 /// connecting again is always possible.
 #[derive(Debug, thiserror::Error)]
@@ -24,7 +27,7 @@ use crate::endpoint::EndpointError;
 pub enum ConnectError<P: Protocol = Version> {
     /// Host: it does not grant what real-time control needs, see
     /// [`Builder::realtime`](crate::connection::Builder::realtime).
-    #[error(transparent)]
+    #[error("{}{}", .0, if .0.is_misuse() { "" } else { IGNORE })]
     Realtime(#[from] SchedError),
     /// Caller: the text that was given as the place of the device names none. Nothing was sent.
     #[error(transparent)]
