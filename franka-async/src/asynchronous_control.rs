@@ -2,11 +2,12 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use franka_model::Model;
 use franka_proto::{RequestError, RobotState};
 use franka_rt::control::{AbortReason, AsynchronousPositions, AsynchronousTarget, TargetStatus};
 use franka_rt::driver::Program;
 use franka_rt::lifecycle::{MotionError, Outcome};
-use franka_rt::session::GoalId;
+use franka_rt::session::{GoalError, GoalId};
 use franka_rt::shaping::check;
 use franka_rt::slot::SlotWriter;
 use futures::FutureExt;
@@ -36,12 +37,53 @@ impl Default for AsynchronousOptions {
     }
 }
 
+impl AsynchronousOptions {
+    fn check(&self, model: &Model) -> Result<(), GoalError> {
+        const WHAT: [&str; 7] = [
+            "maximum velocity of joint 1",
+            "maximum velocity of joint 2",
+            "maximum velocity of joint 3",
+            "maximum velocity of joint 4",
+            "maximum velocity of joint 5",
+            "maximum velocity of joint 6",
+            "maximum velocity of joint 7",
+        ];
+        let limits = &model.joint_limits().velocity;
+        let velocities = (0..7).map(|i| {
+            (
+                WHAT[i],
+                self.maximum_joint_velocities[i],
+                "rad/s",
+                limits[i],
+            )
+        });
+        let tolerance = ("goal tolerance", self.goal_tolerance, "rad", 1.0);
+        for (what, got, unit, most) in velocities.chain([tolerance]) {
+            if !(LEAST..=most).contains(&got) {
+                let least = LEAST;
+                return Err(GoalError::Number {
+                    what,
+                    got,
+                    unit,
+                    least,
+                    most,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The least velocity, `[rad/s]`, and the least tolerance, `[rad]`.
+const LEAST: f64 = 1e-6;
+
 impl Robot {
     /// Starts a motion in which the robot itself moves to sparse joint targets, and resolves when
     /// it runs. Protocol 10 only, and experimental there.
     ///
     /// # Errors
-    /// [`MotionError::Unsupported`] for a version without it, before a byte is sent;
+    /// [`MotionError::Unsupported`] for a version without it, [`MotionError::Goal`] for a velocity
+    /// or a tolerance that is not positive, or beyond the robot's, both before a byte is sent;
     /// [`MotionError::Busy`] while anything else controls the arm; otherwise what ended the motion
     /// before it ran.
     ///
@@ -56,6 +98,7 @@ impl Robot {
             let what = "asynchronous motion";
             return Err(RequestError::Unsupported { what, version }.into());
         }
+        options.check(self.model())?;
         let (program, targets) = AsynchronousPositions::new();
         let request = AsynchronousPositions::request(options.maximum_joint_velocities);
         let id = self.next_goal();

@@ -383,6 +383,48 @@ async fn the_robot_itself_goes_from_target_to_target() {
         error.control().is_some_and(|control| control.is_reflex()),
         "{error}"
     );
+    let usual = AsynchronousOptions::default();
+    for (goal_tolerance, velocity, text) in [
+        (
+            -1.0,
+            0.5,
+            "goal tolerance is -1 rad, expected between 0.000001 and 1",
+        ),
+        (
+            f64::NAN,
+            0.5,
+            "goal tolerance is NaN rad, expected between 0.000001 and 1",
+        ),
+        (
+            f64::INFINITY,
+            0.5,
+            "goal tolerance is inf rad, expected between 0.000001 and 1",
+        ),
+        (
+            1e-3,
+            -1.0,
+            "maximum velocity of joint 3 is -1 rad/s, expected between 0.000001 and 2.62",
+        ),
+        (
+            1e-3,
+            100.0,
+            "maximum velocity of joint 3 is 100 rad/s, expected between 0.000001 and 2.62",
+        ),
+        (
+            1e-3,
+            f64::NAN,
+            "maximum velocity of joint 3 is NaN rad/s, expected between 0.000001 and 2.62",
+        ),
+    ] {
+        let mut maximum_joint_velocities = usual.maximum_joint_velocities;
+        maximum_joint_velocities[2] = velocity;
+        let options = AsynchronousOptions {
+            maximum_joint_velocities,
+            goal_tolerance,
+        };
+        let refused = robot.asynchronous_joint_positions(options).await;
+        assert_eq!(refused.unwrap_err().to_string(), text);
+    }
     assert_eq!(control.status(), TargetStatus::Aborted(AbortReason::Ended));
     drop(control);
 
