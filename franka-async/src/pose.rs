@@ -28,13 +28,68 @@
 //! ```
 
 pub use franka_model::rotation;
-pub use franka_model::transform::{
-    array as to_array, isometry as from_matrix, isometry_from_array as from_array,
-};
+pub use franka_model::transform::array as to_array;
 
-use nalgebra::{Quaternion, Translation3, UnitQuaternion};
+use franka_model::transform;
+use nalgebra::{Matrix4, Quaternion, Translation3, UnitQuaternion};
 
 use crate::robot::Pose;
+
+/// Why a matrix is not a pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NotRigid {
+    /// A number is not finite.
+    #[error("the number in row {row}, column {column} is not finite")]
+    NotFinite {
+        /// Its row, from 1.
+        row: usize,
+        /// Its column, from 1.
+        column: usize,
+    },
+    /// The transpose is a pose: the numbers are row by row.
+    #[error(
+        "the last column is 0 0 0 1, which belongs in the last row: got the numbers row by row, expected column by column"
+    )]
+    RowMajor,
+    /// The last row is another.
+    #[error("the last row is not 0 0 0 1")]
+    LastRow,
+    /// The upper left block is scaled, sheared or mirrored.
+    #[error(
+        "the upper left block is further than {} from every rotation",
+        transform::DISTORTION_MAX
+    )]
+    Rotation,
+}
+
+/// The pose nearest to a matrix, such as one of the model's.
+///
+/// # Errors
+/// [`NotRigid`]; of rotations that are less than 1e-3 off, none.
+pub fn from_matrix(matrix: &Matrix4<f64>) -> Result<Pose, NotRigid> {
+    transform::isometry(matrix).ok_or_else(|| {
+        if let Some(index) = matrix.iter().position(|x| !x.is_finite()) {
+            let (row, column) = (index % 4 + 1, index / 4 + 1);
+            return NotRigid::NotFinite { row, column };
+        }
+        if transform::isometry(&matrix.transpose()).is_some() {
+            return NotRigid::RowMajor;
+        }
+        match matrix.row(3) == Matrix4::identity().row(3) {
+            true => NotRigid::Rotation,
+            false => NotRigid::LastRow,
+        }
+    })
+}
+
+/// [`from_matrix`] of 16 numbers, column by column, as in `O_T_EE`.
+///
+/// # Errors
+/// Those of [`from_matrix`].
+pub fn from_array(column_major: &[f64; 16]) -> Result<Pose, NotRigid> {
+    from_matrix(&Matrix4::from_column_slice(column_major))
+}
 
 /// The pose with this position, `[m]`, and this quaternion, `[x, y, z, w]`, which is normalised.
 ///
@@ -86,6 +141,27 @@ mod tests {
             assert_eq!(from_xyzw([0.1, bad, 0.3], upright), None, "{bad}");
             assert_eq!(from_xyzw(there, [0.0, bad, 0.0, 1.0]), None, "{bad}");
         }
+    }
+
+    #[test]
+    fn an_array_that_is_no_pose_is_refused_for_a_reason() {
+        let turn = UnitQuaternion::from_euler_angles(0.1, 0.2, 0.3);
+        let pose = Pose::from_parts([0.4, 0.1, 0.3].into(), turn);
+        let good = to_array(&pose);
+        assert!(
+            (from_array(&good).unwrap().to_homogeneous() - pose.to_homogeneous()).amax() < 1e-12
+        );
+        let with = |index: usize, value| {
+            let mut numbers = good;
+            numbers[index] = value;
+            from_array(&numbers).unwrap_err()
+        };
+        assert_eq!(with(6, f64::NAN), NotRigid::NotFinite { row: 3, column: 2 });
+        assert_eq!(with(15, 2.0), NotRigid::LastRow);
+        assert_eq!(with(0, 2.0), NotRigid::Rotation);
+        assert_eq!(from_array(&[0.0; 16]), Err(NotRigid::LastRow));
+        let by_rows = std::array::from_fn(|i| good[i % 4 * 4 + i / 4]);
+        assert_eq!(from_array(&by_rows), Err(NotRigid::RowMajor));
     }
 
     #[test]

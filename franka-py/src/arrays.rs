@@ -3,7 +3,7 @@
 
 use franka_async::Pose;
 use franka_async::nalgebra::{Matrix4, SMatrix};
-use franka_async::pose;
+use franka_async::pose::{self, NotRigid};
 use numpy::{
     PyArray1, PyArray2, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyUntypedArray,
     PyUntypedArrayMethods,
@@ -159,9 +159,13 @@ pub(crate) fn pose_of(name: &str, shape: &[usize], values: &[f64]) -> PyResult<O
     match *shape {
         [4, 4] => {
             let matrix = Matrix4::from_row_slice(values);
-            let pose = pose::from_matrix(&matrix).ok_or_else(|| {
+            let pose = pose::from_matrix(&matrix).map_err(|error| {
+                let error = match error {
+                    NotRigid::RowMajor => "got column by column".to_owned(),
+                    error => error.to_string(),
+                };
                 PyValueError::new_err(format!(
-                    "{name} is not a rigid transformation, row by row: expected a rotation matrix, \
+                    "{name} is not a rigid transformation, row by row: {error}; expected a rotation matrix, \
                      a translation in the last column and 0 0 0 1 in the last row, got\n{matrix:.4}"
                 ))
             });

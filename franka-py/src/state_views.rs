@@ -55,7 +55,7 @@ pub(crate) fn write_flat(state: &franka_async::state::RobotState, numbers: &mut 
 
 /// Position and quaternion `x y z w` with `w >= 0`; zeros for what is not a rigid transformation.
 fn place(matrix: &[f64; 16]) -> ([f64; 3], [f64; 4]) {
-    let Some(pose) = pose::from_array(matrix) else {
+    let Ok(pose) = pose::from_array(matrix) else {
         return ([0.0; 3], [0.0; 4]);
     };
     let (position, quaternion) = pose::to_xyzw(&pose);

@@ -126,11 +126,8 @@ impl Model {
             Self::Pose { arm, frame } => {
                 let Known { model, q, ee, .. } = arm.known().await?;
                 let matrix = model.pose(frame, &q, &ee);
-                let pose = pose::from_matrix(&matrix).ok_or_else(|| {
-                    Failure::new(
-                        Ending::Failed,
-                        "the robot's end effector is no rigid transformation",
-                    )
+                let pose = pose::from_matrix(&matrix).map_err(|error| {
+                    Failure::new(Ending::Failed, format!("the robot's end effector: {error}"))
                 })?;
                 print_pose(&pose, arm.output)
             }
