@@ -103,6 +103,9 @@ impl Advice {
                 "a clear way; softer gains have the arm give way, lower thresholds of set_collision_behavior stop it before"
             }
             (Self::AvoidSingularity, _) => "go there by joint positions, or by another elbow",
+            (Self::StayInRange, Function | Active) => {
+                "commands that keep the joint further inside its range, or another elbow"
+            }
             (Self::StayInRange, _) => "a target further inside the joint's range, or another elbow",
             (Self::StayClearOfItself, _) => "a way on which the links stay further apart",
             (Self::LessEffort, _) => {
