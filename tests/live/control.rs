@@ -11,7 +11,7 @@ use franka_async::control::{
 use franka_async::error::{CommandError, GoalError};
 use franka_async::state::{RobotMode, RobotState};
 use franka_async::{Engage, MotionError, Pose, Robot};
-use franka_proto::{MoveControllerMode, RequestError, RobotError};
+use franka_proto::{MoveControllerMode, RequestError, RobotError, Version};
 use franka_sim::{Running, Sim, Tool};
 use tokio::time::timeout;
 use tracing::Level;
@@ -346,6 +346,36 @@ async fn a_reflex_comes_back_with_the_cycles_that_led_to_it() {
     }
 }
 
+/// As the book's page for programs of libfranka says of a simulated arm that is not ideal.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_motion_begins_where_the_robot_was_told_to_be_and_not_where_it_is_measured() {
+    let _alone = alone();
+    for sim in [Sim::fr3(), Sim::fer()] {
+        let (robot, _sim) = at_the_clients_pace(sim).await;
+        let limited = robot.version() == Version::V10;
+        for (is_measured, limit_rate) in [(false, false), (true, false), (true, limited)] {
+            let mut start = None;
+            let stands = robot.control_joint_positions(timed(0.5, move |state, _| {
+                let q = if is_measured { state.q } else { state.q_d };
+                JointPositions(*start.get_or_insert(q))
+            }));
+            let ended = stands.limit_rate(limit_rate).await;
+            let Err(error) = ended else {
+                assert!(!is_measured, "with limit_rate({limit_rate})");
+                continue;
+            };
+            let steps = RobotError::JointMotionGeneratorAccelerationDiscontinuity;
+            let control = error.control().expect("the robot ended it");
+            assert!(
+                is_measured && control.failure.reflex_reason.contains(steps),
+                "{error}"
+            );
+            robot.recover().await.unwrap();
+        }
+        robot.shutdown().await;
+    }
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn the_robot_itself_goes_from_target_to_target() {
     let _alone = alone();
@@ -354,35 +384,6 @@ async fn the_robot_itself_goes_from_target_to_target() {
     let [fr3, fer] = sims.map(|sim| by_the_clock(sim.tool(Tool::hand())));
     let (robot, sim) = &fr3.await;
     let (fer, _sim) = &fer.await;
-    let control = robot
-        .asynchronous_joint_positions(AsynchronousOptions::default())
-        .await
-        .unwrap();
-    assert_eq!(control.status(), TargetStatus::Idle);
-    let mut q = robot.state().q_d;
-    q[0] += 0.5;
-    control.set_target(q).unwrap();
-    until(robot, |_| control.status() == TargetStatus::Executing).await;
-    q[1] += 0.1;
-    control.set_target(q).unwrap();
-    control.reached().await.unwrap();
-    assert!((robot.state().q[1] - q[1]).abs() < 5e-3);
-    let nothing = control.set_target([f64::NAN; 7]).unwrap_err();
-    assert_eq!(nothing.to_string(), "Commanding value is infinite or NaN.");
-    control.finish().await.unwrap();
-
-    let control = robot
-        .asynchronous_joint_positions(AsynchronousOptions::default())
-        .await
-        .unwrap();
-    sim.with(|robot| robot.trip(RobotError::CartesianReflex))
-        .await
-        .expect("the simulator runs");
-    let error = control.reached().await.unwrap_err();
-    assert!(
-        error.control().is_some_and(|control| control.is_reflex()),
-        "{error}"
-    );
     let usual = AsynchronousOptions::default();
     for (goal_tolerance, velocity, text) in [
         (
@@ -425,6 +426,35 @@ async fn the_robot_itself_goes_from_target_to_target() {
         let refused = robot.asynchronous_joint_positions(options).await;
         assert_eq!(refused.unwrap_err().to_string(), text);
     }
+    let control = robot
+        .asynchronous_joint_positions(AsynchronousOptions::default())
+        .await
+        .unwrap();
+    assert_eq!(control.status(), TargetStatus::Idle);
+    let mut q = robot.state().q_d;
+    q[0] += 0.5;
+    control.set_target(q).unwrap();
+    until(robot, |_| control.status() == TargetStatus::Executing).await;
+    q[1] += 0.1;
+    control.set_target(q).unwrap();
+    control.reached().await.unwrap();
+    assert!((robot.state().q[1] - q[1]).abs() < 5e-3);
+    let nothing = control.set_target([f64::NAN; 7]).unwrap_err();
+    assert_eq!(nothing.to_string(), "Commanding value is infinite or NaN.");
+    control.finish().await.unwrap();
+
+    let control = robot
+        .asynchronous_joint_positions(AsynchronousOptions::default())
+        .await
+        .unwrap();
+    sim.with(|robot| robot.trip(RobotError::CartesianReflex))
+        .await
+        .expect("the simulator runs");
+    let error = control.reached().await.unwrap_err();
+    assert!(
+        error.control().is_some_and(|control| control.is_reflex()),
+        "{error}"
+    );
     assert_eq!(control.status(), TargetStatus::Aborted(AbortReason::Ended));
     drop(control);
 
