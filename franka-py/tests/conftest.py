@@ -34,7 +34,7 @@ def sim(request: pytest.FixtureRequest) -> Iterator[Sim]:
     """A simulated robot of each kind, with an arm as real ones are."""
     kind: str = request.param
     # Two states that a busy machine reads at once cost this time each.
-    with getattr(Sim, kind)(virtual_time=True, patience=0.25) as sim:
+    with getattr(Sim, kind)(virtual_time=True, patience=5.0) as sim:
         yield sim
 
 

@@ -31,7 +31,7 @@ def hit(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
                 await motion
             return raised.value
 
-    with getattr(Sim, request.param)(virtual_time=True, patience=0.25) as sim:
+    with getattr(Sim, request.param)(virtual_time=True, patience=5.0) as sim:
         return path, asyncio.run(main(sim))
 
 

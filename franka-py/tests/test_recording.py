@@ -17,7 +17,7 @@ from franka_async.options import RecordOptions
 def path(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A recording of a robot with its hand: two episodes, each a motion, and homing between them."""
     path = tmp_path_factory.mktemp("recording") / f"{request.param}.mcap"
-    with getattr(Sim, request.param)(virtual_time=True, patience=0.25, hand=True) as sim:
+    with getattr(Sim, request.param)(virtual_time=True, patience=5.0, hand=True) as sim:
         with sync.Robot(sim.address, **PATIENT) as robot, sync.Gripper(str(sim.hand_address)) as gripper:
             # The time of the robot is faster than the clock on the wall: chunks are short, so that there are some.
             options: RecordOptions = {"flush": 0.03, "metadata": {"cell": "7"}, "attachments": {"plan.json": b"{}"}}

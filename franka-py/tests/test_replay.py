@@ -13,7 +13,7 @@ from franka_async import FrankaError, MotionError, RecordingFile, ReplayError, R
 def motion(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> RecordingFile:
     """The recording of a motion in a session."""
     path = tmp_path_factory.mktemp("motion") / f"{request.param}.mcap"
-    with getattr(Sim, request.param)(virtual_time=True, patience=0.25) as sim:
+    with getattr(Sim, request.param)(virtual_time=True, patience=5.0) as sim:
         with sync.Robot(sim.address, **PATIENT) as robot, sync.Recorder.to_file(path) as recorder:
             recorder.attach(robot)
             with recorder.episode("up", task="move up"), robot.engage() as arm:
