@@ -295,7 +295,8 @@ impl Arm {
     /// unless another chunk or goal comes.
     ///
     /// # Errors
-    /// As [`Self::set`]; [`GoalError::Late`](crate::error::GoalError::Late) if all points have
+    /// As [`Self::set`]; once, why a guard gave up the chunk before, as [`MotionError::Held`] or
+    /// [`MotionError::Braked`]; [`GoalError::Late`](crate::error::GoalError::Late) if all points have
     /// passed, [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation is of another
     /// clock, [`GoalError::Outdated`](crate::error::GoalError::Outdated) if that of the chunk
     /// before is newer, and [`GoalError::Chunks`](crate::error::GoalError::Chunks) if chunks come

@@ -121,7 +121,8 @@ impl Lifecycle {
     /// goal comes, and says how fast and how stiff. The arm rests at the last point.
     ///
     /// # Errors
-    /// As [`Self::begin`]; [`MotionError::Held`] while a deadman holds the arm;
+    /// As [`Self::begin`]; [`MotionError::Held`] while a deadman holds the arm; once, why the chunk
+    /// before was given up, as [`MotionError::Held`] or [`MotionError::Braked`];
     /// [`GoalError::Late`] for a chunk whose points have all passed, [`GoalError::Ahead`] for one
     /// of another clock, [`GoalError::Outdated`] for one that was observed before the one before,
     /// [`GoalError::Chunks`] if too many are under way.
@@ -133,6 +134,13 @@ impl Lifecycle {
         state: &RobotState,
     ) -> Result<(), MotionError> {
         self.check_engaged(engaged)?;
+        let ending = self.is_ending();
+        if let Some(goals) = self.goals_mut().filter(|_| !ending) {
+            goals.check_deadman()?;
+            if let Some(error) = goals.chunk_error.take() {
+                return Err(error);
+            }
+        }
         chunk.check(&self.model, state)?;
         let observed_at = chunk.observation();
         let ahead = observed_at.map_or(0, |time| time.saturating_sub(state.message_id));
@@ -150,7 +158,6 @@ impl Lifecycle {
             ..goal
         };
         goal.check(&self.model, state)?;
-        let ending = self.is_ending();
         let Some(goals) = self.goals_mut() else {
             return Err(MotionError::Disengaged);
         };
@@ -163,7 +170,6 @@ impl Lifecycle {
             goals.after_end.push(goal.id);
             return Ok(());
         }
-        goals.check_deadman()?;
         // One that was taken back is on its way to rest, and belongs to no caller any more.
         let goes_on = goals.current.id == goals.chunk_goal && !goals.cancelled;
         let of = if goes_on { goals.chunk_goal } else { goal.id };

@@ -37,6 +37,9 @@ pub(super) struct Goals {
     pub(super) chunk_goal: GoalId,
     /// The observation that the newest chunk of that goal names, `message_id`.
     pub(super) observed_at: Option<u64>,
+    /// Why a goal of chunks was given up, until the next chunk or goal: chunks have no caller that
+    /// awaits their end.
+    pub(super) chunk_error: Option<MotionError>,
     /// Goals that came for that session after it had ended and before its outcome was known.
     pub(super) after_end: Vec<GoalId>,
 }
@@ -78,6 +81,7 @@ impl Goals {
             chunks,
             chunk_goal: GoalId::default(),
             observed_at: None,
+            chunk_error: None,
             after_end: Vec::new(),
         }
     }
@@ -123,6 +127,7 @@ impl Goals {
         reason: MotionError,
     ) -> Option<(GoalId, Outcome)> {
         self.slot.write(&goal);
+        self.chunk_error = None;
         let previous = core::mem::replace(&mut self.current, goal).id;
         let cancelled = core::mem::take(&mut self.cancelled);
         let result = match self.settled.take() {
@@ -173,7 +178,17 @@ impl Goals {
             ..held
         };
         let cancelled = core::mem::take(&mut self.cancelled);
-        Some(settled.result(&settled.counted, cancelled))
+        let result = settled.result(&settled.counted, cancelled);
+        self.chunk_error = match &result {
+            // A watchdog is for goals that are awaited.
+            Err(MotionError::Held(lapse) | MotionError::Braked(lapse))
+                if goal.id == self.chunk_goal && !matches!(lapse, Lapse::Silent { .. }) =>
+            {
+                result.clone().err()
+            }
+            _ => None,
+        };
+        Some(result)
     }
 
     /// How the session turned out whose last goal turned out like this.

@@ -8,7 +8,8 @@ use franka_lockstep::{Lockstep, for_each_robot};
 use franka_model::READY;
 use franka_rt::lifecycle::{Engagement, MotionError};
 use franka_rt::session::{
-    Backend, Chunk, ChunkError, Goal, GoalId, Lapse, OnArrival, OnTimeout, Setpoints, Target,
+    Backend, Chunk, ChunkError, Goal, GoalError, GoalId, Lapse, OnArrival, OnTimeout, Setpoints,
+    Target,
 };
 use nalgebra::Translation3;
 
@@ -56,6 +57,35 @@ fn a_chunk_followed_to_its_end_after_a_timeout_still_needs_its_deadman() {
         assert_eq!(outcome, Err(MotionError::Held(Lapse::Deadman)));
         assert!(lockstep.robot.q()[0] < turned_q(0.3)[0], "half way at most");
         assert_stays(&mut lockstep, engaged);
+    });
+}
+
+#[test]
+fn the_chunk_after_a_deadman_timeout_says_so_once_whatever_its_points_are() {
+    for_each_robot(|ready| {
+        let (mut lockstep, engaged, token) = guarded(ready, 50);
+        let held = Err(MotionError::Held(Lapse::Deadman));
+        let seen = lockstep.client.state.message_id;
+        let late = || chunk(0.0, 0.3).observed_at(seen);
+        lockstep.chunk(engaged, late()).expect("in time");
+        lockstep.run(1500);
+        let refused = lockstep.chunk(engaged, late()).map(drop);
+        assert_eq!(refused, held, "while it is silent");
+        token.keep_alive();
+        let refused = lockstep.chunk(engaged, late()).map(drop);
+        assert_eq!(refused, held, "of the chunk before");
+        let refused = lockstep.chunk(engaged, late()).map(drop);
+        let is_late = matches!(refused, Err(MotionError::Goal(GoalError::Late { .. })));
+        assert!(is_late, "{refused:?}");
+
+        // A goal in between is what the program goes on with.
+        lockstep.chunk(engaged, chunk(0.0, 0.3)).expect("in time");
+        lockstep.run(1500);
+        token.keep_alive();
+        lockstep
+            .within(engaged, turned(0.1), OnArrival::Hold)
+            .unwrap();
+        lockstep.chunk(engaged, chunk(0.1, 0.2)).expect("in time");
     });
 }
 
