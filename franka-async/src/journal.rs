@@ -162,6 +162,14 @@ impl Journal {
         self.with(|readers| readers.push(reader));
     }
 
+    /// Whether a reader with this queue reads it for this track.
+    pub(crate) fn is_read(&self, track: usize, entries: &EntrySender) -> bool {
+        let same = |reader: &Reader| {
+            reader.track == track && Arc::ptr_eq(&reader.entries.counts, &entries.counts)
+        };
+        self.with(|readers| readers.iter().any(same))
+    }
+
     /// Writes what `what` returns, if anybody reads it.
     pub(crate) fn write(&self, what: impl Fn() -> Option<What>) {
         let tell = |reader: &Reader| {

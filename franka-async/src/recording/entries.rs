@@ -68,10 +68,14 @@ impl EntryQueue {
 
     /// Has the track `id` begin with this state, and everything that is written to `journal` from
     /// now on go there. States may be a tenth of a second apart: what is recorded meanwhile has
-    /// one, too.
-    pub(super) fn read_device(&self, journal: &Journal, state: What, id: usize) {
+    /// one, too. Returns whether that is new.
+    pub(super) fn read_device(&self, journal: &Journal, state: What, id: usize) -> bool {
+        if journal.is_read(id, &self.entries) {
+            return false;
+        }
         self.entries.send(id, Entry::now(state));
         self.read(journal, id, None);
+        true
     }
 
     /// Looks at the tracks or changes them. The thread waits meanwhile.

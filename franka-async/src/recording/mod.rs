@@ -116,6 +116,12 @@ pub enum TrackError {
         /// The name that was given.
         name: String,
     },
+    /// An end effector is recorded with this robot already.
+    #[error("this end effector is recorded with the robot called {name:?} already")]
+    Attached {
+        /// The robot's name.
+        name: String,
+    },
 }
 
 impl Recorder {
@@ -239,7 +245,7 @@ impl Recorder {
     /// actions when they have ended.
     ///
     /// # Errors
-    /// [`TrackError::Unknown`].
+    /// [`TrackError::Unknown`], [`TrackError::Attached`].
     pub fn attach_gripper(&self, gripper: &Gripper, robot: &str) -> Result<(), TrackError> {
         let state = What::HandState(gripper.state());
         self.attach_device(gripper.journal(), state, robot)
@@ -248,7 +254,7 @@ impl Recorder {
     /// Records a vacuum gripper with the robot of this name, as [`Self::attach_gripper`] does.
     ///
     /// # Errors
-    /// [`TrackError::Unknown`].
+    /// [`TrackError::Unknown`], [`TrackError::Attached`].
     pub fn attach_vacuum_gripper(
         &self,
         gripper: &VacuumGripper,
@@ -265,8 +271,10 @@ impl Recorder {
             found.map(|(id, _)| *id)
         });
         let id = id.ok_or_else(|| TrackError::Unknown { name: robot.into() })?;
-        self.entries.read_device(journal, state, id);
-        Ok(())
+        let attached = self.entries.read_device(journal, state, id);
+        attached
+            .then_some(())
+            .ok_or_else(|| TrackError::Attached { name: robot.into() })
     }
 
     /// Records a remark, for all robots.

@@ -29,6 +29,8 @@ async fn actions_and_states_of_a_hand_are_recorded() {
         "no robot called \"left\" is attached to the recorder"
     );
     recorder.attach_gripper(&gripper, "").unwrap();
+    let twice = recorder.attach_gripper(&gripper, "").unwrap_err();
+    assert!(twice.to_string().ends_with("already"), "{twice}");
     let refused = recorder.begin_episode("one/two", "grasp the object");
     let expected =
         "got the episode name \"one/two\", expected 1 to 128 letters, digits, '-' and '_'";
