@@ -5,8 +5,8 @@ use franka_async::MotionError;
 use franka_async::connection::Version;
 use franka_async::diagnosis::{Diagnose, Diagnosis};
 use franka_async::error::{
-    ActiveError, CommandError, ConnectError, ControlError, GripperError, IdentifyError, ReadError,
-    Status, VacuumGripperError,
+    ActionError, ActionFailure, ActiveError, CommandError, ConnectError, ControlError,
+    GripperError, IdentifyError, ReadError, Status, VacuumGripperError,
 };
 use franka_async::model::RobotKind;
 use pyo3::prelude::*;
@@ -147,6 +147,10 @@ fn kind(error: &Error) -> String {
         Error::Identify(error) => variant(error),
         Error::Read(error) => variant(error),
         Error::ConnectGripper(error) => variant(error),
+        Error::Gripper(ActionError::Failure(ActionFailure::Aborted { .. }))
+        | Error::VacuumGripper(ActionError::Failure(ActionFailure::Aborted { .. })) => {
+            "aborted".to_owned()
+        }
         Error::Gripper(error) => variant(error),
         Error::ConnectVacuumGripper(error) => variant(error),
         Error::VacuumGripper(error) => variant(error),

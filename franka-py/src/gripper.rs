@@ -16,10 +16,11 @@ use crate::stream::stream;
 /// gripper.connect()` does so without a block. On threads without an event loop, `.wait()`
 /// stands in the place of `await`. What is grasped stays grasped when the connection ends.
 ///
-/// One action runs at a time. A newer one aborts it, which then raises `ActionError`, and so does
-/// `stop()`, from any task or thread. Cancelling the task that awaits an action stops the fingers,
-/// and so does a timeout around it. An action has no deadline of its own: a move that an obstacle
-/// blocks takes minutes. None holds the interpreter while it is awaited or waited for.
+/// One action runs at a time. A newer one aborts it, which then raises `ActionError` of the kind
+/// `aborted`, and so does `stop()`, from any task or thread. Cancelling the task that awaits an
+/// action stops the fingers, and so does a timeout around it. An action has no deadline of its own:
+/// a move that an obstacle blocks takes minutes. None holds the interpreter while it is awaited or
+/// waited for.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Gripper(pub(crate) Device<gripper::Gripper>);
 
@@ -74,8 +75,8 @@ impl Gripper {
         }))
     }
 
-    /// Moves the fingers to `width`, m, at `speed`, m/s; returns whether they arrived. Raises
-    /// `ActionError`; cancelling stops the fingers.
+    /// Moves the fingers to `width`, m, at `speed`, m/s (the Hand's most is 0.1, and more is not
+    /// refused); returns whether they arrived. Raises `ActionError`; cancelling stops the fingers.
     #[pyo3(signature = (width, speed = 0.1))]
     fn move_to(&self, width: f64, speed: f64) -> PyResult<Operation> {
         let width = at_least_zero("width", width)?;

@@ -51,7 +51,7 @@ def test_a_stop_ends_the_action_that_runs(franka_sim: franka_async.Sim) -> None:
             assert await gripper.stop()
             with pytest.raises(ActionError) as raised:
                 await moving
-            assert raised.value.kind == "failure"
+            assert raised.value.kind == "aborted"
             assert "aborted" in str(raised.value)
 
     asyncio.run(main())

@@ -56,7 +56,7 @@ class ReadError(FrankaError):
 
 
 class ActionError(FrankaError):
-    """An end effector did not do it."""
+    """An end effector did not do it. The kind is ``aborted`` if a newer action or ``stop()`` ended it."""
 
 
 class RecordError(FrankaError):

@@ -45,7 +45,7 @@ def _exception(error: errors.FrankaError) -> FrankaError:
             return FrankaError(text, kind=kind)
         case errors.CommandError() if error.party in ("robot", "caller"):
             return FrankaError(text, kind="command")
-        case errors.ActionError() if kind in ("failure", "out_of_range"):
+        case errors.ActionError() if kind in ("aborted", "failure", "out_of_range"):
             return FrankaError(text, kind="command")
     if error.party == "peer":
         return FrankaError(text, kind="protocol")

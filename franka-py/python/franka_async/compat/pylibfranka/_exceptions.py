@@ -48,7 +48,7 @@ def _exception(error: errors.FrankaError) -> Exception:
         case errors.CommandError():
             return CommandException(text) if error.party in ("robot", "caller") else NetworkException(text)
         case errors.ActionError():
-            return CommandException(text) if kind in ("failure", "out_of_range") else NetworkException(text)
+            return CommandException(text) if kind in ("aborted", "failure", "out_of_range") else NetworkException(text)
         case errors.ControlError():
             # Under active control the original says no rate.
             return ControlException(PREEMPTED if error.move_status == "preempted" else text.split("\ncontrol_command_success_rate")[0])
