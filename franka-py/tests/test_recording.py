@@ -148,6 +148,9 @@ def test_episodes_become_a_dataset(recording: RecordingFile, path: Path, tmp_pat
     assert info()["total_episodes"] == 4
     name = recording.episodes()[1].name
     assert recording.to_lerobot(tmp_path / "one", fps=20, episodes=[name])[0] == 1
+    first = recording.episodes()[0]
+    with pytest.raises(ExportError, match=f'"{first.name}" was begun and not ended'):
+        recording.between(first.begin, first.end - 1).to_lerobot(tmp_path / "open")
     with pytest.raises(ValueError, match='got the episode "none", expected one of '):
         recording.to_lerobot(tmp_path / "none", episodes=["none"])
     with pytest.raises(ValueError, match="action is \"guess\", expected 'reference' or 'measured'"):

@@ -85,10 +85,13 @@ impl Export {
             }
             let mut found = Episode::of(robot.events())?;
             if found.is_empty() {
-                let message = format!("{} has no episodes", self.recorded.file.display());
+                let message = format!(
+                    "{} has no episode that has ended",
+                    self.recorded.file.display()
+                );
                 let failure = Failure::new(Ending::Failed, message);
                 return Err(failure
-                    .advice("A program marks them while it records: Recorder::begin_episode.")
+                    .advice("A program marks them while it records: Recorder::begin_episode and end_episode.")
                     .into());
             }
             if !self.episodes.is_empty() {
@@ -107,7 +110,8 @@ impl Export {
                 let add = || dataset.add_episode(&episode.task, episode.success, samples);
                 let added = while_turning("adding an episode", add);
                 count += added.map_err(|error| {
-                    Failure::new(Ending::Failed, error.to_string()).advice(
+                    let message = format!("{:?}: {error}", episode.name);
+                    Failure::new(Ending::Failed, message).advice(
                         "--measured takes where the arm was; --no-gripper leaves the gripper out; \
                          --episodes chooses others.",
                     )

@@ -45,7 +45,7 @@ fn a_motion_is_recorded_exported_and_replayed() {
             .done();
         assert!(home.path("run.parquet").exists());
         home.run(&["export", "run.mcap", "--lerobot", "data"])
-            .failed(1, &["no episodes"]);
+            .failed(1, &["no episode that has ended"]);
         let bad = [
             "export",
             "run.mcap",

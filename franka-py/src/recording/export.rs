@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use franka_async::export::lerobot::{Action, Dataset, DatasetOptions};
 use franka_async::export::{Columns, ExportError, write_csv, write_parquet};
+use franka_async::recording::event::EventKind;
 use franka_async::recording::{Episode, Sample, Samples};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -53,12 +54,12 @@ impl RecordingFile {
 
     /// Writes the episodes as a dataset in LeRobot's layout v3.0 to `folder`, which must not be
     /// there or be empty; returns how many episodes and frames. `append` adds them to the dataset
-    /// that is there. `fps` are frames per second. `robot_type` is `franka_fr3` or `franka_fer`
-    /// unless given. `gripper`, whether its width is part of states and actions: by default, if the
-    /// recording has one of a Hand. `action` is `reference`, where the arm was to be at the next
-    /// frame, or `measured`, where it was: for demonstrations by hand. `episodes` are the names of
-    /// those to write; all by default. Raises `ExportError`, `ValueError`; a dataset that is there
-    /// is then as it was.
+    /// that is there: twice, if the same recording is given twice. `fps` are frames per second.
+    /// `robot_type` is `franka_fr3` or `franka_fer` unless given. `gripper`, whether its width is
+    /// part of states and actions: by default, if the recording has one of a Hand. `action` is
+    /// `reference`, where the arm was to be at the next frame, or `measured`, where it was: for
+    /// demonstrations by hand. `episodes` are the names of those to write; all by default. Raises
+    /// `ExportError`, `ValueError`; a dataset that is there is then as it was.
     #[pyo3(signature = (
         folder, *, fps = 30, robot_type = None, gripper = None, action = "reference", append = false,
         episodes = None,
@@ -93,6 +94,19 @@ impl RecordingFile {
             Ok,
         )?;
         let mut chosen = self.read_episodes(py)?;
+        if chosen.is_empty()
+            && let Some(name) = self.view(py, |view| {
+                let events = view.events().filter_map(Result::ok);
+                let begun = events.filter_map(|event| match event.kind {
+                    EventKind::EpisodeStart { name, .. } => Some(name),
+                    _ => None,
+                });
+                begun.last()
+            })?
+        {
+            let text = format!("no episode was added: {name:?} was begun and not ended");
+            return Err(made(py, "ExportError", "dataset", "caller", &text));
+        }
         if let Some(names) = episodes {
             chosen = Episode::named(chosen, &names)
                 .map_err(|error| PyValueError::new_err(error.to_string()))?;
@@ -112,6 +126,7 @@ impl RecordingFile {
             };
             let mut frames = 0;
             for Episode {
+                name,
                 task,
                 success,
                 begin,
@@ -124,7 +139,13 @@ impl RecordingFile {
                 let samples = Samples::new(until.from(*begin).cycles(), until.gripper_states());
                 let samples = samples.collect::<Result<Vec<Sample>, _>>();
                 let samples = samples.map_err(|error| ExportError::Cycles(error.into()))?;
-                frames += dataset.add_episode(task, *success, samples)?;
+                let added = dataset.add_episode(task, *success, samples);
+                frames += added.map_err(|mut error| {
+                    if let ExportError::Episode { why, .. } = &mut error {
+                        *why = format!("{why} (in the recording: {name:?})");
+                    }
+                    error
+                })?;
             }
             dataset.finish()?;
             Ok((chosen.len(), frames))
