@@ -191,8 +191,17 @@ impl Arm {
     }
 
     /// Follows points with times, as a policy predicts them, from now on; over as soon as they are
-    /// taken. See `Chunk`, which may be given in the place of the points; the other arguments
-    /// are its fields.
+    /// taken. The arm rests at the last one unless another chunk or goal comes.
+    ///
+    /// `points` are positions `(N, 3)`, poses `(N, 7)` or `(N, 4, 4)`, or with `joints` joint
+    /// positions `(N, 7)`, rad; or a `Chunk`, whose fields are the other arguments. `dt` is the
+    /// time between two points, s, or `times` that of each. `velocities` are twists `(N, 6)` or
+    /// joint velocities `(N, 7)`. `observed_at` is the `RobotState` that the policy saw: times
+    /// count from it. `blend` is the time to fade over from the chunk before, 0.1 s by default.
+    ///
+    /// Raises `ValueError` for arrays that are no chunk, and `MotionError` when it is awaited: for
+    /// one that comes too late or ends out of reach, and then the chunk before goes on; and of the
+    /// kind `held` or `braked`, once, if the chunk before was given up, as by a silent `Deadman`.
     #[pyo3(signature = (points, dt = None, times = None, *, velocities = None, joints = false, observed_at = None, blend = None))]
     #[expect(clippy::too_many_arguments, reason = "keywords")]
     fn chunk(

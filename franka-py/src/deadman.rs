@@ -2,15 +2,17 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use franka_async::error::GoalError;
 use franka_async::goal::{Deadman as Token, DeadmanMonitor};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::operation::seconds;
 
-/// A token that has to be kept alive: while it is silent for longer than `silence` seconds, and
-/// once it is released or gone, the arm that it was given to by `Robot.engage` brakes and holds,
-/// and every goal raises `held`. The control thread watches it, whatever Python is busy with.
+/// A token that has to be kept alive: while it is silent for longer than `silence` seconds (0.01 or
+/// more), and once it is released or gone, the arm that it was given to by `Robot.engage` brakes
+/// and holds, and every goal raises `held`; so does the first chunk after it. The control thread
+/// watches it, whatever Python is busy with.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Deadman {
     token: Mutex<Option<Token>>,
@@ -34,7 +36,13 @@ impl Deadman {
 impl Deadman {
     #[new]
     fn new(silence: f64) -> PyResult<Self> {
-        let (token, monitor) = Token::new(seconds("silence", silence)?);
+        let got = seconds("silence", silence)?;
+        if got < Token::SILENCE_MIN {
+            return Err(PyValueError::new_err(
+                GoalError::Silence { got }.to_string(),
+            ));
+        }
+        let (token, monitor) = Token::new(got);
         Ok(Self {
             token: Mutex::new(Some(token)),
             monitor: Mutex::new(Some(monitor)),

@@ -24,6 +24,19 @@ use crate::supervision::supervise_by;
 ///
 /// When the last reference to a connected robot goes, it is braked and closed in the background;
 /// when the interpreter exits, it is waited for.
+///
+/// Options: `realtime` is `enforce` or `ignore`: whether a host without real-time scheduling is
+/// refused. `None` is the environment variable `FRANKA_REALTIME`, and `enforce` without one.
+/// `priority` (1 to 99) and `cpu` are for the control thread; threads of Python keep theirs.
+/// `version` is the protocol version, 5 or 10; negotiated if `None`. `connect_timeout` is for each
+/// step of connecting, and `link_timeout` the silence of the robot after which a motion fails with
+/// `link_lost`, 0.02 to 10 s, 1 s by default; more than that is for simulated robots on busy hosts.
+/// `log_size` is how many cycles an error carries, 10000 at most. `nominal_model` computes with the
+/// vendor's constants whatever the robot says of itself. `known` is an `Identified` of this arm.
+/// `supervise` is a `Policy`, or `True` for the default one: lost connections are made again, and
+/// the robot is recovered as the policy says. `ask_before_recovery` is called with the `Reflex`
+/// before each recovery, on a thread of its own, and has to return whether it may be; it implies
+/// `ask_first`. `ValueError` for options that make no sense.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Robot {
     builder: Builder,
@@ -34,23 +47,6 @@ pub(crate) struct Robot {
 #[pymethods]
 impl Robot {
     /// Describes a connection to `address`, `host` or `host:port`; nothing is sent yet.
-    ///
-    /// `realtime` is `enforce` or `ignore`: whether a host without real-time scheduling is refused.
-    /// `None` is the environment variable `FRANKA_REALTIME`, and `enforce` without one. `priority`
-    /// (1 to
-    /// 99) and `cpu` are for the control thread; threads of Python keep theirs. `version` is the
-    ///     protocol
-    /// version, 5 or 10; negotiated if `None`. `connect_timeout` is for each step of connecting,
-    /// and `link_timeout` the silence of the robot after which a motion fails with `link_lost`,
-    /// 0.02 to 10 s, 1 s by default; more than that is for simulated robots on busy hosts.
-    /// `log_size` is how many cycles an error carries, 10000 at most.
-    /// `nominal_model` computes with the vendor's constants whatever the robot says of itself.
-    /// `known` is an `Identified` of this arm. `supervise` is a `Policy`, or `True` for the
-    /// default one: lost connections are made again, and the robot is recovered as the policy
-    /// says. `ask_before_recovery` is called with the `Reflex` before each recovery, on a
-    /// thread of its own, and has to return whether it may be; it implies `ask_first`.
-    ///
-    /// Raises `ValueError` for options that make no sense.
     #[new]
     #[pyo3(signature = (
         address, *, realtime = None, priority = None, cpu = None, version = None, connect_timeout = None,

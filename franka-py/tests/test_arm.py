@@ -409,6 +409,8 @@ def test_a_session_is_no_faster_than_its_cap(sim: Sim) -> None:
 
 def test_an_arm_holds_while_its_deadman_is_silent(live: Sim) -> None:
     async def main(robot: Robot) -> None:
+        with pytest.raises(ValueError, match="expected at least 10 ms"):
+            Deadman(0.0)
         deadman = Deadman(2.0)
         assert deadman.silence == 2.0
         async with robot.engage(deadman=deadman) as arm:

@@ -194,7 +194,10 @@ fn place(position: [f64; 3]) -> String {
 
 /// Chunks came faster than the control thread takes them up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{} chunks are under way already", Chunk::UNDER_WAY_MAX)]
+#[error(
+    "{} chunks are under way already, send fewer at once",
+    Chunk::UNDER_WAY_MAX
+)]
 pub struct TooManyChunks;
 
 /// What is accepted, in words.

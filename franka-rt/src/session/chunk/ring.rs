@@ -60,7 +60,10 @@ pub struct Returned {
 
 /// There is no room for another chunk: the thread has not taken up or given back those sent before.
 #[derive(Debug, thiserror::Error)]
-#[error("{} chunks are under way already", Chunk::UNDER_WAY_MAX)]
+#[error(
+    "{} chunks are under way already, send fewer at once",
+    Chunk::UNDER_WAY_MAX
+)]
 pub struct Full(
     /// The chunk that was to be sent.
     pub Chunk,

@@ -4,6 +4,8 @@ use core::sync::atomic::{AtomicU64, Ordering};
 use core::time::Duration;
 use std::sync::Arc;
 
+use crate::session::Goal;
+
 /// The value of the counter once the token is dropped.
 const GONE: u64 = u64::MAX;
 
@@ -49,6 +51,9 @@ pub struct DeadmanMonitor {
 }
 
 impl Deadman {
+    /// The shortest silence that a session accepts.
+    pub const SILENCE_MIN: Duration = Goal::SILENCE_MIN;
+
     /// Returns a token that may be silent for `silence`, in whole milliseconds, and the end of it
     /// for a session.
     pub fn new(silence: Duration) -> (Self, DeadmanMonitor) {
