@@ -22,6 +22,7 @@ DIRECTORY = Path(__file__).parents[1] / "examples"
 PRINTS = {
     "quickstart": r"cancelled: the arm brakes\n",
     "policy": r"followed for \d\.\d s, .*\n",
+    "episodes": r"(.*\n)*2 episodes, \d{2,} frames\nreplayed, \d+\.\d mm off at most\n",
     "script": r"back, \d\.\d+ mm off\n",
     "pick": r"holding 30\.0 mm\nput down\n",
     "guarded_move": r"contact at \d\.\d+ m .*\n",
@@ -34,7 +35,7 @@ PRINTS = {
     "from_pylibfranka": r"finished 0\.0\d* rad from the start\n",
 }
 
-OWN_CLOCK = {"quickstart", "policy", "script", "impedance_law"}
+OWN_CLOCK = {"quickstart", "policy", "episodes", "script", "impedance_law"}
 """Examples that let time pass themselves: their robots are no faster than the clock on the wall, and wait for this machine."""
 
 
@@ -44,7 +45,7 @@ def ran(name: str) -> subprocess.CompletedProcess[str]:
         sims = Sim.in_step("fr3", "fer", virtual_time=True)
     else:
         pace: SimOptions = {"patience": 5.0} if name in OWN_CLOCK else {"virtual_time": True}
-        pace["hand"] = name == "pick"
+        pace["hand"] = name in ("pick", "episodes")
         sims = [Sim.fr3(**pace)]
     with contextlib.ExitStack() as stack:
         for sim in sims:
@@ -52,8 +53,9 @@ def ran(name: str) -> subprocess.CompletedProcess[str]:
         arguments = [sim.address for sim in sims]
         if name == "guarded_move":
             sims[0].wall(sims[0].true_pose()[:3, 3] - [0.0, 0.0, 0.05], [0.0, 0.0, 1.0])
-        elif name == "pick":
-            sims[0].place_object(0.03)
+        elif name in ("pick", "episodes"):
+            if name == "pick":
+                sims[0].place_object(0.03)
             arguments.append(str(sims[0].hand_address))
         elif name == "team":
             arguments.append("10.0")
