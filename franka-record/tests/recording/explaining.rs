@@ -30,12 +30,14 @@ fn stopped() -> (Vec<u8>, Explanation) {
             explainer.push_state(&arm.cycle_at(ms).0);
         }
     };
+    let event = |arm: &Arm, kind| handle.event_at(handle.clock().at(arm.received()), kind);
     run(&mut arm, 1500);
-    handle.event(EventKind::Goal(Goal {
+    let goal = EventKind::Goal(Goal {
         number: 1,
         kind: "move_to".to_owned(),
         ..Goal::default()
-    }));
+    });
+    event(&arm, goal);
     arm.state.joint_contact[1] = 1.0;
     run(&mut arm, 20);
     arm.state.joint_collision[1] = 1.0;
@@ -44,16 +46,18 @@ fn stopped() -> (Vec<u8>, Explanation) {
     arm.state.errors = RobotError::JointReflex.into();
     arm.state.reflex_reason = arm.state.errors;
     run(&mut arm, 500);
-    handle.event(EventKind::Outcome(Outcome {
+    let outcome = EventKind::Outcome(Outcome {
         goal: 1,
         ending: Ending::Reflex,
         ..Outcome::default()
-    }));
-    handle.event(EventKind::Diagnosis(Diagnosis {
+    });
+    event(&arm, outcome);
+    let diagnosis = EventKind::Diagnosis(Diagnosis {
         goal: 1,
         text: "joint 2 was hit".to_owned(),
         json: String::new(),
-    }));
+    });
+    event(&arm, diagnosis);
     recorder.finish().unwrap();
     (std::fs::read(path).unwrap(), explainer.finish())
 }

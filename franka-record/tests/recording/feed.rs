@@ -87,8 +87,13 @@ impl Arm {
         let (state, record) = self.cycle_at(self.ms);
         let mut bytes = [0; RobotState::MAX_SIZE];
         let length = state.encode(self.version, &mut bytes).unwrap();
-        let received = self.began + Duration::from_millis(self.ms);
-        self.publisher.push(record, &bytes[..length], received);
+        self.publisher
+            .push(record, &bytes[..length], self.received());
+    }
+
+    /// When its last cycle came, by its pace and not by how fast it is fed.
+    pub(crate) fn received(&self) -> Instant {
+        self.began + Duration::from_millis(self.ms)
     }
 
     /// State and record of a cycle.
