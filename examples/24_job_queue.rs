@@ -3,6 +3,8 @@
 //! `cargo run --release --example job_queue [ADDRESS]`, then, with the port that it prints: 5 cm up
 //! by `curl 127.0.0.1:PORT/jobs --json '[0, 0, 0.05]'`; the outcomes by `curl 127.0.0.1:PORT/jobs`
 
+use anyhow::bail;
+use axum::http::StatusCode;
 use axum::{Json, Router, routing::post};
 use franka_async::prelude::*;
 use tokio::signal::{ctrl_c, unix};
@@ -15,20 +17,26 @@ async fn main() -> anyhow::Result<()> {
     // `Ignore` is for simulators. Without it a real-time kernel is required, as a robot needs it.
     let robot = builder.realtime(Realtime::Ignore).connect().await?;
 
-    let (queue, mut jobs) = mpsc::unbounded_channel::<[f64; 3]>();
+    let (queue, mut jobs) = mpsc::channel::<[f64; 3]>(16);
     let (done, outcomes) = watch::channel(Vec::new());
-    let (mover, stopped) = (robot.clone(), robot.clone());
+    let (mover, reflexed) = (robot.clone(), robot.clone());
     tokio::spawn(async move {
         while let Some(by) = jobs.recv().await {
             let outcome = mover.move_by(Offset::base(by)).speed(0.5).await;
             let text = outcome.map_or_else(|error| error.to_string(), |_| "arrived".to_owned());
-            done.send_modify(|outcomes| outcomes.push(text));
+            done.send_modify(|outcomes| outcomes.push(text)); // a real service forgets old ones
         }
     });
 
-    let take = async move |Json(by)| queue.send(by).map_err(|error| error.to_string());
+    let take = async move |Json(by)| match queue.try_send(by) {
+        Ok(()) => (StatusCode::ACCEPTED, String::new()),
+        Err(error) => (StatusCode::SERVICE_UNAVAILABLE, error.to_string()),
+    };
     let list = async move || Json(outcomes.borrow().clone());
-    let recover = async move || stopped.recover().await.map_err(|error| error.to_string());
+    let recover = async move || match reflexed.recover().await {
+        Ok(()) => (StatusCode::OK, String::new()),
+        Err(error) => (StatusCode::CONFLICT, error.to_string()),
+    };
     let jobs = Router::new().route("/jobs", post(take).get(list));
     let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await?;
     println!("listening on {}", listener.local_addr()?);
@@ -36,6 +44,7 @@ async fn main() -> anyhow::Result<()> {
     let serving = axum::serve(listener, jobs.route("/recover", post(recover)));
     tokio::select! {
         served = serving => served?,
+        reason = robot.closed() => bail!("{reason}"), // a service manager starts it again
         _ = ctrl_c() => {}
         _ = terminated.recv() => {}
     }

@@ -41,7 +41,13 @@ fn job_queue_does_jobs_in_order_and_goes_on_after_a_recovery() {
         let url = format!("http://{}", service.said("listening on "));
         let add = |by: [f64; 3]| {
             let sent = ureq::post(format!("{url}/jobs")).send_json(by);
-            assert_eq!(sent.expect("it is taken").status(), 200, "{robot}");
+            assert_eq!(sent.expect("it is taken").status(), 202, "{robot}");
+        };
+        let recover = || {
+            let agent = ureq::Agent::config_builder().http_status_as_error(false);
+            let agent: ureq::Agent = agent.build().into();
+            let answer = agent.post(format!("{url}/recover")).send_empty();
+            answer.expect("an answer").status()
         };
         let outcomes = |count: usize| -> Vec<String> {
             let end = Instant::now() + SOON;
@@ -68,8 +74,10 @@ fn job_queue_does_jobs_in_order_and_goes_on_after_a_recovery() {
         arm.wait_for("stopped", |state| state.robot_mode == RobotMode::Reflex);
         add([0.0, 0.0, -0.04]);
         assert_ne!(outcomes(3)[2], "arrived", "{robot}");
-        let recovered = ureq::post(format!("{url}/recover")).send_empty();
-        assert_eq!(recovered.expect("an answer").status(), 200, "{robot}");
+        arm.with(|robot| robot.press_user_stop(true));
+        assert_eq!(recover(), 409, "{robot}");
+        arm.with(|robot| robot.press_user_stop(false));
+        assert_eq!(recover(), 200, "{robot}");
         add([0.0, 0.0, -0.04]);
         assert_eq!(outcomes(4)[3], "arrived", "{robot}");
 

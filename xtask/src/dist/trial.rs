@@ -159,7 +159,7 @@ impl Outside {
         let listening = service.address("listening on ")?;
         let job = "POST /jobs HTTP/1.0\r\ncontent-type: application/json";
         let taken = ask(&listening, job, "[0, 0, 0.05]")?;
-        ensure!(taken.starts_with("HTTP/1.0 200 "), "got {taken:?}");
+        ensure!(taken.starts_with("HTTP/1.0 202 "), "got {taken:?}");
         let outcomes = loop {
             let outcomes = ask(&listening, "GET /jobs HTTP/1.0", "")?;
             if !outcomes.ends_with("[]") {
