@@ -84,18 +84,14 @@ fn print_events(robot: &Robot) -> JoinHandle<()> {
                 println!("{} events were missed", notification.missed);
             }
             let at = notification.event.at.as_secs_f64();
-            match notification.event.kind {
-                EventKind::MotionBegun { .. } | EventKind::MotionEnded { .. } => {}
-                EventKind::Reflex(reflex) => {
-                    println!("{at:.3} s: reflex {} {}", reflex.number, reflex.errors);
-                    if let Some(diagnosis) = reflex.diagnose() {
-                        println!("{diagnosis}");
-                    }
-                }
-                EventKind::Recovered { after, .. } => {
-                    println!("{at:.3} s: recovered after {after:.0?}");
-                }
-                other => println!("{at:.3} s: {other:?}"),
+            match &notification.event.kind {
+                EventKind::MotionBegun { .. } | EventKind::MotionEnded { .. } => continue,
+                kind => println!("{at:.3} s: {kind}"),
+            }
+            if let EventKind::Reflex(reflex) = notification.event.kind
+                && let Some(diagnosis) = reflex.diagnose()
+            {
+                println!("{diagnosis}");
             }
         }
     })

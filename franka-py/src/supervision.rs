@@ -305,5 +305,12 @@ fn event(py: Python<'_>, notification: Notification) -> PyResult<Bound<'_, PyAny
         _ => {}
     }
     let robot_time = robot_time.map(|time| time as f64 / 1000.0);
-    class(py, "Event")?.call1((variant(&kind), at.as_secs_f64(), robot_time, missed, fields))
+    class(py, "Event")?.call1((
+        variant(&kind),
+        at.as_secs_f64(),
+        robot_time,
+        missed,
+        fields,
+        kind.to_string(),
+    ))
 }

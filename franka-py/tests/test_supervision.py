@@ -30,6 +30,7 @@ def test_events_of_a_reflex_and_the_recovery_by_policy(franka_sim: Sim) -> None:
             reflex = await until(events, "reflex")
             assert reflex.reflex == Reflex(1, ["cartesian_reflex"], None)
             assert reflex.lost == 0 and reflex.robot_time is not None
+            assert str(reflex) == 'reflex 1: ["cartesian_reflex"]'
             recovered = await until(events, "recovered")
             assert recovered.number == 1 and recovered.by_supervisor and recovered.after > 0
             health = robot.health()
@@ -212,7 +213,7 @@ def test_a_function_needs_a_supervisor() -> None:
 
 
 def test_fields_of_events_are_attributes() -> None:
-    event = Event("user_stop", 1.0, 2.0, 0, {"pressed": True})
+    event = Event("user_stop", 1.0, 2.0, 0, {"pressed": True}, "user stop pressed")
     assert event.pressed
     assert pickle.loads(pickle.dumps(event)) == event
     with pytest.raises(AttributeError, match="of the kind 'user_stop' has no 'reflex'"):

@@ -91,7 +91,7 @@ fn supervised_goes_on_after_reflexes() {
     for robot in ROBOTS {
         let said = run("supervised", robot);
         assert!(
-            said.contains("reflex 2 [\"cartesian_reflex\"]"),
+            said.contains("reflex 2: [\"cartesian_reflex\"]"),
             "{robot}: {said}"
         );
         assert!(
@@ -99,7 +99,7 @@ fn supervised_goes_on_after_reflexes() {
             "{robot}: {said}"
         );
         assert!(
-            said.contains("Closed { reason: ClosedByUs }"),
+            said.contains("closed: this program has closed the connection"),
             "{robot}: {said}"
         );
     }

@@ -148,56 +148,18 @@ pub(super) fn diagnosis(goal: GoalId, outcome: &Outcome) -> Option<EventKind> {
 /// Something that happened to the robot; `None` for what entries of their own tell.
 pub(super) fn happening(event: &supervision::Event) -> Option<EventKind> {
     use supervision::EventKind as Kind;
-    let (level, text) = match &event.kind {
+    let level = match &event.kind {
         Kind::MotionBegun { .. } | Kind::MotionEnded { .. } => return None,
         Kind::Silent { silence } => return Some(EventKind::LinkLost { silence: *silence }),
         Kind::Resumed { after } => return Some(EventKind::LinkRestored { silence: *after }),
-        Kind::Connected { attempts, after } => {
-            let after = after.map(|after| format!(", {after:.1?} after the loss"));
-            let after = after.unwrap_or_default();
-            let text = format!("connected at attempt {attempts}{after}");
-            (Level::Info, text)
-        }
-        Kind::RealtimeRefused { refusals } => {
-            let refusals: Vec<_> = refusals.iter().map(ToString::to_string).collect();
-            (Level::Warning, refusals.join("; "))
-        }
-        Kind::Lost { reason } => (Level::Error, format!("connection lost: {reason}")),
-        Kind::Reflex(reflex) => {
-            let text = format!("reflex {}: {}", reflex.number, reflex.errors);
-            (Level::Error, text)
-        }
-        Kind::NotRecovered { reflex, why } => {
-            let text = format!("not recovered from reflex {reflex}: {why}");
-            (Level::Warning, text)
-        }
-        Kind::Recovered {
-            reflex,
-            after,
-            by_supervisor,
-        } => {
-            let by = if *by_supervisor {
-                "supervisor"
-            } else {
-                "program or person"
-            };
-            let text = format!("recovered from reflex {reflex} by {by} after {after:.1?}");
-            (Level::Info, text)
-        }
-        Kind::UserStop { pressed: true } => (
-            Level::Warning,
-            "user stop pressed, or a safety function".into(),
-        ),
-        Kind::UserStop { pressed: false } => (Level::Info, "user stop released".into()),
-        Kind::Guiding { active: true } => (Level::Info, "guided by hand".into()),
-        Kind::Guiding { active: false } => (Level::Info, "no longer guided by hand".into()),
-        Kind::Brakes { closed: true } => (Level::Warning, "brakes closed".into()),
-        Kind::Brakes { closed: false } => (Level::Info, "brakes open".into()),
-        Kind::LoadChanged { load } => (Level::Info, format!("load is now {}", json(load))),
-        Kind::Closed { reason } => (Level::Info, format!("closed: {reason}")),
-        other => (Level::Info, format!("{other:?}")),
+        Kind::Lost { .. } | Kind::Reflex(_) => Level::Error,
+        Kind::RealtimeRefused { .. }
+        | Kind::NotRecovered { .. }
+        | Kind::UserStop { pressed: true }
+        | Kind::Brakes { closed: true } => Level::Warning,
+        _ => Level::Info,
     };
-    Some(note(level, "supervision", text))
+    Some(note(level, "supervision", event.kind.to_string()))
 }
 
 pub(super) fn note(level: Level, source: &str, text: String) -> EventKind {

@@ -169,6 +169,12 @@ class Event:
     fields: Mapping[str, Any]
     """What belongs to this kind."""
 
+    text: str
+    """One line for people."""
+
+    def __str__(self) -> str:
+        return self.text
+
     def __getattr__(self, name: str) -> Any:
         # Only for names that are no attributes otherwise; `fields` itself is missing while an event is unpickled.
         fields = self.__dict__.get("fields", {})

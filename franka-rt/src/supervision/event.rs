@@ -1,5 +1,6 @@
 //! What happened to a robot, and how it is.
 
+use core::fmt;
 use core::time::Duration;
 use std::sync::Arc;
 
@@ -114,6 +115,60 @@ pub enum EventKind {
     },
 }
 
+impl fmt::Display for EventKind {
+    /// One line for people.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Connected { attempts, after } => {
+                write!(f, "connected at attempt {attempts}")?;
+                let Some(after) = after else { return Ok(()) };
+                write!(f, ", {after:.1?} after the loss")
+            }
+            Self::RealtimeRefused { refusals } => {
+                f.write_str("without real-time scheduling")?;
+                let mut refusals = refusals.iter();
+                refusals.try_for_each(|refusal| write!(f, "; {refusal}"))
+            }
+            Self::Lost { reason } => write!(f, "connection lost: {reason}"),
+            Self::Silent { silence } => write!(f, "no state for {silence:.1?}"),
+            Self::Resumed { after } => write!(f, "states come again after {after:.1?}"),
+            Self::Reflex(Reflex { number, errors, .. }) => write!(f, "reflex {number}: {errors}"),
+            Self::NotRecovered { reflex, why } => {
+                write!(f, "not recovered from reflex {reflex}: {why}")
+            }
+            Self::Recovered {
+                reflex,
+                after,
+                by_supervisor,
+            } => {
+                let by = match by_supervisor {
+                    true => "the supervisor",
+                    false => "program or person",
+                };
+                write!(
+                    f,
+                    "recovered from reflex {reflex} by {by} after {after:.1?}"
+                )
+            }
+            Self::UserStop { pressed: true } => {
+                f.write_str("user stop pressed, or a safety function")
+            }
+            Self::UserStop { pressed: false } => f.write_str("user stop released"),
+            Self::Guiding { active: true } => f.write_str("guided by hand"),
+            Self::Guiding { active: false } => f.write_str("no longer guided by hand"),
+            Self::Brakes { closed: true } => f.write_str("brakes closed"),
+            Self::Brakes { closed: false } => f.write_str("brakes open"),
+            Self::MotionBegun { goal } => write!(f, "motion {goal} begun"),
+            Self::MotionEnded { goal, outcome } => match &**outcome {
+                Ok(report) => write!(f, "motion {goal} ended after {:.1?}", report.duration),
+                Err(error) => write!(f, "motion {goal} ended: {error}"),
+            },
+            Self::LoadChanged { load } => write!(f, "the load is now {} kg", load.m_load),
+            Self::Closed { reason } => write!(f, "closed: {reason}"),
+        }
+    }
+}
+
 /// The robot stopped itself.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -185,8 +240,8 @@ pub enum Condition {
     Closed,
 }
 
-impl core::fmt::Display for Condition {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+impl fmt::Display for Condition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Ready => f.write_str("ready"),
             Self::Unready(why) => why.fmt(f),
