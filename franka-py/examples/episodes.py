@@ -39,13 +39,18 @@ async def run(robot: Robot, arm: Arm, deadman: Deadman, gripper: Gripper, way: f
     done, wanted, gripping = True, None, set()
     for _ in range(20):
         seen, reference = robot.state(), arm.reference()
-        assert reference is not None
+        if reference is None:
+            await arm.ended()  # raises why: a reflex, the user stop, a lost robot
+            return False
         # Relative actions go on from where the arm is to be. The event loop goes on while the policy computes.
         poses, width = await asyncio.to_thread(predict, reference.pose, way)
         deadman.keep_alive()
         try:
             await arm.chunk(poses, times=STEP * np.arange(1, STEPS + 1), observed_at=seen)
-        except (MotionError, ValueError) as refused:
+        except MotionError as refused:
+            # One that is late, or the first after the deadman was silent. Anything else has ended the session.
+            if refused.kind not in ("goal", "held"):
+                raise
             print(refused)
             done = False
         if width != wanted:

@@ -28,7 +28,11 @@ impl Deadman {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .take();
-        monitor.ok_or_else(|| PyValueError::new_err("deadman is bound to a session already"))
+        monitor.ok_or_else(|| {
+            PyValueError::new_err(
+                "deadman is bound to a session already, or was: expected a new one",
+            )
+        })
     }
 }
 

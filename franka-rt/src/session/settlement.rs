@@ -112,7 +112,7 @@ impl core::fmt::Display for Lapse {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Silent { silence } => write!(f, "no target came for {} ms", silence.as_millis()),
-            Self::Deadman => write!(f, "its deadman fell silent"),
+            Self::Deadman => write!(f, "its deadman fell silent, or was dropped"),
             Self::Displaced => write!(f, "the arm was pushed too far from its path"),
             Self::Blocked { region: None } => write!(f, "the way leads too near to the arm itself"),
             Self::Blocked {
