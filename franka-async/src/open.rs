@@ -74,8 +74,9 @@ pub(crate) async fn open(
     let lender = session.handle.lender.clone();
     let cycles = session.handle.cycles.clone();
     let model = Arc::new(connected_model::of(session.version, &channel, builder).await?);
-    let mut lifecycle =
-        Lifecycle::new(model.clone(), session.version).with_log_size(builder.log_size);
+    let mut lifecycle = Lifecycle::new(model.clone(), session.version)
+        .with_log_size(builder.log_size)
+        .with_link_timeout(LinkTimeout::new(builder.link_timeout)?);
     if let Some(known) = &builder.known {
         known.check(model.kind())?;
         lifecycle = lifecycle.knowing(**known);

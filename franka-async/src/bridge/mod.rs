@@ -69,9 +69,10 @@ pub(crate) struct Bridge {
 /// A deadline of the lifecycle.
 struct Awaited {
     deadline: Duration,
-    /// When it was set, `message_id` of the newest state then, and the turns of the control thread.
-    since: Duration,
+    /// `message_id` of the newest state, and since when none has come that is newer.
     newest: u64,
+    since: Duration,
+    /// Turns of the control thread when the deadline was set.
     turns: u64,
 }
 
@@ -222,15 +223,18 @@ impl Bridge {
             return;
         }
         self.publisher.refresh();
+        let newest = self.publisher.state().message_id;
+        let before = self.awaited.as_ref();
+        let since = before.filter(|it| it.newest == newest).map(|it| it.since);
         self.awaited = deadline.map(|deadline| Awaited {
             deadline,
-            since: self.now(),
-            newest: self.publisher.state().message_id,
+            newest,
+            since: since.unwrap_or_else(|| self.now()),
             turns: self.stats.turns.get(),
         });
     }
 
-    /// Why no state that came since the deadline was set could show anything.
+    /// Why no state could show what is awaited, if none has come since.
     fn unseen(&self) -> Option<MotionError> {
         let awaited = self.awaited.as_ref()?;
         if self.publisher.state().message_id != awaited.newest {

@@ -46,7 +46,7 @@ use std::sync::Arc;
 use franka_model::Model;
 use franka_proto::{Request, RobotState, Version};
 
-use crate::driver::{ControlLog, MotionId, Order};
+use crate::driver::{ControlLog, LINK_TIMEOUT, LinkTimeout, MotionId, Order};
 use crate::identify::Identified;
 use crate::law::Gains;
 use crate::law::compensation::Learned;
@@ -108,6 +108,8 @@ pub struct Lifecycle {
     motions: u64,
     /// Cycles that the log of a motion holds.
     log_size: usize,
+    /// Silence of the robot before which nothing that no state has shown counts as missing.
+    link_timeout: Duration,
     /// Regions that the arm keeps out of under target control.
     keep_out: KeepOut,
     /// What was known of the arm before, until a session begins with it.
@@ -162,6 +164,7 @@ impl Lifecycle {
             ended: None,
             motions: 0,
             log_size: ControlLog::DEFAULT_CAPACITY,
+            link_timeout: LINK_TIMEOUT,
             keep_out: KeepOut::default(),
             known: None,
             learned: Learned::default(),
@@ -174,6 +177,13 @@ impl Lifecycle {
     #[must_use]
     pub fn with_log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
+        self
+    }
+
+    /// Replaces the silence after which the link counts as lost, [`LINK_TIMEOUT`] by default.
+    #[must_use]
+    pub fn with_link_timeout(mut self, timeout: LinkTimeout) -> Self {
+        self.link_timeout = timeout.get();
         self
     }
 

@@ -224,12 +224,27 @@ impl Lifecycle {
         })
     }
 
+    fn postpone(&mut self, until: Duration) {
+        match &mut self.phase {
+            LifecyclePhase::UnderWay(current) => current.deadline = Some(until),
+            LifecyclePhase::Abandoned { deadline, .. } => *deadline = Ok(until),
+            LifecyclePhase::Idle
+            | LifecyclePhase::Stalled { .. }
+            | LifecyclePhase::Closed { .. } => {}
+        }
+    }
+
     /// Checks the deadline at `now`. If neither side of the motion has ended by then, the robot is
     /// told to stop and has [`END_TIMEOUT`] more; otherwise the motion is given up. If no state was
-    /// seen, it resolves as [`unseen`](Self::unseen) says.
+    /// seen, it resolves as [`unseen`](Self::unseen) says, but not before the link counts as lost.
     pub fn on_time(&mut self, now: Duration, unseen: Option<MotionError>) {
         if self.deadline().is_none_or(|deadline| now < deadline) {
             return;
+        }
+        if let Some(MotionError::LinkLost { silence }) = unseen
+            && silence < self.link_timeout
+        {
+            return self.postpone(now + self.link_timeout - silence);
         }
         let current = match (&mut self.phase, unseen) {
             (LifecyclePhase::UnderWay(_), Some(unseen)) => return self.give_up(unseen, now),
