@@ -160,7 +160,7 @@ impl fmt::Display for EventKind {
             Self::Brakes { closed: false } => f.write_str("brakes open"),
             Self::MotionBegun { goal } => write!(f, "motion {goal} begun"),
             Self::MotionEnded { goal, outcome } => match &**outcome {
-                Ok(report) => write!(f, "motion {goal} ended after {:.1?}", report.duration),
+                Ok(_) => write!(f, "motion {goal} ended"),
                 Err(error) => write!(f, "motion {goal} ended: {error}"),
             },
             Self::LoadChanged { load } => write!(f, "the load is now {} kg", load.m_load),

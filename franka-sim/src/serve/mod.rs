@@ -299,11 +299,16 @@ impl Sim {
     /// number of robots may run in one process.
     ///
     /// # Errors
-    /// If a socket cannot be bound or the thread cannot be started.
+    /// If a socket cannot be bound or the thread cannot be started, and for virtual time without
+    /// patience, in which every command would be late.
     ///
     /// # Cancel safety
     /// Dropping the future before it completes leaves nothing behind.
     pub async fn start(self) -> io::Result<Running> {
+        if self.virtual_time && self.patience.is_zero() {
+            let what = "virtual time with a patience of 0 s, expected more";
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
+        }
         let stalls = self.config.arm.as_ref().and_then(|arm| arm.stalls);
         let stalling = stalls.map(|stalls| Network::stalling(self.config.seed, stalls));
         let network = self.network.or(stalling);

@@ -25,6 +25,13 @@ async fn start(sim: Sim, patience: Duration) -> (Running, Robot) {
     (sim, robot.connect().await.expect("a session"))
 }
 
+#[tokio::test]
+async fn virtual_time_takes_patience() {
+    let refused = Sim::fr3().virtual_time(Duration::ZERO).start().await;
+    let text = refused.map(drop).expect_err("every command would be late");
+    assert!(text.to_string().contains("expected more"), "{text}");
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn states_follow_faster_than_on_the_wall_and_are_as_many_every_time() {
     let _alone = alone();
