@@ -295,8 +295,8 @@ fn explained(error: CommandError, request: &Request) -> CommandError {
             format!("got a frame at [{x}, {y}, {z}] m; the vendor documents no range")
         }
         Request::SetLoad(got) => format!(
-            "got {got:?}, expected 0 kg or more, a centre in m in the flange frame and a symmetric \
-             inertia about it in kg m^2"
+            "got {got:?}, expected 0 kg or more and no more than the robot carries, a centre in m \
+             in the flange frame and a symmetric inertia about it in kg m^2"
         ),
         Request::SetFilters(got) => format!("got {got:?}, expected 1 to 1000 Hz each"),
         _ => return CommandError::Refused(refusal),
