@@ -75,7 +75,7 @@ impl Served {
 
     /// A server that may do all to a robot in virtual time.
     pub(crate) fn in_virtual_time() -> Self {
-        let sim = Sim::fr3().virtual_time(Duration::ZERO);
+        let sim = Sim::fr3().virtual_time(Duration::from_millis(1));
         Self::start(sim, async |running| {
             Options::default().allow_motion().simulated(running)
         })

@@ -145,7 +145,7 @@ fn robots_in_step_begin_each_millisecond_together_until_one_stops() {
         }
     };
     // Up to ten times as fast as the second one, if it may.
-    let fast = Sim::fr3().virtual_time(Duration::ZERO);
+    let fast = Sim::fr3().virtual_time(Duration::from_millis(1));
     let sims = [fast, Sim::fer()];
     let [first, second] = Sim::in_step(sims);
     let sims = [
