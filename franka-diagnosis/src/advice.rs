@@ -112,9 +112,9 @@ impl Advice {
                 "less acceleration, less load, or the load declared by set_load"
             }
             (Self::SofterGains, Function) => {
-                "lower stiffness, more damping, or cutoff_frequency for the torques"
+                "lower stiffness, other damping, or cutoff_frequency for the torques"
             }
-            (Self::SofterGains, _) => "lower stiffness, or more damping",
+            (Self::SofterGains, _) => "lower stiffness, or other damping",
             (Self::Desk, _) => "walls, load and tasks in Desk",
         }
     }

@@ -31,7 +31,7 @@ use std::time::Duration;
 
 use franka_model::{Model, RobotKind};
 use franka_proto::RobotCommand;
-pub use franka_rt::control::Callback;
+pub use franka_rt::control::{Callback, Shaper};
 use franka_rt::control::{Command, WriteError};
 pub use franka_rt::lifecycle::Outcome;
 use franka_rt::session::Guard;
