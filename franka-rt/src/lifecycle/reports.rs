@@ -224,6 +224,7 @@ impl Lifecycle {
         })
     }
 
+    /// Moves the deadline of the motion under way, or of the one that was given up.
     fn postpone(&mut self, until: Duration) {
         match &mut self.phase {
             LifecyclePhase::UnderWay(current) => current.deadline = Some(until),
