@@ -48,7 +48,7 @@ async def run(robot: Robot, arm: Arm, deadman: Deadman, gripper: Gripper, way: f
         try:
             await arm.chunk(poses, times=STEP * np.arange(1, STEPS + 1), observed_at=seen)
         except MotionError as refused:
-            # One that is late, or the first after the deadman was silent. Anything else has ended the session.
+            # One that is late, or the first after the deadman was silent. Nothing else is for the policy to go on after.
             if refused.kind not in ("goal", "held"):
                 raise
             print(refused)
