@@ -44,6 +44,7 @@
 //! - `command-line`, on by default: the binary `franka-sim`, and its options for other programs.
 //! - `mujoco`: the plant in MuJoCo, `plant::MujocoArm`. Needs Rust 1.95, and MuJoCo's library: in
 //!   this workspace `cargo xtask mujoco` fetches it.
+//! - `serde`: families of arms as JSON, `arm::Family::from_json`. `command-line` includes it.
 //!
 //! # Disturbances
 //!

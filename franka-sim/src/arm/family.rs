@@ -2,8 +2,8 @@
 
 use franka_model::{JointVector, RobotKind};
 use nalgebra::{Isometry3, Vector3};
-use serde::{Deserialize, Serialize};
 
+mod built_in;
 mod distribution;
 
 pub use distribution::{Distribution, Values};
@@ -15,9 +15,11 @@ use crate::noise::Random;
 /// The distributions that the parameters of an arm are drawn from.
 ///
 /// Units are SI. Where nothing else is said, a parameter is drawn for each joint (or link), and
-/// the numbers of its distribution are one for all or seven. A JSON file has every field:
+/// the numbers of its distribution are one for all or seven. With the feature `serde` a family is
+/// read from JSON, which has every field:
 ///
-/// ```
+#[cfg_attr(feature = "serde", doc = "```")]
+#[cfg_attr(not(feature = "serde"), doc = "```ignore")]
 /// use franka_model::RobotKind;
 /// use franka_sim::arm::{Arm, Distribution, Family, Values};
 ///
@@ -31,8 +33,9 @@ use crate::noise::Random;
 /// let arm = Arm::sample(RobotKind::Fr3, 7, &family);
 /// assert!((0.001..0.003).contains(&arm.drive.torque_lag));
 /// ```
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Family {
     /// Breakaway torque before its scale, `[N·m]`.
     pub static_friction: Distribution,
@@ -59,7 +62,11 @@ pub struct Family {
     /// Whole cycles, at least 1, drawn once.
     pub command_delay: Distribution,
     /// Of the joints; `null` for rigid ones.
-    #[serde(deserialize_with = "Option::deserialize")] // which has no default
+    // `Option::deserialize`, since a plain `Option` may be missing.
+    #[cfg_attr(
+        feature = "serde",
+        serde(deserialize_with = "serde::Deserialize::deserialize")
+    )]
     pub elasticity: Option<Elastic>,
     /// `[N·m]`
     pub ripple_amplitude: Distribution,
@@ -97,8 +104,9 @@ pub struct Family {
 }
 
 /// Distributions of the joints' elasticity.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Elastic {
     /// `[N·m/rad]`
     pub stiffness: Distribution,
@@ -126,30 +134,12 @@ pub enum FamilyError {
 }
 
 impl Family {
-    /// Good arms, better than those that were measured: little friction, rigid joints.
-    pub fn nominal() -> Self {
-        Self::embedded(include_str!("../../families/nominal.json"))
-    }
-
-    /// Arms like those that were measured.
-    pub fn realistic() -> Self {
-        Self::embedded(include_str!("../../families/realistic.json"))
-    }
-
-    /// Worn and badly calibrated arms, with an undeclared load.
-    pub fn bad() -> Self {
-        Self::embedded(include_str!("../../families/bad.json"))
-    }
-
-    fn embedded(text: &str) -> Self {
-        Self::from_json(text).expect("a test reads each of the three")
-    }
-
     /// Reads a family.
     ///
     /// # Errors
     /// [`FamilyError`] if the text is not JSON, lacks a field or has one that is unknown, or if a
     /// distribution has values that no arm has.
+    #[cfg(feature = "serde")]
     pub fn from_json(text: &str) -> Result<Self, FamilyError> {
         let mut reader = serde_json::Deserializer::from_str(text);
         let family: Self = serde_path_to_error::deserialize(&mut reader)
@@ -162,6 +152,7 @@ impl Family {
     }
 
     /// The family as JSON.
+    #[cfg(feature = "serde")]
     pub fn to_json(&self) -> String {
         serde_json::to_string_pretty(self).expect("plain data")
     }
