@@ -1,4 +1,5 @@
-//! The messages of a recording, generated from `schemas/`, and their descriptors.
+//! The messages of a recording and their descriptors, generated from `schemas/` by
+//! `cargo xtask schemas`.
 
 mod arrays;
 mod cycles;
@@ -14,15 +15,15 @@ pub(crate) use topic::{METADATA, ROBOT_METADATA, Topic};
 /// Foxglove's well-known messages, as far as a recording has them.
 #[allow(missing_docs, reason = "documented in the definitions")]
 pub mod foxglove {
-    include!(concat!(env!("OUT_DIR"), "/foxglove.rs"));
+    include!("generated/foxglove.rs");
 }
 
 /// The messages of this project.
 #[allow(missing_docs, non_snake_case, reason = "documented in the definitions")]
 pub mod franka {
-    include!(concat!(env!("OUT_DIR"), "/franka.rs"));
+    include!("generated/franka.rs");
 }
 
 /// The descriptors of all messages: a `google.protobuf.FileDescriptorSet`, as a schema record of an
 /// MCAP file holds it.
-pub const DESCRIPTORS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/descriptors.bin"));
+pub const DESCRIPTORS: &[u8] = include_bytes!("generated/descriptors.bin");

@@ -36,7 +36,7 @@ fn recorded(path: &std::path::Path) {
 }
 
 #[test]
-#[ignore = "needs Python with pyarrow: `cargo xtask test --only recordings` has it"]
+#[ignore = "needs Python with pyarrow: `cargo xtask check --only recordings` has it"]
 fn python_reads_a_dataset_of_a_recording() {
     let scratch = Scratch::new();
     let path = scratch.path("run.mcap");

@@ -12,7 +12,7 @@ use franka_record::{GripperState, Recording};
 use crate::feed::{Arm, Scratch, quick};
 
 #[test]
-#[ignore = "needs Python with mcap: `cargo xtask test --only recordings` has it"]
+#[ignore = "needs Python with mcap: `cargo xtask check --only recordings` has it"]
 fn python_decodes_every_message_of_both_robots() {
     let scratch = Scratch::new();
     let mut paths = Vec::new();
