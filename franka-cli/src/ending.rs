@@ -134,6 +134,17 @@ impl Failure {
         Self::new(Ending::Usage, message)
     }
 
+    /// An option that this program was built without.
+    #[cfg(not(feature = "full"))]
+    pub(crate) fn without(option: &str, feature: &str) -> Self {
+        let message = format!("{option}: this `franka` was built without the feature `{feature}`");
+        let advice = format!(
+            "`cargo install --path franka-cli --features {feature}` installs one that has it; the \
+             programs of a release have it."
+        );
+        Self::usage(message).advice(advice)
+    }
+
     pub(crate) fn advice(mut self, advice: impl Into<String>) -> Self {
         self.advice = Some(advice.into());
         self

@@ -10,8 +10,10 @@ use franka_async::Robot;
 use franka_async::connection::Endpoint;
 use franka_async::doctor::{
     Answer, Doctor as Checks, DryRun, Finding, Purpose, Received, Report, Selection, System,
-    Verdict, answers, arrivals, ask_desk, at_rest, dry_run, firewall, handshake, ports, web,
+    Verdict, answers, arrivals, at_rest, dry_run, firewall, handshake, ports,
 };
+#[cfg(feature = "desk")]
+use franka_async::doctor::{ask_desk, web};
 use franka_async::realtime::Scheduling;
 use franka_async::record::CycleFeed;
 use franka_sim::Sim;
@@ -86,6 +88,10 @@ impl For {
 
 impl Doctor {
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
+        #[cfg(not(feature = "desk"))]
+        if self.desk.is_some() {
+            return Err(Failure::without("--desk", "desk").into());
+        }
         let place = match &self.robot {
             Some(robot) => Some(Which::of(Some(robot.clone())).place()?),
             None => None,
@@ -216,6 +222,7 @@ impl Doctor {
         let mut found = Vec::new();
         let purpose = self.purpose.purpose();
         // Before connecting: what Desk says is the reason of a refusal.
+        #[cfg(feature = "desk")]
         found.extend(self.desk(address).await?);
         let connected = place
             .attempt(Some(Realtime::Ignore), |builder| builder)
@@ -258,6 +265,7 @@ impl Doctor {
     }
 
     /// What Desk says, at the address that was given, or beside a robot on the usual port.
+    #[cfg(feature = "desk")]
     async fn desk(&self, robot: SocketAddr) -> anyhow::Result<Option<Finding>> {
         let desk = match &self.desk {
             Some(desk) => resolve(desk, DESK).await?,
@@ -327,4 +335,5 @@ const ROBOT_CHECKS: [&str; 13] = [
 const ROBOT: u16 = 1337;
 
 /// Where Desk listens.
+#[cfg(feature = "desk")]
 const DESK: u16 = 443;

@@ -1,14 +1,21 @@
 //! `franka export`: recordings as tables, and as datasets for training.
 
 use std::fs::File;
+#[cfg(feature = "export")]
+use std::path::Path;
 use std::path::PathBuf;
 
 use anyhow::Context as _;
 use clap::Args;
+#[cfg(feature = "export")]
 use franka_async::export::lerobot::{Action, Dataset, DatasetOptions};
-use franka_async::export::{Columns, write_csv, write_parquet};
+#[cfg(feature = "export")]
+use franka_async::export::write_parquet;
+use franka_async::export::{Columns, write_csv};
+#[cfg(feature = "export")]
 use franka_async::model::RobotKind;
-use franka_async::recording::{Episode, Sample, Samples};
+#[cfg(feature = "export")]
+use franka_async::recording::{Episode, RobotRecording, Sample, Samples};
 use serde_json::json;
 
 use super::explain::Recorded;
@@ -55,6 +62,16 @@ pub(crate) struct Export {
 
 impl Export {
     pub(super) fn run(self) -> anyhow::Result<Ending> {
+        #[cfg(not(feature = "export"))]
+        for (option, is_given) in [
+            ("--parquet", self.parquet.is_some()),
+            ("--lerobot", self.lerobot.is_some()),
+        ] {
+            if is_given {
+                return Err(Failure::without(option, "export").into());
+            }
+        }
+        #[cfg_attr(not(feature = "export"), expect(unused_variables))]
         let (recording, name, model) = self.recorded.open()?;
         let robot = recording.robot(&name)?;
         let columns = match self.columns.is_empty() {
@@ -62,65 +79,25 @@ impl Export {
             false => Columns::named(self.columns.iter().map(String::as_str))
                 .map_err(|error| Failure::usage(error.to_string()))?,
         };
-        let (mut rows, mut episodes, mut frames) = (None, None, None);
+        let mut rows = None;
+        #[cfg_attr(not(feature = "export"), expect(unused_mut))]
+        let mut dataset: Option<(usize, u64)> = None;
         if let Some(path) = &self.csv {
             let file = File::create_new(path);
             let file = file.with_context(|| format!("writing {}", path.display()))?;
             let write = || write_csv(robot.cycles(), &columns, true, file);
             rows = Some(while_turning("writing the table", write)?);
         }
+        #[cfg(feature = "export")]
         if let Some(path) = &self.parquet {
             let write = || write_parquet(robot.cycles(), &columns, path);
             rows = Some(while_turning("writing the table", write)?);
         }
+        #[cfg(feature = "export")]
         if let Some(folder) = &self.lerobot {
-            let kind = match model.kind() {
-                RobotKind::Fer => "franka_fer",
-                _ => "franka_fr3",
-            };
-            let mut options = DatasetOptions::new(kind).fps(self.fps);
-            options = options.gripper(!self.no_gripper);
-            if self.measured {
-                options = options.action(Action::Measured);
-            }
-            let mut found = Episode::of(robot.events())?;
-            if found.is_empty() {
-                let message = format!(
-                    "{} has no episode that has ended",
-                    self.recorded.file.display()
-                );
-                let failure = Failure::new(Ending::Failed, message);
-                return Err(failure
-                    .advice("A program marks them while it records: Recorder::begin_episode and end_episode.")
-                    .into());
-            }
-            if !self.episodes.is_empty() {
-                found = Episode::named(found, &self.episodes)
-                    .map_err(|error| Failure::usage(error.to_string()))?;
-            }
-            let mut dataset = match folder.join("meta").exists() {
-                true => Dataset::open(folder, options)?,
-                false => Dataset::create(folder, options)?,
-            };
-            let mut count = 0;
-            for episode in &found {
-                let part = robot.from(episode.begin).to(episode.end);
-                let samples = Samples::new(part.cycles(), robot.to(episode.end).gripper_states());
-                let samples: Vec<Sample> = samples.collect::<Result<_, _>>()?;
-                let add = || dataset.add_episode(&episode.task, episode.success, samples);
-                let added = while_turning("adding an episode", add);
-                count += added.map_err(|error| {
-                    let message = format!("{:?}: {error}", episode.name);
-                    Failure::new(Ending::Failed, message).advice(
-                        "--measured takes where the arm was; --no-gripper leaves the gripper out; \
-                         --episodes chooses others.",
-                    )
-                })?;
-            }
-            dataset.finish()?;
-            episodes = Some(found.len());
-            frames = Some(count);
+            dataset = Some(self.add_to_dataset(folder, &robot, model.kind())?);
         }
+        let (episodes, frames) = dataset.unzip();
         let value = json!({ "rows": rows, "episodes": episodes, "frames": frames });
         self.output.print(&value, || {
             let tables = rows.map(|rows| format!("{rows} rows\n"));
@@ -129,5 +106,60 @@ impl Export {
                 dataset.map(|(episodes, frames)| format!("{episodes} episodes, {frames} frames\n"));
             tables.into_iter().chain(dataset).collect()
         })
+    }
+
+    /// Adds the chosen episodes to a dataset, and returns how many episodes and frames.
+    #[cfg(feature = "export")]
+    fn add_to_dataset(
+        &self,
+        folder: &Path,
+        robot: &RobotRecording<'_>,
+        kind: RobotKind,
+    ) -> anyhow::Result<(usize, u64)> {
+        let kind = match kind {
+            RobotKind::Fer => "franka_fer",
+            _ => "franka_fr3",
+        };
+        let mut options = DatasetOptions::new(kind).fps(self.fps);
+        options = options.gripper(!self.no_gripper);
+        if self.measured {
+            options = options.action(Action::Measured);
+        }
+        let mut found = Episode::of(robot.events())?;
+        if found.is_empty() {
+            let message = format!(
+                "{} has no episode that has ended",
+                self.recorded.file.display()
+            );
+            let failure = Failure::new(Ending::Failed, message);
+            return Err(failure
+                .advice("A program marks them while it records: Recorder::begin_episode and end_episode.")
+                .into());
+        }
+        if !self.episodes.is_empty() {
+            found = Episode::named(found, &self.episodes)
+                .map_err(|error| Failure::usage(error.to_string()))?;
+        }
+        let mut dataset = match folder.join("meta").exists() {
+            true => Dataset::open(folder, options)?,
+            false => Dataset::create(folder, options)?,
+        };
+        let mut count = 0;
+        for episode in &found {
+            let part = robot.from(episode.begin).to(episode.end);
+            let samples = Samples::new(part.cycles(), robot.to(episode.end).gripper_states());
+            let samples: Vec<Sample> = samples.collect::<Result<_, _>>()?;
+            let add = || dataset.add_episode(&episode.task, episode.success, samples);
+            let added = while_turning("adding an episode", add);
+            count += added.map_err(|error| {
+                let message = format!("{:?}: {error}", episode.name);
+                Failure::new(Ending::Failed, message).advice(
+                    "--measured takes where the arm was; --no-gripper leaves the gripper out; \
+                     --episodes chooses others.",
+                )
+            })?;
+        }
+        dataset.finish()?;
+        Ok((found.len(), count))
     }
 }

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use franka_async::recording::{BlackBox, Live, RecordOptions, Recorder, Track};
+#[cfg(feature = "foxglove")]
+use franka_async::recording::Live;
+use franka_async::recording::{BlackBox, RecordOptions, Recorder, Track};
 use indicatif::ProgressBar;
 use serde_json::json;
 
@@ -42,6 +44,10 @@ pub(crate) struct Record {
 
 impl Record {
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
+        #[cfg(not(feature = "foxglove"))]
+        if self.live.is_some() {
+            return Err(Failure::without("--live", "foxglove").into());
+        }
         let (robot, place) = self.which.connect().await?;
         let mut interrupt = std::pin::pin!(interrupted()?);
         let options = RecordOptions {
@@ -50,6 +56,7 @@ impl Record {
         };
         let recorder = Recorder::to_file(&self.file, options);
         let recorder = recorder.map_err(|error| Failure::new(Ending::Host, error.to_string()))?;
+        #[cfg(feature = "foxglove")]
         if let Some(address) = self.live {
             let mut live = Live::default();
             live.address = address.unwrap_or(live.address);
