@@ -131,9 +131,9 @@ fn cartesian_leap(
         let change = acceleration - half(&before, offset);
         let axis = Subject::component(offset + change.iamax());
         let norms = Derivatives {
-            velocity: nalgebra::vector![half(&motion.velocity, offset).norm()],
-            acceleration: nalgebra::vector![acceleration.norm()],
-            jerk: nalgebra::vector![half(&motion.jerk, offset).norm()],
+            velocity: nalgebra::SVector::from([half(&motion.velocity, offset).norm()]),
+            acceleration: nalgebra::SVector::from([acceleration.norm()]),
+            jerk: nalgebra::SVector::from([half(&motion.jerk, offset).norm()]),
         };
         let excess = (norms.jerk[0] / limits.jerk).max(norms.acceleration[0] / limits.acceleration);
         (axis, norms, limits, change.norm(), excess)
@@ -290,9 +290,9 @@ pub(super) fn torque_step(evidence: &Evidence<'_>, before: u64) -> Option<Cause>
 
 fn component<const N: usize>(motion: &Derivatives<N>, index: usize) -> Derivatives<1> {
     Derivatives {
-        velocity: nalgebra::vector![motion.velocity[index]],
-        acceleration: nalgebra::vector![motion.acceleration[index]],
-        jerk: nalgebra::vector![motion.jerk[index]],
+        velocity: nalgebra::SVector::from([motion.velocity[index]]),
+        acceleration: nalgebra::SVector::from([motion.acceleration[index]]),
+        jerk: nalgebra::SVector::from([motion.jerk[index]]),
     }
 }
 

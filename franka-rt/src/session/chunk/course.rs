@@ -3,7 +3,7 @@
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, Model, rotation};
 use franka_otg::AxisLimits;
-use nalgebra::{Isometry3, Translation3, vector};
+use nalgebra::{Isometry3, SVector, Translation3};
 
 use super::curve_state::{CurveState, JointExtent, stacked};
 use super::player::Player;
@@ -338,14 +338,14 @@ fn follow_joints(
     for (i, limits) in limits.iter().enumerate() {
         let (lower, upper) = approach::range(i, robot);
         let here = PointState {
-            p: vector![now.q[i]],
-            v: vector![now.dq[i]],
-            a: vector![now.ddq[i]],
+            p: SVector::from([now.q[i]]),
+            v: SVector::from([now.dq[i]]),
+            a: SVector::from([now.ddq[i]]),
         };
         let there = PointState {
-            p: vector![target.q[i].clamp(lower, upper)],
-            v: vector![target.dq[i]],
-            a: vector![target.ddq[i]],
+            p: SVector::from([target.q[i].clamp(lower, upper)]),
+            v: SVector::from([target.dq[i]]),
+            a: SVector::from([target.ddq[i]]),
         };
         let stoppable = |room: f64| (2.0 * BRAKING * room.max(0.0)).sqrt();
         let (back, on) = (stoppable(now.q[i] - lower), stoppable(upper - now.q[i]));

@@ -82,7 +82,7 @@ fn weights(nodes: &[f64], z: f64) -> [[f64; 2]; SAMPLES] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::vector;
+    use nalgebra::SVector;
 
     fn polynomial(t: f64, degree: i32) -> (f64, f64, f64) {
         let sum = |f: &dyn Fn(f64, i32) -> f64| (0..=degree).map(|n| f(f64::from(n), n)).sum();
@@ -103,7 +103,9 @@ mod tests {
     fn exact_for_the_polynomials_that_the_samples_determine() {
         let times = [0.0, 0.05, 0.09, 0.15, 0.2, 0.24];
         for (i, degree) in [(0, 2), (1, 2), (2, 4), (3, 4), (4, 2), (5, 2)] {
-            let [v, a] = at(&times, i, |k| vector![polynomial(times[k], degree).0]);
+            let [v, a] = at(&times, i, |k| {
+                SVector::from([polynomial(times[k], degree).0])
+            });
             let (_, dv, da) = polynomial(times[i], degree);
             assert!((v[0] - dv).abs() < 1e-11, "{i}: {v} {dv}");
             assert!((a[0] - da).abs() < 1e-9, "{i}: {a} {da}");
@@ -112,16 +114,18 @@ mod tests {
 
     #[test]
     fn few_samples_give_what_they_can() {
-        let [v, a] = at(&[1.0, 3.0], 1, |k| vector![k as f64]);
+        let [v, a] = at(&[1.0, 3.0], 1, |k| SVector::from([k as f64]));
         assert!((v[0] - 0.5).abs() < 1e-15 && a[0] == 0.0);
-        let [v, a] = at(&[1.0], 0, |_| vector![7.0]);
+        let [v, a] = at(&[1.0], 0, |_| SVector::from([7.0]));
         assert_eq!((v[0], a[0]), (0.0, 0.0));
     }
 
     #[test]
     fn uneven_samples_are_not_swung_by_far_ones() {
         let times = [0.0, 0.001, 0.5, 0.501, 1.0];
-        let [v, _] = at(&times, 2, |k| vector![[0.0, 0.01, 0.0, 0.01, 0.0][k]]);
+        let [v, _] = at(&times, 2, |k| {
+            SVector::from([[0.0, 0.01, 0.0, 0.01, 0.0][k]])
+        });
         // Between the slopes on either side: -0.02 and 10.
         assert!((-0.02..=10.0).contains(&v[0]), "{v}");
     }

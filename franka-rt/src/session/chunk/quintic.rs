@@ -58,19 +58,19 @@ pub(super) fn between<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::vector;
+    use nalgebra::SVector;
 
     #[test]
     fn meets_both_ends_and_its_derivatives_are_those_of_its_position() {
         let from = PointState {
-            p: vector![0.3, -1.0],
-            v: vector![0.5, 2.0],
-            a: vector![-3.0, 0.1],
+            p: SVector::from([0.3, -1.0]),
+            v: SVector::from([0.5, 2.0]),
+            a: SVector::from([-3.0, 0.1]),
         };
         let to = PointState {
-            p: vector![0.1, 1.0],
-            v: vector![-0.7, 0.0],
-            a: vector![4.0, -2.0],
+            p: SVector::from([0.1, 1.0]),
+            v: SVector::from([-0.7, 0.0]),
+            a: SVector::from([4.0, -2.0]),
         };
         let duration = 0.16;
         let at = |t| between(&from, &to, duration, t);
@@ -90,9 +90,9 @@ mod tests {
     #[test]
     fn reproduces_a_motion_of_constant_acceleration() {
         let from = PointState {
-            p: vector![1.0],
-            v: vector![-2.0],
-            a: vector![3.0],
+            p: SVector::from([1.0]),
+            v: SVector::from([-2.0]),
+            a: SVector::from([3.0]),
         };
         let still = SVector::zeros();
         let to = from.after(&still, 0.5);

@@ -161,7 +161,7 @@ fn shortened<const D: usize>(vector: SVector<f64, D>, length: f64) -> SVector<f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{Vector3, vector};
+    use nalgebra::{SVector, Vector3};
 
     /// Joint 1 and the translation of the default budget.
     const LIMITS: [AxisLimits; 2] = [
@@ -188,8 +188,8 @@ mod tests {
     fn a_step_is_walked_within_the_limits_and_hardly_overshot() {
         for limits in LIMITS {
             for step in [1e-4, 0.01, 0.1, 0.5] {
-                let goal = still(vector![step]);
-                let (mut now, mut highest, mut cycles) = (still(vector![0.0]), 0.0_f64, 0);
+                let goal = still(SVector::from([step]));
+                let (mut now, mut highest, mut cycles) = (still(SVector::from([0.0])), 0.0_f64, 0);
                 while (now.p - goal.p).norm() > 1e-3 * step || now.v.norm() > 1e-3 {
                     now = follow(&now, &goal, &limits, |v| v);
                     highest = highest.max(now.p[0]);
@@ -207,9 +207,9 @@ mod tests {
         let on_circle = |t: f64| {
             let (sin, cos) = (pace * t).sin_cos();
             PointState {
-                p: vector![radius * cos, radius * sin, 0.3],
-                v: vector![-sin, cos, 0.0] * (radius * pace),
-                a: vector![-cos, -sin, 0.0] * (radius * pace * pace),
+                p: SVector::from([radius * cos, radius * sin, 0.3]),
+                v: SVector::from([-sin, cos, 0.0]) * (radius * pace),
+                a: SVector::from([-cos, -sin, 0.0]) * (radius * pace * pace),
             }
         };
         let mut now = on_circle(0.0);
@@ -226,8 +226,8 @@ mod tests {
         let limits = LIMITS[1];
         let mut now = PointState {
             p: Vector3::zeros(),
-            v: vector![0.4, 0.3, 0.0],
-            a: vector![0.0, 0.6, 0.5],
+            v: SVector::from([0.4, 0.3, 0.0]),
+            a: SVector::from([0.0, 0.6, 0.5]),
         };
         let (mut velocity, mut acceleration) = (
             now.v.norm().max(coasting(&now, limits.jerk).norm()),
@@ -235,7 +235,7 @@ mod tests {
         );
         for _ in 0..3000 {
             let before = now;
-            now = follow(&now, &still(vector![9.0, 0.0, 0.0]), &limits, |v| v);
+            now = follow(&now, &still(SVector::from([9.0, 0.0, 0.0])), &limits, |v| v);
             let jerk = (now.a - before.a).norm() / CYCLE;
             assert!(jerk <= limits.jerk * (1.0 + 1e-9), "{jerk}");
             assert!(now.v.norm() <= velocity * (1.0 + 1e-12));
