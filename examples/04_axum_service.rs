@@ -2,7 +2,7 @@
 //! they are, and can be cancelled.
 //!
 //! ```text
-//! cargo run --release --example axum_service -- [ADDRESS] [--listen 127.0.0.1:8080]
+//! cargo run --release --features http --example axum_service -- [ADDRESS] [--listen 127.0.0.1:8080]
 //! curl -i localhost:8080/jobs -H 'content-type: application/json' -d '{"by": [0, 0, 0.05]}'
 //! curl -N localhost:8080/jobs/1/events
 //! curl -X DELETE localhost:8080/jobs/1

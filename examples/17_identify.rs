@@ -1,7 +1,7 @@
 //! What an arm takes beside its model: says what it will do, measures friction, bias and load by a
 //! minute of small motions, and begins the next connection with that.
 //!
-//! `cargo run --release --example identify -- [ADDRESS] [--save FILE]`
+//! `cargo run --release --features json --example identify -- [ADDRESS] [--save FILE]`
 
 use std::path::PathBuf;
 

@@ -1,7 +1,8 @@
 //! A service that takes jobs at any time and does one after the other.
 //!
-//! `cargo run --release --example job_queue [ADDRESS]`, then, with the port that it prints: 5 cm up
-//! by `curl 127.0.0.1:PORT/jobs --json '[0, 0, 0.05]'`; the outcomes by `curl 127.0.0.1:PORT/jobs`
+//! `cargo run --release --features http --example job_queue [ADDRESS]`, then, with the port that it
+//! prints: 5 cm up by `curl 127.0.0.1:PORT/jobs --json '[0, 0, 0.05]'`; the outcomes by
+//! `curl 127.0.0.1:PORT/jobs`
 
 use anyhow::bail;
 use axum::http::StatusCode;

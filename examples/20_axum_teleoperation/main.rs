@@ -1,8 +1,8 @@
 //! Teleoperation over WebSockets. Every socket sees the states; one at a time has the lease on the
 //! arm, for as long as its messages come.
 //!
-//! `cargo run --release --example axum_teleoperation -- [ADDRESS] [--silence 0.3]`, then connect to
-//! `ws://localhost:8080/teleoperation` and send
+//! `cargo run --release --features http --example axum_teleoperation -- [ADDRESS] [--silence 0.3]`,
+//! then connect to `ws://localhost:8080/teleoperation` and send
 //!
 //! ```text
 //! {"type": "take"}

@@ -1,7 +1,7 @@
 //! Clients of the services: programs that the tests kill and freeze in the middle. Each does one
 //! thing without end, or until its motion ends, and prints a line when it has begun.
 //!
-//! `cargo run --features grpc --example client -- job | lead | move | follow ADDRESS`
+//! `cargo run --features all --example client -- job | lead | move | follow ADDRESS`
 
 use std::io::{BufRead, BufReader};
 use std::time::Duration;

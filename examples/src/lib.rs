@@ -3,11 +3,15 @@
 #![doc = include_str!("../README.md")]
 
 mod ease;
+#[cfg(feature = "http")]
 mod job;
+#[cfg(any(feature = "grpc", feature = "http"))]
 mod service;
 
 pub use ease::Ease;
+#[cfg(feature = "http")]
 pub use job::{Job, Progress, Stage};
+#[cfg(any(feature = "grpc", feature = "http"))]
 pub use service::{Serving, serve_until_told};
 
 use std::fmt;

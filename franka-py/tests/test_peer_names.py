@@ -1,5 +1,5 @@
 """The lists of names of other packages, which the book's chapters for those who come from there have a row for each of, are those of
-the packages themselves. ``cargo xtask test --only names`` holds the chapters against the lists."""
+the packages themselves. ``cargo xtask check --only names`` holds the chapters against the lists."""
 
 from __future__ import annotations
 

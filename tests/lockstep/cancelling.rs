@@ -39,7 +39,7 @@ fn in_any_millisecond(
     mut submit: impl FnMut(&mut Lockstep, usize) -> GoalId,
     mut at_rest: impl FnMut(&mut Lockstep),
 ) {
-    let step = if franka_tests::thorough() { 1 } else { 5 };
+    let step = if franka_tests::thorough() { 1 } else { 10 };
     for (turn, moment) in (0..20).chain((20..).step_by(step)).enumerate() {
         let goal = submit(lockstep, turn);
         lockstep.run(moment);

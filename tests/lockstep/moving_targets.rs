@@ -3,7 +3,7 @@
 use franka_lockstep::{Lockstep, Outcome};
 use franka_model::{READY, Twist};
 use franka_rt::session::{OnArrival, PoseError, Target};
-use franka_tests::bench::follow::{self, Lag, moved, realistic, twist};
+use franka_tests::follow::{self, Lag, moved, realistic, twist};
 use nalgebra::{Isometry3, Translation3};
 
 #[test]

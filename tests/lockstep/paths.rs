@@ -10,7 +10,7 @@ use franka_rt::session::{
     Chunk, GoalError, GoalId, Lapse, OnArrival, PathError, Preview, Target, Waypoint,
 };
 use franka_sim::{Arm, Config};
-use franka_tests::bench::follow::realistic;
+use franka_tests::follow::realistic;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -435,7 +435,7 @@ fn a_way_that_leaves_the_reach_between_two_poses_within_it_is_refused_and_nothin
 
 #[test]
 fn random_paths_are_gone_to_their_end_or_refused_before_anything_moves() {
-    let (seed, cases) = (29, if franka_tests::thorough() { 200 } else { 20 });
+    let (seed, cases) = (29, if franka_tests::thorough() { 200 } else { 10 });
     for (name, mut lockstep) in robots() {
         let mut random = SmallRng::seed_from_u64(seed);
         let down = UnitQuaternion::from_euler_angles(std::f64::consts::PI, 0.0, 0.0);

@@ -33,7 +33,7 @@ fn random_targets(kind: RobotKind) {
     };
     let mut worst = PoseError::default();
     let mut blocked = 0;
-    let cases = if franka_tests::thorough() { 200 } else { 40 };
+    let cases = if franka_tests::thorough() { 200 } else { 16 };
     for case in 0..cases {
         // Joint targets lie anywhere in the ranges. A pose lies near the previous posture, on a
         // straight path.

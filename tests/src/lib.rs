@@ -1,23 +1,21 @@
-//! What the cross-crate suites share: golden vectors and the measuring frame of the benchmarks.
+//! Fixtures and measurements that the cross-crate suites share.
 //!
 //! | module | what it is |
 //! |---|---|
-//! | [`mod@bench`] | what the work of one control cycle costs |
 //! | [`broken_socket`] | receives that fail on a socket of another thread |
 //! | [`contacts`] | random pushes on a simulated arm, and what its torques tell of them |
 //! | [`cycle_counts`] | cycles, calls and success rates that a control function counts |
-//! | [`figures`] | figures of what was measured |
+//! | [`follow`] | the lag behind a target that moves, in virtual time |
 //! | [`mishaps`] | networks with one kind of fault each |
 //! | [`push`] | a hand that pushes an arm, and the inertia that it meets |
 //! | [`golden`] | the crates against stored vectors: wire bytes, model numbers, trajectories |
 
 use std::time::Duration;
 
-pub mod bench;
 pub mod broken_socket;
 pub mod contacts;
 pub mod cycle_counts;
-pub mod figures;
+pub mod follow;
 pub mod golden;
 pub mod mishaps;
 pub mod push;
@@ -32,7 +30,8 @@ pub fn thorough() -> bool {
     std::env::var("FRANKA_THOROUGH").is_ok_and(|value| value == "1")
 }
 
-/// Compiles the programs of the README and the book.
+/// Compiles the programs of the README and the book. Programs that need features with many
+/// dependencies take the feature `book`.
 #[cfg(doctest)]
 mod programs {
     #[doc = include_str!("../../README.md")]
@@ -98,7 +97,7 @@ mod programs {
     #[doc = include_str!("../../docs/src/recording.md")]
     struct Recording;
 
-    #[doc = include_str!("../../docs/src/replaying.md")]
+    #[cfg_attr(feature = "book", doc = include_str!("../../docs/src/replaying.md"))]
     struct Replaying;
 
     #[doc = include_str!("../../docs/src/services.md")]

@@ -13,40 +13,54 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, anyhow, bail};
 
-use crate::mujoco;
 use crate::python::{Python, Version};
+use crate::selection::{PACKAGES, packages};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
-/// Builds and installs the other clients.
-pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<()> {
-    thread::scope(|scope| {
-        let interpreter = scope.spawn(|| interpreter(workspace).map(drop));
-        workspace.run(&mut franka_rs(workspace))?;
-        interpreter.join().expect("no panic")
-    })
+/// Which clients run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Set {
+    /// The vendor's client: set-up, motions, torques, reflexes, the hand.
+    Smoke,
+    /// What the other has not: further scripts, franka-rs, a cassette.
+    Rest,
 }
 
 /// Runs our client beside another one, and the scripts of `tests/peers` that check something
 /// against a simulator of their own: as many at once as there are processors.
-pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
+///
+/// # Errors
+/// If a program fails, or the machine lacks what it needs and `CI=true`.
+pub fn run(workspace: &Workspace, set: Set) -> anyhow::Result<Outcome> {
     let interpreter = interpreter(workspace)?;
-    let beside = beside_franka_rs(workspace, interpreter.as_deref().ok())?;
+    simulator(workspace)?;
     let scripts = interpreter.iter().flat_map(|interpreter| {
-        SCRIPTS
-            .iter()
-            .enumerate()
-            .map(|(n, (name, arguments))| script(workspace, interpreter, n, name, arguments))
+        let scripts = SCRIPTS.iter().enumerate();
+        let scripts = scripts.filter(|(_, (name, _))| SMOKE.contains(name) == (set == Set::Smoke));
+        scripts.map(|(n, (name, arguments))| script(workspace, interpreter, n, name, arguments))
     });
-    let cassette = interpreter
-        .iter()
-        .map(|interpreter| cassette(workspace, interpreter));
-    let programs = iter::once(beside).chain(cassette).chain(scripts).collect();
+    let mut programs = Vec::new();
+    if set == Set::Rest {
+        programs.push(beside_franka_rs(workspace, interpreter.as_deref().ok())?);
+        let interpreter = interpreter.iter();
+        programs.extend(interpreter.map(|interpreter| cassette(workspace, interpreter)));
+    }
+    programs.extend(scripts);
     summarise(&side_by_side(programs))?;
     match interpreter {
         Ok(_) => Ok(Outcome::Passed),
         Err(why) => Outcome::without(why),
     }
+}
+
+/// Builds the simulator's binary as the tests do, so that what they have built is used again: Cargo
+/// builds the binaries of a package with its integration tests.
+fn simulator(workspace: &Workspace) -> anyhow::Result<()> {
+    let mut build = workspace.cargo();
+    build.args(["test", "--no-run", "--quiet", "--test=robot"]);
+    build.args(packages(&PACKAGES));
+    workspace.run(&mut build)
 }
 
 /// A program that prints a line per step, and the simulator that it needs beside it, if any.
@@ -95,12 +109,9 @@ fn cassette(workspace: &Workspace, interpreter: &Path) -> Program {
 /// Builds our programs and franka-rs. The program returned holds our target control against that of
 /// franka-rs on the same robots, and with an interpreter against the vendor's client, too.
 fn beside_franka_rs(workspace: &Workspace, interpreter: Option<&Path>) -> anyhow::Result<Program> {
-    // With one test of each package come its programs, built as for the tests, so that what those
-    // have built is used again.
     let mut programs = workspace.cargo();
-    programs.args(["test", "--no-run", "--quiet", "--workspace"]);
-    programs.args(["--test", "sockets", "--test", "golden_vectors"]);
-    programs.arg("--features").arg(mujoco::features(workspace)?);
+    programs.args(["build", "--quiet", "--package", "franka-bench"]);
+    programs.args(["--bin", BESIDE, "--bin", "cassette_peer"]);
     workspace.run(&mut programs)?;
     workspace.run(&mut franka_rs(workspace))?;
 
@@ -258,7 +269,10 @@ fn spawn(mut command: Command) -> anyhow::Result<(Child, PipeReader)> {
 }
 
 /// A Python interpreter that has the vendor's client, or why there is none.
-pub(crate) fn interpreter(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
+///
+/// # Errors
+/// If the client cannot be installed.
+pub fn interpreter(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
     let requirements = directory(workspace).join("requirements.txt");
     match supported().and_then(|()| Python::find(PYTHON)) {
         Ok(python) => Ok(Ok(python.environment(
@@ -271,7 +285,7 @@ pub(crate) fn interpreter(workspace: &Workspace) -> anyhow::Result<Result<PathBu
 }
 
 /// Where the scripts are.
-pub(crate) fn directory(workspace: &Workspace) -> PathBuf {
+pub fn directory(workspace: &Workspace) -> PathBuf {
     workspace.root().join("tests").join("peers")
 }
 
@@ -355,7 +369,7 @@ fn kill(child: &mut Child) {
     }
 }
 
-/// The binary of the tests package that runs our client beside franka-rs.
+/// The program that runs our client beside franka-rs.
 const BESIDE: &str = "beside_franka_rs";
 
 /// The script that it gives orders to.
@@ -383,6 +397,15 @@ const SCRIPTS: [(&str, &[&str]); 12] = [
         &[VIRTUAL, "--q", "0,1.28,0,-0.5415,0,2.74,0"],
     ),
     ("pylibfranka_versions.py", &["--robot", "fer"]),
+];
+
+/// The scripts of [`Set::Smoke`].
+const SMOKE: [&str; 5] = [
+    "pylibfranka_hand.py",
+    "pylibfranka_setup.py",
+    "pylibfranka_motions.py",
+    "pylibfranka_torque_control.py",
+    "pylibfranka_reflexes.py",
 ];
 
 const VIRTUAL: &str = "--virtual-time";

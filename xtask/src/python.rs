@@ -10,18 +10,21 @@ use crate::workspace::Workspace;
 
 /// An interpreter that knows the modules that make virtual environments.
 #[derive(Debug)]
-pub(crate) struct Python {
+pub struct Python {
     program: &'static str,
     version: Version,
 }
 
 /// Major and minor number.
-pub(crate) type Version = (u32, u32);
+pub type Version = (u32, u32);
 
 impl Python {
     /// The first interpreter of this machine that will do and has one of these versions, or why
     /// there is none.
-    pub(crate) fn find(versions: RangeInclusive<Version>) -> Result<Self, String> {
+    ///
+    /// # Errors
+    /// Why no interpreter will do.
+    pub fn find(versions: RangeInclusive<Version>) -> Result<Self, String> {
         let mut unfit = Vec::new();
         for program in PROGRAMS {
             match probe(program) {
@@ -43,7 +46,7 @@ impl Python {
     }
 
     /// One interpreter of each of these versions that is on this machine, the oldest first.
-    pub(crate) fn all(versions: RangeInclusive<Version>) -> Vec<Self> {
+    pub fn all(versions: RangeInclusive<Version>) -> Vec<Self> {
         let mut found = BTreeMap::new();
         for program in PROGRAMS {
             if let Some(version) = probe(program).filter(|version| versions.contains(version)) {
@@ -54,13 +57,16 @@ impl Python {
     }
 
     /// Its version.
-    pub(crate) fn version(&self) -> Version {
+    pub fn version(&self) -> Version {
         self.version
     }
 
     /// Makes the virtual environment `name` in the build directory, installs `requirements` in it
     /// and returns its interpreter. Does nothing but the last if both are as before.
-    pub(crate) fn environment(
+    ///
+    /// # Errors
+    /// If the requirements cannot be read or installed.
+    pub fn environment(
         &self,
         workspace: &Workspace,
         name: &str,
@@ -93,7 +99,10 @@ impl Python {
 
     /// Makes an empty virtual environment in `directory`, in place of what is there, and returns
     /// its interpreter.
-    pub(crate) fn make_environment(
+    ///
+    /// # Errors
+    /// If it cannot be made.
+    pub fn make_environment(
         &self,
         workspace: &Workspace,
         directory: &Path,
@@ -120,10 +129,10 @@ fn text(versions: &RangeInclusive<Version>) -> String {
 }
 
 /// The oldest Python that the wheel and the tools of the steps are for.
-pub(crate) const OLDEST: Version = (3, 10);
+pub const OLDEST: Version = (3, 10);
 
 /// Newer than any Python 3.
-pub(crate) const NEWEST: Version = (3, u32::MAX);
+pub const NEWEST: Version = (3, u32::MAX);
 
 /// Version of an interpreter that is there and can make virtual environments.
 fn probe(program: &str) -> Option<Version> {

@@ -5,7 +5,10 @@ use std::process::{self, Command, Stdio};
 /// Whether what this process starts may ask for `SCHED_FIFO`. Where it may not, the limit is raised
 /// if this user may do that: with `CI=true` also by way of sudo without a password. The error says
 /// that the right cannot be had.
-pub(crate) fn obtain() -> Result<(), String> {
+///
+/// # Errors
+/// See above.
+pub fn obtain() -> Result<(), String> {
     let limit = |program: &[&str]| {
         let process = process::id().to_string();
         let limit = ["prlimit", "--rtprio=99:99", "--pid", &process];
@@ -22,10 +25,10 @@ pub(crate) fn obtain() -> Result<(), String> {
 }
 
 /// Set for the tests where the right is there: the control thread then has to have its priority.
-pub(crate) const GRANTED: &str = "FRANKA_REALTIME_GRANTED";
+pub const GRANTED: &str = "FRANKA_REALTIME_GRANTED";
 
 /// Whether a program can be run without input, and succeeds.
-pub(crate) fn succeeds(line: &[&str]) -> bool {
+pub fn succeeds(line: &[&str]) -> bool {
     let mut command = Command::new(line[0]);
     command.args(&line[1..]).stdin(Stdio::null());
     command.stdout(Stdio::null()).stderr(Stdio::null());

@@ -7,7 +7,7 @@ use anyhow::{Context as _, bail};
 
 /// How a step that did not fail ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Outcome {
+pub enum Outcome {
     /// All of it ran and succeeded.
     Passed,
     /// What ran succeeded, and this is what could not be checked.
@@ -18,7 +18,10 @@ pub(crate) enum Outcome {
 
 impl Outcome {
     /// What a step comes to for which something is missing: skipped, and with `CI=true` failed.
-    pub(crate) fn without(why: String) -> anyhow::Result<Self> {
+    ///
+    /// # Errors
+    /// With `CI=true`.
+    pub fn without(why: String) -> anyhow::Result<Self> {
         if is_ci() {
             bail!("{why}; with CI=true this step has to run");
         }
@@ -27,19 +30,22 @@ impl Outcome {
 }
 
 /// Whether nothing that can be checked may be left out: the variable `CI`, as services set it.
-pub(crate) fn is_ci() -> bool {
+pub fn is_ci() -> bool {
     env::var("CI").is_ok_and(|value| value == "true" || value == "1")
 }
 
 /// The steps taken so far.
 #[derive(Debug, Default)]
-pub(crate) struct Steps {
+pub struct Steps {
     taken: Vec<(&'static str, Outcome, Duration)>,
 }
 
 impl Steps {
     /// Takes a step: header, work, time.
-    pub(crate) fn take(
+    ///
+    /// # Errors
+    /// Those of the work.
+    pub fn take(
         &mut self,
         name: &'static str,
         about: &str,
@@ -68,7 +74,7 @@ impl Steps {
     }
 
     /// One line: what passed in what time, and what was skipped and why.
-    pub(crate) fn summary(&self) -> String {
+    pub fn summary(&self) -> String {
         let total: Duration = self.taken.iter().map(|(_, _, time)| *time).sum();
         let each = self
             .taken

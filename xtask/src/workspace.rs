@@ -2,95 +2,62 @@
 
 use std::env;
 use std::ffi::OsStr;
-use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
-use anyhow::{Context as _, bail, ensure};
-use serde_json::Value;
+use anyhow::{Context as _, bail};
 
 /// The workspace that this program belongs to.
 #[derive(Debug)]
-pub(crate) struct Workspace {
+pub struct Workspace {
     root: PathBuf,
     target: PathBuf,
-    /// Name of each library and program, and the file of its root.
-    crates: Vec<(String, PathBuf)>,
-    /// Cargo's description of each package.
-    packages: Vec<Value>,
 }
 
 impl Workspace {
-    /// Asks Cargo where the workspace builds.
-    pub(crate) fn find() -> anyhow::Result<Self> {
+    /// Finds the build directory by the path of this program, which Cargo has built there.
+    ///
+    /// # Errors
+    /// If this program was moved.
+    pub fn find() -> anyhow::Result<Self> {
         let manifest = Path::new(env!("CARGO_MANIFEST_DIR"));
         let root = manifest.parent().context("xtask has no parent directory")?;
-        let output = cargo_in(root)
-            .args(["metadata", "--format-version=1", "--no-deps"])
-            .stderr(Stdio::inherit())
-            .output()
-            .context("cannot run cargo")?;
-        ensure!(output.status.success(), "cargo metadata failed");
-        let metadata: Value = serde_json::from_slice(&output.stdout)?;
-        let target = metadata["target_directory"]
-            .as_str()
-            .context("cargo metadata names no target directory")?;
+        let program = env::current_exe().context("this program has no path")?;
+        let target = program.ancestors().nth(2); // target/debug/xtask
+        let target = target.context("this program is in no build directory")?;
         Ok(Self {
             root: root.to_owned(),
-            target: target.into(),
-            crates: libraries_and_programs(&metadata),
-            packages: list(&metadata["packages"]),
+            target: target.to_owned(),
         })
     }
 
-    /// Name of each library and program of the workspace, and the file of its root.
-    pub(crate) fn crates(&self) -> &[(String, PathBuf)] {
-        &self.crates
-    }
-
-    /// Cargo's description of each package of the workspace.
-    pub(crate) fn packages(&self) -> &[Value] {
-        &self.packages
-    }
-
     /// The directory of the root manifest.
-    pub(crate) fn root(&self) -> &Path {
+    pub fn root(&self) -> &Path {
         &self.root
     }
 
     /// The build directory.
-    pub(crate) fn target(&self) -> &Path {
+    pub fn target(&self) -> &Path {
         &self.target
     }
 
     /// Cargo, in the root of the workspace.
-    pub(crate) fn cargo(&self) -> Command {
+    pub fn cargo(&self) -> Command {
         cargo_in(&self.root)
     }
 
     /// `program`, in the root of the workspace.
-    pub(crate) fn program(&self, program: impl AsRef<OsStr>) -> Command {
+    pub fn program(&self, program: impl AsRef<OsStr>) -> Command {
         let mut command = Command::new(program);
         command.current_dir(&self.root);
         command
     }
 
-    /// Builds and runs a binary of the tests package, optimised; arguments appended are the
-    /// binary's own.
-    pub(crate) fn cargo_release_binary(&self, name: &str) -> Command {
-        self.cargo_release_binary_with(&[], name)
-    }
-
-    /// [`cargo_release_binary`](Self::cargo_release_binary) with features of the tests package.
-    pub(crate) fn cargo_release_binary_with(&self, features: &[&str], name: &str) -> Command {
-        let mut command = self.cargo();
-        command.args(["run", "--release", "--package", "franka-tests"]);
-        command.args(["--bin", name, "--features", &features.join(","), "--"]);
-        command
-    }
-
     /// Shows the command, runs it to its end and fails if it does.
-    pub(crate) fn run(&self, command: &mut Command) -> anyhow::Result<()> {
+    ///
+    /// # Errors
+    /// If the command cannot be started or fails.
+    pub fn run(&self, command: &mut Command) -> anyhow::Result<()> {
         let line = line(command);
         println!("$ {line}");
         let status = command
@@ -101,27 +68,6 @@ impl Workspace {
         }
         Ok(())
     }
-}
-
-/// The targets of all packages that are libraries or programs, from Cargo's description.
-fn libraries_and_programs(metadata: &Value) -> Vec<(String, PathBuf)> {
-    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
-    let mut crates = Vec::new();
-    for target in list(&metadata["packages"])
-        .iter()
-        .flat_map(|package| list(&package["targets"]))
-    {
-        let kinds = list(&target["kind"]);
-        if kinds.iter().any(|kind| kind == "lib" || kind == "bin") {
-            crates.push((text(&target["name"]), text(&target["src_path"]).into()));
-        }
-    }
-    crates
-}
-
-/// The elements of an array; none of what is no array.
-fn list(value: &Value) -> Vec<Value> {
-    value.as_array().cloned().unwrap_or_default()
 }
 
 /// The command as one would type it: variables that differ from this program's, program, arguments.
@@ -153,27 +99,10 @@ fn cargo_in(root: &Path) -> Command {
     let mut command = Command::new(cargo);
     command.current_dir(root);
     if crate::step::is_ci() {
-        // What makes the next build faster, and one crate on many processors, makes a build from
-        // nothing on two slower.
+        // What makes the next build faster makes a build from nothing slower.
         command.env("CARGO_INCREMENTAL", "0");
-        command.env("CARGO_PROFILE_DEV_CODEGEN_UNITS", "1");
     }
     command
-}
-
-/// Copies a directory and all that is in it.
-pub(crate) fn copy_directory(from: &Path, to: &Path) -> anyhow::Result<()> {
-    fs::create_dir_all(to)?;
-    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
-        let entry = entry?;
-        let target = to.join(entry.file_name());
-        if entry.file_type()?.is_dir() {
-            copy_directory(&entry.path(), &target)?;
-        } else {
-            fs::copy(entry.path(), target)?;
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

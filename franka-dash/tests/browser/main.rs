@@ -20,7 +20,7 @@ use driver::{Browser, Driver};
 use served::Served;
 
 #[test]
-#[ignore = "needs a browser: cargo xtask test --only dashboard"]
+#[ignore = "needs a browser: cargo xtask nightly --only dashboard"]
 fn the_page_shows_and_moves_simulated_robots() -> anyhow::Result<()> {
     let (driver, browser) = (variable("FRANKA_WEBDRIVER")?, variable("FRANKA_BROWSER")?);
     let folder = PathBuf::from(variable("FRANKA_PICTURES")?);
@@ -70,7 +70,7 @@ fn the_film_of_the_readme_is_recorded() -> anyhow::Result<()> {
 }
 
 #[test]
-#[ignore = "needs a browser: cargo xtask test --only playground"]
+#[ignore = "needs a browser: cargo xtask nightly --only playground"]
 fn the_playground_of_the_book_aims_gives_way_stops_and_recovers() -> anyhow::Result<()> {
     let (driver, browser) = (variable("FRANKA_WEBDRIVER")?, variable("FRANKA_BROWSER")?);
     let pictures = PathBuf::from(variable("FRANKA_PICTURES")?);

@@ -19,8 +19,10 @@ use rand::{Rng, SeedableRng};
 
 use trial::{Rules, Trial};
 
-/// Mishaps in one run.
-const MISHAPS: u64 = 1000;
+/// Mishaps in one run; more with `FRANKA_THOROUGH=1`.
+fn count() -> u64 {
+    if franka_tests::thorough() { 1000 } else { 250 }
+}
 
 /// Robots with all their mishaps; returns what was told of each.
 fn play(seed: u64, mishaps: u64) -> Vec<String> {
@@ -44,10 +46,10 @@ fn play(seed: u64, mishaps: u64) -> Vec<String> {
 }
 
 #[test]
-fn a_thousand_mishaps_keep_the_policies_move_nothing_unasked_and_lose_no_motion() {
+fn mishaps_keep_the_policies_move_nothing_unasked_and_lose_no_motion() {
     let number = |name| std::env::var(name).ok().and_then(|text| text.parse().ok());
     let seed: u64 = number("FRANKA_MISHAP_SEED").unwrap_or(1);
-    let mishaps: u64 = number("FRANKA_MISHAPS").unwrap_or(MISHAPS);
+    let mishaps: u64 = number("FRANKA_MISHAPS").unwrap_or_else(count);
     println!("replay with FRANKA_MISHAP_SEED={seed} FRANKA_MISHAPS={mishaps}");
     for (robot, told) in play(seed, mishaps).iter().enumerate() {
         println!("{robot}: {}", told.lines().last().unwrap_or_default());

@@ -251,12 +251,20 @@ fn least_duration<M: CurveState, const W: usize, const G: usize>(
     oracle::least_duration(&rates, step, &limits.of_groups)
 }
 
+/// The size of a sample: the first with `FRANKA_THOROUGH=1`, as in the nightly run.
+fn sample(thorough: usize, otherwise: usize) -> usize {
+    match std::env::var_os("FRANKA_THOROUGH") {
+        Some(_) => thorough,
+        None => otherwise,
+    }
+}
+
 /// Ratios of random paths, with the jerks of the budget times a factor.
 fn ratios(over_the_joints: bool, jerk: f64) -> Ratios {
     let mut random = SmallRng::seed_from_u64(5);
     let model = Model::fr3();
     let mut ratios = Vec::new();
-    while ratios.len() < 50 {
+    while ratios.len() < sample(50, 16) {
         let mut goal = goal(model, random.random_range(0.5..2.0));
         let limits = goal.budget.joints.iter_mut();
         for limits in limits.chain([&mut goal.budget.translation, &mut goal.budget.rotation]) {
@@ -365,9 +373,6 @@ fn go(way: Timed<PoseState>, q: JointVector, budget: &Budget, model: &Model) -> 
     }
 }
 
-/// Ways of each robot.
-const WAYS: usize = 60;
-
 #[test]
 fn ways_are_accepted_where_the_control_cycle_gets_along_them() {
     let seed = 23;
@@ -376,7 +381,7 @@ fn ways_are_accepted_where_the_control_cycle_gets_along_them() {
         let limits = model.joint_limits();
         let ee = EndEffector::default();
         let (mut accepted, mut refused, mut farthest) = (0, 0, 0.0_f64);
-        while accepted + refused < WAYS {
+        while accepted + refused < sample(60, 15) {
             let mut posture = |spread: f64| {
                 JointVector::from_fn(|i, _| {
                     let middle = 0.5 * (limits.upper[i] + limits.lower[i]);
@@ -426,7 +431,7 @@ fn ways_are_accepted_where_the_control_cycle_gets_along_them() {
         let kind = model.kind();
         println!("{kind:?}: {accepted} accepted, {refused} refused, off by {farthest:.2} at most");
         assert!(
-            accepted.min(refused) > 10,
+            accepted.min(refused) > sample(10, 2),
             "{accepted} accepted, {refused} refused"
         );
     }

@@ -1,0 +1,156 @@
+//! What one arm did, and the figures of all of them.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use franka_bench::figures::quantile;
+
+/// The figures of one arm's programme.
+#[derive(Debug, Default)]
+pub(crate) struct ArmFigures {
+    pub(crate) seed: u64,
+    /// What ended the programme early.
+    pub(crate) reflex: Option<String>,
+    /// Goals that were to arrive.
+    pub(crate) goals: usize,
+    /// Those of them that did not, each with its number and what was told. Nothing holds the arm
+    /// while they are counted.
+    pub(crate) short: Vec<String>,
+    /// Distances from the target at rest, `[mm]` and `[mrad]`.
+    pub(crate) errors_mm: Vec<f64>,
+    pub(crate) errors_mrad: Vec<f64>,
+    /// Times from a step of 5 cm until the arm is within 1 mm for good, `[s]`.
+    pub(crate) arrive_s: Vec<f64>,
+    /// Times until a goal was reported as arrived, `[s]`.
+    pub(crate) told_s: Vec<f64>,
+    /// Distances from the reference during the stream, `[mm]`.
+    pub(crate) lags_mm: Vec<f64>,
+    /// The same on the circle, `[mm]`.
+    pub(crate) circle_lags_mm: Vec<f64>,
+    /// The robot's estimate of the external force at rest, with nothing there, `[N]`.
+    pub(crate) estimates_n: Vec<f64>,
+    /// Peak to peak of the end effector in a hold, `[mm]`.
+    pub(crate) hold_move_mm: f64,
+    /// Torque command above 30 Hz, rms of the worst joint, `[N m]`.
+    pub(crate) hold_torque_hf_nm: f64,
+    pub(crate) moving_torque_hf_nm: f64,
+    /// How much further from the target an arm is once the robot's own controller has it, after a
+    /// motion that has ended, `[mm]`.
+    pub(crate) handover_mm: f64,
+    /// The part of it until the torques have ended, `[mm]`.
+    pub(crate) released_mm: f64,
+    /// Force of a pushing hand without the inertia's share, `[N]`.
+    pub(crate) push_force_n: f64,
+    /// How far the robot's own controller gives way to a push of 30 N, `[mm]`.
+    pub(crate) push_yield_mm: f64,
+    /// Force of a hand that guides the arm at up to 0.16 m/s, `[N]`.
+    pub(crate) guide_force_n: f64,
+    /// How far an arm that is let go swings beyond its target, `[mm]`.
+    pub(crate) release_overshoot_mm: f64,
+}
+
+impl ArmFigures {
+    pub(crate) fn fell_short(&self) -> bool {
+        self.reflex.is_some() || !self.short.is_empty()
+    }
+}
+
+impl fmt::Display for ArmFigures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "seed {}: {} of {} goals short; {:.2} mm {:.2} mrad at most; 5 cm {:.2} s; lag p95 {:.1} mm; \
+             hold {:.3} mm, {:.3} N m; moving {:.3} N m; push {:.1} N, overshoot {:.1} mm",
+            self.seed,
+            self.short.len(),
+            self.goals,
+            quantile(&self.errors_mm, 1.0),
+            quantile(&self.errors_mrad, 1.0),
+            quantile(&self.arrive_s, 0.5),
+            quantile(&self.lags_mm, 0.95),
+            self.hold_move_mm,
+            self.hold_torque_hf_nm,
+            self.moving_torque_hf_nm,
+            self.push_force_n,
+            self.release_overshoot_mm,
+        )?;
+        for short in &self.short {
+            write!(f, "\n  {short}")?;
+        }
+        match &self.reflex {
+            Some(reflex) => write!(f, "\n  {reflex}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The figures of all arms, by the names of the file.
+pub(crate) struct Summary(BTreeMap<String, f64>);
+
+impl Summary {
+    pub(crate) fn of(arms: &[ArmFigures]) -> Self {
+        let mut values = BTreeMap::new();
+        let mut put = |name: &str, value: f64| {
+            values.insert(format!("arms.{name}"), value);
+        };
+        let sum = |of: fn(&ArmFigures) -> usize| arms.iter().map(|arm| of(arm) as f64).sum::<f64>();
+        let most = |of: fn(&ArmFigures) -> f64| arms.iter().map(of).fold(0.0, f64::max);
+        let all = |of: fn(&ArmFigures) -> &Vec<f64>| -> Vec<f64> {
+            arms.iter().flat_map(of).copied().collect()
+        };
+        put("count", arms.len() as f64);
+        let short = sum(|arm| arm.short.len());
+        put("arrived_share", 1.0 - short / sum(|arm| arm.goals));
+        put("wrong_short", short);
+        put("reflexes", sum(|arm| usize::from(arm.reflex.is_some())));
+        let mm = all(|arm| &arm.errors_mm);
+        let mrad = all(|arm| &arm.errors_mrad);
+        for (name, share) in [("p50", 0.5), ("p99", 0.99), ("max", 1.0)] {
+            put(&format!("error_mm_{name}"), quantile(&mm, share));
+            put(&format!("error_mrad_{name}"), quantile(&mrad, share));
+        }
+        let arrive = all(|arm| &arm.arrive_s);
+        let told = all(|arm| &arm.told_s);
+        for (name, share) in [("p50", 0.5), ("p99", 0.99)] {
+            put(&format!("arrive_s_{name}"), quantile(&arrive, share));
+            put(&format!("told_s_{name}"), quantile(&told, share));
+        }
+        let lags = all(|arm| &arm.lags_mm);
+        put("stream_lag_mm_p50", quantile(&lags, 0.5));
+        put("stream_lag_mm_p95", quantile(&lags, 0.95));
+        let circle = all(|arm| &arm.circle_lags_mm);
+        put("circle_lag_mm_p95", quantile(&circle, 0.95));
+        put("guide_force_n_max", most(|arm| arm.guide_force_n));
+        let estimates = all(|arm| &arm.estimates_n);
+        put("estimate_n_p99", quantile(&estimates, 0.99));
+        put("estimate_n_max", quantile(&estimates, 1.0));
+        put("hold_move_mm_max", most(|arm| arm.hold_move_mm));
+        put("hold_torque_hf_nm_max", most(|arm| arm.hold_torque_hf_nm));
+        put(
+            "moving_torque_hf_nm_max",
+            most(|arm| arm.moving_torque_hf_nm),
+        );
+        put("handover_mm_max", most(|arm| arm.handover_mm));
+        put("released_mm_max", most(|arm| arm.released_mm));
+        put("push_force_n_max", most(|arm| arm.push_force_n));
+        put("push_yield_mm_max", most(|arm| arm.push_yield_mm));
+        put(
+            "release_overshoot_mm_max",
+            most(|arm| arm.release_overshoot_mm),
+        );
+        Self(values)
+    }
+
+    pub(crate) fn values(&self) -> &BTreeMap<String, f64> {
+        &self.0
+    }
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (name, value) in &self.0 {
+            writeln!(f, "{name:32} {value:.4}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,76 @@
+//! Counts instructions: `instructions` prints, for every call of the model that the benchmarks time
+//! and for the guarded cycle, how many machine instructions it takes. Time on a shared machine is
+//! noisy; this is not.
+//!
+//! Needs `valgrind`. Every call is made a few and many times under its callgrind tool; the
+//! difference is that of the calls, without what starting and preparing the inputs takes.
+
+use std::env;
+use std::process::{Command, ExitCode};
+
+use franka_bench::{Subject, subjects};
+
+fn main() -> ExitCode {
+    let mut arguments = env::args().skip(1);
+    match (arguments.next(), arguments.next()) {
+        (None, _) => table(),
+        (Some(key), Some(calls)) => repeat(&key, calls.parse().unwrap_or(0)),
+        (Some(_), None) => {
+            eprintln!("usage: instructions");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Makes `calls` calls of one subject, under valgrind.
+fn repeat(key: &str, calls: u64) -> ExitCode {
+    let Some(Subject { mut call, .. }) = subjects().into_iter().find(|s| s.key == key) else {
+        eprintln!("nothing is called {key}");
+        return ExitCode::FAILURE;
+    };
+    for _ in 0..calls {
+        call();
+    }
+    ExitCode::SUCCESS
+}
+
+fn table() -> ExitCode {
+    if Command::new("valgrind").arg("--version").output().is_err() {
+        eprintln!("valgrind is not installed: instructions cannot be counted");
+        return ExitCode::FAILURE;
+    }
+    println!("{:<28} {:>12}", "", "instructions");
+    for Subject { key, within, .. } in subjects() {
+        match (count(key, within, FEW), count(key, within, MANY)) {
+            (Some(few), Some(many)) => {
+                let name = key.trim_end_matches("_ns");
+                println!("{name:<28} {:>12}", (many - few) / (MANY - FEW));
+            }
+            _ => {
+                eprintln!("callgrind gave no count for {key}");
+                return ExitCode::FAILURE;
+            }
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+/// Instructions of a process that makes `calls` calls; those in the function `within` alone if
+/// there is one.
+fn count(key: &str, within: Option<&str>, calls: u64) -> Option<u64> {
+    let within = within.map(|within| format!("--toggle-collect={within}"));
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .args(within)
+        .arg(env::current_exe().ok()?)
+        .args([key, &calls.to_string()])
+        .output()
+        .ok()?;
+    let text = String::from_utf8_lossy(&output.stderr);
+    let line = text.lines().find(|line| line.contains("Collected"))?;
+    line.rsplit(':').next()?.trim().parse().ok()
+}
+
+/// Their difference is a multiple of the number of inputs, so that all inputs weigh the same.
+const FEW: u64 = 1_000;
+const MANY: u64 = 9_000;

@@ -1,0 +1,19 @@
+//! What the tests of this workspace by one command, and the tasks of `xtask-tools`, are made of.
+//!
+//! | module | what it has |
+//! |---|---|
+//! | [`peers`] | other clients against the simulator |
+//! | [`python`] | virtual environments |
+//! | [`realtime`] | the right to real-time scheduling |
+//! | [`selection`] | which tests of which packages run |
+//! | [`step`] | steps with headers, times and a summary |
+//! | [`suite`] | the steps of `cargo xtask test` |
+//! | [`workspace`] | where things are, and running a program |
+
+pub mod peers;
+pub mod python;
+pub mod realtime;
+pub mod selection;
+pub mod step;
+pub mod suite;
+pub mod workspace;

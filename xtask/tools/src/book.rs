@@ -1,0 +1,266 @@
+//! The book: built with the programs and links in it checked, and served with the references of
+//! Rust and Python beside it.
+//!
+//! ```text
+//! docs/src ── mdBook ──> target/book ── lychee: links
+//! cargo doc ──> target/book/rust      pdoc ──> target/book/python      playground
+//! ```
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail, ensure};
+use clap::Subcommand as _;
+
+use crate::Task;
+use crate::metadata::copy_directory;
+use crate::names;
+use crate::package;
+use crate::playground;
+use xtask::python::{NEWEST, OLDEST, Python};
+use xtask::step::Outcome;
+use xtask::workspace::Workspace;
+
+/// The step of `cargo xtask test`: every page is in the summary, every Rust program is compiled by
+/// a test, and no link leads nowhere.
+pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let pages = names::pages(&sources(workspace))?;
+    let mut found = unlisted(workspace, &pages)?;
+    found.extend(untested(workspace, &pages)?);
+    found.extend(unknown(workspace, &pages)?);
+    ensure!(found.is_empty(), "the book:\n{}", found.join("\n"));
+    let tools = match Tools::find(workspace)? {
+        Ok(tools) => tools,
+        Err(why) => return Outcome::without(why),
+    };
+    let book = build(workspace, &tools)?;
+    println!("{} pages", pages.len());
+    playground::leave_out(&book, "only the links were checked")?;
+    links(workspace, &tools, &book, &REFERENCES)
+}
+
+/// Builds the book with its references, and serves it on this computer until Ctrl-C, unless it is
+/// to be built only.
+pub(crate) fn serve(workspace: &Workspace, port: Option<u16>) -> anyhow::Result<()> {
+    let tools = match Tools::find(workspace)? {
+        Ok(tools) => tools,
+        Err(why) => bail!("{why}"),
+    };
+    let book = build(workspace, &tools)?;
+    playground::add(workspace, &book)?;
+    // Cargo leaves pages of names that no longer exist.
+    remove(&workspace.target().join("doc"))?;
+    let mut rust = workspace.cargo();
+    rust.args(["doc", "--no-deps", "--features"]);
+    let features = ["blocking", "doctor", "export", "metrics", "pcap"];
+    rust.arg(
+        features
+            .map(|name| format!("franka-async/{name}"))
+            .join(","),
+    );
+    rust.args(["--package=franka-async", "--package=franka-sim"]);
+    workspace.run(&mut rust)?;
+    copy_directory(&workspace.target().join("doc"), &book.join("rust"))?;
+    let missing: &[&str] = match package::prepare(workspace)? {
+        Ok(interpreter) => {
+            let mut python = package::module(workspace, &interpreter, "pdoc");
+            python.args(["--docformat", "google", "--output-directory"]);
+            python.arg(book.join("python")).arg("franka_async");
+            workspace.run(&mut python)?;
+            &[]
+        }
+        Err(why) => {
+            println!("without the reference of Python: {why}");
+            &REFERENCES[1..]
+        }
+    };
+    if let Outcome::Partly(what) = links(workspace, &tools, &book, missing)? {
+        println!("NOT CHECKED: {what}");
+    }
+    println!("{}", book.join("index.html").display());
+    let Some(port) = port else {
+        return Ok(());
+    };
+    println!("http://127.0.0.1:{port}/ until Ctrl-C");
+    let mut server = workspace.program(&tools.interpreter);
+    server.args(["-m", "http.server", "--bind", "127.0.0.1"]);
+    server.arg("--directory").arg(&book).arg(port.to_string());
+    workspace.run(&mut server)
+}
+
+/// mdBook and lychee, pinned by hash, in a virtual environment.
+struct Tools {
+    interpreter: PathBuf,
+}
+
+impl Tools {
+    /// Installs them, or says what is missing for that.
+    fn find(workspace: &Workspace) -> anyhow::Result<Result<Self, String>> {
+        let python = match Python::find(OLDEST..=NEWEST) {
+            Ok(python) => python,
+            Err(why) => return Ok(Err(why)),
+        };
+        let requirements = workspace.root().join("docs").join("requirements.txt");
+        let interpreter = python.environment(workspace, "python-book", &requirements)?;
+        Ok(Ok(Self { interpreter }))
+    }
+
+    /// A program of the environment.
+    fn program(&self, name: &str) -> PathBuf {
+        self.interpreter.with_file_name(name)
+    }
+}
+
+/// Builds the pages, in place of all that an earlier build left, and returns where they are.
+fn build(workspace: &Workspace, tools: &Tools) -> anyhow::Result<PathBuf> {
+    let book = workspace.target().join("book");
+    remove(&book)?;
+    let mut mdbook = workspace.program(tools.program("mdbook"));
+    mdbook.args(["build", "docs", "--dest-dir"]).arg(&book);
+    workspace.run(&mut mdbook)?;
+    Ok(book)
+}
+
+/// Follows the links of the built pages, and of the pages that the repository shows, to files and
+/// to places in them, but those to references that are `missing`.
+fn links(
+    workspace: &Workspace,
+    tools: &Tools,
+    book: &Path,
+    missing: &[&str],
+) -> anyhow::Result<Outcome> {
+    let lychee = tools.program("lychee");
+    if !lychee.exists() {
+        return Ok(Outcome::Partly(
+            "links: there is no lychee for this machine".to_owned(),
+        ));
+    }
+    let mut check = workspace.program(&lychee);
+    check.args(["--offline", "--no-progress", "--include-fragments"]);
+    for reference in missing {
+        check.args(["--exclude", reference]);
+    }
+    for page in REFERENCES {
+        check.args(["--exclude-path", page]);
+    }
+    for page in ["print.html", "404.html"] {
+        check.args(["--exclude-path", page]);
+    }
+    check.arg(book);
+    check.args(REPOSITORY_PAGES);
+    workspace.run(&mut check)?;
+    Ok(Outcome::Passed)
+}
+
+/// Pages that no chapter of the summary leads to.
+fn unlisted(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<String>> {
+    let sources = sources(workspace);
+    let summary = fs::read_to_string(sources.join("SUMMARY.md"))?;
+    let mut found = Vec::new();
+    for page in pages {
+        let name = page.strip_prefix(&sources)?.display().to_string();
+        if name != "SUMMARY.md" && !summary.contains(&format!("({name})")) {
+            found.push(format!("{name} is not in SUMMARY.md"));
+        }
+    }
+    Ok(found)
+}
+
+/// Pages with Rust programs that are in none of the tests.
+fn untested(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<String>> {
+    let tests = fs::read_to_string(workspace.root().join(DOCTESTS)).context(DOCTESTS)?;
+    let mut found = Vec::new();
+    for page in pages {
+        let name = page.strip_prefix(workspace.root())?.display().to_string();
+        let has_program = programs(&fs::read_to_string(page)?);
+        if has_program && !tests.contains(&format!("../{name}\"")) {
+            found.push(format!("{name} has Rust programs and is not in {DOCTESTS}"));
+        }
+    }
+    Ok(found)
+}
+
+/// Commands of Cargo with examples that are not there, and tasks of this program that it does not
+/// know.
+fn unknown(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<String>> {
+    let manifest = fs::read_to_string(workspace.root().join("examples/Cargo.toml"))?;
+    let mut found = Vec::new();
+    let outside = REPOSITORY_PAGES.map(|page| workspace.root().join(page));
+    for page in pages.iter().chain(&outside) {
+        let text = fs::read_to_string(page)?;
+        let mut words = text.split_whitespace().peekable();
+        while let Some(word) = words.next() {
+            let name = words.peek().copied().unwrap_or_default();
+            let name = name.trim_end_matches(|c: char| !c.is_ascii_alphanumeric());
+            let is_known = match word {
+                "--example" => {
+                    let is_in = |folder: &str| {
+                        let file = format!("{folder}/examples/{name}.rs");
+                        workspace.root().join(file).exists()
+                    };
+                    manifest.contains(&format!("name = \"{name}\""))
+                        || is_in("franka-async")
+                        || is_in("franka-otg")
+                }
+                "xtask" => name == "test" || Task::has_subcommand(name),
+                _ => true,
+            };
+            if !is_known {
+                let page = page.strip_prefix(workspace.root())?.display();
+                found.push(format!("{page}: there is no {word} {name}"));
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Whether a page has a Rust program of its own that is not to be ignored.
+fn programs(page: &str) -> bool {
+    let mut lines = page.lines();
+    while let Some(line) = lines.next() {
+        if line.starts_with("```rust") && !line.contains("ignore") {
+            // What is included is a file that builds.
+            if !lines.next().is_some_and(|line| line.starts_with("{{#")) {
+                return true;
+            }
+        }
+    }
+    false
+}
+
+fn sources(workspace: &Workspace) -> PathBuf {
+    workspace.root().join("docs").join("src")
+}
+
+/// Removes a directory, if it is there.
+fn remove(directory: &Path) -> anyhow::Result<()> {
+    match fs::remove_dir_all(directory) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => {
+            Err(error).with_context(|| directory.display().to_string())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Where the references are, which are built by `cargo xtask book` only.
+const REFERENCES: [&str; 2] = ["book/rust/", "book/python/"];
+
+/// Where the programs of the pages are compiled.
+const DOCTESTS: &str = "tests/src/lib.rs";
+
+/// Pages outside the book that people read first.
+pub(crate) const REPOSITORY_PAGES: [&str; 3] =
+    ["README.md", "examples/README.md", "franka-py/README.md"];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn programs_are_told_from_what_is_included_or_ignored() {
+        assert!(programs("text\n```rust,no_run\nfn main() {}\n```\n"));
+        assert!(!programs("```rust\n{{#include a.rs}}\n```\n"));
+        assert!(!programs("```rust,ignore\nx\n```\n```python\nx\n```\n"));
+    }
+}

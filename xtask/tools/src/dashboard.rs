@@ -1,0 +1,176 @@
+//! The dashboard's page: its files made from pinned packages, and pages in a real browser.
+
+use std::env;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, ensure};
+
+use crate::others;
+use xtask::realtime::succeeds;
+use xtask::step::{Outcome, is_ci};
+use xtask::workspace::Workspace;
+
+/// Makes the files in `franka-dash/page/dist` anew.
+pub(crate) fn assets(workspace: &Workspace) -> anyhow::Result<()> {
+    make(workspace, &page(workspace).join("dist"))
+}
+
+/// Fails if the files in `franka-dash/page/dist` are not those that [`assets`] makes.
+pub(crate) fn check_assets(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let page = page(workspace);
+    if !has_npm() {
+        return Outcome::without("no npm".to_owned());
+    }
+    let made = work(workspace).join("dist");
+    make(workspace, &made)?;
+    for name in MADE {
+        let read = |directory: &Path| {
+            let path = directory.join(name);
+            fs::read(&path).with_context(|| path.display().to_string())
+        };
+        ensure!(
+            read(&made)? == read(&page.join("dist"))?,
+            "franka-dash/page/dist/{name} is not what the page's sources make: run cargo xtask assets"
+        );
+    }
+    Ok(Outcome::Passed)
+}
+
+/// Whether [`bundle`] can run.
+pub(crate) fn has_npm() -> bool {
+    find(&["npm"]).is_some()
+}
+
+pub(crate) fn page(workspace: &Workspace) -> PathBuf {
+    workspace.root().join("franka-dash").join("page")
+}
+
+/// What is made.
+const MADE: [&str; 3] = ["dash.js", "dash.css", "licenses.txt"];
+
+/// Makes the files of the page in `dist`.
+fn make(workspace: &Workspace, dist: &Path) -> anyhow::Result<()> {
+    let entry = page(workspace).join("src").join("main.js");
+    bundle(workspace, &entry, &dist.join("dash.js"), "esm")?;
+    Ok(fs::write(dist.join("licenses.txt"), licences(workspace)?)?)
+}
+
+/// Puts a module, all that it imports, and their styles beside it, in one file each. Needs npm,
+/// which checks the packages against the hashes of the lock file; none of their scripts runs.
+pub(crate) fn bundle(
+    workspace: &Workspace,
+    entry: &Path,
+    output: &Path,
+    format: &str,
+) -> anyhow::Result<()> {
+    let work = work(workspace);
+    for name in ["package.json", "package-lock.json"] {
+        copy(&page(workspace).join(name), &work.join(name))?;
+    }
+    let mut npm = workspace.program("npm");
+    npm.args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]);
+    npm.arg("--prefer-offline");
+    workspace.run(npm.current_dir(&work))?;
+    let packages = work.join("node_modules");
+    let mut esbuild = workspace.program(packages.join(".bin/esbuild"));
+    esbuild.arg(entry).args(["--bundle", "--minify"]);
+    esbuild.args(["--legal-comments=eof", "--log-level=warning"]);
+    esbuild.arg(format!("--format={format}"));
+    esbuild.arg(format!("--outfile={}", output.display()));
+    workspace.run(esbuild.env("NODE_PATH", packages))
+}
+
+/// The licences of what [`bundle`] adds, and of the meshes.
+pub(crate) fn licences(workspace: &Workspace) -> anyhow::Result<String> {
+    let packages = work(workspace).join("node_modules");
+    let meshes = page(workspace).join("meshes");
+    let mut licences = String::new();
+    for package in ["three", "uplot"] {
+        let text = fs::read_to_string(packages.join(package).join("LICENSE"))?;
+        licences += &format!("{package}\n\n{text}\n");
+    }
+    for name in ["NOTICE", "LICENSE-franka_description", "LICENSE"] {
+        let text = fs::read_to_string(meshes.join(name))?;
+        licences += &format!("meshes of the links: {name}\n\n{text}\n");
+    }
+    Ok(licences)
+}
+
+/// Where the packages are installed.
+fn work(workspace: &Workspace) -> PathBuf {
+    workspace.target().join("dashboard-page")
+}
+
+fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
+    let directory = to.parent().context("no directory")?;
+    fs::create_dir_all(directory)?;
+    fs::copy(from, to).with_context(|| from.display().to_string())?;
+    Ok(())
+}
+
+/// Runs the tests of the page in a browser; with `FRANKA_THOROUGH=1` its film is recorded, too.
+pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let film = workspace.target().join("dashboard").join("film.png");
+    let all = ["the_page", "the_film"];
+    let is_thorough = env::var_os("FRANKA_THOROUGH").is_some();
+    let which = if is_thorough { &all[..] } else { &all[..1] };
+    browse(workspace, which, &[("FRANKA_FILM", &film)])
+}
+
+/// Records the page's film, which the README shows.
+pub(crate) fn film(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let file = workspace.root().join("docs/src/dashboard.png");
+    browse(workspace, &["the_film"], &[("FRANKA_FILM", &file)])
+}
+
+/// Runs those tests in a browser whose names have one of `which`, with variables for them.
+pub(crate) fn browse(
+    workspace: &Workspace,
+    which: &[&str],
+    variables: &[(&str, &Path)],
+) -> anyhow::Result<Outcome> {
+    let browsers = ["chromium", "chromium-browser", "google-chrome"];
+    let find_both = || find(&["chromedriver"]).zip(find(&browsers));
+    let found = find_both().or_else(|| {
+        install();
+        find_both()
+    });
+    let Some((driver, browser)) = found else {
+        let why = "no Chromium with chromedriver (Debian: chromium, chromium-driver)";
+        return Outcome::without(why.to_owned());
+    };
+    let mut test = others::other_test(workspace, "browser");
+    test.args(which).args(["--ignored", "--nocapture"]);
+    test.env("FRANKA_WEBDRIVER", driver);
+    test.env("FRANKA_BROWSER", browser);
+    test.env("FRANKA_PICTURES", workspace.target().join("dashboard"));
+    test.envs(variables.iter().copied());
+    workspace.run(&mut test)?;
+    Ok(Outcome::Passed)
+}
+
+/// With `CI=true`, tries to install the browser from Debian's packages, which takes root. The
+/// caller checks whether it is there afterwards.
+fn install() {
+    if is_ci() {
+        println!("no browser is found; installing Debian's chromium and chromium-driver");
+        let install = ["install", "--yes", "--quiet", "--no-install-recommends"];
+        let packages = ["chromium", "chromium-driver"];
+        if succeeds(&["apt-get", "update", "--quiet"]) {
+            succeeds(&[&["apt-get"][..], &install, &packages].concat());
+        }
+    }
+}
+
+/// The first of these programs that there is.
+fn find(names: &[impl AsRef<OsStr>]) -> Option<PathBuf> {
+    let path = env::var_os("PATH")?;
+    let places: Vec<_> = env::split_paths(&path).collect();
+    let mut programs = names.iter().flat_map(|name| {
+        let name = name.as_ref();
+        places.iter().map(move |place| place.join(name))
+    });
+    programs.find(|program| program.is_file())
+}

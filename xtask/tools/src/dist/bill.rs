@@ -1,0 +1,307 @@
+//! The bill of materials of a program: every crate that is part of it, with version, licence and
+//! hash, as CycloneDX 1.5; and the texts of their licences.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, ensure};
+use serde_json::{Value, json};
+
+use xtask::workspace::Workspace;
+
+/// The package of the program.
+const ROOT: &str = "franka-cli";
+
+/// Name and version.
+type Id = (String, String);
+
+/// A crate of the program.
+#[derive(Debug)]
+struct Part {
+    license: String,
+    sources: PathBuf,
+    /// SHA-256 of the package, for those of a registry.
+    hash: Option<String>,
+    needs: BTreeSet<Id>,
+}
+
+/// Everything that the program for one target is made of.
+#[derive(Debug)]
+pub(super) struct Bill {
+    parts: BTreeMap<Id, Part>,
+    /// Packages that the dashboard's page contains.
+    page: Vec<Id>,
+    version: String,
+}
+
+impl Bill {
+    /// Asks Cargo what is part of the program for `target`.
+    pub(super) fn of(workspace: &Workspace, target: &str, version: &str) -> anyhow::Result<Self> {
+        let mut tree = workspace.cargo();
+        tree.args(["tree", "--locked", "--package", ROOT, "--target", target]);
+        tree.args(["--edges", "normal", "--prefix", "none", "--format", "{p}"]);
+        let parts = parse_tree(&output(&mut tree)?);
+        ensure!(parts.len() > 1, "cargo tree names no dependencies");
+        let mut metadata = workspace.cargo();
+        metadata.args([
+            "metadata",
+            "--locked",
+            "--format-version=1",
+            "--filter-platform",
+            target,
+        ]);
+        let metadata: Value = serde_json::from_str(&output(&mut metadata)?)?;
+        let lock = fs::read_to_string(workspace.root().join("Cargo.lock"))?;
+        let page = fs::read_to_string(workspace.root().join("franka-dash/page/package.json"))?;
+        Ok(Self {
+            parts: details(&parts, &metadata, &hashes(&lock)?)?,
+            page: of_page(&page)?,
+            version: version.to_owned(),
+        })
+    }
+
+    /// As CycloneDX 1.5, without a time and a random number.
+    pub(super) fn to_json(&self) -> anyhow::Result<String> {
+        let root = (ROOT.to_owned(), self.version.clone());
+        let mut components: Vec<Value> = Vec::new();
+        let mut dependencies: Vec<Value> = Vec::new();
+        for (id, part) in &self.parts {
+            let needs: Vec<String> = part.needs.iter().map(|id| purl("cargo", id)).collect();
+            dependencies.push(json!({"ref": purl("cargo", id), "dependsOn": needs}));
+            if *id != root {
+                components.push(part.component(id));
+            }
+        }
+        components.extend(self.page.iter().map(|id| {
+            json!({"type": "library", "bom-ref": purl("npm", id), "name": id.0, "version": id.1,
+                "purl": purl("npm", id), "licenses": [{"expression": "MIT"}]})
+        }));
+        let mut root_component = self.parts[&root].component(&root);
+        root_component["type"] = json!("application");
+        let bill = json!({
+            "bomFormat": "CycloneDX",
+            "specVersion": "1.5",
+            "version": 1,
+            "metadata": {"component": root_component},
+            "components": components,
+            "dependencies": dependencies,
+        });
+        Ok(serde_json::to_string_pretty(&bill)? + "\n")
+    }
+
+    /// The licence texts of what is not ours, each text once.
+    pub(super) fn licences(&self) -> anyhow::Result<String> {
+        let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for ((name, version), part) in &self.parts {
+            if part.hash.is_none() {
+                continue;
+            }
+            let mut text = licence_files(&part.sources)?;
+            if text.is_empty() {
+                text = format!(
+                    "Licensed under {}; the package has no text.\n",
+                    part.license
+                );
+            }
+            let title = format!("{name} {version} ({})", part.license);
+            texts.entry(text).or_default().push(title);
+        }
+        let mut by_title: Vec<(Vec<String>, String)> = texts
+            .into_iter()
+            .map(|(text, titles)| (titles, text))
+            .collect();
+        by_title.sort();
+        let rule = "-".repeat(79);
+        let sections = by_title.into_iter().map(|(titles, text)| {
+            format!("{rule}\n{}\n\n{}\n", titles.join("\n"), text.trim_end())
+        });
+        let count = self
+            .parts
+            .values()
+            .filter(|part| part.hash.is_some())
+            .count();
+        Ok(format!(
+            "{count} libraries of others are part of this program, with these licences.\n\n{}",
+            sections.collect::<String>()
+        ))
+    }
+
+    /// How many crates there are.
+    pub(super) fn count(&self) -> usize {
+        self.parts.len()
+    }
+}
+
+impl Part {
+    fn component(&self, id: &Id) -> Value {
+        let mut component = json!({"type": "library", "bom-ref": purl("cargo", id), "name": id.0,
+            "version": id.1, "purl": purl("cargo", id)});
+        if !self.license.is_empty() {
+            // An old way to write OR.
+            let expression = self.license.replace('/', " OR ");
+            component["licenses"] = json!([{"expression": expression}]);
+        }
+        if let Some(hash) = &self.hash {
+            component["hashes"] = json!([{"alg": "SHA-256", "content": hash}]);
+        }
+        component
+    }
+}
+
+/// The address of a package, as bills write it.
+fn purl(kind: &str, (name, version): &Id) -> String {
+    format!("pkg:{kind}/{name}@{version}")
+}
+
+/// What a command prints.
+fn output(command: &mut std::process::Command) -> anyhow::Result<String> {
+    let output = command.stderr(std::process::Stdio::inherit()).output()?;
+    ensure!(output.status.success(), "{command:?} failed");
+    Ok(String::from_utf8(output.stdout)?)
+}
+
+/// Name and version of each line of `cargo tree`.
+fn parse_tree(text: &str) -> BTreeSet<Id> {
+    let id = |line: &str| {
+        let (name, rest) = line.split_once(" v")?;
+        let version = rest.split_whitespace().next()?;
+        Some((name.to_owned(), version.to_owned()))
+    };
+    text.lines().filter_map(id).collect()
+}
+
+/// The hash of each package of a registry, from the lock file.
+fn hashes(lock: &str) -> anyhow::Result<BTreeMap<Id, String>> {
+    let lock = lock.parse::<toml_edit::DocumentMut>()?;
+    let packages = lock["package"]
+        .as_array_of_tables()
+        .context("no packages")?;
+    let hash = |package: &toml_edit::Table| {
+        let text = |name| Some(package.get(name)?.as_str()?.to_owned());
+        Some(((text("name")?, text("version")?), text("checksum")?))
+    };
+    Ok(packages.iter().filter_map(hash).collect())
+}
+
+/// What Cargo's description says of the chosen crates.
+fn details(
+    chosen: &BTreeSet<Id>,
+    metadata: &Value,
+    hashes: &BTreeMap<Id, String>,
+) -> anyhow::Result<BTreeMap<Id, Part>> {
+    let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let id = |package: &Value| (text(&package["name"]), text(&package["version"]));
+    let packages = array(&metadata["packages"]);
+    let ids: BTreeMap<&str, Id> = packages
+        .iter()
+        .filter_map(|package| Some((package["id"].as_str()?, id(package))))
+        .collect();
+    let mut parts = BTreeMap::new();
+    for node in array(&metadata["resolve"]["nodes"]) {
+        let known = node["id"].as_str().and_then(|it| ids.get(it));
+        let Some(this) = known.filter(|it| chosen.contains(it)) else {
+            continue;
+        };
+        let package = packages.iter().find(|package| package["id"] == node["id"]);
+        let package = package.context("a node has a package")?;
+        let manifest = PathBuf::from(text(&package["manifest_path"]));
+        let is_normal = |need: &&Value| {
+            array(&need["dep_kinds"])
+                .iter()
+                .any(|it| it["kind"].is_null())
+        };
+        let needs = array(&node["deps"]).iter().filter(is_normal);
+        let needs = needs.filter_map(|need| ids.get(need["pkg"].as_str()?));
+        let part = Part {
+            license: text(&package["license"]),
+            sources: manifest
+                .parent()
+                .context("a manifest is in a directory")?
+                .to_owned(),
+            hash: hashes.get(this).cloned(),
+            needs: needs.filter(|id| chosen.contains(id)).cloned().collect(),
+        };
+        parts.insert(this.clone(), part);
+    }
+    ensure!(
+        parts.len() == chosen.len(),
+        "cargo metadata knows fewer crates than cargo tree"
+    );
+    Ok(parts)
+}
+
+/// The elements of an array; none of what is no array.
+fn array(value: &Value) -> &[Value] {
+    value.as_array().map_or(&[], Vec::as_slice)
+}
+
+/// What the page is made of: the dependencies of its manifest, whose versions are exact.
+fn of_page(manifest: &str) -> anyhow::Result<Vec<Id>> {
+    let manifest: Value = serde_json::from_str(manifest)?;
+    let packages = manifest["dependencies"]
+        .as_object()
+        .context("the page has packages")?;
+    let ids = packages.iter().map(|(name, version)| {
+        let version = version.as_str().context("a version is a text")?;
+        Ok((name.clone(), version.to_owned()))
+    });
+    ids.collect()
+}
+
+/// The texts of the licence files of a package, in the order of their names.
+fn licence_files(sources: &Path) -> anyhow::Result<String> {
+    let mut names: Vec<PathBuf> = Vec::new();
+    for entry in fs::read_dir(sources).with_context(|| sources.display().to_string())? {
+        let path = entry?.path();
+        let name = path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_uppercase();
+        let is_licence = ["LICENSE", "LICENCE", "COPYING", "NOTICE", "COPYRIGHT"];
+        if path.is_file() && is_licence.iter().any(|it| name.starts_with(it)) {
+            names.push(path);
+        }
+    }
+    names.sort();
+    let mut text = String::new();
+    for name in names {
+        text += String::from_utf8_lossy(&fs::read(name)?).trim_end();
+        text += "\n\n";
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_of_the_tree_has_name_and_version() {
+        let text = "franka-cli v0.1.0 (/x/franka-cli)\nserde v1.0.228\nserde v1.0.228 (*)\n\n";
+        let ids: Vec<_> = parse_tree(text).into_iter().collect();
+        let expected = [("franka-cli", "0.1.0"), ("serde", "1.0.228")];
+        assert_eq!(
+            ids,
+            expected.map(|(name, version)| (name.to_owned(), version.to_owned()))
+        );
+    }
+
+    #[test]
+    fn the_bill_of_this_machines_program_names_the_driver_and_its_needs() {
+        let workspace = Workspace::find().unwrap();
+        let version = crate::release::version::of(&workspace).unwrap();
+        let bill = Bill::of(&workspace, "x86_64-unknown-linux-gnu", &version).unwrap();
+        let json: Value = serde_json::from_str(&bill.to_json().unwrap()).unwrap();
+        let components = json["components"].as_array().unwrap();
+        let find = |name: &str| components.iter().find(|it| it["name"] == name);
+        assert_eq!(find("franka-async").unwrap()["version"], version.as_str());
+        let tokio = find("tokio").expect("a dependency of dependencies");
+        assert_eq!(tokio["hashes"][0]["content"].as_str().unwrap().len(), 64);
+        assert!(find("three").is_some(), "a part of the page");
+        assert!(find("proptest").is_none(), "a dependency of tests only");
+        let licences = bill.licences().unwrap();
+        assert!(licences.contains("\ntokio ") && !licences.contains("\nfranka-async "));
+    }
+}

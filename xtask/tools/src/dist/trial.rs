@@ -1,0 +1,278 @@
+//! `cargo xtask dist --try`: what a release gives to people, used as they would, in a directory
+//! outside the repository. Nothing but the artefacts, and programs that the book shows, goes there.
+//!
+//! ```text
+//! archive ────────────> franka sim --dash, no variables, PATH empty <── page, socket, motion
+//! package for Debian ─> the same
+//! packages of crates ─> a service, started against that simulator <── HTTP: a job; and its tests
+//! wheel ──────────────> a program in a new virtual environment, PATH empty
+//! ```
+
+use std::env;
+use std::fs::{self, File};
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::TcpStream;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, ensure};
+use flate2::read::GzDecoder;
+
+use super::program::{Running, moves};
+use super::{Machine, Release, debian};
+use crate::cross::is_installed;
+use crate::package::wheels;
+use xtask::python::{NEWEST, OLDEST, Python};
+use xtask::workspace::Workspace;
+
+/// Tries archive and package of a program for this machine, which are in `artefacts`, and crates
+/// and wheel as they are packed now; returns a line about each. The directory stays if it fails.
+pub(super) fn run(
+    workspace: &Workspace,
+    release: &Release,
+    machine: &Machine,
+    artefacts: &Path,
+) -> anyhow::Result<Vec<String>> {
+    let packages = crate::release::packages(workspace)?;
+    let wheel = wheels::for_this_machine(workspace)?;
+    let directory = env::temp_dir().join(format!("franka-try-{}", std::process::id()));
+    let outside = Outside { directory };
+    fs::create_dir_all(outside.at("nothing"))?;
+    println!("\n{}:", outside.directory.display());
+
+    let unpacked = outside.at("archive");
+    let name = machine.name(release);
+    unpack(&artefacts.join(format!("{name}.tar.gz")), &unpacked)?;
+    let franka = unpacked.join(name).join("franka");
+    let mut lines = vec![timed("the archive", || outside.simulates(&franka))?];
+
+    lines.push(match is_installed("dpkg-deb") {
+        true => timed("the package for Debian", || {
+            let package = debian::file_name(release, machine.for_debian()?);
+            let mut unpack = Command::new("dpkg-deb");
+            unpack.arg("-x").arg(artefacts.join(package));
+            workspace.run(unpack.arg(outside.at("debian")))?;
+            outside.simulates(&outside.at("debian/usr/bin/franka"))
+        })?,
+        false => "the package for Debian: NOT TRIED: dpkg-deb is not installed".to_owned(),
+    });
+
+    lines.push(timed("the crates", || {
+        for package in &packages {
+            unpack(package, &outside.at("crates"))?;
+        }
+        outside.serves(workspace, &franka, &packages, &release.version)
+    })?);
+
+    lines.push(match wheel {
+        Ok(wheel) => timed("the wheel", || outside.scripts(workspace, &franka, &wheel))?,
+        Err(why) => format!("the wheel: NOT TRIED: {why}"),
+    });
+    fs::remove_dir_all(&outside.directory)?;
+    Ok(lines)
+}
+
+/// The directory outside the repository.
+struct Outside {
+    directory: PathBuf,
+}
+
+impl Outside {
+    fn at(&self, name: &str) -> PathBuf {
+        self.directory.join(name)
+    }
+
+    /// A program in the directory, with no variables and no other program to be found: there is no
+    /// compiler.
+    fn alone(&self, program: &Path) -> Command {
+        let mut command = Command::new(program);
+        command.current_dir(&self.directory);
+        command.env_clear().env("PATH", self.at("nothing"));
+        command
+    }
+
+    /// Cargo or Python, with the variables of this process but those that lead into the repository.
+    fn beside(&self, program: Command) -> Command {
+        let mut command = program;
+        command.current_dir(self.at("service"));
+        command.env_remove("CARGO_TARGET_DIR");
+        command
+    }
+
+    /// A simulator in virtual time, and where it listens.
+    fn simulator(&self, franka: &Path) -> anyhow::Result<(Running, String)> {
+        let mut sim = self.alone(franka);
+        sim.args(["sim", "--port", "0", "--virtual-time=60"]);
+        let mut sim = Running::start(sim.args(["--dash", "127.0.0.1:0"]))?;
+        let address = sim.address("listening on ")?;
+        Ok((sim, address))
+    }
+
+    /// `franka sim` with its dashboard, and a motion.
+    fn simulates(&self, franka: &Path) -> anyhow::Result<String> {
+        let (mut sim, address) = self.simulator(franka)?;
+        let page = sim.address("dashboard on http://")?;
+        let page = page.trim_end_matches('/');
+        let html = ask(page, "GET / HTTP/1.0", "")?;
+        ensure!(html.contains("dash.js"), "got the page {html:?}");
+        let script = ask(page, "GET /dash.js HTTP/1.0", "")?.len();
+        let socket = ask(page, SOCKET, "")?;
+        let expected = "HTTP/1.1 101 ";
+        ensure!(
+            socket.starts_with(expected),
+            "got {socket:?}, expected {expected:?}"
+        );
+        moves(self.alone(franka), &address)?;
+        Ok(format!(
+            "franka sim with a dashboard ({script} bytes of script, a socket), franka move"
+        ))
+    }
+
+    /// A service on the packaged crates, which moves a robot of the packaged simulator when it is
+    /// asked to, and tests of a program on the library of the simulator.
+    fn serves(
+        &self,
+        workspace: &Workspace,
+        franka: &Path,
+        packages: &[PathBuf],
+        version: &str,
+    ) -> anyhow::Result<String> {
+        let project = self.at("service");
+        for (name, content) in [("src/main.rs", SERVICE), ("tests/template.rs", TESTS)] {
+            let file = project.join(name);
+            fs::create_dir_all(file.parent().context("in a directory")?)?;
+            fs::write(file, content)?;
+        }
+        let names = packages.iter().filter_map(|it| it.file_stem()?.to_str());
+        fs::write(project.join("Cargo.toml"), manifest(names, version))?;
+        // The versions of others that this release was tested with.
+        let dash = format!("crates/franka-dash-{version}/Cargo.lock");
+        fs::copy(self.at(&dash), project.join("Cargo.lock"))?;
+        let mut build = self.beside(workspace.cargo());
+        workspace.run(build.args(["build", "--quiet"]))?;
+        let built = Instant::now();
+        let (_sim, address) = self.simulator(franka)?;
+        let mut service = self.alone(&project.join("target/debug/service"));
+        let mut service = Running::start(service.arg(address))?;
+        let listening = service.address("listening on ")?;
+        let job = "POST /jobs HTTP/1.0\r\ncontent-type: application/json";
+        let taken = ask(&listening, job, "[0, 0, 0.05]")?;
+        ensure!(taken.starts_with("HTTP/1.0 202 "), "got {taken:?}");
+        let outcomes = loop {
+            let outcomes = ask(&listening, "GET /jobs HTTP/1.0", "")?;
+            if !outcomes.ends_with("[]") {
+                break outcomes;
+            }
+            ensure!(built.elapsed() < SOON, "the job never ends");
+            sleep(Duration::from_millis(50));
+        };
+        let expected = "[\"arrived\"]";
+        ensure!(
+            outcomes.ends_with(expected),
+            "got {outcomes:?}, expected {expected}"
+        );
+        let mut test = self.beside(workspace.cargo());
+        workspace.run(test.args(["test", "--quiet"]))?;
+        Ok("a service that moves the robot, and its tests".to_owned())
+    }
+
+    /// A program on the wheel.
+    fn scripts(
+        &self,
+        workspace: &Workspace,
+        franka: &Path,
+        wheel: &Path,
+    ) -> anyhow::Result<String> {
+        let python = Python::find(OLDEST..=NEWEST).map_err(anyhow::Error::msg)?;
+        let interpreter = python.make_environment(workspace, &self.at("python"))?;
+        let mut install = self.beside(Command::new(&interpreter));
+        install.args(["-m", "pip", "install", "--quiet"]);
+        install.args(["--disable-pip-version-check", "--only-binary=:all:"]);
+        workspace.run(install.arg(wheel))?;
+        let script = self.at("quickstart.py");
+        fs::write(&script, SCRIPT)?;
+        let (_sim, address) = self.simulator(franka)?;
+        for robot in [Some(&address), None] {
+            let mut program = self.alone(&interpreter);
+            workspace.run(program.arg(&script).args(robot))?;
+        }
+        Ok("a program, with that simulator and with its own".to_owned())
+    }
+}
+
+/// A line about something that was tried, and how long it took.
+fn timed(what: &str, attempt: impl FnOnce() -> anyhow::Result<String>) -> anyhow::Result<String> {
+    let begin = Instant::now();
+    let about = attempt().with_context(|| what.to_owned())?;
+    let seconds = begin.elapsed().as_secs_f64();
+    Ok(format!("{what}: {about}, in {seconds:.1} s"))
+}
+
+fn unpack(archive: &Path, directory: &Path) -> anyhow::Result<()> {
+    let file = File::open(archive).with_context(|| archive.display().to_string())?;
+    Ok(tar::Archive::new(GzDecoder::new(file)).unpack(directory)?)
+}
+
+/// The manifest of a program that finds these packages where others find a registry's.
+fn manifest<'a>(packages: impl Iterator<Item = &'a str>, version: &str) -> String {
+    let mut text = format!(
+        "[package]\nname = \"service\"\nedition = \"2024\"\n\n\
+         [dependencies]\nanyhow = \"1\"\naxum = \"0.8\"\nfranka-async = \"{version}\"\n\
+         tokio = {{ version = \"1\", features = [\"full\"] }}\n\n\
+         [dev-dependencies]\nfranka-sim = \"{version}\"\n\n[patch.crates-io]\n"
+    );
+    for package in packages {
+        let name = package.trim_end_matches(version).trim_end_matches('-');
+        text += &format!("{name} = {{ path = \"../crates/{package}\" }}\n");
+    }
+    text
+}
+
+/// What a server on this computer answers: head and body, or the first line of the head if the
+/// connection stays open.
+fn ask(address: &str, head: &str, body: &str) -> anyhow::Result<String> {
+    let mut stream = TcpStream::connect(address)?;
+    stream.set_read_timeout(Some(SOON))?;
+    let length = body.len();
+    write!(
+        stream,
+        "{head}\r\nhost: {address}\r\ncontent-length: {length}\r\n\r\n{body}"
+    )?;
+    let mut stream = BufReader::new(stream);
+    let mut answer = String::new();
+    match head.contains("HTTP/1.0") {
+        true => stream.read_to_string(&mut answer)?,
+        false => stream.read_line(&mut answer)?,
+    };
+    Ok(answer)
+}
+
+/// Begins a WebSocket, RFC 6455; the key is that of its example.
+const SOCKET: &str = "GET /ws HTTP/1.1\r\nconnection: upgrade\r\nupgrade: websocket\r\n\
+    sec-websocket-version: 13\r\nsec-websocket-key: dGhlIHNhbXBsZSBub25jZQ==\r\n\
+    sec-websocket-protocol: franka-dash";
+
+/// What has not been answered within this time never will.
+const SOON: Duration = Duration::from_secs(60);
+
+/// Programs that the book shows, and asks people to copy.
+const SERVICE: &str = include_str!("../../../../examples/24_job_queue.rs");
+const TESTS: &str = include_str!("../../../../examples/tests/template.rs");
+const SCRIPT: &str = include_str!("../../../../franka-py/examples/quickstart.py");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn packages_stand_in_for_those_of_the_registry() {
+        let text = manifest(["franka-rt-0.1.0"].into_iter(), "0.1.0");
+        let manifest: toml_edit::DocumentMut = text.parse().unwrap();
+        let path = manifest["patch"]["crates-io"]["franka-rt"]["path"].as_str();
+        assert_eq!(path, Some("../crates/franka-rt-0.1.0"));
+        let version = manifest["dependencies"]["franka-async"].as_str();
+        assert_eq!(version, Some("0.1.0"));
+    }
+}

@@ -1,0 +1,344 @@
+//! The tasks of this workspace but its tests: `cargo xtask check`, `cargo xtask vectors [DIR]`,
+//! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask arms`, `cargo xtask wheels`,
+//! `cargo xtask assets`, `cargo xtask dist`, `cargo xtask book`, `cargo xtask mujoco`,
+//! `cargo xtask release-check`, `cargo xtask version X.Y.Z`.
+//!
+//! | module | task |
+//! |---|---|
+//! | [`book`] | the book, checked or served |
+//! | [`checks`] | the steps of `cargo xtask check` and `cargo xtask nightly` |
+//! | [`circles`] | the step that finds imports in a circle between modules |
+//! | [`commands`] | the commands that the book names |
+//! | [`cross`] | building for other machines, and running that |
+//! | [`dashboard`] | the files of the dashboard's page, and the page in a browser |
+//! | [`dist`] | the program `franka` for other machines, packed |
+//! | [`fuzz`] | the fuzz targets |
+//! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
+//! | [`members`] | what the types of sources have |
+//! | [`metadata`] | the packages of the workspace |
+//! | [`mujoco`] | the native library of the simulator's MuJoCo plant |
+//! | [`names`] | the step that counts the names of the driver's root |
+//! | [`others`] | the packages whose tests `cargo xtask test` leaves out |
+//! | [`ours`] | our public names in Rust |
+//! | [`package`] | the step that builds and tests the Python package, and its wheels |
+//! | [`page`] | tables and anchors of pages of the book |
+//! | [`peer_pages`] | the chapters for those who come from other packages |
+//! | [`reference_pages`] | what the reference chapters have to name |
+//! | [`release`] | what a release takes: crates, version, change log |
+//! | [`schemas`] | the code of recordings, from definitions |
+//! | [`texts`] | the steps that check spelling, workflows and dependencies |
+//! | [`tidy`] | the width of comments |
+
+mod book;
+mod checks;
+mod circles;
+mod commands;
+mod cross;
+mod dashboard;
+mod dist;
+mod fuzz;
+mod live;
+mod members;
+mod metadata;
+mod mujoco;
+mod names;
+mod others;
+mod ours;
+mod package;
+mod page;
+mod peer_pages;
+mod playground;
+mod recordings;
+mod reference_pages;
+mod release;
+mod schemas;
+mod texts;
+mod tidy;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context as _;
+use clap::{Parser, Subcommand};
+
+use crate::checks::{Check, Nightly};
+use crate::metadata::measuring_program;
+use xtask::workspace::Workspace;
+
+/// One-command tasks of this workspace.
+#[derive(Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Debug, Subcommand)]
+enum Task {
+    /// Run the checks that a change has to pass beside the tests, and stop at the first failure.
+    Check {
+        /// Run these steps only (may be repeated or separated by commas).
+        #[arg(long, value_enum, value_delimiter = ',')]
+        only: Vec<Check>,
+    },
+    /// Run the slow checks, and stop at the first failure.
+    Nightly {
+        /// Run these steps only (may be repeated or separated by commas).
+        #[arg(long, value_enum, value_delimiter = ',')]
+        only: Vec<Nightly>,
+    },
+    /// Write the Rust code of the messages of recordings anew.
+    Schemas,
+    /// Check the crates against golden vectors and print a line per file.
+    Vectors {
+        /// Directory of the vectors; without it the project's own.
+        dir: Option<PathBuf>,
+    },
+    /// Run the fuzz targets and print a line per target.
+    Fuzz {
+        /// Executions of each target.
+        #[arg(long, default_value_t = 10_000_000)]
+        runs: u64,
+    },
+    /// Measure the work of one control cycle and write `target/bench.json`.
+    ///
+    /// With --live: measure clients against the simulator over real sockets, and write
+    /// `target/bench_live.json`. With --sim: measure what one simulated arm costs, and write
+    /// `target/bench_sim.json`. With --python: measure the package for Python beside others, and
+    /// write `target/bench_python.json`.
+    Bench {
+        /// Rounds; each runs every benchmark once.
+        #[arg(long, default_value_t = 15)]
+        rounds: usize,
+        /// Count the instructions of the model's calls instead; needs valgrind.
+        #[arg(long, conflicts_with = "live")]
+        instructions: bool,
+        /// Measure over real sockets instead: nothing else should run meanwhile.
+        #[arg(long, group = "sockets")]
+        live: bool,
+        /// Measure what a busy program costs the control thread, and a task in the thread's place.
+        #[arg(long, conflicts_with_all = ["live", "instructions"])]
+        starvation: bool,
+        /// Measure time to start, processor time, memory and punctuality of the simulator: nothing
+        /// else should run meanwhile.
+        #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
+        sim: bool,
+        /// Measure the package for Python and others against the simulator: nothing else should run
+        /// meanwhile.
+        #[arg(long, conflicts_with_all = ["sockets", "instructions", "starvation"])]
+        python: bool,
+        /// Measure what a recorder costs the control thread, in turns with and without one: nothing
+        /// else should run meanwhile.
+        #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
+        recorder: bool,
+        /// Measure what a dashboard with ten viewers, and one that never reads, costs the control
+        /// thread, in turns with and without viewers: nothing else should run meanwhile.
+        #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
+        dash: bool,
+        /// How long to measure each case of --live, --sim, --recorder and --dash.
+        #[arg(long, default_value_t = 30, requires = "sockets")]
+        seconds: u32,
+    },
+    /// Measure target control on simulated arms like real ones, and write `target/arms.json`.
+    ///
+    /// Arguments: --family ideal|nominal|realistic|bad|FILE.json, --arms N, --seed S, --robot
+    /// fr3|fer; --help has the others.
+    #[command(disable_help_flag = true)]
+    Arms {
+        /// Passed on.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
+    /// Build the wheels of the Python package for every platform that this machine can build for,
+    /// with the C library's oldest version that will do, and import those that can run here.
+    Wheels {
+        /// Build for these targets only (may be repeated or separated by commas).
+        #[arg(long, value_delimiter = ',')]
+        only: Vec<String>,
+    },
+    /// Make the files of the dashboard's page anew, from npm packages that are pinned by hash.
+    Assets {
+        /// Only say whether the files are those that would be made.
+        #[arg(long)]
+        check: bool,
+    },
+    /// Build the program `franka` for machines that have nothing else: static for x86-64 and 64-bit
+    /// Arm, and for C libraries from 2.17 on. Measures what was built, moves a simulated robot with
+    /// it, under qemu if need be, and packs it in `target/artefacts`: archives, packages for
+    /// Debian, a container image, bills of materials, checksums.
+    Dist {
+        /// Build for these targets only (may be repeated or separated by commas).
+        #[arg(long, value_delimiter = ',')]
+        only: Vec<String>,
+        /// Build everything twice, and compare.
+        #[arg(long)]
+        twice: bool,
+        /// Use the program for this machine, the packages of the crates and the wheel, outside the
+        /// repository.
+        #[arg(long = "try")]
+        trial: bool,
+    },
+    /// Build the book with the references of Rust and Python beside it and its playground, and
+    /// serve it.
+    Book {
+        /// Port on this computer.
+        #[arg(long, default_value_t = 3000)]
+        port: u16,
+        /// Build it below `target/book` and end.
+        #[arg(long, conflicts_with = "port")]
+        build_only: bool,
+    },
+    /// Draw the pictures of the book and the README anew, from this code and simulated motions; the
+    /// README's is a film of the dashboard, which takes a browser.
+    Pictures,
+    /// Fetch the native library that the simulator's feature `mujoco` links to.
+    Mujoco,
+    /// Check what a release takes: what the crates say of themselves, their packages, one version
+    /// everywhere, the change log. Nothing is published.
+    ReleaseCheck {
+        /// Build every crate from its package, beside the packages of the others.
+        #[arg(long)]
+        verify: bool,
+        /// Say what is still missing to publish this very version.
+        #[arg(long = "final")]
+        last: bool,
+    },
+    /// Print what the change log tells of the version of the workspace.
+    ReleaseNotes,
+    /// Set the version of all crates, of the citation and of what is unreleased in the change log.
+    Version {
+        /// X.Y.Z; without it, the version is printed.
+        version: Option<String>,
+        /// The day of the release, YYYY-MM-DD; without it, today.
+        #[arg(long, requires = "version")]
+        date: Option<String>,
+    },
+}
+
+/// The tasks, each with the names of its options; none of a task that passes its arguments on.
+/// `test` is a task of the package `xtask` itself.
+fn tasks() -> Vec<(String, Vec<String>)> {
+    let options = |task: &clap::Command| {
+        let passes_on = task.get_arguments().any(clap::Arg::is_trailing_var_arg_set);
+        let options = task.get_arguments().filter_map(clap::Arg::get_long);
+        match passes_on {
+            true => Vec::new(),
+            false => options.map(str::to_owned).collect(),
+        }
+    };
+    let arguments = <Arguments as clap::CommandFactory>::command();
+    let tasks = arguments.get_subcommands();
+    let tasks = tasks.map(|task| (task.get_name().to_owned(), options(task)));
+    let test = ("test".to_owned(), vec!["only".to_owned()]);
+    tasks.chain([test]).collect()
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match run(arguments.task) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("\nerror: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(task: Task) -> anyhow::Result<()> {
+    let workspace = Workspace::find()?;
+    match task {
+        Task::Check { only } => checks::run(&workspace, &only),
+        Task::Nightly { only } => checks::run(&workspace, &only),
+        Task::Schemas => schemas::write(&workspace),
+        Task::Vectors { dir } => {
+            // The program runs in the root of the workspace, the argument was written somewhere
+            // else.
+            let dir = dir.map(std::path::absolute).transpose()?;
+            workspace.run(measuring_program(&workspace, &[], "vectors").args(dir))
+        }
+        Task::Fuzz { runs } => fuzz::run(&workspace, runs),
+        Task::Bench {
+            instructions: true, ..
+        } => workspace.run(&mut measuring_program(&workspace, &[], "instructions")),
+        Task::Bench {
+            live: true,
+            seconds,
+            ..
+        } => live::run(&workspace, seconds),
+        Task::Bench {
+            sim: true, seconds, ..
+        } => live::run_simulator(&workspace, seconds),
+        Task::Bench {
+            recorder: true,
+            seconds,
+            ..
+        } => live::run_beside(&workspace, "recorder", seconds),
+        Task::Bench {
+            dash: true,
+            seconds,
+            ..
+        } => live::run_beside(&workspace, "dashboard", seconds),
+        Task::Bench { python: true, .. } => live::run_python(&workspace),
+        Task::Bench {
+            starvation: true, ..
+        } => workspace.run(measuring_program(&workspace, &[], "live").arg("starvation")),
+        Task::Bench { rounds, .. } => {
+            let output = workspace.target().join("bench.json");
+            // Without MuJoCo its row is missing.
+            let features = match mujoco::prepare(&workspace)? {
+                Ok(()) => &["mujoco"][..],
+                Err(why) => {
+                    println!("the MuJoCo plant is not measured: {why}");
+                    &[]
+                }
+            };
+            let mut command = measuring_program(&workspace, features, "bench");
+            command.arg(&output).arg(rounds.to_string());
+            workspace.run(&mut command)
+        }
+        Task::Arms { arguments } => {
+            let mut command = measuring_program(&workspace, &[], "arms");
+            command.args(arguments);
+            command.arg(workspace.target().join("arms.json"));
+            workspace.run(&mut command)
+        }
+        Task::Wheels { only } => package::wheels::run(&workspace, &only),
+        Task::Assets { check: false } => dashboard::assets(&workspace),
+        Task::Assets { check: true } => {
+            let outcome = dashboard::check_assets(&workspace)?;
+            println!("{outcome:?}");
+            Ok(())
+        }
+        Task::Dist { only, twice, trial } => {
+            dist::run(&workspace, &only, dist::Depth { twice, trial })
+        }
+        Task::Book { port, build_only } => book::serve(&workspace, (!build_only).then_some(port)),
+        Task::Pictures => {
+            workspace.run(&mut measuring_program(&workspace, &[], "pictures"))?;
+            println!("{:?}", dashboard::film(&workspace)?);
+            Ok(())
+        }
+        Task::Mujoco => mujoco::provide(&workspace),
+        Task::ReleaseCheck { verify, last } => {
+            let outcome = release::check(&workspace, release::Depth { verify, last })?;
+            println!("{outcome:?}");
+            Ok(())
+        }
+        Task::ReleaseNotes => {
+            let version = release::version::of(&workspace)?;
+            let log = release::changelog::read(&workspace)?;
+            let notes = log.notes_of(&version);
+            let notes = notes.with_context(|| format!("CHANGELOG.md: no section [{version}]"))?;
+            println!("{notes}");
+            Ok(())
+        }
+        Task::Version {
+            version: Some(version),
+            date,
+        } => release::version::set(&workspace, &version, date),
+        Task::Version { version: None, .. } => {
+            println!("{}", release::version::of(&workspace)?);
+            Ok(())
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! The Python package: builds its wheel, installs it into a virtual environment of its own, and
+//! runs its tests and the checks of its types and of its [`wheels`].
+
+pub(crate) mod wheels;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::thread;
+
+use xtask::python::{NEWEST, OLDEST, Python, Version};
+use xtask::step::Outcome;
+use xtask::workspace::Workspace;
+
+/// Builds and installs the package and what its tests need; returns the interpreter that has them,
+/// or why there is none.
+pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
+    // The profile of the tests: what computes in a cycle is optimised in it.
+    let [environment, profile] = ["python-package", "dev"];
+    match Python::find(OLDEST..=NEWEST) {
+        Ok(python) => install(workspace, &python, environment, "tests", profile).map(Ok),
+        Err(why) => Ok(Err(why)),
+    }
+}
+
+/// Builds the package optimised and installs it beside the packages that it is measured with;
+/// returns the interpreter that has them, or why there is none.
+pub(crate) fn prepare_bench(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
+    // Some have no wheels for newer versions, but ours does.
+    let python = Python::find(OLDEST..=NEWEST_OF_ALL).or_else(|_| Python::find(OLDEST..=NEWEST));
+    match python {
+        Ok(python) => install(workspace, &python, "python-bench", "bench", "dist").map(Ok),
+        Err(why) => Ok(Err(why)),
+    }
+}
+
+/// Builds the package and installs it in a virtual environment with the requirements in one of its
+/// directories; returns the interpreter.
+fn install(
+    workspace: &Workspace,
+    python: &Python,
+    environment: &str,
+    requirements: &str,
+    profile: &str,
+) -> anyhow::Result<PathBuf> {
+    let requirements = directory(workspace)
+        .join(requirements)
+        .join("requirements.txt");
+    let interpreter = python.environment(workspace, environment, &requirements)?;
+    let wheels = built(workspace, profile);
+    if wheels.exists() {
+        // What an earlier version left is not taken for this one.
+        fs::remove_dir_all(&wheels)?;
+    }
+    let mut build = module(workspace, &interpreter, "maturin");
+    build.args(["build", "--quiet", "--locked", "--profile", profile]);
+    build.args(["--manifest-path", "franka-py/Cargo.toml", "--out"]);
+    build.arg(&wheels).arg("--interpreter").arg(&interpreter);
+    build.env("CARGO_TARGET_DIR", workspace.target());
+    workspace.run(&mut build)?;
+    let mut install = module(workspace, &interpreter, "pip");
+    install.args(["install", "--quiet", "--force-reinstall"]);
+    install.args(["--disable-pip-version-check", "--no-deps", "--no-index"]);
+    install.arg("--find-links").arg(&wheels).arg("franka-async");
+    workspace.run(&mut install)?;
+    Ok(interpreter)
+}
+
+/// Runs the tests beside the checks of the types.
+pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let interpreter = match prepare(workspace)? {
+        Ok(interpreter) => interpreter,
+        Err(why) => return Outcome::without(why),
+    };
+    thread::scope(|scope| {
+        let beside = scope.spawn(|| {
+            types(workspace, &interpreter)?;
+            let wheel = wheels::only_wheel(&built(workspace, "dev"))?;
+            wheels::check(workspace, &wheel)
+        });
+        let mut tests = module(workspace, &interpreter, "pytest");
+        // Most of them mostly wait. Who is done with his share takes over from others.
+        tests.args(["--quiet", "-n", "4", "--dist", "worksteal"]);
+        tests.arg("franka-py/tests");
+        workspace.run(&mut tests)?;
+        beside.join().expect("no panic")
+    })
+}
+
+/// Where the wheel for this machine is built.
+fn built(workspace: &Workspace, profile: &str) -> PathBuf {
+    workspace.target().join("wheels").join(profile)
+}
+
+/// Checks the tests and examples against the stubs, and the stubs against the package.
+fn types(workspace: &Workspace, interpreter: &Path) -> anyhow::Result<()> {
+    let mut check = module(workspace, interpreter, "mypy");
+    check.args(["--strict", "--config-file", "franka-py/pyproject.toml"]);
+    check.args(["franka-py/tests", "franka-py/examples"]);
+    workspace.run(&mut check)?;
+    let mut stubs = module(workspace, interpreter, "mypy.stubtest");
+    stubs.args(["--mypy-config-file", "franka-py/pyproject.toml"]);
+    stubs.args(["--allowlist", "franka-py/tests/stubs.allowed"]);
+    // The other modules have their types in themselves.
+    workspace.run(stubs.args(["franka_async._native", "franka_async.sync"]))
+}
+
+/// A module of the virtual environment as a program.
+pub(crate) fn module(workspace: &Workspace, interpreter: &Path, name: &str) -> Command {
+    let mut command = workspace.program(interpreter);
+    command.args(["-m", name]);
+    command
+}
+
+/// Where the package is.
+pub(crate) fn directory(workspace: &Workspace) -> PathBuf {
+    workspace.root().join("franka-py")
+}
+
+/// The newest Python that all packages have wheels for which the package is measured with.
+const NEWEST_OF_ALL: Version = (3, 12);

@@ -1,0 +1,278 @@
+//! The chapters for those who come from another package: every public name of it has a row, no row
+//! names what is not there, and what a row names of ours exists.
+//!
+//! ```text
+//! tests/peers/names/x.txt ── the names of the package ──┐
+//! docs/src/from-x.md ── tables: its name, ours ─────────┴─ the same ── ours: the face's sources
+//! ```
+//!
+//! A table counts if its header has a column `Rust` or `Python`. Where its first header cell is a
+//! name in code, the names below are members of that. A cell that begins with `same: ` names a type
+//! of ours that has members of the same names. Names in the column `Python` are held against the
+//! package by its own tests (`franka-py/tests/test_names.py`).
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context as _, bail};
+
+use crate::members::Members;
+use crate::names::{Names, join};
+use crate::ours::Ours;
+use crate::page::{Table, tables};
+use xtask::workspace::Workspace;
+
+/// A package and its chapter.
+struct Peer {
+    /// The file of its names, in `tests/peers/names`.
+    list: &'static str,
+    /// Its chapter, in `docs/src`.
+    page: &'static str,
+    /// What stands between a type and its member.
+    separator: &'static str,
+}
+
+const PEERS: [Peer; 6] = [
+    Peer {
+        list: "libfranka.txt",
+        page: "from-libfranka.md",
+        separator: "::",
+    },
+    Peer {
+        list: "pylibfranka.txt",
+        page: "from-pylibfranka.md",
+        separator: ".",
+    },
+    Peer {
+        list: "franky.txt",
+        page: "from-franky.md",
+        separator: ".",
+    },
+    Peer {
+        list: "panda_py.txt",
+        page: "from-panda-py.md",
+        separator: ".",
+    },
+    Peer {
+        list: "franka_rs.txt",
+        page: "from-franka-rs.md",
+        separator: "::",
+    },
+    Peer {
+        list: "franka.txt",
+        page: "from-franka-rs-python.md",
+        separator: ".",
+    },
+];
+
+/// Fails with every row that is missing, and every name that is not there.
+pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
+    let mut found = Vec::new();
+    let mut rows = 0;
+    for peer in &PEERS {
+        let list = workspace.root().join("tests/peers/names").join(peer.list);
+        let list =
+            fs::read_to_string(&list).with_context(|| format!("cannot read {}", list.display()))?;
+        if peer.list == "franka_rs.txt" {
+            check_franka_rs(workspace, &names_of(&list))?;
+        }
+        let page = workspace.root().join("docs/src").join(peer.page);
+        let page =
+            fs::read_to_string(&page).with_context(|| format!("cannot read {}", page.display()))?;
+        let maps: Vec<Table<'_>> = tables(&page).into_iter().filter(is_map).collect();
+        let faults = differences(&names_of(&list), &maps, peer.separator);
+        let strange = maps.iter().flat_map(|table| strange(table, ours));
+        let faults = faults.into_iter().chain(strange);
+        found.extend(faults.map(|fault| format!("{}: {fault}", peer.page)));
+        rows += maps.iter().map(|table| table.rows.len()).sum::<usize>();
+    }
+    if !found.is_empty() {
+        bail!(
+            "chapters for those who come from elsewhere:\n{}",
+            found.join("\n")
+        );
+    }
+    println!(
+        "{rows} rows for the names of {} other packages",
+        PEERS.len()
+    );
+    Ok(())
+}
+
+/// Fails unless the list of franka-rs has the public names of its sources. Nothing is checked where
+/// they have not been fetched.
+fn check_franka_rs(workspace: &Workspace, list: &BTreeSet<String>) -> anyhow::Result<()> {
+    let manifest = "tests/peers/franka_rs/Cargo.toml";
+    let mut metadata = workspace.cargo();
+    metadata.args(["metadata", "--format-version=1", "--offline", "--locked"]);
+    // Those for other systems need not be here.
+    metadata.args(["--filter-platform", "x86_64-unknown-linux-gnu"]);
+    metadata.args(["--manifest-path", manifest]);
+    let output = metadata.output().context("cannot run cargo")?;
+    if !output.status.success() {
+        println!("franka-rs is not fetched: its names are not compared with its sources");
+        return Ok(());
+    }
+    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout)?;
+    let packages = metadata["packages"].as_array().context("no packages")?;
+    let package = packages
+        .iter()
+        .find(|package| package["name"] == "franka-rs");
+    let manifest = package.and_then(|package| package["manifest_path"].as_str());
+    let source = Path::new(manifest.context("no franka-rs")?).with_file_name("src");
+    let names = listing(&source)?;
+    let faults: Vec<String> = (names
+        .difference(list)
+        .map(|name| format!("it lacks {name}")))
+    .chain(
+        list.difference(&names)
+            .map(|name| format!("it has {name}, which is gone")),
+    )
+    .collect();
+    if !faults.is_empty() {
+        bail!("the list of franka-rs:\n{}", faults.join("\n"));
+    }
+    Ok(())
+}
+
+/// The public names of a crate: items by their shortest path, each type with its members.
+fn listing(source: &Path) -> anyhow::Result<BTreeSet<String>> {
+    let names = Names::with_opaque(&source.join("lib.rs"), &FRANKA_RS_OPAQUE)?;
+    let mut members = Members::default();
+    members.read(source)?;
+    let mut places: BTreeMap<String, String> = BTreeMap::new();
+    for (module, items) in &names.modules {
+        for name in items.keys() {
+            let place = join(module, name);
+            if names.modules.contains_key(&place) {
+                continue;
+            }
+            let shortest = places.entry(names.declared_at(module, name)).or_default();
+            if shortest.is_empty() || place.len() < shortest.len() {
+                *shortest = place;
+            }
+        }
+    }
+    let mut found = BTreeSet::new();
+    for (declared, place) in places {
+        let of = declared.rsplit("::").next().unwrap_or(&declared);
+        let inner = members.of(of).into_iter().flatten();
+        found.extend(inner.map(|member| format!("{place}::{member}")));
+        found.insert(place);
+    }
+    Ok(found)
+}
+
+/// Modules of franka-rs that are its own inside: bytes, sockets, the connection behind `Robot`.
+const FRANKA_RS_OPAQUE: [&str; 4] = ["network", "wire", "robot::robot_impl", "robot::commands"];
+
+/// Whether a table maps names to ours.
+fn is_map(table: &Table<'_>) -> bool {
+    ["Rust", "Python"]
+        .iter()
+        .any(|name| table.column(name).is_some())
+}
+
+/// The names of a list: a line each, without comments.
+fn names_of(list: &str) -> BTreeSet<String> {
+    let lines = list.lines().map(str::trim);
+    let names = lines.filter(|line| !line.is_empty() && !line.starts_with('#'));
+    names.map(str::to_owned).collect()
+}
+
+/// A line for each name without a row, for each row without a name, and for each second row.
+fn differences(names: &BTreeSet<String>, maps: &[Table<'_>], separator: &str) -> Vec<String> {
+    let mut rows = BTreeSet::new();
+    let mut faults = Vec::new();
+    for table in maps {
+        let of = table.spans(0).first().map(|of| format!("{of}{separator}"));
+        for row in &table.rows {
+            let spans = row.spans(0);
+            if spans.is_empty() {
+                faults.push(format!("a row without a name: {}", row.text()));
+            }
+            for span in spans {
+                let name = format!("{}{span}", of.as_deref().unwrap_or_default());
+                if !names.contains(&name) {
+                    faults.push(format!("{name} is not in the list of its names"));
+                }
+                if !rows.insert(name.clone()) {
+                    faults.push(format!("{name} has two rows"));
+                }
+            }
+        }
+    }
+    let missing = names.difference(&rows);
+    faults.extend(missing.map(|name| format!("{name} has no row")));
+    faults
+}
+
+/// A line for each name in the column `Rust` that is not ours. Behind `same: ` there is a type that
+/// has members of the names of the row.
+fn strange(table: &Table<'_>, ours: &Ours) -> Vec<String> {
+    let Some(column) = table.column("Rust") else {
+        return Vec::new();
+    };
+    let mut strange = Vec::new();
+    for row in &table.rows {
+        let spans = row.spans(column);
+        strange.extend(spans.iter().map(|&span| span.to_owned()));
+        if row.cell(column).starts_with(SAME) {
+            for of in spans {
+                strange.extend(row.spans(0).iter().map(|name| format!("{of}::{name}")));
+            }
+        }
+    }
+    strange.retain(|name| !name.starts_with("std::") && !ours.has(name));
+    strange
+        .iter()
+        .map(|name| format!("{name} is not a name of ours"))
+        .collect()
+}
+
+/// What a cell begins with whose type has members of the names of the row.
+const SAME: &str = "same: ";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAGE: &str = "\
+text
+
+| name | Rust | Python |
+|---|---|---|
+| `A`, `b` | `A` | |
+
+| `A` | Rust | what differs |
+|---|---|---|
+| `c` | `A::c` | |
+
+| other | table |
+|---|---|
+| `d` | |
+";
+
+    fn faults(names: &str, page: &str) -> Vec<String> {
+        let maps: Vec<_> = tables(page).into_iter().filter(is_map).collect();
+        differences(&names_of(names), &maps, "::")
+    }
+
+    #[test]
+    fn a_name_has_one_row_and_a_row_a_name() {
+        assert_eq!(faults("# x\nA\nb\nA::c\n", PAGE), Vec::<String>::new());
+        assert_eq!(faults("A\nb\nA::c\nA::e", PAGE), ["A::e has no row"]);
+        assert_eq!(
+            faults("A\nb", PAGE),
+            ["A::c is not in the list of its names"]
+        );
+        let twice = PAGE.replace("`A`, `b`", "`A`, `b`, `A`");
+        assert_eq!(faults("A\nb\nA::c", &twice), ["A has two rows"]);
+        let nameless = PAGE.replace("| `c` |", "| c |");
+        assert_eq!(
+            faults("A\nb", &nameless),
+            ["a row without a name: c | `A::c` |"]
+        );
+    }
+}

@@ -1,0 +1,90 @@
+//! The playground of the book: driver and simulator as WebAssembly, and the page around them.
+//!
+//! ```text
+//! playground/src  ── cargo ────> franka_playground.wasm ┐
+//! playground/page ── esbuild ──> playground.js, .css    ├─> target/book/playground
+//! franka-dash/page/meshes ──────────────────────────────┘
+//! ```
+
+use std::fs;
+use std::path::Path;
+
+use crate::cross;
+use crate::dashboard;
+use crate::metadata::copy_directory;
+use xtask::step::Outcome;
+use xtask::workspace::Workspace;
+
+/// Adds the playground to a built book, or a page in its place that says what it takes.
+pub(crate) fn add(workspace: &Workspace, book: &Path) -> anyhow::Result<()> {
+    match lacks()? {
+        None => build(workspace, &book.join("playground")),
+        Some(why) => {
+            println!("without the playground: {why}");
+            leave_out(book, &why)
+        }
+    }
+}
+
+/// Has the built book say why the playground is not in it.
+pub(crate) fn leave_out(book: &Path, why: &str) -> anyhow::Result<()> {
+    let folder = book.join("playground");
+    fs::create_dir_all(&folder)?;
+    Ok(fs::write(
+        folder.join("index.html"),
+        format!(
+            "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\
+             <title>Playground</title>\n<style>:root {{ color-scheme: light dark; }} \
+             body {{ font: 14px system-ui, sans-serif; }}</style>\n\
+             <p>This copy of the book was built without the playground: {why}.</p>\n"
+        ),
+    )?)
+}
+
+/// The step `playground`: built, and used in a real browser.
+pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    if let Some(why) = lacks()? {
+        return Ok(Outcome::Skipped(why));
+    }
+    let folder = workspace.target().join("playground");
+    build(workspace, &folder)?;
+    dashboard::browse(
+        workspace,
+        &["the_playground"],
+        &[("FRANKA_PLAYGROUND", &folder)],
+    )
+}
+
+/// What is missing here to build it, if anything.
+fn lacks() -> anyhow::Result<Option<String>> {
+    if !dashboard::has_npm() {
+        return Ok(Some("there was no npm".to_owned()));
+    }
+    let why = cross::lacks(TARGET, &cross::sysroot()?);
+    Ok(why.map(|why| format!("of the target {TARGET}, {why}")))
+}
+
+fn build(workspace: &Workspace, folder: &Path) -> anyhow::Result<()> {
+    let mut cargo = workspace.cargo();
+    cargo.args(["build", "--profile=dist", "--package=franka-playground"]);
+    workspace.run(cargo.args(["--target", TARGET]))?;
+    let sources = workspace.root().join("playground").join("page");
+    let dashboard = dashboard::page(workspace);
+    fs::create_dir_all(folder)?;
+    let entry = sources.join("playground.js");
+    // Not a module: those are not loaded from a file, and the page could not say so.
+    dashboard::bundle(workspace, &entry, &folder.join("playground.js"), "iife")?;
+    copy_directory(&dashboard.join("meshes"), &folder.join("meshes"))?;
+    let wasm = workspace.target().join(TARGET).join("dist");
+    for (from, name) in [
+        (&wasm, "franka_playground.wasm"),
+        (&sources, "index.html"),
+        (&dashboard, "icon.svg"),
+    ] {
+        fs::copy(from.join(name), folder.join(name))?;
+    }
+    let licences = dashboard::licences(workspace)?;
+    Ok(fs::write(folder.join("licenses.txt"), licences)?)
+}
+
+const TARGET: &str = "wasm32-unknown-unknown";

@@ -1,0 +1,23 @@
+//! Recordings and datasets, read by the standard readers in Python.
+
+use crate::others;
+use xtask::python::{NEWEST, OLDEST, Python};
+use xtask::step::Outcome;
+use xtask::workspace::Workspace;
+
+/// Installs the readers in a virtual environment of their own, and has them decode recordings of
+/// both robots and a dataset. LeRobot's own loader, which is large, reads the dataset too if
+/// `FRANKA_LEROBOT_PYTHON` names an interpreter that has it.
+pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
+    let python = match Python::find(OLDEST..=NEWEST) {
+        Ok(python) => python,
+        Err(why) => return Outcome::without(why),
+    };
+    let requirements = workspace.root().join("franka-record/tests/python");
+    let requirements = requirements.join("requirements.txt");
+    let interpreter = python.environment(workspace, "python-recordings", &requirements)?;
+    let mut test = others::other_test(workspace, "recording");
+    test.args(["--ignored", "--nocapture", "python_"]);
+    workspace.run(test.env("FRANKA_RECORD_PYTHON", interpreter))?;
+    Ok(Outcome::Passed)
+}

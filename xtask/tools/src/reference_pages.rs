@@ -1,0 +1,210 @@
+//! What the reference chapters have to name: every field of a state, every error of the robot,
+//! every variant of the errors of `franka-async`, and a place for each link of an error to lead to;
+//! and the figures that a chapter copies, which have to be those of the chapter where they were
+//! measured.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context as _, bail};
+
+use crate::members::Members;
+use crate::ours::Ours;
+use crate::page::{Table, anchors, tables};
+use xtask::workspace::Workspace;
+
+/// Fails with every name that a chapter lacks, or has and is not there.
+pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
+    let page = |name: &str| {
+        let path = workspace.root().join("docs/src").join(name);
+        fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
+    };
+    let errors = page("errors.md")?;
+    let mut state = Members::default();
+    state.read(&workspace.root().join("franka-proto/src/robot/state"))?;
+    let mut found = states(&page("states.md")?, &state);
+    found.extend(variants(&errors, ours));
+    let sources = ["franka-proto/src", "franka-rt/src", "franka-async/src"]
+        .map(|path| workspace.root().join(path));
+    let entries = entries(&sources)?;
+    found.extend(robot_errors(&errors, workspace)?);
+    let anchors = anchors(&errors);
+    let lost = entries.iter().filter(|entry| !anchors.contains(*entry));
+    found.extend(lost.map(|entry| format!("errors.md: no place {entry}")));
+    found.extend(keys(
+        &page("benchmarks.md")?,
+        &workspace.root().join("bench/src"),
+    )?);
+    let measured = [page("benchmarks.md")?, page("sticking.md")?];
+    found.extend(copies(&page("compared.md")?, &measured));
+    if !found.is_empty() {
+        bail!("reference chapters:\n{}", found.join("\n"));
+    }
+    println!("{} places for errors to lead to", entries.len());
+    Ok(())
+}
+
+/// The fields of the robot's state, and of what is computed from it.
+fn states(page: &str, state: &Members) -> Vec<String> {
+    let tables = tables(page);
+    let of_robot = tables.iter().filter(|table| table.first() == "field");
+    let named: BTreeSet<&str> = of_robot
+        .flat_map(|table| table.rows.iter().flat_map(|row| row.spans(0)))
+        .collect();
+    let fields = state.fields("RobotState").chain(state.fields("TotalLoad"));
+    let fields: BTreeSet<&str> = fields.collect();
+    differences("states.md", &named, &fields)
+}
+
+/// The variants of each error that has a table, and a table for each error of the module `error`.
+fn variants(page: &str, ours: &Ours) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut told = BTreeSet::new();
+    for table in tables(page) {
+        let header = table.spans(0);
+        let [name] = header[..] else { continue };
+        let named: BTreeSet<&str> = table.rows.iter().flat_map(|row| row.spans(0)).collect();
+        let variants = ours.variants(name).into_iter().collect();
+        found.extend(differences(
+            &format!("errors.md: {name}"),
+            &named,
+            &variants,
+        ));
+        told.insert(name.to_owned());
+    }
+    let wanted = ours
+        .errors()
+        .into_iter()
+        .filter(|name| !told.contains(name));
+    found.extend(wanted.map(|name| format!("errors.md: no table of {name}")));
+    found
+}
+
+/// The errors that a state can carry, each with a place of its name.
+fn robot_errors(page: &str, workspace: &Workspace) -> anyhow::Result<Vec<String>> {
+    let source = workspace
+        .root()
+        .join("franka-proto/src/robot/robot_error.rs");
+    let source = fs::read_to_string(&source).context("robot_error.rs")?;
+    // `Variant = "name",`, a line each.
+    let names = source.lines().filter_map(|line| {
+        let (_, name) = line.strip_suffix("\",")?.split_once(" = \"")?;
+        Some(name.to_owned())
+    });
+    let names: Vec<String> = names.collect();
+    if names.len() != 41 {
+        bail!("robot_error.rs: {} errors, expected 41", names.len());
+    }
+    let anchors = anchors(page);
+    let lost = names.into_iter().filter(|name| !anchors.contains(name));
+    Ok(lost
+        .map(|name| format!("errors.md: no place {name}"))
+        .collect())
+}
+
+/// Keys of benchmarks that no benchmark writes: no source has them as a text.
+fn keys(page: &str, sources: &Path) -> anyhow::Result<Vec<String>> {
+    let mut texts = String::new();
+    read_all(sources, &mut texts)?;
+    let tables = tables(page);
+    let named = tables.iter().filter(|table| table.first() == "key");
+    let named = named.flat_map(|table| table.rows.iter().flat_map(|row| row.spans(0)));
+    let lost = named.filter(|key| !texts.contains(&format!("\"{key}\"")));
+    let lost = lost.map(|key| format!("benchmarks.md: nothing measures {key}"));
+    Ok(lost.collect())
+}
+
+/// Appends all Rust files below a directory.
+fn read_all(directory: &Path, texts: &mut String) -> anyhow::Result<()> {
+    for entry in fs::read_dir(directory)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            read_all(&path, texts)?;
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            texts.push_str(&fs::read_to_string(&path)?);
+        }
+    }
+    Ok(())
+}
+
+/// Rows with figures that are not those of the chapters where they were measured. The last table
+/// of the page says what each package has.
+fn copies(page: &str, measured: &[String]) -> Vec<String> {
+    let there = measured.iter().flat_map(|page| tables(page));
+    let there: BTreeSet<String> = there.flat_map(|table| table.texts()).collect();
+    let mut copied = tables(page);
+    copied.pop();
+    let lost = copied
+        .iter()
+        .flat_map(Table::texts)
+        .filter(|row| !there.contains(row));
+    lost.map(|row| format!("compared.md: measured nowhere: {row}"))
+        .collect()
+}
+
+/// The names that methods `entry` return: all texts in functions of that name.
+fn entries(directories: &[impl AsRef<Path>]) -> anyhow::Result<BTreeSet<String>> {
+    let mut texts = String::new();
+    for directory in directories {
+        read_all(directory.as_ref(), &mut texts)?;
+    }
+    Ok(texts_of_entries(&texts).into_iter().collect())
+}
+
+/// The texts in the bodies of functions called `entry`, which rustfmt has laid out.
+fn texts_of_entries(source: &str) -> Vec<String> {
+    let mut texts = Vec::new();
+    let mut end = None;
+    for line in source.lines() {
+        if line.contains("fn entry(") {
+            let indent = line.len() - line.trim_start().len();
+            end = Some(format!("{}}}", " ".repeat(indent)));
+        } else if end.as_deref() == Some(line) {
+            end = None;
+        } else if end.is_some() && !line.trim_start().starts_with('#') {
+            texts.extend(line.split('"').skip(1).step_by(2).map(str::to_owned));
+        }
+    }
+    texts
+}
+
+/// A line for each name that is in one set only.
+fn differences(place: &str, named: &BTreeSet<&str>, there: &BTreeSet<&str>) -> Vec<String> {
+    let lacks = there
+        .difference(named)
+        .map(|name| format!("{place} lacks {name}"));
+    let strange = named
+        .difference(there)
+        .map(|name| format!("{place} has {name}, which is not there"));
+    lacks.chain(strange).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_are_the_texts_of_their_functions() {
+        let source = "impl A {\n    fn text() { \"no\" }\n    pub fn entry(&self) -> &'static str {\n        \
+                      match self {\n            A => \"a-b\",\n            B => \"c\",\n        }\n    }\n    \
+                      fn other() { \"no\" }\n}\n";
+        assert_eq!(texts_of_entries(source), ["a-b", "c"]);
+    }
+
+    #[test]
+    fn a_figure_that_differs_from_the_measured_one_is_found() {
+        let page =
+            "| a | b |\n|---|---|\n| x | 1 |\n| y | 2 |\n\n| c | d |\n|---|---|\n| z | 3 |\n";
+        let measured = "| a | b |\n|---|---|\n| x | 1 |\n| y | 3 |\n".to_owned();
+        let found = copies(page, &[measured]);
+        assert_eq!(found, ["compared.md: measured nowhere: y | 2"]);
+    }
+
+    #[test]
+    fn names_of_one_side_are_told() {
+        let set = |names: [&'static str; 2]| BTreeSet::from(names);
+        let found = differences("x", &set(["a", "b"]), &set(["b", "c"]));
+        assert_eq!(found, ["x lacks c", "x has a, which is not there"]);
+    }
+}
