@@ -1,4 +1,4 @@
-//! What the tests of this workspace by one command, and the tasks of `xtask-tools`, are made of.
+//! The steps of `cargo xtask test`, and the parts that the tasks of `xtask-tools` share with them.
 //!
 //! | module | what it has |
 //! |---|---|

@@ -18,12 +18,12 @@ use crate::selection::{PACKAGES, packages};
 use crate::step::Outcome;
 use crate::workspace::Workspace;
 
-/// Which clients run.
+/// A choice of clients.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Set {
     /// The vendor's client: set-up, motions, torques, reflexes, the hand.
     Smoke,
-    /// What the other has not: further scripts, franka-rs, a cassette.
+    /// All others: further scripts, franka-rs, a cassette.
     Rest,
 }
 

@@ -1,4 +1,4 @@
-//! Which tests of which packages run, and how.
+//! Selections of tests, and how they run.
 
 use std::process::Stdio;
 
