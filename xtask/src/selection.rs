@@ -63,6 +63,6 @@ pub const PACKAGES: [&str; 8] = [
     "franka-tests",
 ];
 
-/// Of the live tests those of connections, motions, control at 1 kHz and their ends.
+/// The live tests of connections, motions, control at 1 kHz and their ends.
 pub const LIVE: &str = "binary(live) and \
      test(/^(cancelling|connecting|control|dropping|engaging|failing|fer|moving|starving)::/)";

@@ -1,7 +1,7 @@
 //! The steps of `cargo xtask test`: the tests that prove the product, in the order in which they
 //! are likely to fail.
 //!
-//! What takes longer or more dependencies is a step of `cargo xtask check`, or of
+//! Tests that need more time or dependencies are steps of `cargo xtask check`, or of
 //! `cargo xtask nightly`.
 
 use std::str::FromStr;

@@ -99,7 +99,7 @@ fn cargo_in(root: &Path) -> Command {
     let mut command = Command::new(cargo);
     command.current_dir(root);
     if crate::step::is_ci() {
-        // What makes the next build faster makes a build from nothing slower.
+        // Incremental data makes the next build faster and the first one slower.
         command.env("CARGO_INCREMENTAL", "0");
     }
     command
