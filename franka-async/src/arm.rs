@@ -453,6 +453,7 @@ impl Arm {
         Beginning {
             motion: NewMotion::Goal {
                 goal: Box::new(goal),
+                path: None,
                 ticket: None,
                 session: Some(self.session.id()),
             },

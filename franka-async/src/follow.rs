@@ -160,6 +160,7 @@ impl Follow {
         };
         let motion = NewMotion::Goal {
             goal: Box::new(towards(first)?),
+            path: None,
             ticket,
             session: session.as_deref().map(Session::id),
         };

@@ -201,6 +201,7 @@ impl Motion {
         let goal = Goal::new(id, kind, self.on_arrival, model.joint_limits());
         let motion = NewMotion::Goal {
             goal: Box::new(self.options.apply(goal, model)?),
+            path: None,
             ticket: self.ticket.take(),
             session: self.session.as_deref().map(Session::id),
         };

@@ -259,24 +259,21 @@ impl DriverStack {
     pub fn begin_along(
         &mut self,
         waypoints: &[Waypoint],
-        motion: NewMotion,
+        mut motion: NewMotion,
     ) -> Result<GoalId, MotionError> {
-        let NewMotion::Goal { goal, .. } = &motion else {
+        let NewMotion::Goal { goal, path, .. } = &mut motion else {
             panic!("a goal goes along a path");
         };
-        let (id, model) = (goal.id, self.lifecycle.model());
+        let model = self.lifecycle.model();
         let moved = self.record.goal != GoalId::default().0;
         let q = if moved {
             self.record.q_ref
         } else {
             self.state.q
         };
-        let path = Chunk::through(waypoints, &q, goal, model, &self.state)?;
-        let begun = self
-            .lifecycle
-            .begin_along(path, motion, &self.state, self.now);
-        self.carry_out();
-        begun.map(|()| id)
+        let chunk = Chunk::through(waypoints, &q, goal, model, &self.state)?;
+        *path = Some(Box::new(chunk));
+        self.begin(motion)
     }
 
     /// Brakes and returns the id of the stop; `None` if nothing moves.

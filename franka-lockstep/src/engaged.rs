@@ -75,6 +75,7 @@ impl Lockstep {
     pub fn submit_within(&mut self, engaged: GoalId, goal: Goal) -> Result<GoalId, MotionError> {
         self.client.begin(NewMotion::Goal {
             goal: Box::new(goal),
+            path: None,
             ticket: None,
             session: Some(engaged),
         })
@@ -96,6 +97,7 @@ impl Lockstep {
         let last = waypoints.last().map_or(Target::Rest, |last| *last.target());
         let motion = NewMotion::Goal {
             goal: Box::new(self.goal(last, on_arrival)),
+            path: None,
             ticket: None,
             session: engaged,
         };

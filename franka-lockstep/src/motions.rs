@@ -36,6 +36,7 @@ impl Lockstep {
     ) -> Result<GoalId, MotionError> {
         self.client.begin(NewMotion::Goal {
             goal: Box::new(goal),
+            path: None,
             ticket: Some(ticket),
             session: None,
         })

@@ -205,6 +205,7 @@ fn a_motion_that_begins_paused_is_held_where_it_begins_until_it_is_resumed() {
             }
             let motion = NewMotion::Goal {
                 goal: Box::new(goal),
+                path: None,
                 ticket: None,
                 session: engaged,
             };

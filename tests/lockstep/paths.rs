@@ -2,13 +2,15 @@
 
 use std::time::Duration;
 
-use franka_lockstep::Lockstep;
+use franka_lockstep::{Lockstep, for_each_robot};
+use franka_model::collision::Obstacle;
 use franka_model::{Model, READY, RobotKind, Wrench, rotation};
 use franka_proto::{CollisionBehavior, Request};
-use franka_rt::lifecycle::MotionError;
+use franka_rt::lifecycle::{MotionError, NewMotion};
 use franka_rt::session::{
-    Chunk, GoalError, GoalId, Lapse, OnArrival, PathError, Preview, Target, Waypoint,
+    Chunk, GoalError, GoalId, KeepOut, Lapse, OnArrival, PathError, Preview, Target, Waypoint,
 };
+use franka_rt::together::StartBarrier;
 use franka_sim::{Arm, Config};
 use franka_tests::follow::realistic;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
@@ -487,4 +489,128 @@ fn random_paths_are_gone_to_their_end_or_refused_before_anything_moves() {
         assert!(reflexes <= most, "{name}: {reflexes} reflexes");
         assert!(arrived > cases / 4 && blocked <= cases / 10, "{name}");
     }
+}
+
+/// A path aside and back to the height of its start: its last place is straight ahead, its first
+/// one is not on the way there.
+fn detour(start: &Isometry3<f64>) -> [Isometry3<f64>; 2] {
+    [(0.05, 0.15), (0.1, 0.0)].map(|(x, y)| Translation3::new(x, y, 0.0) * start)
+}
+
+/// Runs until the goal is resolved; returns how near the reference came to `place`, `[m]`.
+fn nearest(lockstep: &mut Lockstep, id: GoalId, place: &Isometry3<f64>) -> f64 {
+    let mut least = f64::INFINITY;
+    while lockstep.client.outcome(id).is_none() {
+        lockstep.tick();
+        assert!(lockstep.now() < 60_000, "it is resolved");
+        if lockstep.client.record.goal == id.0 {
+            let at = lockstep.reference_pose().translation.vector;
+            least = least.min((at - place.translation.vector).norm());
+        }
+    }
+    least
+}
+
+/// The motion before may end at any moment: the path that comes then begins as a motion of its own.
+#[test]
+fn a_path_that_comes_as_the_motion_before_ends_is_followed_all_the_same() {
+    for_each_robot(|ready| {
+        let mut before = ready();
+        let up = Translation3::new(0.0, 0.0, 0.05) * before.arm_pose();
+        let id = before.begin(Target::Pose(up));
+        before.until_resolved(id, 20_000).expect("it arrives");
+        let end = before.now();
+        for early in 0..15 {
+            let mut lockstep = ready();
+            let first = lockstep.begin(Target::Pose(up));
+            while lockstep.now() + early < end {
+                lockstep.tick();
+            }
+            let places = detour(&up);
+            let id = lockstep
+                .through(None, &rounded(&places, 0.0))
+                .expect("within reach");
+            let least = nearest(&mut lockstep, id, &places[0]);
+            println!("{early} ms before the end: {:.2} mm", least * 1e3);
+            assert!(lockstep.client.outcome(first).is_some());
+            assert!(matches!(lockstep.client.outcome(id), Some(Ok(_))));
+            assert!(least < 1e-3, "{early} ms before the end: {least} m");
+        }
+    });
+}
+
+#[test]
+fn a_path_that_is_taken_back_before_it_begins_moves_nothing() {
+    for_each_robot(|ready| {
+        for within in [false, true] {
+            let mut lockstep = ready();
+            let start = lockstep.arm_pose();
+            let engaged = within.then(|| lockstep.engage());
+            let begun = lockstep.through(engaged, &rounded(&detour(&start), 0.0));
+            let id = begun.expect("within reach");
+            lockstep.cancel(id);
+            let outcome = lockstep.until_resolved(id, 20_000);
+            assert_eq!(outcome.map(drop), Err(MotionError::Stopped));
+            let moved = (lockstep.arm_pose().translation.vector - start.translation.vector).norm();
+            assert!(
+                moved < 1e-3,
+                "within a session: {within}, moved by {moved} m"
+            );
+        }
+    });
+}
+
+#[test]
+fn a_path_whose_common_start_does_not_come_moves_nothing() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let start = lockstep.arm_pose();
+        let [here, there] = StartBarrier::new().tickets();
+        let places = detour(&start);
+        let goal = lockstep.goal(Target::Pose(places[1]), OnArrival::ReportAndFinish);
+        let id = goal.id;
+        let motion = NewMotion::Goal {
+            goal: Box::new(goal),
+            path: None,
+            ticket: Some(here),
+            session: None,
+        };
+        let begun = lockstep.client.begin_along(&rounded(&places, 0.0), motion);
+        begun.expect("nothing else moves");
+        lockstep.run(100);
+        drop(there);
+        let outcome = lockstep.until_resolved(id, 20_000);
+        assert!(matches!(outcome, Err(MotionError::Start(_))), "{outcome:?}");
+        let moved = (lockstep.arm_pose().translation.vector - start.translation.vector).norm();
+        assert!(moved < 1e-3, "moved by {moved} m");
+    });
+}
+
+/// What a path leads around may be just what its last place lies behind.
+#[test]
+fn a_path_that_is_braked_before_a_region_goes_nowhere_else() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let start = lockstep.arm_pose();
+        let places = detour(&start);
+        // On the way to the first place.
+        let mut regions = KeepOut::default();
+        regions[0] = Some(Obstacle::Box {
+            pose: Translation3::new(0.1, 0.3, 0.0) * Isometry3::from(start.translation),
+            half: Vector3::new(0.1, 0.1, 0.3),
+        });
+        lockstep.client.lifecycle.keep_out_of(regions);
+        let id = lockstep
+            .through(None, &rounded(&places, 0.0))
+            .expect("within reach");
+        let outcome = lockstep.until_resolved(id, 40_000);
+        let blocked = Err(MotionError::Braked(Lapse::Blocked { region: Some(0) }));
+        assert_eq!(outcome.map(drop), blocked);
+        let end = lockstep.arm_pose().translation.vector;
+        let line = places[0].translation.vector - start.translation.vector;
+        let along = (end - start.translation.vector).dot(&line) / line.norm_squared();
+        let aside = (end - start.translation.vector - line * along).norm();
+        assert!((0.05..1.0).contains(&along), "{along} of the first line");
+        assert!(aside < 0.01, "{aside} m beside it");
+    });
 }

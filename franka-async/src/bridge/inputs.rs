@@ -110,7 +110,10 @@ impl Bridge {
             destination,
             path,
         } = beginning;
-        let NewMotion::Goal { goal, .. } = &mut motion else {
+        let NewMotion::Goal {
+            goal, path: chunk, ..
+        } = &mut motion
+        else {
             return self.lifecycle.begin(motion, state, now);
         };
         let reference = self.course.reference().map(|reference| reference.q);
@@ -119,12 +122,12 @@ impl Bridge {
             let now = Now::of(self.lifecycle.model(), state, heading, reference);
             goal.target = destination.seen_from(&now);
         }
-        let Some(path) = path else {
-            return self.lifecycle.begin(motion, state, now);
-        };
-        let q = reference.unwrap_or(state.q);
-        let path = Chunk::through(&path, &q, goal, self.lifecycle.model(), state)?;
-        self.lifecycle.begin_along(path, motion, state, now)
+        if let Some(path) = path {
+            let q = reference.unwrap_or(state.q);
+            let path = Chunk::through(&path, &q, goal, self.lifecycle.model(), state)?;
+            *chunk = Some(Box::new(path));
+        }
+        self.lifecycle.begin(motion, state, now)
     }
 
     /// Notes a goal that its session has not taken.

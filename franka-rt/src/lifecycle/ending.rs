@@ -72,7 +72,7 @@ impl Lifecycle {
         let Some(mut current) = self.take_current() else {
             return;
         };
-        let ThreadSide::Ended(ended) = &current.thread else {
+        let ThreadSide::Ended(ended) = &mut current.thread else {
             unreachable!("a motion concludes when its thread side has ended")
         };
         let counted = Counted::of(ended);
@@ -89,7 +89,17 @@ impl Lifecycle {
                 // A cancelled goal needs no motion.
                 self.resolve(unseen.id, Err(MotionError::Stopped));
             } else {
-                self.take_up(NewMotion::to(unseen), &Ok(()), &counted, now);
+                let path = match &mut ended.program {
+                    Program::Target(session) => session.take_path(unseen.id),
+                    _ => None,
+                };
+                let motion = NewMotion::Goal {
+                    goal: Box::new(unseen),
+                    path: path.map(Box::new),
+                    ticket: None,
+                    session: None,
+                };
+                self.take_up(motion, &Ok(()), &counted, now);
             }
             return self.follow(&Ok(()), &counted, now);
         }

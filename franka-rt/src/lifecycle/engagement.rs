@@ -97,6 +97,7 @@ impl Lifecycle {
         &mut self,
         engaged: GoalId,
         goal: Goal,
+        path: Option<Box<Chunk>>,
         state: &RobotState,
     ) -> Result<(), MotionError> {
         self.check_engaged(engaged)?;
@@ -112,7 +113,7 @@ impl Lifecycle {
                 return Ok(());
             }
         }
-        self.replace(goal, MotionError::Superseded);
+        self.replace(goal, path, MotionError::Superseded);
         Ok(())
     }
 
@@ -184,7 +185,7 @@ impl Lifecycle {
         goals.chunk_goal = of;
         goals.observed_at = observed_at.or(before);
         if !goes_on {
-            self.replace(goal, MotionError::Superseded);
+            self.replace(goal, None, MotionError::Superseded);
         }
         Ok(())
     }
@@ -278,7 +279,7 @@ impl Lifecycle {
                 revision: goals.current.revision + 1,
                 ..goals.current.at_rest(OnArrival::ReportAndFinish)
             };
-            self.replace(goal, MotionError::Stopped);
+            self.replace(goal, None, MotionError::Stopped);
         }
         true
     }

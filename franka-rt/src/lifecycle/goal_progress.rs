@@ -164,6 +164,7 @@ impl Goals {
         let held = match settled.settlement {
             Settlement::Arrived(_) => Goal {
                 target: reaction.map_or(goal.target, |reaction| reaction.then),
+                along_path: false,
                 on_arrival: OnArrival::Hold,
                 reaction: None,
                 ..goal

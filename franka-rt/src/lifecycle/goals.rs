@@ -8,7 +8,7 @@ use franka_proto::RobotState;
 use super::current_motion::Work;
 use super::goal_progress::Goals;
 use super::{Lifecycle, LifecyclePhase, MotionError, NewMotion};
-use crate::session::{Backend, Goal, GoalError, GoalId, OnArrival, Target};
+use crate::session::{Backend, Chunk, Goal, GoalError, GoalId, OnArrival, Target};
 
 impl Lifecycle {
     /// Moves the target of a goal under way, for a goal that follows a stream. Returns whether the
@@ -23,12 +23,22 @@ impl Lifecycle {
         target: Target,
         state: &RobotState,
     ) -> Result<bool, GoalError> {
-        self.amend(id, |goal| Goal { target, ..*goal }, Some(state))
+        let along_path = false;
+        let change = |goal: &Goal| Goal {
+            target,
+            along_path,
+            ..*goal
+        };
+        self.amend(id, change, Some(state))
     }
 
     /// Lets a goal that is held come to its end: the motion settles at the newest target and
-    /// finishes, unless its session goes on from goal to goal.
+    /// finishes, unless its session goes on from goal to goal. A path has its end anyway.
     pub fn close(&mut self, id: GoalId) {
+        let current = self.goals().map(|goals| &goals.current);
+        if current.is_some_and(|goal| goal.id == id && goal.along_path) {
+            return;
+        }
         let on_arrival = self.end_of(id);
         let end = |goal: &Goal| Goal {
             target: match goal.target {
@@ -103,7 +113,7 @@ impl Lifecycle {
             ) => Goal::new(id, Target::Rest, on_arrival, self.model.joint_limits()),
             _ => return false,
         };
-        self.replace(goal, MotionError::Stopped);
+        self.replace(goal, None, MotionError::Stopped);
         true
     }
 
@@ -141,19 +151,25 @@ impl Lifecycle {
 
     /// Puts a goal in the place of all others, which resolve with `reason`: in the motion under
     /// way if that takes goals, or else in one that waits for its end.
-    pub(super) fn replace(&mut self, goal: Goal, reason: MotionError) {
+    pub(super) fn replace(&mut self, goal: Goal, path: Option<Box<Chunk>>, reason: MotionError) {
         let is_ending = self.is_ending();
-        let goes_on = !is_ending && self.goals().is_some();
-        let path = self.path.take_if(|(of, _)| *of == goal.id && goes_on);
         let previous = match self.goals_mut() {
             Some(goals) if !is_ending => {
-                if let Some((_, path)) = path {
+                if let Some(path) = path {
                     // There was room where it was accepted.
-                    let _ = goals.send(goal.id, path);
+                    let _ = goals.send(goal.id, *path);
                 }
                 goals.supersede(goal, reason.clone())
             }
-            _ => return self.wait(NewMotion::to(goal), reason),
+            _ => {
+                let motion = NewMotion::Goal {
+                    goal: Box::new(goal),
+                    path,
+                    ticket: None,
+                    session: None,
+                };
+                return self.wait(motion, reason);
+            }
         };
         self.resolve_next(reason);
         if let Some((previous, result)) = previous {

@@ -50,7 +50,7 @@ use crate::driver::{ControlLog, LINK_TIMEOUT, LinkTimeout, MotionId, Order};
 use crate::identify::Identified;
 use crate::law::Gains;
 use crate::law::compensation::Learned;
-use crate::session::{Backend, Chunk, Goal, GoalId, KeepOut, Margin};
+use crate::session::{Backend, Goal, GoalId, KeepOut, Margin};
 
 use current_motion::CurrentMotion;
 
@@ -101,8 +101,6 @@ pub struct Lifecycle {
     phase: LifecyclePhase,
     /// What waits for the motion under way, or an abandoned one, to end.
     next: Option<NewMotion>,
-    /// The path of the goal of this name, until that begins.
-    path: Option<(GoalId, Chunk)>,
     /// The last session that goes from goal to goal, if it did not end as asked, and how it ended.
     ended: Option<(GoalId, MotionError)>,
     motions: u64,
@@ -160,7 +158,6 @@ impl Lifecycle {
             version,
             phase: LifecyclePhase::Idle,
             next: None,
-            path: None,
             ended: None,
             motions: 0,
             log_size: ControlLog::DEFAULT_CAPACITY,

@@ -26,6 +26,8 @@ pub enum NewMotion {
     Goal {
         /// The goal, whose `id` names the motion.
         goal: Box<Goal>,
+        /// The path to its target, which is then the end of the path.
+        path: Option<Box<Chunk>>,
         /// The ticket of a common start with other robots, if any: the arm is held until all are
         /// ready. Such a goal supersedes nothing. A later goal supersedes it as usual, and takes it
         /// out of the common start.
@@ -60,6 +62,7 @@ impl NewMotion {
     pub fn to(goal: Goal) -> Self {
         Self::Goal {
             goal: Box::new(goal),
+            path: None,
             ticket: None,
             session: None,
         }
@@ -119,7 +122,8 @@ impl Lifecycle {
     ///
     /// # Errors
     /// Nothing is resolved then, everything stays as it was, and a ticket is dropped.
-    /// - [`MotionError::Goal`] for goals, regions or a posture that are not accepted.
+    /// - [`MotionError::Goal`] for goals, regions or a posture that are not accepted, and for a path
+    ///   while as many chunks are under way as there can be.
     /// - [`MotionError::Busy`] while another motion runs or waits and does not give way. One that
     ///   runs gives way when it is ending, stopped or cancelled. Goals outside a session also give
     ///   way to a new goal without a ticket.
@@ -134,12 +138,20 @@ impl Lifecycle {
         state: &RobotState,
         now: Duration,
     ) -> Result<(), MotionError> {
+        if let NewMotion::Goal { goal, path, .. } = &mut motion {
+            goal.along_path = path.is_some();
+            if let Some(path) = path {
+                goal.target = path.target();
+                self.check_room()?;
+            }
+        }
         match &mut motion {
             NewMotion::Goal {
                 goal,
+                path,
                 ticket: None,
                 session: Some(session),
-            } => return self.submit_within(*session, **goal, state),
+            } => return self.submit_within(*session, **goal, path.take(), state),
             NewMotion::Session { goal, .. } => {
                 **goal = Goal {
                     target: Target::Rest,
@@ -164,34 +176,23 @@ impl Lifecycle {
             (
                 LifecyclePhase::UnderWay(_),
                 NewMotion::Goal {
-                    goal, ticket: None, ..
+                    goal,
+                    path,
+                    ticket: None,
+                    ..
                 },
-            ) if !self.is_engaged() => self.replace(*goal, MotionError::Superseded),
+            ) if !self.is_engaged() => self.replace(*goal, path, MotionError::Superseded),
             (_, motion) => self.wait(motion, MotionError::Superseded),
         }
         Ok(())
     }
 
-    /// As [`Self::begin`], for a goal that goes to its target along `path`.
-    ///
-    /// # Errors
-    /// As [`Self::begin`], and [`GoalError::Chunks`].
-    pub fn begin_along(
-        &mut self,
-        path: Chunk,
-        motion: NewMotion,
-        state: &RobotState,
-        now: Duration,
-    ) -> Result<(), MotionError> {
-        if let Some(goals) = self.goals_mut()
-            && !goals.has_room()
-        {
-            return Err(GoalError::from(TooManyChunks).into());
+    /// Checks that a path can be handed to the motion under way.
+    fn check_room(&mut self) -> Result<(), GoalError> {
+        match self.goals_mut().map(Goals::has_room) {
+            Some(false) => Err(TooManyChunks.into()),
+            Some(true) | None => Ok(()),
         }
-        // A goal that waits keeps its own if this one is refused.
-        let before = self.path.replace((motion.id(), path));
-        self.begin(motion, state, now)
-            .inspect_err(|_| self.path = before)
     }
 
     /// Checks that what moves, or waits to, gives way to `motion`.
@@ -239,9 +240,11 @@ impl Lifecycle {
     /// Sends [`Order::Arm`] to the thread and `Move` to the robot.
     pub(super) fn start(&mut self, motion: NewMotion, now: Duration) {
         match motion {
-            NewMotion::Goal { goal, ticket, .. } => self.start_goal(*goal, ticket, None, now),
+            NewMotion::Goal {
+                goal, path, ticket, ..
+            } => self.start_goal(*goal, path, ticket, None, now),
             NewMotion::Session { goal, engagement } => {
-                self.start_goal(*goal, None, Some(engagement), now);
+                self.start_goal(*goal, None, None, Some(engagement), now);
             }
             NewMotion::Program {
                 id,
@@ -261,6 +264,7 @@ impl Lifecycle {
     fn start_goal(
         &mut self,
         goal: Goal,
+        path: Option<Box<Chunk>>,
         ticket: Option<StartTicket>,
         engagement: Option<Engagement>,
         now: Duration,
@@ -273,9 +277,11 @@ impl Lifecycle {
         let (writer, reader) = session::chunk_ring();
         session = session.with_chunks(reader);
         let mut goals = Goals::new(goal, slot, writer);
-        if let Some((_, path)) = self.path.take_if(|(of, _)| *of == goal.id) {
+        if let Some(path) = path
+            && goal.along_path
+        {
             // The ring is new.
-            let _ = goals.send(goal.id, path);
+            let _ = goals.send(goal.id, *path);
         }
         let mut observer = None;
         if let Some(engagement) = engagement {

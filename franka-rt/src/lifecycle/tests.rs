@@ -7,7 +7,7 @@ use super::ending::STILL_SHOWN;
 use super::*;
 use crate::control::{Failure, Modes};
 use crate::driver::{Driver, Event};
-use crate::session::{Goal, OnArrival, Target};
+use crate::session::{Chunk, Goal, OnArrival, Target, Waypoint};
 use crate::shaping::InvalidCommand;
 
 const NOW: Duration = Duration::ZERO;
@@ -81,19 +81,24 @@ impl LifecycleAndDriver {
         let begun = pair.lifecycle.begin(NewMotion::to(goal), &pair.state, NOW);
         begun.expect("it is accepted");
         pair.settle();
-        let [Request::Move(request)] = &pair.sent[..] else {
-            panic!("{:?}", pair.sent)
+        let motion = MotionId(1);
+        pair.run_started(motion);
+        (pair, motion, id)
+    }
+
+    /// The robot starts the newest motion, and runs it for a while.
+    fn run_started(&mut self, motion: MotionId) {
+        let Some(Request::Move(request)) = self.sent.last() else {
+            panic!("{:?}", self.sent)
         };
         let modes = Modes::of(request);
-        pair.state.motion_generator_mode = modes.generator;
-        pair.state.controller_mode = modes.controller;
-        let motion = MotionId(1);
+        self.state.motion_generator_mode = modes.generator;
+        self.state.controller_mode = modes.controller;
         let started = MoveStatus::MotionStarted;
-        pair.lifecycle.on_move_reply(motion, started, NOW);
+        self.lifecycle.on_move_reply(motion, started, NOW);
         for _ in 0..20 {
-            assert!(pair.cycle(RobotMode::Move));
+            assert!(self.cycle(RobotMode::Move));
         }
-        (pair, motion, id)
     }
 }
 
@@ -201,4 +206,63 @@ fn a_motion_waits_for_the_end_of_one_that_was_given_up_and_says_so_if_that_does_
     pair.cycle(RobotMode::Idle);
     assert_eq!(begin(&mut pair, 5), Ok(()));
     assert_eq!(moves(&pair), 2);
+}
+
+/// A session ends, and nobody knows how yet: a path of its own waits for that, and one that comes
+/// for the session is told of it.
+#[test]
+fn two_paths_that_wait_for_the_same_end_do_not_change_places() {
+    let mut pair = LifecycleAndDriver::new();
+    let model = Model::fr3();
+    let goal = |id, on_arrival| {
+        let target = Target::Rest;
+        Box::new(Goal::new(
+            GoalId(id),
+            target,
+            on_arrival,
+            model.joint_limits(),
+        ))
+    };
+    let engaged = GoalId(1);
+    let session = NewMotion::Session {
+        goal: goal(1, OnArrival::Hold),
+        engagement: Engagement::default(),
+    };
+    assert_eq!(pair.lifecycle.begin(session, &pair.state, NOW), Ok(()));
+    pair.settle();
+    pair.run_started(MotionId(1));
+    pair.cycle(RobotMode::UserStopped);
+    let along = |pair: &mut LifecycleAndDriver, id, by: f64, session| {
+        let goal = goal(id, OnArrival::ReportAndFinish);
+        let mut q: [f64; 7] = READY.into();
+        q[0] += by;
+        let (way, state) = ([Waypoint::new(q)], &pair.state);
+        let path = Chunk::through(&way, &state.q, &goal, model, state).expect("it is reachable");
+        let motion = NewMotion::Goal {
+            goal,
+            path: Some(Box::new(path)),
+            ticket: None,
+            session,
+        };
+        pair.lifecycle.begin(motion, &pair.state, NOW)
+    };
+    assert_eq!(along(&mut pair, 2, 0.3, None), Ok(()));
+    assert_eq!(along(&mut pair, 3, -0.3, Some(engaged)), Ok(()));
+    pair.lifecycle
+        .on_move_reply(MotionId(1), MoveStatus::Preempted, NOW);
+    pair.settle();
+    assert!(matches!(
+        &pair.resolved[..],
+        [(GoalId(3), Err(_)), (GoalId(1), Err(_))]
+    ));
+    pair.run_started(MotionId(2));
+    let heading = pair.lifecycle.heading();
+    assert!(matches!(heading, Some((GoalId(2), Target::Joints(q))) if q[0] == READY[0] + 0.3));
+    for _ in 0..200 {
+        pair.cycle(RobotMode::Move);
+    }
+    assert!(
+        pair.driver.record().q_ref[0] > READY[0] + 0.001,
+        "it follows its own path"
+    );
 }

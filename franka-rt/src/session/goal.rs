@@ -204,6 +204,9 @@ pub struct Goal {
     /// effector rests, and a goal arrives when both rest. `None` keeps the elbow, while the end
     /// effector moves, near where the session began.
     pub posture: Option<[f64; 7]>,
+    /// Whether it leads along a path to its target. The path is sent beside it, as a chunk: without
+    /// one the arm rests.
+    pub along_path: bool,
     /// Whether the arm is to stop on its way, within the budget, and to stay there until this is
     /// taken back.
     pub paused: bool,
@@ -249,6 +252,7 @@ impl Goal {
             deviation: Deviation::default(),
             settling: Settling::default(),
             posture: None,
+            along_path: false,
             paused: false,
             reaction: None,
             round: None,
@@ -265,7 +269,7 @@ impl Goal {
         }
     }
 
-    /// Returns the goal with rest as its target, without a reaction or a team. Gains for guiding
+    /// Returns the goal with rest as its target, without a path, a reaction or a team. Gains for guiding
     /// are replaced by gains that hold.
     pub(crate) fn at_rest(&self, on_arrival: OnArrival) -> Self {
         let gains = match self.target {
@@ -276,6 +280,7 @@ impl Goal {
             target: Target::Rest,
             on_arrival,
             gains,
+            along_path: false,
             paused: false,
             reaction: None,
             round: None,

@@ -254,6 +254,11 @@ impl TargetSession {
         self.active.as_ref()?.released()
     }
 
+    /// Takes the path of `goal` out of a session that has ended before it saw that goal.
+    pub(crate) fn take_path(&mut self, goal: GoalId) -> Option<Chunk> {
+        self.chunks.as_mut()?.take(goal)
+    }
+
     /// Whether everything that the session computes with beside measured joints and torques is
     /// finite in `state`.
     pub(crate) fn can_read(&self, state: &RobotState) -> bool {

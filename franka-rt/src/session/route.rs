@@ -44,6 +44,9 @@ pub(super) struct Route {
     pub(super) retired_chunk: Option<ChunkCourse>,
     /// Where the goal's last chunk has ended, if none runs.
     pub(super) chunk_end: Option<Target>,
+    /// Whether a brake has ended the chunk on its way. The straight line to its end is no way that
+    /// anybody asked for: the course rests until another target or chunk comes.
+    left_chunk: bool,
     /// Whether a plan could not be made since the last answer.
     failed: bool,
 }
@@ -75,6 +78,7 @@ impl Route {
             judged: budget,
             retired_chunk: None,
             chunk_end: None,
+            left_chunk: false,
             failed: false,
         }
     }
@@ -92,9 +96,10 @@ impl Route {
         reference: &Reference,
         aim: &Aim,
     ) {
-        if self.stale {
+        if self.stale && !self.left_chunk {
             self.head_for(model, ee, reference, aim);
         }
+        self.stale = false;
     }
 
     /// Plans the course towards `aim` from the reference; a chunk in force is kept, within the
@@ -146,6 +151,7 @@ impl Route {
         };
         let mut next = ChunkCourse::new(model, aim.goal, budget, chunk, start);
         next.set_paused(aim.paused);
+        self.left_chunk = false;
         match core::mem::replace(&mut self.course, Course::Chunk(next)) {
             Course::Chunk(before) => Some(before),
             _ => None,
@@ -202,8 +208,15 @@ impl Route {
         }
     }
 
+    /// Ends the way to the target before, and has the next one planned.
+    pub(super) fn turn(&mut self) {
+        self.retire_chunk();
+        self.left_chunk = false;
+        self.stale = true;
+    }
+
     /// Ends the course if it follows a chunk.
-    pub(super) fn retire_chunk(&mut self) {
+    fn retire_chunk(&mut self) {
         if matches!(self.course, Course::Chunk(_))
             && let Course::Chunk(chunk) = core::mem::replace(&mut self.course, Course::Rest)
         {
@@ -214,6 +227,7 @@ impl Route {
     fn brake(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, aim: &Aim) {
         if let Course::Chunk(chunk) = &self.course {
             self.chunk_end = Some(chunk.target());
+            self.left_chunk = true;
             self.retire_chunk();
         }
         let rest = Aim {
@@ -248,7 +262,7 @@ impl Route {
         let guided = (arm, &aim.leash);
         if let Pace::Braked(since) = &mut self.pace {
             *since += 1;
-            if *since < RETRY || !self.course.is_done() {
+            if *since < RETRY || self.left_chunk || !self.course.is_done() {
                 self.hindered = HINDERED;
                 return self.course.step(model, ee, posture, reference, guided, now);
             }

@@ -138,6 +138,7 @@ impl Waiting {
         };
         let motion = NewMotion::Goal {
             goal: Box::new(goal),
+            path: None,
             ticket: None,
             session: Some(session),
         };

@@ -200,6 +200,13 @@ impl ChunkReader {
         }
     }
 
+    /// Takes the chunk of `goal` out that has not been taken up, for a session that has ended.
+    pub(in crate::session) fn take(&mut self, goal: GoalId) -> Option<Chunk> {
+        self.receive();
+        let newest = self.newest.take_if(|newest| newest.goal == goal)?;
+        Some(newest.chunk)
+    }
+
     fn receive(&mut self) {
         // At most as many as are under way: the writer cannot add to them without collecting.
         for _ in 0..Chunk::UNDER_WAY_MAX {

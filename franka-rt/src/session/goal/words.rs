@@ -68,7 +68,7 @@ impl Words for Target {
     }
 }
 
-/// Name, revision, what follows and whether it is paused, the round, 2 of the watchdog; then 27
+/// Name, revision, what follows, whether it is paused and along a path, the round, 2 of the watchdog; then 27
 /// numbers of budget, the gains, 2 of tolerance, the force cap, 3 of the lead, 7 of the grasp and 7
 /// of the posture, which are zero or no numbers without one, 3 of the leash, 3 of the deviation and
 /// 2 of the settling; then the target and the reaction.
@@ -119,7 +119,8 @@ impl Words for Goal {
                 self.deviation.joints,
             ])
             .chain([self.settling.hold, self.settling.timeout].map(|time| time.as_millis() as f64));
-        let on_arrival = self.on_arrival.to_word() | u64::from(self.paused) << 2;
+        let flags = u64::from(self.paused) << 2 | u64::from(self.along_path) << 3;
+        let on_arrival = self.on_arrival.to_word() | flags;
         let round = Round::to_word(self.round);
         let all = [
             self.id.0,
@@ -160,6 +161,7 @@ impl Words for Goal {
             id: GoalId(id),
             target: Target::load(target),
             paused: on_arrival >> 2 & 1 == 1,
+            along_path: on_arrival >> 3 & 1 == 1,
             on_arrival: OnArrival::from_word(on_arrival & 3),
             watchdog: (watched & 1 == 1).then(|| Watchdog {
                 silence: Duration::from_millis(silence),
@@ -326,6 +328,7 @@ mod tests {
                 force_cap,
                 lead,
                 paused: lead.is_some(),
+                along_path: watchdog.is_some(),
                 reaction,
                 round: Round::from_word(if lead.is_some() { 7 } else { 0 }),
                 grasp: lead.map(|_| pose),

@@ -16,8 +16,10 @@ impl RunningSession {
             retired.end(chunks, now);
         }
         let gone = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_));
-        let taken_back = matches!(self.standing, Standing::TakenBack);
-        if gone || taken_back || self.is_given_up_for_good() {
+        // A goal that was taken back, perhaps before it was seen, follows nothing.
+        let follows =
+            self.goal.along_path || self.goal.on_arrival == OnArrival::Hold || self.is_given_up();
+        if gone || !follows || self.is_given_up_for_good() {
             chunks.discard(self.goal.id);
             return;
         }
@@ -26,8 +28,9 @@ impl RunningSession {
             _ => true,
         };
         if let Some(chunk) = chunks.poll(self.goal.id, now, over) {
+            self.aim = chunk.target();
             let aim = Aim {
-                target: chunk.target(),
+                target: self.aim,
                 ..self.aim(model, now)
             };
             let before = self
@@ -36,7 +39,6 @@ impl RunningSession {
             if let Some(before) = before {
                 before.end(chunks, now);
             }
-            self.aim = self.heading();
             // A goal that had fallen silent was to be held until a newer one.
             if self.is_given_up() {
                 self.standing = Standing::InForce;

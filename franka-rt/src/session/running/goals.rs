@@ -81,20 +81,22 @@ impl RunningSession {
         }
     }
 
-    /// Sets out for the target of the goal.
+    /// Sets out for the target of the goal; along a path once that is there.
     pub(super) fn set_out(&mut self) {
         self.stage = GoalStage::UnderWay;
         self.held_back = 0;
         self.route.chunk_end = None;
-        self.turn_to(self.goal.target);
+        self.turn_to(match self.goal.along_path {
+            true => Target::Rest,
+            false => self.goal.target,
+        });
     }
 
     /// Ends the course, and has the next one planned to `target`.
     pub(super) fn turn_to(&mut self, target: Target) {
-        self.route.retire_chunk();
+        self.route.turn();
         self.aim = target;
         self.halted = false;
-        self.route.outdate();
     }
 
     /// What the reference heads for, where that is at `now`.

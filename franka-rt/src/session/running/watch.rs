@@ -17,8 +17,9 @@ impl RunningSession {
         let Some(lead) = self.goal.lead else {
             return false;
         };
-        let chunks =
-            matches!(self.route.course, Course::Chunk(_)) || self.route.chunk_end.is_some();
+        let chunks = self.goal.along_path
+            || matches!(self.route.course, Course::Chunk(_))
+            || self.route.chunk_end.is_some();
         if chunks || self.has_reacted() || !matches!(self.stage, GoalStage::UnderWay) {
             return false;
         }

@@ -81,7 +81,13 @@ fn of_the_motions_that_wait_the_newest_counts_and_a_stop_takes_it_back() {
     robot.lose(CloseReason::ClosedByPeer);
     let [ticket] = StartBarrier::new().tickets();
     let together = |motion| match motion {
-        NewMotion::Goal { goal, session, .. } => NewMotion::Goal {
+        NewMotion::Goal {
+            goal,
+            path,
+            session,
+            ..
+        } => NewMotion::Goal {
+            path,
             goal,
             ticket: Some(ticket),
             session,
@@ -94,7 +100,10 @@ fn of_the_motions_that_wait_the_newest_counts_and_a_stop_takes_it_back() {
         "the others would wait, too: {refused:?}"
     );
     let of_session = |motion| match motion {
-        NewMotion::Goal { goal, ticket, .. } => NewMotion::Goal {
+        NewMotion::Goal {
+            goal, path, ticket, ..
+        } => NewMotion::Goal {
+            path,
             goal,
             ticket,
             session: Some(GoalId(4)),

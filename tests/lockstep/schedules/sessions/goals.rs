@@ -63,6 +63,7 @@ impl Sessions<'_> {
         goal.budget = self.budget();
         let motion = NewMotion::Goal {
             goal: Box::new(goal),
+            path: None,
             ticket: None,
             session: Some(id),
         };
