@@ -68,7 +68,7 @@
 #![no_std]
 #![cfg_attr(not(feature = "model-library"), forbid(unsafe_code))]
 
-#[cfg(any(test, feature = "urdf", feature = "model-library"))]
+#[cfg(any(test, feature = "std"))]
 extern crate std;
 
 mod as_built;

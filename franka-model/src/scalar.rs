@@ -1,33 +1,34 @@
 //! Elementary functions, from the platform's library with `std` and from `libm` without.
 //!
-//! `core` has none of them; nalgebra's traits dispatch to whichever is there.
+//! `core` has none of them: the methods are those of `std`, or of nalgebra's traits.
 
+#[cfg(not(any(test, feature = "std")))]
 use nalgebra::{ComplexField, RealField};
 
 pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
-    ComplexField::sin_cos(angle)
+    angle.sin_cos()
 }
 
 pub(crate) fn sqrt(x: f64) -> f64 {
-    ComplexField::sqrt(x)
+    x.sqrt()
 }
 
 pub(crate) fn acos(x: f64) -> f64 {
-    ComplexField::acos(x)
+    x.acos()
 }
 
 pub(crate) fn atan2(y: f64, x: f64) -> f64 {
-    RealField::atan2(y, x)
+    y.atan2(x)
 }
 
 pub(crate) fn ln(x: f64) -> f64 {
-    ComplexField::ln(x)
+    x.ln()
 }
 
 pub(crate) fn exp(x: f64) -> f64 {
-    ComplexField::exp(x)
+    x.exp()
 }
 
 pub(crate) fn tanh(x: f64) -> f64 {
-    ComplexField::tanh(x)
+    x.tanh()
 }
