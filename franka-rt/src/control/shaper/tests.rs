@@ -326,7 +326,7 @@ fn any_pose() -> impl Strategy<Value = [f64; 16]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(500) })]
 
     /// Whatever the program and the robot say: no panic, and what passes is finite and a valid
     /// command.
