@@ -82,7 +82,7 @@ fn the_verdict_is_that_of_all_distances_wherever_the_arm_goes() {
     let budget = Budget::of(limits);
     let mut seen = [0; 3];
     let mut known = 0;
-    for _ in 0..150 {
+    for _ in 0..400 {
         let keep_out = random_regions(&mut random);
         let mut clearance = of(keep_out);
         let mut reference = Reference::at_rest(JointVector::from_fn(|i, _| {
