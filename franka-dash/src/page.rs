@@ -19,7 +19,8 @@ pub(crate) fn overview<S: Clone + Send + Sync + 'static>() -> Router<S> {
 /// Whether a page has a file of this name, or a folder.
 pub(crate) fn is_file(name: &str) -> bool {
     let first = |path: &str| path.split('/').nth(1) == Some(name);
-    let mut paths = FILES.iter().chain(MESHES).map(|(path, ..)| path);
+    let files = FILES.iter().chain(COMPRESSED).chain(MESHES);
+    let mut paths = files.map(|(path, ..)| path);
     paths.any(|path| first(path)) || ["ws", "robots.json"].contains(&name)
 }
 
@@ -33,8 +34,12 @@ fn files<S: Clone + Send + Sync + 'static>(page: &'static [u8]) -> Router<S> {
         }
     };
     let mut router = Router::new().route("/", get(first));
-    for (path, kind, content) in FILES.iter().chain(MESHES) {
+    for (path, kind, content) in FILES {
         router = router.route(path, get(async || (headers(kind), *content)));
+    }
+    for (path, kind, content) in COMPRESSED.iter().chain(MESHES) {
+        let gzip = [(header::CONTENT_ENCODING, "gzip")];
+        router = router.route(path, get(async move || (headers(kind), gzip, *content)));
     }
     router
 }
@@ -45,8 +50,8 @@ fn needs_a_slash(path: &str) -> String {
 }
 
 const HTML: &str = "text/html; charset=utf-8";
-const INDEX: &[u8] = include_bytes!("../page/index.html");
-const OVERVIEW: &[u8] = include_bytes!("../page/overview.html");
+static INDEX: &[u8] = include_bytes!("../page/index.html");
+static OVERVIEW: &[u8] = include_bytes!("../page/overview.html");
 
 /// Kept by no cache, so that page and server are of one version.
 fn headers(kind: &'static str) -> [(HeaderName, &'static str); 2] {
@@ -57,12 +62,7 @@ fn headers(kind: &'static str) -> [(HeaderName, &'static str); 2] {
 }
 
 /// Path, type and content.
-const FILES: &[(&str, &str, &[u8])] = &[
-    (
-        "/dash.js",
-        "text/javascript; charset=utf-8",
-        include_bytes!("../page/dist/dash.js"),
-    ),
+static FILES: &[(&str, &str, &[u8])] = &[
     (
         "/dash.css",
         "text/css; charset=utf-8",
@@ -80,19 +80,26 @@ const FILES: &[(&str, &str, &[u8])] = &[
     ),
 ];
 
+/// The same, compressed: every browser takes gzip.
+static COMPRESSED: &[(&str, &str, &[u8])] = &[(
+    "/dash.js",
+    "text/javascript; charset=utf-8",
+    include_bytes!("../page/dist/dash.js.gz"),
+)];
+
 macro_rules! meshes {
     ($($name:literal)*) => {
         &[$((
             concat!("/meshes/", $name, ".glb"),
             "model/gltf-binary",
-            include_bytes!(concat!("../page/meshes/", $name, ".glb")),
+            include_bytes!(concat!("../page/meshes/", $name, ".glb.gz")),
         )),*]
     };
 }
 
-/// What the links look like, each in the axes of its frame. Where they are from, and what was
-/// changed: `page/meshes/NOTICE`.
-const MESHES: &[(&str, &str, &[u8])] = meshes! {
+/// The shapes of the links, each in the axes of its frame, compressed. Their source and changes:
+/// `page/meshes/NOTICE`.
+static MESHES: &[(&str, &str, &[u8])] = meshes! {
     "hand" "finger"
     "fr3/link0" "fr3/link1" "fr3/link2" "fr3/link3" "fr3/link4" "fr3/link5" "fr3/link6" "fr3/link7"
     "fer/link0" "fer/link1" "fer/link2" "fer/link3" "fer/link4" "fer/link5" "fer/link6" "fer/link7"
@@ -116,11 +123,11 @@ mod tests {
 
     #[test]
     fn the_page_is_small_and_brings_its_licences() {
-        let files = FILES.iter().chain(MESHES);
+        let files = FILES.iter().chain(COMPRESSED).chain(MESHES);
         let files = files.map(|(_, _, content)| content.len());
         let size = files.sum::<usize>() + INDEX.len() + OVERVIEW.len();
         println!("{size} bytes");
-        assert!(size < 2_500_000, "{size} bytes");
+        assert!(size < 1_250_000, "{size} bytes");
         let (.., licences) = FILES.last().expect("files");
         let licences = std::str::from_utf8(licences).expect("text");
         for part in [

@@ -48,7 +48,8 @@ fn each_robot_has_a_page_and_a_commander_of_its_own() {
             answer.headers().contains_key("content-security-policy"),
             "{path}"
         );
-        answer.body_mut().read_to_string().expect("text")
+        let body = answer.body_mut().read_to_vec().expect("a body");
+        String::from_utf8_lossy(&body).into_owned()
     };
     assert_eq!(get("robots.json"), "[\"left\",\"right\"]");
     assert!(get("").contains("id=\"overview\""));

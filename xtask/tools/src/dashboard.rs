@@ -3,9 +3,13 @@
 use std::env;
 use std::ffi::OsStr;
 use std::fs;
+use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, ensure};
+use flate2::Compression;
+use flate2::read::GzDecoder;
+use flate2::write::GzEncoder;
 
 use crate::others;
 use xtask::realtime::succeeds;
@@ -31,7 +35,7 @@ pub(crate) fn check_assets(workspace: &Workspace) -> anyhow::Result<Outcome> {
             fs::read(&path).with_context(|| path.display().to_string())
         };
         ensure!(
-            read(&made)? == read(&page.join("dist"))?,
+            expanded(read(&made)?)? == expanded(read(&page.join("dist"))?)?,
             "franka-dash/page/dist/{name} is not what the page's sources make: run cargo xtask assets"
         );
     }
@@ -48,12 +52,27 @@ pub(crate) fn page(workspace: &Workspace) -> PathBuf {
 }
 
 /// What is made.
-const MADE: [&str; 3] = ["dash.js", "dash.css", "licenses.txt"];
+const MADE: [&str; 3] = ["dash.js.gz", "dash.css", "licenses.txt"];
+
+/// The content of a file, expanded if it is compressed.
+pub(crate) fn expanded(content: Vec<u8>) -> anyhow::Result<Vec<u8>> {
+    if !content.starts_with(&[0x1f, 0x8b]) {
+        return Ok(content);
+    }
+    let mut expanded = Vec::new();
+    GzDecoder::new(&content[..]).read_to_end(&mut expanded)?;
+    Ok(expanded)
+}
 
 /// Makes the files of the page in `dist`.
 fn make(workspace: &Workspace, dist: &Path) -> anyhow::Result<()> {
     let entry = page(workspace).join("src").join("main.js");
-    bundle(workspace, &entry, &dist.join("dash.js"), "esm")?;
+    let script = dist.join("dash.js");
+    bundle(workspace, &entry, &script, "esm")?;
+    let mut compressed = GzEncoder::new(Vec::new(), Compression::best());
+    compressed.write_all(&fs::read(&script)?)?;
+    fs::write(dist.join("dash.js.gz"), compressed.finish()?)?;
+    fs::remove_file(script)?;
     Ok(fs::write(dist.join("licenses.txt"), licences(workspace)?)?)
 }
 

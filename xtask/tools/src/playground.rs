@@ -11,7 +11,6 @@ use std::path::Path;
 
 use crate::cross;
 use crate::dashboard;
-use crate::metadata::copy_directory;
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
 
@@ -74,7 +73,7 @@ fn build(workspace: &Workspace, folder: &Path) -> anyhow::Result<()> {
     let entry = sources.join("playground.js");
     // Not a module: those are not loaded from a file, and the page could not say so.
     dashboard::bundle(workspace, &entry, &folder.join("playground.js"), "iife")?;
-    copy_directory(&dashboard.join("meshes"), &folder.join("meshes"))?;
+    expand_directory(&dashboard.join("meshes"), &folder.join("meshes"))?;
     let wasm = workspace.target().join(TARGET).join("dist");
     for (from, name) in [
         (&wasm, "franka_playground.wasm"),
@@ -85,6 +84,26 @@ fn build(workspace: &Workspace, folder: &Path) -> anyhow::Result<()> {
     }
     let licences = dashboard::licences(workspace)?;
     Ok(fs::write(folder.join("licenses.txt"), licences)?)
+}
+
+/// Copies a directory, its compressed files expanded: no server tells the browser how they are
+/// compressed.
+fn expand_directory(from: &Path, to: &Path) -> anyhow::Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let (path, target) = entry.map(|entry| (entry.path(), to.join(entry.file_name())))?;
+        if path.is_dir() {
+            expand_directory(&path, &target)?;
+        } else if path.extension().is_some_and(|extension| extension == "gz") {
+            fs::write(
+                target.with_extension(""),
+                dashboard::expanded(fs::read(path)?)?,
+            )?;
+        } else {
+            fs::copy(path, target)?;
+        }
+    }
+    Ok(())
 }
 
 const TARGET: &str = "wasm32-unknown-unknown";

@@ -241,12 +241,12 @@ fn ask(address: &str, head: &str, body: &str) -> anyhow::Result<String> {
         "{head}\r\nhost: {address}\r\ncontent-length: {length}\r\n\r\n{body}"
     )?;
     let mut stream = BufReader::new(stream);
-    let mut answer = String::new();
+    let mut answer = Vec::new();
     match head.contains("HTTP/1.0") {
-        true => stream.read_to_string(&mut answer)?,
-        false => stream.read_line(&mut answer)?,
+        true => stream.read_to_end(&mut answer)?,
+        false => stream.read_until(b'\n', &mut answer)?,
     };
-    Ok(answer)
+    Ok(String::from_utf8_lossy(&answer).into_owned())
 }
 
 /// Begins a WebSocket, RFC 6455; the key is that of its example.
