@@ -1,6 +1,8 @@
 //! Steps: a header, what they do, how long it took; at the end one line for all of them.
 
 use std::env;
+use std::fmt;
+use std::fs;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, bail};
@@ -34,10 +36,40 @@ pub fn is_ci() -> bool {
     env::var("CI").is_ok_and(|value| value == "true" || value == "1")
 }
 
+/// The time that a step took, by the clock and by the processors.
+#[derive(Clone, Copy, Debug, Default)]
+struct Cost {
+    elapsed: Duration,
+    /// User and system time of the programs that the step ran; known on Linux.
+    processor: Option<f64>,
+}
+
+impl fmt::Display for Cost {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.1} s", self.elapsed.as_secs_f64())?;
+        match self.processor {
+            Some(seconds) => write!(f, " (processors {seconds:.1} s)"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Processor time of all programs that this process has run to their end, in seconds.
+fn processor_time() -> Option<f64> {
+    let stat = fs::read_to_string("/proc/self/stat").ok()?;
+    // Behind the name of the program, which may contain spaces, fields 16 and 17 of proc(5) are
+    // the 14th and 15th, in ticks of a hundredth of a second.
+    let (_, fields) = stat.rsplit_once(')')?;
+    let mut ticks = fields.split_whitespace().skip(13);
+    let user: f64 = ticks.next()?.parse().ok()?;
+    let system: f64 = ticks.next()?.parse().ok()?;
+    Some((user + system) / 100.0)
+}
+
 /// The steps taken so far.
 #[derive(Debug, Default)]
 pub struct Steps {
-    taken: Vec<(&'static str, Outcome, Duration)>,
+    taken: Vec<(&'static str, Outcome, Cost)>,
 }
 
 impl Steps {
@@ -52,45 +84,48 @@ impl Steps {
         work: impl FnOnce() -> anyhow::Result<Outcome>,
     ) -> anyhow::Result<()> {
         println!("\n=== {name}: {about}");
-        let start = Instant::now();
+        let (start, before) = (Instant::now(), processor_time());
         let result = work();
-        let time = start.elapsed();
-        let seconds = time.as_secs_f64();
+        let cost = Cost {
+            elapsed: start.elapsed(),
+            processor: processor_time()
+                .zip(before)
+                .map(|(now, before)| now - before),
+        };
         let outcome = result.with_context(|| {
             format!(
-                "step {name} failed after {seconds:.1} s, {} passed before it",
+                "step {name} failed after {cost}, {} passed before it",
                 self.count_passed()
             )
         })?;
         match &outcome {
-            Outcome::Passed => println!("=== {name}: passed in {seconds:.1} s"),
-            Outcome::Partly(what) => {
-                println!("=== {name}: passed in {seconds:.1} s; NOT CHECKED: {what}");
-            }
+            Outcome::Passed => println!("=== {name}: passed in {cost}"),
+            Outcome::Partly(what) => println!("=== {name}: passed in {cost}; NOT CHECKED: {what}"),
             Outcome::Skipped(why) => println!("=== {name}: SKIPPED, NOTHING WAS CHECKED: {why}"),
         }
-        self.taken.push((name, outcome, time));
+        self.taken.push((name, outcome, cost));
         Ok(())
     }
 
     /// One line: what passed in what time, and what was skipped and why.
     pub fn summary(&self) -> String {
-        let total: Duration = self.taken.iter().map(|(_, _, time)| *time).sum();
+        let costs = self.taken.iter().map(|(_, _, cost)| cost);
+        let total = Cost {
+            elapsed: costs.clone().map(|cost| cost.elapsed).sum(),
+            processor: costs.map(|cost| cost.processor).sum(),
+        };
         let each = self
             .taken
             .iter()
-            .map(|(name, outcome, time)| match outcome {
-                Outcome::Passed => format!("{name} {:.1} s", time.as_secs_f64()),
-                Outcome::Partly(what) => {
-                    format!("{name} {:.1} s (NOT CHECKED: {what})", time.as_secs_f64())
-                }
+            .map(|(name, outcome, cost)| match outcome {
+                Outcome::Passed => format!("{name} {cost}"),
+                Outcome::Partly(what) => format!("{name} {cost} (NOT CHECKED: {what})"),
                 Outcome::Skipped(why) => format!("{name} SKIPPED ({why})"),
             });
         format!(
-            "{} steps passed, {} skipped, 0 failed in {:.1} s: {}",
+            "{} steps passed, {} skipped, 0 failed in {total}: {}",
             self.count_passed(),
             self.taken.len() - self.count_passed(),
-            total.as_secs_f64(),
             each.collect::<Vec<_>>().join(", ")
         )
     }
