@@ -387,7 +387,10 @@ impl Session {
 
     fn set(&mut self, id: u64, target: Target, on_arrival: OnArrival) {
         let goal = Goal::new(GoalId(id), target, on_arrival, Model::fr3().joint_limits());
-        self.goals.write(&goal);
+        self.goals.write(&Goal {
+            along_path: on_arrival == OnArrival::ReportAndHold,
+            ..goal
+        });
     }
 
     fn run(&mut self, cycles: u64) -> Option<SessionEvent> {
