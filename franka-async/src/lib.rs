@@ -339,6 +339,7 @@
 //! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control is |
 //! | [`record`] | what every cycle saw and did |
 //! | `recording` | all of that, and what was asked of the robot, in files (feature `record`) |
+//! | `control_log` | logs of libfranka and texts of its exceptions (feature `record`) |
 //! | `explain` | why a motion ended, and where the arm was touched (feature `record`) |
 //! | `replay`, `export` | recorded motions again, and as tables and datasets (features `record`, `export`) |
 //! | `cassette` | sessions byte for byte, played back as the robot (features `record`, `pcap`) |
@@ -395,7 +396,7 @@ mod end_effector_pose;
 mod endpoint;
 pub mod error;
 #[cfg(feature = "record")]
-pub use franka_record::{cassette, explain, export};
+pub use franka_record::{cassette, control_log, explain, export};
 mod follow;
 mod franka_hand;
 pub mod goal;

@@ -204,16 +204,14 @@ fn of_joints(
         };
         for motion in with_rest(asked, &sample) {
             let cycle = sample.cycle();
+            let error = |i: usize, order| joint_rounding(evidence, &sample, i, order);
             let (quantity, values, limit) = match which {
                 Which::Velocity => {
                     let q = JointVector::from(sample.before.q_d);
-                    readings.extend(velocities(
-                        evidence.model,
-                        origin,
-                        &q,
-                        &motion.velocity,
-                        cycle,
-                    ));
+                    let velocities =
+                        velocities(evidence.model, origin, &q, &motion.velocity, cycle);
+                    let velocities = velocities.into_iter().enumerate();
+                    readings.extend(velocities.map(|(i, reading)| reading.within(error(i, 1))));
                     continue;
                 }
                 Which::Acceleration => (
@@ -223,9 +221,11 @@ fn of_joints(
                 ),
                 Which::Jerk => (Quantity::Jerk, motion.jerk, limits.jerk),
             };
+            let order = if which == Which::Jerk { 3 } else { 2 };
             readings.extend((0..7).map(|i| {
                 let subject = Subject::joint(i);
                 Reading::magnitude(subject, quantity, origin, values[i], limit[i], cycle)
+                    .within(error(i, order))
             }));
         }
     }
@@ -254,8 +254,49 @@ pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
 pub(super) fn cartesian_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Reading> {
     evidence
         .samples()
-        .flat_map(|sample| cartesian_readings_of(evidence.model, &sample, which))
+        .flat_map(|sample| {
+            let error = pose_rounding(evidence, &sample, which);
+            let readings = cartesian_readings_of(evidence.model, &sample, which);
+            readings.into_iter().map(move |it| it.within(error))
+        })
         .collect()
+}
+
+/// By how much rounding may change a derivative of this order of a joint command: a position, and
+/// the one before it, over the cycles between; the derivatives before are numbers of their own.
+fn joint_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, i: usize, order: i32) -> f64 {
+    if !evidence.rounded {
+        return 0.0;
+    }
+    let (half, order) = match sample.before.motion_generator_mode {
+        Generator::JointPosition => (half_digit(sample.command.q_c[i]), order),
+        Generator::JointVelocity => (half_digit(sample.command.dq_c[i]), order - 1),
+        // The joints follow the pose, near a singularity ten times as far.
+        _ => (10.0 * half_digit(POSE), order),
+    };
+    2.0 * half / CYCLE.powi(order)
+}
+
+/// Likewise of a Cartesian command, whose derivatives before are differences as well.
+fn pose_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, which: Which) -> f64 {
+    let order = match which {
+        _ if !evidence.rounded => return 0.0,
+        Which::Velocity => 1,
+        Which::Acceleration => 2,
+        Which::Jerk => 3,
+    };
+    let order = match sample.before.motion_generator_mode {
+        Generator::CartesianVelocity => order - 1,
+        _ => order,
+    };
+    // Three axes.
+    3.0_f64.sqrt() * half_digit(POSE) * (2.0 / CYCLE).powi(order)
+}
+
+/// Half of the last of six significant digits.
+fn half_digit(value: f64) -> f64 {
+    let digits = value.abs().max(1e-3).log10().floor();
+    0.5 * 10f64.powi(digits as i32 - 5)
 }
 
 /// One value of each: translation and rotation.
@@ -371,6 +412,9 @@ fn halves(twist: &Twist) -> (Vector3<f64>, Vector3<f64>) {
         twist.fixed_rows::<3>(3).into_owned(),
     )
 }
+
+/// Size of the larger numbers of a pose, below one: `[m]`, or of a rotation.
+const POSE: f64 = 0.5;
 
 /// Newton's steps for one cycle: two or three do away from singular poses.
 const ITERATIONS: usize = 4;

@@ -15,6 +15,8 @@ pub(super) struct Evidence<'a> {
     pub(super) entries: Vec<&'a LogEntry>,
     pub(super) model: &'a Model,
     pub(super) statistics: Option<&'a MotionStatistics>,
+    /// True if the numbers of the log have six significant digits.
+    pub(super) rounded: bool,
 }
 
 /// A command, with the state that it answers.
@@ -109,6 +111,21 @@ impl Sample<'_> {
 }
 
 impl Reading {
+    /// The reading, where rounding may have changed its value by `error`: the score is then that of
+    /// a limit so much larger.
+    pub(super) fn within(self, error: f64) -> Self {
+        let limit = self.bound.limit().unwrap_or(0.0).abs();
+        let share = if error > 0.0 {
+            limit / (limit + error)
+        } else {
+            1.0
+        };
+        Self {
+            score: self.score * share,
+            ..self
+        }
+    }
+
     /// Of a number whose magnitude is bounded.
     pub(super) fn magnitude(
         subject: Subject,

@@ -188,6 +188,7 @@ impl Diagnosis {
             entries: case.log.iter().skip(older).collect(),
             model,
             statistics: case.statistics.as_ref(),
+            rounded: case.log.is_rounded(),
         };
         Self::of_evidence(case.errors, &evidence)
     }

@@ -8,6 +8,7 @@
 extern crate self as franka_record;
 
 pub mod cassette;
+pub mod control_log;
 mod cycle;
 mod episodes;
 pub mod event;

@@ -6,6 +6,7 @@ mod cancelling;
 mod carrying;
 mod clearance;
 mod contact;
+mod control_log;
 mod diagnosis;
 mod endings;
 mod engaged;

@@ -1,4 +1,4 @@
-//! `franka explain`: why a recorded motion ended.
+//! `franka explain`: why a motion ended, by its recording or by a log of libfranka.
 
 use std::fs;
 use std::path::PathBuf;
@@ -6,17 +6,23 @@ use std::time::Duration;
 
 use anyhow::Context as _;
 use clap::Args;
+use franka_async::control_log::{ControlLogError, ControlLogFile};
 use franka_async::explain::Explanation;
 use franka_async::model::Model;
-use franka_async::recording::{HostTime, Recording};
+use franka_async::recording::{HostTime, Recording, RecordingError};
+use franka_async::state::{Errors, RobotError};
+use serde_json::Value;
 
+use super::limits::Kind;
 use crate::ending::{Ending, Failure};
 use crate::motion::while_turning;
 use crate::output::{Output, say};
 
-/// Say why a recorded motion ended, and where the arm was touched
+/// Say why a motion ended, and where the arm was touched
 ///
-/// Of several the newest that the robot stopped, a guard gave up or a lost link ended.
+/// FILE is a recording, a table of libfranka's logToCSV, or a text with the message of a
+/// ControlException; a text may hold both message and table. Of several motions the newest that the
+/// robot stopped, a guard gave up or a lost link ended.
 #[derive(Debug, Args)]
 pub(crate) struct Explain {
     #[command(flatten)]
@@ -27,26 +33,63 @@ pub(crate) struct Explain {
     /// Draw the last second to a file
     #[arg(long, value_name = "FILE.svg")]
     figure: Option<PathBuf>,
+    /// Kind of the robot, for a log of libfranka, which does not say
+    #[arg(long, value_enum)]
+    kind: Option<Kind>,
+    /// Errors of the motion, by the robot's names, for a table without the message
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = error_of)]
+    errors: Vec<RobotError>,
     #[command(flatten)]
     output: Output,
 }
 
-/// A robot of a recording.
+fn error_of(name: &str) -> Result<RobotError, String> {
+    let known = || RobotError::ALL.map(RobotError::name).join(", ");
+    RobotError::from_name(name).ok_or_else(|| format!("expected one of {}", known()))
+}
+
+/// A robot of a recording, or a log of libfranka.
 #[derive(Debug, Args)]
 pub(crate) struct Recorded {
-    /// The recording
-    #[arg(value_name = "FILE.mcap")]
+    /// A recording, or a text with a log of libfranka
+    #[arg(value_name = "FILE")]
     pub(super) file: PathBuf,
     /// Which robot of the recording; needed if it has several
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
 }
 
+/// What a file holds.
+pub(crate) enum Source {
+    /// A recording, with the name and the model of the robot.
+    Recording(Recording, String, &'static Model),
+    /// A log of libfranka.
+    Log(ControlLogFile),
+}
+
 impl Recorded {
+    /// Opens the file, whose content says what it is.
+    pub(super) fn open_any(&self) -> anyhow::Result<Source> {
+        match Recording::open(&self.file) {
+            Ok(recording) => {
+                let (recording, name, model) = self.of_recording(recording)?;
+                Ok(Source::Recording(recording, name, model))
+            }
+            Err(RecordingError::NotMcap { .. }) => Ok(Source::Log(self.open_log()?)),
+            Err(error) => Err(Failure::new(Ending::Host, error.to_string()).into()),
+        }
+    }
+
     /// Opens the recording; returns it with the name and the model of the robot.
     pub(super) fn open(&self) -> anyhow::Result<(Recording, String, &'static Model)> {
         let recording = Recording::open(&self.file);
-        let recording = recording.map_err(|error| Failure::new(Ending::Host, error.to_string()))?;
+        self.of_recording(recording.map_err(|error| Failure::new(Ending::Host, error.to_string()))?)
+    }
+
+    fn of_recording(
+        &self,
+        recording: Recording,
+    ) -> anyhow::Result<(Recording, String, &'static Model)> {
         if let Some(damage) = recording.damage() {
             say(&format!("{} ends early: {damage}", self.file.display()));
         }
@@ -67,11 +110,27 @@ impl Recorded {
         let name = robot.name.clone();
         Ok((recording, name, Model::of(kind)))
     }
+
+    fn open_log(&self) -> anyhow::Result<ControlLogFile> {
+        let path = self.file.display();
+        let file = ControlLogFile::open(&self.file).map_err(|error| match error {
+            ControlLogError::File { .. } => Failure::new(Ending::Host, error.to_string()),
+            error => Failure::new(Ending::Host, format!("{path}: {error}")),
+        })?;
+        Ok(file)
+    }
 }
 
 impl Explain {
     pub(super) fn run(self) -> anyhow::Result<Ending> {
-        let (recording, name, model) = self.recorded.open()?;
+        let (recording, name, model) = match self.recorded.open_any()? {
+            Source::Recording(recording, name, model) => (recording, name, model),
+            Source::Log(file) => return self.explain_log(file),
+        };
+        if !self.errors.is_empty() || self.kind.is_some() {
+            let message = "--errors and --kind are for logs of libfranka";
+            return Err(Failure::usage(message).into());
+        }
         let robot = recording.robot(&name)?;
         let explain = |until| Explanation::of_recording(&robot.to(until), model);
         let explain = |until| while_turning("looking at every cycle", || explain(until));
@@ -88,10 +147,47 @@ impl Explain {
             let end = explanation.received.unwrap_or_default();
             explanation = explain(end - Duration::from_nanos(1));
         }
+        self.draw(&explanation)?;
+        self.output.print(&explanation, || explanation.to_string())
+    }
+
+    fn explain_log(&self, mut file: ControlLogFile) -> anyhow::Result<Ending> {
+        let model = self.kind.map(Kind::model);
+        let model = model.or_else(|| file.kind().map(Model::of));
+        // No number of a text depends on the robot.
+        if model.is_none() && !file.log.is_empty() {
+            let path = self.recorded.file.display();
+            let message = format!("which kind of robot is the log of? {path} does not say");
+            return Err(Failure::usage(message)
+                .advice("--kind fr3 or --kind fer")
+                .into());
+        }
+        if self.earlier > 0 {
+            let message = "--earlier is for recordings: of a log the newest motion is explained";
+            return Err(Failure::usage(message).into());
+        }
+        if !self.errors.is_empty() {
+            let named = file.errors();
+            if !named.is_empty() {
+                let message = format!("--errors: the file names {named}");
+                return Err(Failure::usage(message).into());
+            }
+            file = file.with_errors(self.errors.iter().copied().collect::<Errors>());
+        }
+        let explanation = Explanation::of_control_log(&file, model.unwrap_or(Model::fr3()));
+        self.draw(&explanation)?;
+        let mut value = serde_json::to_value(&explanation)?;
+        if let (None, Value::Object(fields)) = (model, &mut value) {
+            fields.remove("robot");
+        }
+        self.output.print(&value, || explanation.to_string())
+    }
+
+    fn draw(&self, explanation: &Explanation) -> anyhow::Result<()> {
         if let Some(file) = &self.figure {
             let written = fs::write(file, explanation.figure());
             written.with_context(|| format!("writing {}", file.display()))?;
         }
-        self.output.print(&explanation, || explanation.to_string())
+        Ok(())
     }
 }

@@ -1,5 +1,7 @@
 //! `franka export`: recordings as tables, and as datasets for training.
 
+use std::convert::Infallible;
+use std::error::Error;
 use std::fs::File;
 #[cfg(feature = "export")]
 use std::path::Path;
@@ -14,18 +16,19 @@ use franka_async::export::write_parquet;
 use franka_async::export::{Columns, write_csv};
 #[cfg(feature = "export")]
 use franka_async::model::RobotKind;
+use franka_async::recording::Cycle;
 #[cfg(feature = "export")]
 use franka_async::recording::{Episode, RobotRecording, Sample, Samples};
 use serde_json::json;
 
-use super::explain::Recorded;
+use super::explain::{Recorded, Source};
 use crate::ending::{Ending, Failure};
 use crate::motion::while_turning;
 use crate::output::Output;
 
 /// Export a recording as tables, or as a dataset for training
 ///
-/// Tables have a row per cycle; a dataset has the episodes of the recording, in the layout of
+/// FILE is a recording, or a table of libfranka's logToCSV. Tables have a row per cycle; a dataset has the episodes of the recording, in the layout of
 /// LeRobot.
 #[derive(Debug, Args)]
 #[group(id = "to", required = true, multiple = true, args = ["csv", "parquet", "lerobot"])]
@@ -71,32 +74,33 @@ impl Export {
                 return Err(Failure::without(option, "export").into());
             }
         }
-        #[cfg_attr(not(feature = "export"), expect(unused_variables))]
-        let (recording, name, model) = self.recorded.open()?;
-        let robot = recording.robot(&name)?;
-        let columns = match self.columns.is_empty() {
-            true => Columns::all(),
-            false => Columns::named(self.columns.iter().map(String::as_str))
-                .map_err(|error| Failure::usage(error.to_string()))?,
-        };
-        let mut rows = None;
         #[cfg_attr(not(feature = "export"), expect(unused_mut))]
         let mut dataset: Option<(usize, u64)> = None;
-        if let Some(path) = &self.csv {
-            let file = File::create_new(path);
-            let file = file.with_context(|| format!("writing {}", path.display()))?;
-            let write = || write_csv(robot.cycles(), &columns, true, file);
-            rows = Some(while_turning("writing the table", write)?);
-        }
-        #[cfg(feature = "export")]
-        if let Some(path) = &self.parquet {
-            let write = || write_parquet(robot.cycles(), &columns, path);
-            rows = Some(while_turning("writing the table", write)?);
-        }
-        #[cfg(feature = "export")]
-        if let Some(folder) = &self.lerobot {
-            dataset = Some(self.add_to_dataset(folder, &robot, model.kind())?);
-        }
+        #[cfg_attr(not(feature = "export"), expect(unused_variables))]
+        let rows = match self.recorded.open_any()? {
+            Source::Recording(recording, name, model) => {
+                let robot = recording.robot(&name)?;
+                let rows = self.write_tables(|| robot.cycles(), &Columns::all())?;
+                #[cfg(feature = "export")]
+                if let Some(folder) = &self.lerobot {
+                    dataset = Some(self.add_to_dataset(folder, &robot, model.kind())?);
+                }
+                rows
+            }
+            Source::Log(file) => {
+                let path = self.recorded.file.display();
+                if self.lerobot.is_some() {
+                    let message = format!("{path} is a log of libfranka: it has no episodes");
+                    return Err(Failure::usage(message).into());
+                }
+                if file.log.is_empty() {
+                    let message = format!("{path} has the text of an exception, and no table");
+                    return Err(Failure::usage(message).into());
+                }
+                let cycles = || file.cycles().map(Ok::<_, Infallible>);
+                self.write_tables(cycles, &Columns::of_log())?
+            }
+        };
         let (episodes, frames) = dataset.unzip();
         let value = json!({ "rows": rows, "episodes": episodes, "frames": frames });
         self.output.print(&value, || {
@@ -106,6 +110,38 @@ impl Export {
                 dataset.map(|(episodes, frames)| format!("{episodes} episodes, {frames} frames\n"));
             tables.into_iter().chain(dataset).collect()
         })
+    }
+
+    /// Writes the tables that were asked for, of the chosen ones of these columns; returns the
+    /// number of rows.
+    fn write_tables<E, I>(
+        &self,
+        cycles: impl Fn() -> I,
+        columns: &Columns,
+    ) -> anyhow::Result<Option<u64>>
+    where
+        E: Error + Send + Sync + 'static,
+        I: Iterator<Item = Result<Cycle, E>>,
+    {
+        let columns = match self.columns.is_empty() {
+            true => columns.clone(),
+            false => columns
+                .choose(self.columns.iter().map(String::as_str))
+                .map_err(|error| Failure::usage(error.to_string()))?,
+        };
+        let mut rows = None;
+        if let Some(path) = &self.csv {
+            let file = File::create_new(path);
+            let file = file.with_context(|| format!("writing {}", path.display()))?;
+            let write = || write_csv(cycles(), &columns, true, file);
+            rows = Some(while_turning("writing the table", write)?);
+        }
+        #[cfg(feature = "export")]
+        if let Some(path) = &self.parquet {
+            let write = || write_parquet(cycles(), &columns, path);
+            rows = Some(while_turning("writing the table", write)?);
+        }
+        Ok(rows)
     }
 
     /// Adds the chosen episodes to a dataset, and returns how many episodes and frames.

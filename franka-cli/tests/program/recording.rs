@@ -124,6 +124,82 @@ fn an_earlier_end_of_a_motion_is_explained() {
         .failed(2, &["--earlier 2", "before the newest there are 1"]);
 }
 
+/// A table of libfranka 0.9.2 in which joint 4 leaps, and the text of its exception.
+fn log_of_libfranka() -> String {
+    let vectors = [
+        ("state.q", 7),
+        ("state.q_d", 7),
+        ("state.dq", 7),
+        ("state.dq_d", 7),
+        ("state.tau_J", 7),
+        ("state.tau_ext_hat_filtered", 7),
+        ("cmd.q_d", 7),
+        ("cmd.dq_d", 7),
+        ("cmd.O_T_EE_d", 16),
+        ("cmd.O_dP_EE_d", 6),
+        ("cmd.tau_J_d", 7),
+    ];
+    let names = vectors.map(|(name, size)| {
+        let names = (0..size).map(|i| format!("{name}[{i}]"));
+        names.collect::<Vec<_>>().join(", ")
+    });
+    let mut text = format!(
+        "libfranka: Move command aborted: motion aborted by reflex! \
+         [\"joint_motion_generator_acceleration_discontinuity\"]\n\
+         control_command_success_rate: 1\n\ntime, success_rate, {}\n",
+        names.join(",")
+    );
+    for time in 1..=5 {
+        let q = "0,-0.785,0,-2.356,0,1.571,0.785";
+        let speed = if time == 5 {
+            0.5
+        } else {
+            0.0001 * f64::from(time)
+        };
+        let rate = if time == 5 { "0" } else { "1" };
+        let zeros = ["0"; 29].join(",");
+        let still = ["0"; 21].join(",");
+        let (idle, dq_d) = (["0"; 7].join(","), "0,0,0,0,0,0,0");
+        text +=
+            &format!("{time},{rate},{q},{q},{idle},{dq_d},{still},0,0,0,{speed},0,0,0,{zeros}\n");
+    }
+    text
+}
+
+#[test]
+fn a_log_of_libfranka_is_explained_and_exported() {
+    let home = Home::new();
+    let log = log_of_libfranka();
+    std::fs::write(home.path("reflex.txt"), &log).expect("a file");
+    let explain = ["explain", "reflex.txt"];
+    home.run(&explain).failed(2, &["--kind fr3 or --kind fer"]);
+    let fer = [&explain[..], &["--kind", "fer"]].concat();
+    let text = home.run(&fer).done();
+    for part in ["Why the robot stopped", "joint 4", "commanded acceleration"] {
+        assert!(text.contains(part), "{text}");
+    }
+    let figure = [&fer[..], &["--figure", "reflex.svg", "--json"]].concat();
+    assert_eq!(home.run(&figure).json()["robot"], "Fer");
+    assert!(home.path("reflex.svg").exists());
+    let export = ["export", "reflex.txt", "--csv", "log.csv", "--json"];
+    assert_eq!(home.run(&export).json()["rows"], 5);
+    let export = ["export", "reflex.txt", "--lerobot", "data"];
+    home.run(&export).failed(2, &["it has no episodes"]);
+    // The text alone needs no kind of robot, and names none.
+    let message = log.split("\n\n").next().expect("a text");
+    std::fs::write(home.path("text.txt"), message).expect("a file");
+    let text = home.run(&["explain", "text.txt"]).done();
+    assert!(text.contains("no cycle of the motion is known"), "{text}");
+    let json = home.run(&["explain", "text.txt", "--json"]).json();
+    assert!(json.get("robot").is_none(), "{json}");
+    home.run(&["export", "text.txt", "--csv", "x.csv"])
+        .failed(2, &["and no table"]);
+    let cut = &log[..log.len() - 20];
+    std::fs::write(home.path("cut.txt"), cut).expect("a file");
+    home.run(&["explain", "cut.txt", "--kind", "fer"])
+        .failed(6, &["cut.txt: line 9, column ", "the file is cut there"]);
+}
+
 #[test]
 fn episodes_become_a_dataset() {
     Simulated::each_fast(|sim| {

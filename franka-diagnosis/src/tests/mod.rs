@@ -157,6 +157,7 @@ impl Story {
             entries: self.entries.iter().collect(),
             model: self.model,
             statistics,
+            rounded: false,
         };
         Diagnosis::of_evidence(errors, &evidence)
     }

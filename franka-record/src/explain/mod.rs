@@ -57,6 +57,7 @@ use franka_model::{Model, RobotKind};
 use franka_proto::Errors;
 use franka_rt::lifecycle::ControlError;
 
+use crate::control_log::ControlLogFile;
 use crate::recording::{RecordingError, RobotRecording};
 use crate::{Cycle, Event, HostTime};
 
@@ -251,6 +252,27 @@ impl Explanation {
         }
     }
 
+    /// Of a log of libfranka. A file without the errors explains what its table shows, and says
+    /// that they are missing.
+    pub fn of_control_log(file: &ControlLogFile, model: &Model) -> Self {
+        let case = file.case();
+        let mut explanation = Self::of_case(&case, model);
+        explanation.earlier = file.earlier;
+        let message = file.message.as_ref().map_or("", |message| &message.text);
+        let cause = explanation.cause.get_or_insert_with(|| Cause {
+            errors: Errors::NONE,
+            diagnosis: None,
+            text: match message {
+                "" => UNNAMED.to_owned(),
+                text => text.to_owned(),
+            },
+        });
+        if let Some(rate) = file.message.as_ref().and_then(|it| it.success_rate) {
+            cause.text += &rate.to_string();
+        }
+        explanation
+    }
+
     /// The last second before the end as an SVG image: what touched the arm, velocities and torques
     /// against their limits, what happened when, and where on the arm the contact was.
     ///
@@ -259,6 +281,10 @@ impl Explanation {
         figure::draw(self)
     }
 }
+
+/// Of a table without the text of its exception.
+const UNNAMED: &str = "the file does not name the errors: they are in the text of the exception, \
+                       which may be pasted into it";
 
 /// Moments that a timeline holds.
 pub const MOMENTS_MAX: usize = 500;

@@ -8,12 +8,14 @@ use crate::cycle::Cycle;
 #[derive(Clone, Debug)]
 pub struct Columns(pub(super) Vec<&'static Column>);
 
-/// No column of a recording has this name.
+/// No column has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("got the column {got:?}, expected some of {}", names().join(", "))]
+#[error("got the column {got:?}, expected some of {}", expected.join(", "))]
 pub struct UnknownColumn {
     /// The name given.
     pub got: String,
+    /// The names that there are.
+    pub expected: Vec<&'static str>,
 }
 
 impl Columns {
@@ -22,18 +24,37 @@ impl Columns {
         Self(recorded().collect())
     }
 
-    /// Those of these names, each once, in this order.
+    /// All that a [control log](crate::control_log) has. `q_ref`, `dq_ref` and `tau_c` are the
+    /// commands that answer a state; `O_T_EE_c` and `O_dP_EE_c` were commanded before it.
+    pub fn of_log() -> Self {
+        let find = |name| Column::find(name).expect("a column of a cycle");
+        Self(LOGGED.map(find).into())
+    }
+
+    /// Those of a recording that have these names, each once, in this order.
     ///
     /// # Errors
     /// [`UnknownColumn`] for the first name that no column of a recording has.
     pub fn named<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Self, UnknownColumn> {
+        Self::all().choose(names)
+    }
+
+    /// Those of these columns that have these names, each once, in this order.
+    ///
+    /// # Errors
+    /// [`UnknownColumn`] for the first name that none of them has.
+    pub fn choose<'a>(
+        &self,
+        names: impl IntoIterator<Item = &'a str>,
+    ) -> Result<Self, UnknownColumn> {
         let mut columns: Vec<&Column> = Vec::new();
         for name in names {
-            let got = || UnknownColumn {
+            let unknown = || UnknownColumn {
                 got: name.to_owned(),
+                expected: self.0.iter().map(|column| column.name).collect(),
             };
-            let column = recorded().find(|column| column.name == name);
-            let column = column.ok_or_else(got)?;
+            let column = self.0.iter().copied().find(|column| column.name == name);
+            let column = column.ok_or_else(unknown)?;
             if !columns.iter().any(|it| it.name == column.name) {
                 columns.push(column);
             }
@@ -55,15 +76,27 @@ pub(super) fn name_of(list: &'static [&'static str], number: f64) -> &'static st
     list.get(number as usize).copied().unwrap_or_default()
 }
 
-fn names() -> Vec<&'static str> {
-    recorded().map(|column| column.name).collect()
-}
-
 /// The columns that a recording has.
 fn recorded() -> impl Iterator<Item = &'static Column> {
     let is_recorded = |column: &&Column| !NOT_RECORDED.contains(&column.name);
     Column::all().iter().filter(is_recorded)
 }
+
+/// What a control log has.
+const LOGGED: [&str; 12] = [
+    "q",
+    "q_d",
+    "dq",
+    "dq_d",
+    "tau_J",
+    "tau_ext_hat_filtered",
+    "control_command_success_rate",
+    "q_ref",
+    "dq_ref",
+    "tau_c",
+    "O_T_EE_c",
+    "O_dP_EE_c",
+];
 
 /// Fields of the state that recordings leave out, and which read as zero there.
 const NOT_RECORDED: [&str; 13] = [

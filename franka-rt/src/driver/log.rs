@@ -36,6 +36,7 @@ pub struct ControlLog {
     /// The entry that waits for its state. Its command is there already.
     next: usize,
     len: usize,
+    rounded: bool,
 }
 
 impl ControlLog {
@@ -53,7 +54,23 @@ impl ControlLog {
             entries: vec![LogEntry::default(); entries].into(),
             next: 0,
             len: 0,
+            rounded: false,
         }
+    }
+
+    /// Marks the numbers as rounded to six significant digits, as a table of libfranka has them. A
+    /// diagnosis then takes no difference for real that rounding may have made.
+    #[must_use]
+    pub fn rounded(self) -> Self {
+        Self {
+            rounded: true,
+            ..self
+        }
+    }
+
+    /// True for a log whose numbers are rounded to six significant digits.
+    pub fn is_rounded(&self) -> bool {
+        self.rounded
     }
 
     /// How many cycles it keeps.
@@ -136,6 +153,7 @@ impl FromIterator<LogEntry> for ControlLog {
             entries: entries.into(),
             next: len,
             len,
+            rounded: false,
         }
     }
 }
@@ -178,6 +196,7 @@ impl<'de> serde::Deserialize<'de> for ControlLog {
             next: len,
             len,
             entries: entries.into(),
+            rounded: false,
         })
     }
 }

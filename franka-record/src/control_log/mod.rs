@@ -1,0 +1,175 @@
+//! What libfranka leaves of a motion that the robot ended: the table of `franka::logToCSV`, and the
+//! text of the `franka::ControlException`. Programs with libfranka below, and this driver's
+//! `ControlLog::to_csv`, write them.
+//!
+//! ```text
+//! file --> message: refusal, errors, success rate      --> Case --> Explanation
+//!      --> table, of any generation of columns --> log -->      --> cycles, for exports
+//! ```
+//!
+//! | module | holds |
+//! |---|---|
+//! | `table` | rows of numbers, by the names of their columns |
+//! | `message` | the text of the exception, wherever it stands |
+//! | `motion` | what follows from the rows: modes, numbers of commands, derivatives |
+//!
+//! A file may hold either or both, between other lines, as a terminal shows them. Of several the
+//! newest counts. Tables come in three generations of columns, by the changelog of libfranka:
+//!
+//! | libfranka | begins with |
+//! |---|---|
+//! | 0.2 to 0.9.0 | `duration, success rate, q[0], q[1]`; the commands come after an empty column |
+//! | 0.9.1 to 0.14 | `time, success_rate, state.q[0], state.q[1]` |
+//! | 0.15 and later | `time,success_rate,state.q[0],state.q[1]` |
+//!
+//! Numbers have six significant digits. A difference that rounding may have made is not taken for
+//! a finding: a log of joint positions shows steps, and seldom a jerk.
+//!
+//! # Example
+//!
+//! ```
+//! use franka_model::Model;
+//! use franka_record::control_log::ControlLogFile;
+//! use franka_record::explain::Explanation;
+//!
+//! let text = "libfranka: Move command aborted: motion aborted by reflex! \
+//!             [\"communication_constraints_violation\"]\n\
+//!             control_command_success_rate: 0.77";
+//! let file = ControlLogFile::parse(text)?;
+//! let explanation = Explanation::of_control_log(&file, Model::fr3());
+//! println!("{explanation}");
+//! # assert!(explanation.to_string().contains("direct cable"), "{explanation}");
+//! # Ok::<(), franka_record::control_log::ControlLogError>(())
+//! ```
+
+mod error;
+mod message;
+mod motion;
+mod table;
+#[cfg(test)]
+mod tests;
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+use franka_diagnosis::Case;
+use franka_model::RobotKind;
+use franka_proto::{Errors, RobotCommand};
+use franka_rt::driver::{Commander, ControlLog};
+
+pub use self::error::ControlLogError;
+pub use self::message::ControlMessage;
+use self::motion::Motion;
+pub use self::table::Generation;
+use self::table::Table;
+use crate::Cycle;
+
+/// A file with a log of libfranka, with the text of a control exception, or with both.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct ControlLogFile {
+    /// The text of the newest exception.
+    pub message: Option<ControlMessage>,
+    /// The newest table, oldest cycle first; empty without one. Its states have what the table
+    /// shows and what follows from it; everything else has its default.
+    pub log: Arc<ControlLog>,
+    /// The generation of columns of that table.
+    pub generation: Option<Generation>,
+    /// How many older tables, or older texts, the file has.
+    pub earlier: u64,
+    commands: Vec<RobotCommand>,
+}
+
+impl ControlLogFile {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// [`ControlLogError`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, ControlLogError> {
+        let path = path.as_ref();
+        let bytes = fs::read(path).map_err(|source| ControlLogError::File {
+            path: path.to_owned(),
+            source: source.into(),
+        })?;
+        let text = String::from_utf8(bytes).map_err(|error| ControlLogError::NotText {
+            offset: error.utf8_error().valid_up_to() as u64,
+        })?;
+        Self::parse(&text)
+    }
+
+    /// Reads the text of a file.
+    ///
+    /// # Errors
+    /// [`ControlLogError`].
+    pub fn parse(text: &str) -> Result<Self, ControlLogError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let (tables, around) = table::find(text);
+        let mut messages = message::all(text, &around)?;
+        if tables.is_empty() && messages.is_empty() {
+            let line = text.lines().find(|line| !line.trim().is_empty());
+            let got = line.unwrap_or_default().chars().take(SHOWN).collect();
+            return Err(ControlLogError::Unknown { got });
+        }
+        let earlier = tables.len().max(messages.len()) as u64 - 1;
+        let message = messages.pop();
+        let errors = message.as_ref().map_or(Errors::NONE, |it| it.errors);
+        let table = tables.last().map(|place| Table::read(text, place));
+        let Some(table) = table.transpose()? else {
+            return Ok(Self {
+                message,
+                earlier,
+                ..Self::default()
+            });
+        };
+        let generation = Some(table.generation);
+        let motion = Motion::of(table, errors);
+        Ok(Self {
+            message,
+            log: Arc::new(motion.log),
+            generation,
+            earlier,
+            commands: motion.commands,
+        })
+    }
+
+    /// The robot, where the file tells: only one was there before libfranka 0.9.1.
+    pub fn kind(&self) -> Option<RobotKind> {
+        (self.generation == Some(Generation::Unprefixed)).then_some(RobotKind::Fer)
+    }
+
+    /// The errors that the text names; none without one.
+    pub fn errors(&self) -> Errors {
+        let message = self.message.as_ref();
+        message.map_or(Errors::NONE, |message| message.errors)
+    }
+
+    /// The errors of the motion, where the text of the exception is missing.
+    #[must_use]
+    pub fn with_errors(mut self, errors: Errors) -> Self {
+        let message = self.message.get_or_insert_default();
+        message.errors = errors;
+        self.log = Arc::new(motion::ended_by(&self.log, errors));
+        self
+    }
+
+    /// What a diagnosis is made of.
+    pub fn case(&self) -> Case {
+        Case {
+            commander: Commander::Function,
+            errors: self.errors(),
+            log: self.log.clone(),
+            statistics: None,
+        }
+    }
+
+    /// The cycles of the table, each with the command that answers its state, for exports with
+    /// [`Columns::of_log`](crate::export::Columns::of_log). The host's clock is not in a log:
+    /// [`Cycle::time`] is zero.
+    pub fn cycles(&self) -> impl Iterator<Item = Cycle> {
+        motion::cycles(&self.log, &self.commands)
+    }
+}
+
+/// Characters of a line that an error shows.
+const SHOWN: usize = 60;

@@ -1,0 +1,264 @@
+//! The table of `franka::logToCSV`.
+
+use std::ops::Range;
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+use franka_proto::{RobotCommand, RobotState};
+
+use super::{ControlLogError, SHOWN};
+
+/// A generation of columns: the names of libfranka's table have changed twice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Generation {
+    /// libfranka 0.2 to 0.9.0: `duration, success rate, q[0]`, and an empty column before the
+    /// commands.
+    Unprefixed,
+    /// libfranka 0.9.1 to 0.14: `time, success_rate, state.q[0]`, with blanks.
+    Spaced,
+    /// libfranka 0.15 and later, and this driver: `time,success_rate,state.q[0]`.
+    Compact,
+}
+
+/// Where a table is in a file.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    bytes: Range<usize>,
+    /// The line of the names, from 1.
+    line: u64,
+    generation: Generation,
+}
+
+/// The numbers of a table.
+#[derive(Debug)]
+pub(super) struct Table {
+    pub(super) generation: Generation,
+    /// Oldest first, one at least.
+    pub(super) rows: Vec<Row>,
+}
+
+/// A row: a state, and the command before it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Row {
+    pub(super) state: RobotState,
+    /// All zeros but those numbers that the motion is commanded by.
+    pub(super) command: RobotCommand,
+}
+
+/// The tables of a file, oldest first, and the parts around them.
+pub(super) fn find(text: &str) -> (Vec<Place>, Vec<Range<usize>>) {
+    let (mut tables, mut around): (Vec<Place>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
+    let (mut offset, mut is_inside) = (0, false);
+    for (line, content) in (1..).zip(text.split_inclusive('\n')) {
+        let end = offset + content.len();
+        if let Some(generation) = generation(content) {
+            let bytes = offset..end;
+            tables.push(Place {
+                bytes,
+                line,
+                generation,
+            });
+            is_inside = true;
+        } else if is_inside && is_row(content) {
+            tables.last_mut().expect("it is inside").bytes.end = end;
+        } else {
+            match around.last_mut() {
+                Some(part) if part.end == offset => part.end = end,
+                _ => around.push(offset..end),
+            }
+            is_inside = false;
+        }
+        offset = end;
+    }
+    (tables, around)
+}
+
+/// The generation of a line of names.
+fn generation(line: &str) -> Option<Generation> {
+    let mut names = line.split(',');
+    let blank = |name: &str| name.starts_with(' ');
+    let plain = |name: &str| name.trim().trim_matches('"').to_owned();
+    let (first, second) = (plain(names.next()?), names.next()?);
+    match (first.as_str(), plain(second).as_str()) {
+        ("duration", "success rate") => Some(Generation::Unprefixed),
+        ("time", "success_rate") if blank(second) => Some(Generation::Spaced),
+        ("time", "success_rate") => Some(Generation::Compact),
+        _ => None,
+    }
+}
+
+/// Whether a line below the names belongs to the table. What is cut or garbled does, too: an empty
+/// line, or one of words, ends it.
+fn is_row(line: &str) -> bool {
+    let line = line.trim();
+    let is_number = |c: char| c.is_ascii_digit() || c == '-';
+    line.starts_with(is_number) || line.contains(',') && !line.contains("libfranka")
+}
+
+/// Where the numbers of some columns go.
+enum Field {
+    State(fn(&mut RobotState) -> &mut [f64]),
+    Command(fn(&mut RobotCommand) -> &mut [f64]),
+}
+
+/// The columns by libfranka's names; each is a vector.
+const COLUMNS: [(&str, Field); 11] = [
+    ("q", Field::State(|it| &mut it.q)),
+    ("q_d", Field::State(|it| &mut it.q_d)),
+    ("dq", Field::State(|it| &mut it.dq)),
+    ("dq_d", Field::State(|it| &mut it.dq_d)),
+    ("tau_J", Field::State(|it| &mut it.tau_J)),
+    (
+        "tau_ext_hat_filtered",
+        Field::State(|it| &mut it.tau_ext_hat_filtered),
+    ),
+    ("q_d", Field::Command(|it| &mut it.q_c)),
+    ("dq_d", Field::Command(|it| &mut it.dq_c)),
+    ("O_T_EE_d", Field::Command(|it| &mut it.O_T_EE_c)),
+    ("O_dP_EE_d", Field::Command(|it| &mut it.O_dP_EE_c)),
+    ("tau_J_d", Field::Command(|it| &mut it.tau_J_d)),
+];
+
+/// The time, the success rate, and the place of each of [`COLUMNS`] among the cells of a row.
+struct Layout {
+    cells: usize,
+    /// The place, the entry of [`COLUMNS`], and the index in its vector.
+    numbers: Vec<(usize, usize, usize)>,
+}
+
+impl Layout {
+    /// Columns may stand in any order, and others among them.
+    fn of(names: &StringRecord, place: &Place) -> Result<Self, ControlLogError> {
+        let is_unprefixed = place.generation == Generation::Unprefixed;
+        // Without prefixes, the same names stand for states before this one, for commands after it.
+        let commands = names.iter().position(|name| name == COMMANDS);
+        let commands = commands.unwrap_or(names.len());
+        let mut numbers = Vec::new();
+        let mut row = Row::default();
+        for (column, (name, field)) in COLUMNS.iter().enumerate() {
+            let (prefix, among) = match field {
+                Field::State(_) => ("state.", 0..commands),
+                Field::Command(_) => ("cmd.", commands.min(names.len())..names.len()),
+            };
+            for index in 0..field.of(&mut row).len() {
+                let mut sought = format!("{name}[{index}]");
+                let mut among = among.clone();
+                if !is_unprefixed {
+                    sought = format!("{prefix}{sought}");
+                    among = 0..names.len();
+                }
+                let cell = among.clone().find(|i| names[*i] == sought);
+                let cell = cell.ok_or(ControlLogError::Column {
+                    line: place.line,
+                    got: names.len(),
+                    missing: sought,
+                })?;
+                numbers.push((cell, column, index));
+            }
+        }
+        Ok(Self {
+            cells: names.len(),
+            numbers,
+        })
+    }
+}
+
+impl Field {
+    fn of<'a>(&self, row: &'a mut Row) -> &'a mut [f64] {
+        match self {
+            Self::State(of) => of(&mut row.state),
+            Self::Command(of) => of(&mut row.command),
+        }
+    }
+}
+
+impl Table {
+    /// Reads the table at a place of the text.
+    pub(super) fn read(text: &str, place: &Place) -> Result<Self, ControlLogError> {
+        let bytes = &text.as_bytes()[place.bytes.clone()];
+        let mut reader = ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(Trim::All)
+            .from_reader(bytes);
+        let (mut names, mut record) = (StringRecord::new(), StringRecord::new());
+        let read = "a text in memory can be read, and is UTF-8";
+        reader.read_record(&mut names).expect(read);
+        let layout = Layout::of(&names, place)?;
+        let mut rows: Vec<Row> = Vec::new();
+        while reader.read_record(&mut record).expect(read) {
+            let position = record.position().expect("it was read");
+            let line = place.line + position.line() - 1;
+            if record.len() != layout.cells {
+                return Err(ControlLogError::Row {
+                    line,
+                    column: record.len().min(layout.cells) + 1,
+                    got: record.len(),
+                    expected: layout.cells,
+                    last: record.len() < layout.cells
+                        && reader.position().byte() >= bytes.trim_ascii_end().len() as u64,
+                });
+            }
+            let row = row(&layout, &names, &record, line)?;
+            if let Some(before) = rows.last().map(|row| row.state.message_id)
+                && row.state.message_id <= before
+            {
+                let expected = format!("a time after {before} ms");
+                return Err(cell(&names, &record, line, 0, expected));
+            }
+            rows.push(row);
+        }
+        if rows.is_empty() {
+            return Err(ControlLogError::NoRow { line: place.line });
+        }
+        Ok(Self {
+            generation: place.generation,
+            rows,
+        })
+    }
+}
+
+fn row(
+    layout: &Layout,
+    names: &StringRecord,
+    record: &StringRecord,
+    line: u64,
+) -> Result<Row, ControlLogError> {
+    let fail = |column, expected: &str| cell(names, record, line, column, expected.to_owned());
+    let mut row = Row::default();
+    let [time, rate] = [0, 1];
+    let Ok(message_id) = record[time].parse() else {
+        return Err(fail(time, "whole milliseconds"));
+    };
+    row.state.message_id = message_id;
+    let Ok(success_rate) = record[rate].parse() else {
+        return Err(fail(rate, "a success rate, 0 to 1"));
+    };
+    row.state.control_command_success_rate = success_rate;
+    for (place, column, index) in &layout.numbers {
+        let Ok(number) = record[*place].parse() else {
+            return Err(fail(*place, "a number"));
+        };
+        COLUMNS[*column].1.of(&mut row)[*index] = number;
+    }
+    Ok(row)
+}
+
+/// Why a cell is wrong; `column` counts from 0.
+fn cell(
+    names: &StringRecord,
+    record: &StringRecord,
+    line: u64,
+    column: usize,
+    expected: String,
+) -> ControlLogError {
+    ControlLogError::Cell {
+        line,
+        column: column + 1,
+        name: names[column].to_owned(),
+        got: record[column].chars().take(SHOWN).collect(),
+        expected,
+    }
+}
+
+/// The empty column before the commands of [`Generation::Unprefixed`].
+const COMMANDS: &str = "sent commands";
