@@ -16,7 +16,7 @@
 //! | 60 | 7 f32 | dq, `[rad/s]` |
 //! | 88 | 7 f32 | tau_J, `[N m]` |
 //! | 116 | 7 f32 | tau_ext_hat_filtered, `[N m]` |
-//! | 144 | 6 f32 | O_F_ext_hat_K, `[N, N m]` |
+//! | 144 | 6 f32 | external wrench in base axes, its torque about the stiffness frame, `[N, N m]` |
 //! | 168 | 7 f32 | reference of the joints, `[rad]` |
 //! | 196 | 9 poses | joint frames 1 to 7, flange, end effector, as measured |
 //! | 448 | 9 poses | the same at the reference |
@@ -89,7 +89,7 @@ pub(crate) fn encode(sample: &Sample, model: &Model, server: Server) -> Vec<u8> 
     put(&state.dq);
     put(&state.tau_J);
     put(&state.tau_ext_hat_filtered);
-    put(&state.O_F_ext_hat_K);
+    put(&state.wrench_at_stiffness_frame());
     put(&wanted);
     for q in [state.q, wanted] {
         for (position, quaternion) in poses(model, state, q) {

@@ -17,10 +17,14 @@ pub(super) enum Sense {
 impl Sense {
     const ALL: [Self; 2] = [Self::Joints, Self::Axes];
 
-    fn load(self, state: &RobotState) -> &[f64] {
+    /// The loads, of which axes have six.
+    fn load(self, state: &RobotState) -> [f64; 7] {
         match self {
-            Self::Joints => &state.tau_ext_hat_filtered,
-            Self::Axes => &state.O_F_ext_hat_K,
+            Self::Joints => state.tau_ext_hat_filtered,
+            Self::Axes => {
+                let [x, y, z, a, b, c] = state.wrench_at_stiffness_frame();
+                [x, y, z, a, b, c, 0.0]
+            }
         }
     }
 
@@ -57,7 +61,7 @@ pub(super) fn collision(
     sense: Sense,
 ) -> Option<Finding> {
     let last = evidence.last()?;
-    let index = largest(sense.load(last), sense.collision(last))?;
+    let index = largest(&sense.load(last), sense.collision(last))?;
     let value = sense.load(last)[index];
     let mut states = evidence.states().rev().skip(1);
     let mut since = last.message_id;
@@ -100,7 +104,7 @@ pub(super) fn contact(evidence: &Evidence<'_>, of: Option<Subject>) -> Option<Ca
     let (sense, index) = named.or_else(|| {
         Sense::ALL
             .into_iter()
-            .find_map(|sense| Some((sense, largest(sense.load(state), sense.contact(state))?)))
+            .find_map(|sense| Some((sense, largest(&sense.load(state), sense.contact(state))?)))
     })?;
     let mut since = state.message_id;
     let mut value = sense.load(state)[index];
@@ -124,7 +128,7 @@ pub(super) fn contact(evidence: &Evidence<'_>, of: Option<Subject>) -> Option<Ca
 
 /// The largest of the loads whose flag is set.
 fn largest(loads: &[f64], flags: &[f64]) -> Option<usize> {
-    (0..loads.len())
+    (0..flags.len())
         .filter(|&i| flags[i] != 0.0 && loads[i].is_finite())
         .max_by(|&a, &b| loads[a].abs().total_cmp(&loads[b].abs()))
 }

@@ -115,15 +115,15 @@ impl RobotState {
         array(py, &self.state.cartesian_collision)
     }
 
-    /// Estimated external wrench on the stiffness frame in the base frame, `(6,)` N and N m,
-    /// positive when the robot pushes.
+    /// Estimated external wrench in the base frame, `(6,)` N and N m, its torque about the origin
+    /// of the base, positive when the robot pushes. Zeros near a singularity.
     #[getter]
     fn O_F_ext_hat_K<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, &self.state.O_F_ext_hat_K)
     }
 
     /// Estimated external wrench on the stiffness frame in the stiffness frame, `(6,)` N and N m,
-    /// positive when the robot pushes.
+    /// positive when the robot pushes. Zeros near a singularity.
     #[getter]
     fn K_F_ext_hat_K<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, &self.state.K_F_ext_hat_K)

@@ -2,7 +2,7 @@
 
 use franka_model::{Frame, Jacobian, JointVector, Wrench};
 use franka_proto::{CollisionBehavior, Errors, RobotError};
-use nalgebra::Cholesky;
+use nalgebra::{Cholesky, Matrix6};
 
 use crate::config::ForceAxes;
 use crate::generator::ArmModel;
@@ -16,8 +16,10 @@ use crate::signal::{halves, stack};
 pub(crate) struct Estimate {
     /// `tau_ext_hat_filtered`, `[N·m]`.
     pub(crate) torque: JointVector,
-    /// `O_F_ext_hat_K`, `[N, N·m]`.
+    /// `O_F_ext_hat_K`, its torque about the origin of the base, `[N, N·m]`.
     pub(crate) wrench_base: Wrench,
+    /// The same with its torque about the origin of the stiffness frame.
+    wrench_at_stiffness: Wrench,
     /// `K_F_ext_hat_K`, `[N, N·m]`.
     pub(crate) wrench_stiffness: Wrench,
     pub(crate) joint_contact: [bool; 7],
@@ -33,6 +35,7 @@ impl Estimate {
         Self {
             torque: JointVector::zeros(),
             wrench_base: Wrench::zeros(),
+            wrench_at_stiffness: Wrench::zeros(),
             wrench_stiffness: Wrench::zeros(),
             joint_contact: [false; 7],
             cartesian_contact: [false; 6],
@@ -46,11 +49,15 @@ impl Estimate {
     pub(crate) fn update(&mut self, external: &JointVector, q: &JointVector, arm: &ArmModel<'_>) {
         self.torque = -external;
         let jacobian = arm.model.body_jacobian(Frame::Stiffness, q, arm.frames);
-        self.wrench_stiffness = wrench(&jacobian, &self.torque);
+        let singular = arm.config.unpublished.wrench_singular;
+        self.wrench_stiffness = wrench(&jacobian, &self.torque, singular);
         let pose = arm.model.pose(Frame::Stiffness, q, arm.frames);
         let rotation = pose.fixed_view::<3, 3>(0, 0);
         let (force, torque) = halves(&self.wrench_stiffness);
-        self.wrench_base = stack(&(rotation * force), &(rotation * torque));
+        let (force, torque) = (rotation * force, rotation * torque);
+        let origin = pose.fixed_view::<3, 1>(0, 3).into_owned();
+        self.wrench_at_stiffness = stack(&force, &torque);
+        self.wrench_base = stack(&force, &(torque + origin.cross(&force)));
     }
 
     /// Compares with the thresholds, forces along `axes`; `accelerating` selects which set. Returns
@@ -90,7 +97,7 @@ impl Estimate {
         };
         let torque_now = self.torque.into();
         let force_now = match axes {
-            ForceAxes::Base => self.wrench_base.into(),
+            ForceAxes::Base => self.wrench_at_stiffness.into(),
             ForceAxes::Stiffness => self.wrench_stiffness.into(),
         };
         self.joint_contact = reached(&torque_now, torque.0);
@@ -129,19 +136,14 @@ fn latch<const N: usize>(flags: &mut [bool; N], set: &[bool; N]) {
     }
 }
 
-/// The wrench that `torque` means, by least squares: `(J Jᵀ + λ² 1)⁻¹ J τ`.
-///
-/// Damped, so that it fades instead of growing near a singularity.
-fn wrench(jacobian: &Jacobian, torque: &JointVector) -> Wrench {
-    let mut gram = jacobian * jacobian.transpose();
-    for i in 0..6 {
-        gram[(i, i)] += WRENCH_DAMPING * WRENCH_DAMPING;
-    }
-    match Cholesky::new(gram) {
-        Some(factor) => factor.solve(&(jacobian * torque)),
-        None => Wrench::zeros(),
+/// The wrench that `torque` means, by least squares: `(J Jᵀ)⁻¹ J τ`; zero where the smallest
+/// singular value of `J` is at most `singular`.
+fn wrench(jacobian: &Jacobian, torque: &JointVector, singular: f64) -> Wrench {
+    let gram = jacobian * jacobian.transpose();
+    // Positive definite exactly if all singular values are greater.
+    let excess = gram - Matrix6::from_diagonal_element(singular * singular);
+    match (Cholesky::new(excess), Cholesky::new(gram)) {
+        (Some(_), Some(factor)) => factor.solve(&(jacobian * torque)),
+        _ => Wrench::zeros(),
     }
 }
-
-/// Against the smallest singular value of the Jacobian, 0.14 to 0.23 in ordinary poses.
-const WRENCH_DAMPING: f64 = 0.01;

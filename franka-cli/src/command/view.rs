@@ -124,7 +124,7 @@ fn hand(text: &mut String, state: &RobotState, pose: &Pose) {
     let position = (pose.translation.vector * 1e3).map(shown);
     let (roll, pitch, yaw) = pose.rotation.euler_angles();
     let [roll, pitch, yaw] = [roll, pitch, yaw].map(|angle| shown(angle.to_degrees()));
-    let [fx, fy, fz, tx, ty, tz] = state.O_F_ext_hat_K.map(shown);
+    let [fx, fy, fz, tx, ty, tz] = state.wrench_at_stiffness_frame().map(shown);
     let _ = writeln!(
         text,
         "{BOLD}hand{BOLD:#}    x {:>7.1}  y {:>7.1}  z {:>7.1}  mm   r {:>6.1}  p {:>6.1}  y {:>6.1}  deg\n\

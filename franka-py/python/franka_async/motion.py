@@ -36,7 +36,7 @@ class Reacted(Value):
     """The robot's clock then, ms."""
 
     wrench: NDArray[np.float64]
-    """External wrench then, ``O_F_ext_hat_K``, ``(6,)`` N and N m: positive is what the arm exerts."""
+    """External wrench then, in base axes with its torque about the origin of the stiffness frame, ``(6,)`` N and N m: positive is what the arm exerts."""
 
     pose: NDArray[np.float64]
     """Pose of the end effector then, base frame, ``(4, 4)``."""

@@ -122,7 +122,7 @@ impl Timeline {
         };
         let load = |i: usize| match i {
             0..7 => state.tau_ext_hat_filtered[i],
-            _ => state.O_F_ext_hat_K[i - 7],
+            _ => state.wrench_at_stiffness_frame()[i - 7],
         };
         let contacts = flags(&state.joint_contact, &state.cartesian_contact);
         let collisions = flags(&state.joint_collision, &state.cartesian_collision);

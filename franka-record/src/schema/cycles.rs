@@ -4,6 +4,7 @@ use franka_model::transform;
 use franka_proto::{ControllerMode, Errors, RobotState};
 use franka_rt::driver::Activity;
 use franka_rt::stats::Slack;
+use nalgebra::Vector3;
 
 use super::arrays::{
     get, get_exact, get_levels, isometry, matrix_of, pose, pose_of, put, put_levels,
@@ -157,10 +158,13 @@ impl franka::Cycle {
 /// Fills in what follows from the rest.
 fn derive(state: &mut RobotState) {
     let pose = |matrix| transform::isometry_from_array(matrix).unwrap_or_default();
-    let stiffness = pose(&state.O_T_EE).rotation * pose(&state.EE_T_K).rotation;
+    let stiffness = pose(&state.O_T_EE) * pose(&state.EE_T_K);
     let [x, y, z, a, b, c] = state.O_F_ext_hat_K;
-    let force: [f64; 3] = stiffness.inverse_transform_vector(&[x, y, z].into()).into();
-    let torque: [f64; 3] = stiffness.inverse_transform_vector(&[a, b, c].into()).into();
+    let (force, torque) = (Vector3::new(x, y, z), Vector3::new(a, b, c));
+    // In the axes of the base its torque is about the origin of the base.
+    let torque = torque - stiffness.translation.vector.cross(&force);
+    let force: [f64; 3] = stiffness.inverse_transform_vector(&force).into();
+    let torque: [f64; 3] = stiffness.inverse_transform_vector(&torque).into();
     state.K_F_ext_hat_K[..3].copy_from_slice(&force);
     state.K_F_ext_hat_K[3..].copy_from_slice(&torque);
     state.elbow = [state.q[2], if state.q[3] < 0.0 { -1.0 } else { 1.0 }];
@@ -184,7 +188,7 @@ mod tests {
     use super::*;
     use franka_proto::{MotionGeneratorMode, RobotMode};
     use franka_rt::session::Guard;
-    use nalgebra::{Isometry3, Vector3};
+    use nalgebra::Isometry3;
     use prost::Message as _;
 
     /// A cycle whose numbers all differ, and have few digits.
@@ -243,7 +247,10 @@ mod tests {
         }
         state.O_T_EE[12..15].copy_from_slice(&[0.5, -0.25, 0.75]);
         state.O_T_EE_d[12..15].copy_from_slice(&[1.5, -1.25, 1.75]);
-        state.K_F_ext_hat_K = state.O_F_ext_hat_K;
+        let [x, y, z, a, b, c] = state.O_F_ext_hat_K;
+        let (force, about_base) = (Vector3::new(x, y, z), Vector3::new(a, b, c));
+        let about_k = about_base - Vector3::new(0.5, -0.25, 0.75).cross(&force);
+        state.K_F_ext_hat_K = [x, y, z, about_k.x, about_k.y, about_k.z];
         state.elbow = [state.q[2], -1.0];
         state.joint_contact[2] = 1.0;
         state.joint_collision[3] = 1.0;

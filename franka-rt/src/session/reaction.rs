@@ -30,7 +30,8 @@ pub struct Reacted {
     pub after: Duration,
     /// `message_id` of that state, `[ms]` of the robot's clock.
     pub time: u64,
-    /// External wrench in it, `O_F_ext_hat_K`, `[N, N m]`: positive is what the arm exerts.
+    /// External wrench in it, in base axes with its torque about the origin of the stiffness frame,
+    /// `[N, N m]`: positive is what the arm exerts.
     pub wrench: [f64; 6],
     /// Pose of the end effector in it, base frame, from the measured joints.
     pub pose: Isometry3<f64>,

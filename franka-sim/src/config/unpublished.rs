@@ -12,6 +12,10 @@ pub struct Unpublished {
     /// Smallest singular value of the end effector's Jacobian at which a Cartesian motion may not
     /// start. Default 0.05: a pose that a robot refuses has 0.011, ordinary ones 0.14 to 0.23.
     pub singular: f64,
+    /// Smallest singular value of the stiffness frame's Jacobian up to which the estimated wrench is
+    /// zero. Default 0.1: of two recorded Franka Research 3 one has no wrench at 0.076, in three
+    /// states, and one has it at 0.159; what is between is not known.
+    pub wrench_singular: f64,
     /// How the orientation goes on in a cycle whose command is lost.
     pub extrapolation: Extrapolation,
     /// Cutoff of a first-order low-pass that the robot itself applies to commands, `[Hz]`; `None`
@@ -71,6 +75,7 @@ impl Default for Unpublished {
         Self {
             start: StartTolerance::default(),
             singular: 0.05,
+            wrench_singular: 0.1,
             extrapolation: Extrapolation::BaseAxes,
             command_filter: None,
             first_cycles: FirstCycles::SoFar,
@@ -210,7 +215,7 @@ impl Default for SetterBounds {
 /// stiffness frame in either case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ForceAxes {
-    /// Those of the base: `O_F_ext_hat_K`.
+    /// Those of the base.
     #[default]
     Base,
     /// Those of the stiffness frame: `K_F_ext_hat_K`.

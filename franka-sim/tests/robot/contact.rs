@@ -1,4 +1,4 @@
-use franka_model::{JointVector, Load, READY, Wrench};
+use franka_model::{EndEffector, Frame, JointVector, Load, Model, READY, RobotKind, Wrench};
 use franka_proto::{
     CollisionBehavior, MoveStatus, Request, RobotCommand, RobotError as E, RobotMode, RobotState,
 };
@@ -162,10 +162,45 @@ fn the_wrench_is_told_at_the_stiffness_frame() {
     pair.robot
         .touch(Touch::wrench(Wrench::new(4.0, 0.0, 0.0, 0.0, 0.0, 0.0)));
     pair.idle(500);
-    let seen = pair.state.O_F_ext_hat_K;
+    let seen = pair.state.wrench_at_stiffness_frame();
     assert!((seen[0] + 4.0).abs() < 0.1, "{seen:?}");
     // The tool points down, so the force acts above the frame's origin: about y.
     assert!((seen[4] + 4.0 * lever).abs() < 0.05, "{seen:?}");
+    // In the axes of the base the torque is about its origin, where the flange is the lever: no
+    // matter where the stiffness frame is.
+    let [x, y, z] = pair.position();
+    let moment = Vector3::new(x, y, z).cross(&Vector3::new(-4.0, 0.0, 0.0));
+    let about_base = Vector3::from_column_slice(&pair.state.O_F_ext_hat_K[3..]);
+    assert!((about_base - moment).amax() < 0.05, "{about_base} {moment}");
+}
+
+#[test]
+fn the_wrench_is_zero_near_a_singularity_of_either_robot() {
+    for kind in RobotKind::ALL {
+        // Smallest singular values of the flange's Jacobian below and above the bound.
+        let least = |q: &JointVector| {
+            let jacobian = Model::of(kind).zero_jacobian(Frame::Flange, q, &EndEffector::default());
+            let gram = jacobian * jacobian.transpose();
+            gram.symmetric_eigenvalues().min().sqrt()
+        };
+        let mut stretched = READY;
+        (stretched[1], stretched[3]) = (0.6, -0.65);
+        for (q, is_near) in [(READY, false), (stretched, true)] {
+            assert_eq!(least(&q) < 0.1, is_near, "{}", least(&q));
+            let mut pair = Pair::new(Config {
+                kind,
+                q,
+                ..Config::default()
+            });
+            let push = Wrench::new(0.0, 6.0, 0.0, 0.0, 0.0, 0.0);
+            pair.robot.touch(Touch::wrench(push));
+            pair.idle(400);
+            let state = &pair.state;
+            assert!(state.tau_ext_hat_filtered.iter().any(|tau| tau.abs() > 0.5));
+            let is_zero = [state.O_F_ext_hat_K, state.K_F_ext_hat_K] == [[0.0; 6]; 2];
+            assert_eq!(is_zero, is_near, "{:?}", state.O_F_ext_hat_K);
+        }
+    }
 }
 
 #[test]
@@ -188,7 +223,7 @@ fn a_push_shows_in_the_estimate_with_the_robots_sign() {
     let push = Wrench::new(3.0, -2.0, 5.0, 0.1, 0.2, -0.3);
     pair.robot.push_end_effector(push, 500);
     pair.idle(400);
-    let estimate = Wrench::from(pair.state.O_F_ext_hat_K);
+    let estimate = Wrench::from(pair.state.wrench_at_stiffness_frame());
     assert!((estimate + push).amax() < 0.1, "{estimate}");
     pair.idle(400);
     assert!(Wrench::from(pair.state.O_F_ext_hat_K).amax() < 0.05);

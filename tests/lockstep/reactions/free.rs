@@ -52,7 +52,7 @@ impl Most {
                 continue;
             }
             let state = &lockstep.client.state;
-            let [x, y, z, about @ ..] = state.O_F_ext_hat_K;
+            let [x, y, z, about @ ..] = state.wrench_at_stiffness_frame();
             let joints = state.tau_ext_hat_filtered;
             let seen = [
                 x.abs(),

@@ -81,11 +81,14 @@ pub struct RobotState {
     pub cartesian_collision: [f64; 6],
     /// Estimated external joint torques, low-passed; `[N m]`.
     pub tau_ext_hat_filtered: [f64; 7],
-    /// Estimated external wrench on the stiffness frame, in the base frame; force then torque,
-    /// positive when the robot pushes the environment, `[N, N m]`.
+    /// Estimated external wrench in the base frame; force then torque about the origin of the base,
+    /// positive when the robot pushes the environment, `[N, N m]`. All zeros near a singularity.
+    /// [`wrench_at_stiffness_frame`](Self::wrench_at_stiffness_frame) has the torque about the
+    /// origin of the stiffness frame.
     pub O_F_ext_hat_K: [f64; 6],
     /// Estimated external wrench on the stiffness frame, in the stiffness frame; force then
-    /// torque, positive when the robot pushes the environment, `[N, N m]`.
+    /// torque, positive when the robot pushes the environment, `[N, N m]`. All zeros near a
+    /// singularity.
     pub K_F_ext_hat_K: [f64; 6],
     /// Desired twist of the end effector in the base frame; linear then angular, `[m/s,
     /// rad/s]`.
@@ -175,6 +178,19 @@ impl RobotState {
         self.generator_running() || self.controller_running()
     }
 
+    /// The estimated external wrench in the axes of the base, its torque about the origin of the
+    /// stiffness frame; positive when the robot pushes the environment, `[N, N m]`.
+    ///
+    /// [`O_F_ext_hat_K`](Self::O_F_ext_hat_K) has the torque about the origin of the base, where a
+    /// force of 10 N at half a metre counts as 5 N m.
+    #[must_use]
+    pub fn wrench_at_stiffness_frame(&self) -> [f64; 6] {
+        let [x, y, z, ..] = self.O_F_ext_hat_K;
+        let [.., a, b, c] = self.K_F_ext_hat_K;
+        let [a, b, c] = rotate(&self.O_T_EE, rotate(&self.EE_T_K, [a, b, c]));
+        [x, y, z, a, b, c]
+    }
+
     /// End effector and load as one body, equal to the last bit to what libfranka computes from a
     /// state of this version.
     ///
@@ -185,6 +201,11 @@ impl RobotState {
         let m_total = (version.table().state_codec.add)(self.m_ee, self.m_load);
         TotalLoad::of(self, m_total)
     }
+}
+
+/// The vector turned by the rotation of a column-major pose.
+fn rotate(pose: &[f64; 16], [x, y, z]: [f64; 3]) -> [f64; 3] {
+    core::array::from_fn(|i| pose[i] * x + pose[4 + i] * y + pose[8 + i] * z)
 }
 
 impl Default for RobotState {

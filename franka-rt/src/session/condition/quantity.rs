@@ -36,7 +36,8 @@ pub enum Quantity {
     Force(Axis),
     /// Norm of the force, `[N]`.
     ForceNorm,
-    /// Torque about an axis through the origin of the stiffness frame, `O_F_ext_hat_K`, `[N m]`.
+    /// Torque about an axis through the origin of the stiffness frame, `[N m]`: that of
+    /// `K_F_ext_hat_K`. `O_F_ext_hat_K` has it about the origin of the base.
     Torque(Axis),
     /// Norm of that torque, `[N m]`.
     TorqueNorm,

@@ -54,7 +54,10 @@ const MS: Duration = Duration::from_millis(1);
 #[test]
 fn every_quantity_is_the_number_of_the_state_that_it_names() {
     let mut arm = Arm::new();
-    arm.state.O_F_ext_hat_K = [3.0, -4.0, 12.0, 0.3, -0.4, 1.2];
+    // The torque is that about the stiffness frame, here a half turn about z from the base's axes.
+    arm.state.O_F_ext_hat_K = [3.0, -4.0, 12.0, 5.0, 6.0, 7.0];
+    arm.state.K_F_ext_hat_K = [-3.0, 4.0, 12.0, -0.3, 0.4, 1.2];
+    (arm.state.EE_T_K[0], arm.state.EE_T_K[5]) = (-1.0, -1.0);
     arm.state.tau_ext_hat_filtered = [1.0, 2.0, -8.0, 4.0, 5.0, 6.0, 7.0];
     arm.state.dq = [0.3, -0.4, 1.2, 0.6, 0.8, 2.4, 0.9];
     let [x, y, z] = [Axis::X, Axis::Y, Axis::Z];
@@ -211,6 +214,7 @@ fn numbers_that_are_not_finite_fulfil_nothing() {
     for number in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let mut arm = Arm::new();
         arm.state.O_F_ext_hat_K = [number; 6];
+        arm.state.K_F_ext_hat_K = [number; 6];
         arm.state.tau_ext_hat_filtered[3] = number;
         arm.state.dq[0] = number;
         for quantity in [

@@ -11,7 +11,7 @@ use crate::session::running::Measured;
 /// Copied before the answer to the state leaves; what it comes to is computed afterwards.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::session) struct Observed {
-    /// `O_F_ext_hat_K`
+    /// In base axes, its torque about the origin of the stiffness frame.
     pub(in crate::session) wrench: [f64; 6],
     /// `tau_ext_hat_filtered`
     pub(super) joint_torques: [f64; 7],
@@ -25,7 +25,7 @@ pub(in crate::session) struct Observed {
 impl Observed {
     pub(in crate::session) fn of(state: &RobotState) -> Self {
         Self {
-            wrench: state.O_F_ext_hat_K,
+            wrench: state.wrench_at_stiffness_frame(),
             joint_torques: state.tau_ext_hat_filtered,
             dq: state.dq,
             joint_contact: state.joint_contact,
