@@ -37,7 +37,7 @@ impl Lockstep {
     pub fn begin_session(&mut self, engagement: Engagement) -> GoalId {
         // The robot checks the setpoints itself.
         self.guard = (engagement.backend == Backend::Torques)
-            .then(|| CommandGuard::new(self.model.joint_limits()));
+            .then(|| CommandGuard::new(*self.model.joint_limits()));
         self.try_engage(engagement).expect("nothing else moves")
     }
 

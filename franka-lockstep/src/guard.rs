@@ -9,7 +9,7 @@ use franka_rt::session::Guard;
 /// Keeps the previous command, for rates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CommandGuard {
-    limits: &'static JointLimits,
+    limits: JointLimits,
     last: Option<Last>,
 }
 
@@ -27,7 +27,7 @@ struct Last {
 
 impl CommandGuard {
     /// Returns a guard for a robot with these limits.
-    pub(super) fn new(limits: &'static JointLimits) -> Self {
+    pub(super) fn new(limits: JointLimits) -> Self {
         Self { limits, last: None }
     }
 
@@ -41,7 +41,7 @@ impl CommandGuard {
             command.message_id, state.message_id,
             "a command answers the state it was made for"
         );
-        let limits = self.limits;
+        let limits = &self.limits;
         let at = state.message_id;
         for i in 0..7 {
             let joint = i + 1;

@@ -66,7 +66,8 @@ pub struct Lockstep {
     pub link: Link,
     /// The driver, without its sockets.
     pub client: DriverStack,
-    model: &'static Model,
+    /// The client's model of the robot, with the limits that the robot enforces.
+    model: Model,
     /// Absent once a test's own program has run, which may command anything.
     guard: Option<CommandGuard>,
     milliseconds: u64,
@@ -87,14 +88,17 @@ impl Lockstep {
     /// # Panics
     /// As [`Self::new`].
     pub fn with_robot(robot: Robot) -> Self {
-        let model = Model::of(robot.config().kind);
+        let limits = *robot.model().joint_limits();
+        let model = Model::of(robot.config().kind)
+            .clone()
+            .with_joint_limits(limits);
         let version = robot.version();
         let mut this = Self {
             robot,
             link: Link::perfect(),
-            client: DriverStack::new(model, version),
+            client: DriverStack::new(&model, version),
             model,
-            guard: Some(CommandGuard::new(model.joint_limits())),
+            guard: Some(CommandGuard::new(limits)),
             milliseconds: 0,
             heard: 0,
         };
@@ -272,7 +276,7 @@ impl Lockstep {
         self.robot.disconnect();
         self.link = Link::perfect();
         self.heard = self.milliseconds;
-        self.client = DriverStack::new(self.model, self.robot.version());
+        self.client = DriverStack::new(&self.model, self.robot.version());
         self.connect();
     }
 

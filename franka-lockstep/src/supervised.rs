@@ -259,15 +259,15 @@ impl Supervised {
 
     fn connect(&mut self) {
         assert_eq!(self.connection, Connection::None, "one at a time");
-        let model = self.lockstep.model;
-        let mut client = DriverStack::new(model, self.lockstep.robot.version());
+        let model = self.lockstep.model.clone();
+        let mut client = DriverStack::new(&model, self.lockstep.robot.version());
         client.goals = self.goals;
         let reachable = self.is_up && !self.lockstep.link.delayed;
         if reachable && self.lockstep.robot.connect() {
             client.connect(40_000);
         }
         self.lockstep.client = client;
-        self.lockstep.guard = Some(CommandGuard::new(model.joint_limits()));
+        self.lockstep.guard = Some(CommandGuard::new(*model.joint_limits()));
         self.lockstep.heard = self.lockstep.now();
         // A computer that does not run refuses at once.
         let most = if self.is_up { CONNECTING } else { 1 };

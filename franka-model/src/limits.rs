@@ -172,6 +172,20 @@ mod tests {
     }
 
     #[test]
+    fn margins_of_system_5_9_are_those_of_the_systems_before() {
+        let (before, now) = (
+            JointLimits::of(RobotKind::Fr3),
+            JointLimits::fr3_system_5_9(),
+        );
+        let margins = |limits: &JointLimits| {
+            let lower = limits.lower - limits.hard_lower;
+            (lower, limits.hard_upper - limits.upper)
+        };
+        let (before, now) = (margins(before), margins(now));
+        assert!((before.0 - now.0).amax() < 1e-12 && (before.1 - now.1).amax() < 1e-12);
+    }
+
+    #[test]
     fn positions_to_command_are_inside_the_hard_limits() {
         let limits = JointLimits::of(RobotKind::Fr3);
         assert!((limits.upper - limits.hard_upper).max() < 0.0);

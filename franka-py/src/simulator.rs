@@ -40,7 +40,8 @@ impl Sim {
     /// `patience` alone waits for commands that come late, but is never faster than the clock
     /// on the wall. `arm`, `ideal`, `nominal`, `realistic` or `bad`: a good arm for tests that
     /// need exactness, or worse ones; with `arm_seed`, one that is drawn at random from such
-    /// arms; `ideal=True` is `arm="ideal"`. `seed` of all other randomness. `q`,
+    /// arms; `ideal=True` is `arm="ideal"`. `limits`, `5.9` (the default) or `before-5.9`: the
+    /// joint limits of the robot's system, of an FR3. `seed` of all other randomness. `q`,
     /// joint positions at the start, 7 numbers, rad, where the joints can be. `tool`, `hand` or a
     /// tuple of its frame on the flange (a pose), its mass, kg, and its centre of mass in the
     /// flange frame, m: what the robot knows of. `load`, a tuple of mass and centre: what it does
@@ -276,9 +277,10 @@ impl Sim {
     /// Reads joint positions, where the joints of this robot can be.
     ///
     /// # Errors
-    /// As [`positions`].
+    /// As [`positions`], and `OSError` if it has stopped.
     pub(crate) fn positions(&self, q: &Bound<'_, PyAny>) -> PyResult<JointVector> {
-        positions(self.kind, q)
+        let limits = self.robot(q.py(), |robot| *robot.model().joint_limits())?;
+        positions(&limits, q)
     }
 }
 

@@ -3,8 +3,9 @@
 use std::net::SocketAddr;
 use std::time::Duration;
 
-use franka_async::model::{JointVector, Load, Model, RobotKind};
-use franka_sim::arm::{Arm, Family};
+use franka_async::model::limits::JointLimits;
+use franka_async::model::{JointVector, Load, RobotKind};
+use franka_sim::arm::{Arm, Family, SystemLimits};
 use franka_sim::network::{Conditions, Loss, Network, Stalls};
 use franka_sim::{Fingers, Suction, Tool};
 use pyo3::exceptions::{PyAttributeError, PyOverflowError, PyTypeError, PyValueError};
@@ -25,11 +26,16 @@ pub(crate) fn configured(
         RobotKind::Fer => franka_sim::Sim::fer(),
         _ => franka_sim::Sim::fr3(),
     };
-    sim = sim.arm(arm(kind, keywords)?);
+    let mut arm = arm(kind, keywords)?;
+    if let Some(limits) = keywords.value::<String>("limits")? {
+        arm.limits = self::limits(kind, &limits)?;
+    }
+    let limits = arm.limits.joints(kind);
+    sim = sim.arm(arm);
     let seed = keywords.take("seed")?;
     let seed = seed.map(|seed| self::seed("seed", &seed)).transpose()?;
     let q = keywords.take("q")?;
-    let q = q.map(|q| positions(kind, &q)).transpose()?;
+    let q = q.map(|q| positions(limits, &q)).transpose()?;
     let load = keywords
         .take("load")?
         .map(|load| self::load(&load))
@@ -75,13 +81,12 @@ pub(crate) fn configured(
     Ok(sim)
 }
 
-/// Reads joint positions, where the joints of such a robot can be.
+/// Reads joint positions, where the joints of a robot with these limits can be.
 ///
 /// # Errors
 /// As [`vector`], and `ValueError` outside the ranges of the joints.
-pub(crate) fn positions(kind: RobotKind, q: &Bound<'_, PyAny>) -> PyResult<JointVector> {
+pub(crate) fn positions(limits: &JointLimits, q: &Bound<'_, PyAny>) -> PyResult<JointVector> {
     let q = JointVector::from(vector::<7>("q", q)?);
-    let limits = Model::physically_consistent(kind).joint_limits();
     match limits.outside_hard(&q) {
         None => Ok(q),
         Some(i) => Err(PyValueError::new_err(format!(
@@ -142,6 +147,19 @@ fn arm(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<Arm> {
         Some(seed) => Arm::sample(kind, seed, &family),
         None => Arm::central(kind, &family),
     })
+}
+
+/// Reads the system whose joint limits the robot has.
+fn limits(kind: RobotKind, name: &str) -> PyResult<SystemLimits> {
+    match (kind, name) {
+        (RobotKind::Fr3, "5.9") => Ok(SystemLimits::From5_9),
+        (RobotKind::Fr3, "before-5.9") => Ok(SystemLimits::Before5_9),
+        _ => {
+            let expected = "'5.9' or 'before-5.9', of an FR3";
+            let text = format!("limits is {name:?}, expected {expected}");
+            Err(PyValueError::new_err(text))
+        }
+    }
 }
 
 /// Reads a load: a tuple of mass, kg, and centre of mass in the flange frame, m; or with its

@@ -58,6 +58,15 @@ def test_it_is_as_its_options_say() -> None:
     assert abs(rest(arm="realistic", arm_seed=7) - rest(arm="realistic", arm_seed=8)).max() > 1e-5
 
 
+def test_the_limits_are_those_of_the_system() -> None:
+    q = [2.9, -0.7, 0.0, -2.0, 0.0, 2.0, 0.0]
+    with Sim.fr3(virtual_time=True, ideal=True, q=q) as sim, sync.Robot(sim.address, realtime="ignore") as robot:
+        limits = robot.model().joint_limits
+        np.testing.assert_allclose(limits.upper, [2.9007, 1.8361, 2.9007, -0.1169, 2.8763, 4.6216, 3.0508], atol=1e-12)
+    with Sim.fr3(virtual_time=True, ideal=True, limits="before-5.9") as sim, sync.Robot(sim.address, realtime="ignore") as robot:
+        assert robot.model().joint_limits.upper[0] == 2.7437
+
+
 def test_options_that_make_no_sense_are_refused() -> None:
     for options, kind, text in [
         ({"arm": "new"}, ValueError, "arm is .new."),
@@ -70,6 +79,8 @@ def test_options_that_make_no_sense_are_refused() -> None:
         ({"virtual": True}, TypeError, "unexpected keyword argument 'virtual'"),
         ({"load": (-1.0, [0.0, 0.0, 0.0])}, ValueError, "-1"),
         ({"q": [0.0, 0.0, 9.0, -2.0, 0.0, 2.0, 0.0]}, ValueError, "joint 3 of q is 9 rad, expected -2.9"),
+        ({"limits": "5.8"}, ValueError, "limits is .5.8., expected '5.9' or 'before-5.9'"),
+        ({"limits": "before-5.9", "q": [2.9, -0.7, 0.0, -2.0, 0.0, 2.0, 0.0]}, ValueError, "expected -2.7501 to 2.7501"),
         ({"seed": -1}, ValueError, "seed is -1, expected an integer from 0"),
         ({"seed": "one"}, TypeError, "seed is one, expected an integer"),
         ({"network": Network(seed=-1)}, ValueError, "seed of network is -1"),

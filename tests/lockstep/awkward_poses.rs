@@ -3,12 +3,15 @@
 use std::time::Duration;
 
 use franka_lockstep::{Lockstep, pose_of, self_distance};
-use franka_model::{EndEffector, JointVector, Model, READY, Wrench};
+use franka_model::limits::JointLimits;
+use franka_model::{EndEffector, JointVector, Model, READY, RobotKind, Wrench};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{
     GoalError, Guard, Lapse, OnArrival, SELF_STOP, STALL_TIMEOUT, Settling, Target,
 };
+use franka_sim::Config;
+use franka_sim::arm::{Arm, SystemLimits};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -27,8 +30,7 @@ fn a_pose_through_a_stretched_elbow_or_wrist_is_reached_smoothly() {
             turn * start.rotation,
         )
     };
-    let mut reached = 0;
-    for (case, target) in [
+    let targets = [
         // Tilted upwards in place, and a little further away.
         turned(0.0, 0.0, -1.4),
         turned(0.1, 0.2, -1.2),
@@ -37,39 +39,55 @@ fn a_pose_through_a_stretched_elbow_or_wrist_is_reached_smoothly() {
         turned(0.45, 0.05, -0.6),
         // A straight path through the axis of the base.
         turned(-0.6, 0.0, 0.0),
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        let mut lockstep = Lockstep::ready();
-        let goal = lockstep.begin(Target::Pose(target));
-        let (mut turns, mut last) = ([0; 7], [0.0; 7]);
-        while lockstep.client.outcome(goal).is_none() {
-            lockstep.tick();
-            assert!(lockstep.now() < 30_000, "case {case}");
-            for (i, dq) in lockstep.client.record.dq_ref.into_iter().enumerate() {
-                if dq.abs() > 0.02 {
-                    turns[i] += u32::from(dq * last[i] < 0.0);
-                    last[i] = dq;
-                }
-            }
-        }
-        match lockstep.client.outcome(goal).unwrap() {
-            Ok(_) => reached += 1,
-            // The straight path leads through the arm itself.
-            Err(MotionError::Braked(Lapse::Blocked { .. })) => {
-                let near = self_distance(lockstep.robot.q());
-                println!("case {case}: {:.1} mm from itself", near * 1e3);
-                assert!(near < SELF_STOP + 0.01, "case {case}: {near} m");
-            }
-            outcome => panic!("case {case}: {outcome:?}"),
-        }
-        assert!(
-            turns.iter().all(|&turns| turns <= MOST_TURNS),
-            "case {case}: {turns:?}"
-        );
+    ];
+    // Where joints may fold further, one more of the paths leads into the arm itself.
+    for (limits, least) in [(SystemLimits::From5_9, 3), (SystemLimits::Before5_9, 4)] {
+        let mut arm = Arm::ideal(RobotKind::Fr3);
+        arm.limits = limits;
+        let config = Config {
+            arm: Some(arm),
+            ..Lockstep::config_of(RobotKind::Fr3)
+        };
+        let reached = targets
+            .iter()
+            .enumerate()
+            .filter(|&(case, &target)| {
+                is_reached_smoothly(Lockstep::new(config.clone()), case, target)
+            })
+            .count();
+        assert!(reached >= least, "{limits:?}: {reached}");
     }
-    assert!(reached >= 4, "{reached}");
+}
+
+/// Whether the pose is reached, and not stopped short of the arm itself.
+fn is_reached_smoothly(mut lockstep: Lockstep, case: usize, target: Isometry3<f64>) -> bool {
+    let goal = lockstep.begin(Target::Pose(target));
+    let (mut turns, mut last) = ([0; 7], [0.0; 7]);
+    while lockstep.client.outcome(goal).is_none() {
+        lockstep.tick();
+        assert!(lockstep.now() < 30_000, "case {case}");
+        for (i, dq) in lockstep.client.record.dq_ref.into_iter().enumerate() {
+            if dq.abs() > 0.02 {
+                turns[i] += u32::from(dq * last[i] < 0.0);
+                last[i] = dq;
+            }
+        }
+    }
+    assert!(
+        turns.iter().all(|&turns| turns <= MOST_TURNS),
+        "case {case}: {turns:?}"
+    );
+    match lockstep.client.outcome(goal).unwrap() {
+        Ok(_) => true,
+        // The straight path leads through the arm itself.
+        Err(MotionError::Braked(Lapse::Blocked { .. })) => {
+            let near = self_distance(lockstep.robot.q());
+            println!("case {case}: {:.1} mm from itself", near * 1e3);
+            assert!(near < SELF_STOP + 0.01, "case {case}: {near} m");
+            false
+        }
+        outcome => panic!("case {case}: {outcome:?}"),
+    }
 }
 
 #[test]
@@ -143,7 +161,7 @@ fn a_goal_whose_leash_stays_bound_is_aborted_in_time() {
 /// stay within that velocity envelope.
 #[test]
 fn joints_reach_the_ends_of_their_ranges_at_any_speed() {
-    let limits = Model::fr3().joint_limits();
+    let limits = JointLimits::fr3_system_5_9();
     let speeds: &[f64] = match franka_tests::thorough() {
         true => &[0.5, 1.0, 1.5],
         false => &[0.5, 1.5],

@@ -275,7 +275,7 @@ fn bad_goals_are_named_and_change_nothing() {
     for (target, expected) in [
         (
             Target::Joints(beyond),
-            "joint 4: 0.5 rad, expected between -3.0343 and -0.1596",
+            "joint 4: 0.5 rad, expected between -3.0642 and -0.1297",
         ),
         (
             Target::Joints(nan),

@@ -3,12 +3,15 @@
 use std::time::Duration;
 
 use franka_lockstep::{Lockstep, for_each_robot, pose_of, self_distance};
-use franka_model::{EndEffector, Model, READY, RobotKind};
+use franka_model::limits::JointLimits;
+use franka_model::{EndEffector, READY, RobotKind};
 use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::{
     Free, Goal, GoalError, OnArrival, OnTimeout, PoseError, SELF_STOP, Target, Watchdog,
 };
+use franka_sim::Config;
+use franka_sim::arm::{Arm, SystemLimits};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 fn assert_near(lockstep: &Lockstep, target: &Isometry3<f64>) {
@@ -255,7 +258,7 @@ fn a_followed_target_may_step_arbitrarily() {
 #[test]
 fn joints_are_reached_close_to_the_ends_of_their_ranges() {
     // Closer than about 0.01 rad, the robot's velocity envelope allows no outward motion.
-    let limits = Model::fr3().joint_limits();
+    let limits = JointLimits::of(RobotKind::Fr3);
     for i in 0..7 {
         for end in [limits.lower[i] + 0.02, limits.upper[i] - 0.02] {
             let mut q: [f64; 7] = READY.into();
@@ -274,11 +277,85 @@ fn joints_are_reached_close_to_the_ends_of_their_ranges() {
     }
 }
 
+/// A Franka Research 3 with a hand and with the joint limits of this system.
+fn under(limits: SystemLimits) -> Lockstep {
+    let mut arm = Arm::ideal(RobotKind::Fr3);
+    arm.limits = limits;
+    Lockstep::new(Config {
+        arm: Some(arm),
+        ..Lockstep::config_of(RobotKind::Fr3)
+    })
+}
+
+/// Joint targets at 99 % of the range of system 5.9, to either side of its middle.
+///
+/// The envelope of joints 1 and 6 allows no speed beyond 98.97 and 99.9 % of what is documented, so
+/// that their targets are at 99 % of what it leaves.
+fn near_the_ends_of_5_9() -> Vec<(usize, [f64; 7])> {
+    let limits = JointLimits::fr3_system_5_9();
+    let envelope = limits.envelope.expect("an FR3 has one");
+    let mut targets = Vec::new();
+    for i in 0..7 {
+        let (middle, half) = (
+            0.5 * (limits.hard_upper[i] + limits.hard_lower[i]),
+            0.5 * (limits.hard_upper[i] - limits.hard_lower[i]),
+        );
+        // With the 0.02 rad/s that the driver keeps from the envelope.
+        let still = 0.5 * (envelope.offset[i] + 0.02).powi(2) / (envelope.deceleration[i] - 0.3);
+        let half = (limits.upper[i] - middle).min(half - still);
+        for side in [-1.0, 1.0] {
+            let mut q: [f64; 7] = READY.into();
+            q[i] = middle + side * 0.99 * half;
+            if i == 3 && self_distance(&q.into()) < SELF_STOP {
+                continue; // Folded that far, the hand is at the shoulder.
+            }
+            if self_distance(&q.into()) < SELF_STOP {
+                q[3] = -0.5; // With the elbow bent, the hand would be in the base.
+            }
+            targets.push((i, q));
+        }
+    }
+    targets
+}
+
+#[test]
+fn targets_at_99_percent_arrive_where_5_9_is_served_and_nowhere_else() {
+    let targets = near_the_ends_of_5_9();
+    assert!(targets.len() >= 12);
+    for (i, q) in targets {
+        let mut lockstep = under(SystemLimits::From5_9);
+        let goal = lockstep.begin(Target::Joints(q));
+        let outcome = lockstep.until_resolved(goal, 20_000);
+        assert!(outcome.is_ok(), "joint {} to {}: {outcome:?}", i + 1, q[i]);
+        assert!((lockstep.client.state.q[i] - q[i]).abs() < 5e-3);
+        if i == 2 {
+            continue; // Its range is the same under every system.
+        }
+        let mut earlier = under(SystemLimits::Before5_9);
+        let goal = Goal::new(
+            earlier.client.next_goal(),
+            Target::Joints(q),
+            OnArrival::ReportAndFinish,
+            JointLimits::of(RobotKind::Fr3),
+        );
+        let refused = earlier.submit(goal);
+        assert!(
+            matches!(
+                &refused,
+                Err(MotionError::Goal(GoalError::OutOfRange { joint, .. })) if *joint == i + 1
+            ),
+            "joint {} to {}: {refused:?}",
+            i + 1,
+            q[i]
+        );
+    }
+}
+
 #[test]
 fn goals_are_checked_against_the_ranges_of_the_connected_robot() {
     // Joint 6 of a Panda folds in that far, that of a Research 3 does not.
     let mut q: [f64; 7] = READY.into();
-    q[5] = 0.5;
+    q[5] = 0.45;
     let mut fer = Lockstep::ready_of(RobotKind::Fer);
     let goal = fer.begin(Target::Joints(q));
     fer.until_resolved(goal, 10_000).unwrap();

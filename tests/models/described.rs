@@ -5,21 +5,68 @@ use std::time::Duration;
 use franka_async::control::{Finish, JointVelocities};
 use franka_async::error::{ConnectError, GoalError, ModelError, UrdfError};
 use franka_async::{MotionError, Realtime, Robot};
+use franka_model::limits::JointLimits;
 use franka_model::{Model, READY, RobotKind};
+use franka_sim::arm::{Arm, SystemLimits};
 use franka_sim::{Config, Sim};
 
 use crate::connected;
 
 /// The description that the simulated FR3 serves.
 fn served() -> String {
-    let robot = franka_sim::Robot::new(Config::default());
+    let robot = franka_sim::Robot::new(before_5_9());
     robot.description().expect("an FR3 describes itself").into()
+}
+
+/// The configuration of an ideal FR3 whose limits are those of the constants.
+fn before_5_9() -> Config {
+    let mut arm = Arm::ideal(RobotKind::Fr3);
+    arm.limits = SystemLimits::Before5_9;
+    Config {
+        arm: Some(arm),
+        ..Config::default()
+    }
 }
 
 #[test]
 fn the_simulators_description_equals_the_constant_model_to_the_last_bit() {
     let model = Model::from_urdf(&served()).expect("a description");
     assert_eq!(&model, Model::fr3());
+}
+
+#[test]
+fn the_simulator_serves_the_limits_of_system_5_9_by_default() {
+    let robot = franka_sim::Robot::new(Config::default());
+    let text = robot.description().expect("an FR3 describes itself");
+    let limits = *Model::from_urdf(text).expect("an arm").joint_limits();
+    let documented = JointLimits::fr3_system_5_9();
+    // Where to command is not in the text: the margins of the constants are added again.
+    assert!((limits.lower - documented.lower).amax() < 1e-12);
+    assert!((limits.upper - documented.upper).amax() < 1e-12);
+    let (lower, upper) = (documented.lower, documented.upper);
+    assert_eq!(
+        JointLimits {
+            lower,
+            upper,
+            ..limits
+        },
+        *documented
+    );
+}
+
+#[tokio::test]
+async fn a_range_without_room_is_refused_while_connecting() {
+    let text = served().replace(
+        "lower=\"-2.7501\" upper=\"2.7501\"",
+        "lower=\"-0.003\" upper=\"0.003\"",
+    );
+    let sim = serving(text).start().await.expect("it starts");
+    let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+    let error = builder.connect().await.expect_err("no room").to_string();
+    assert!(
+        error.contains("joint joint1 are -0.003 to 0.003 rad") && error.contains("expected 0.2"),
+        "{error}"
+    );
 }
 
 /// The same description with `other` in place of `number`, which occurs once.
@@ -31,14 +78,12 @@ fn served_with(number: &str, other: &str) -> String {
 
 /// A robot that serves this description.
 fn serving(text: String) -> Sim {
-    Sim::fr3()
-        .ideal()
-        .configure(|config| config.urdf = Some(text))
+    Sim::new(before_5_9()).configure(|config| config.urdf = Some(text))
 }
 
 #[tokio::test]
 async fn an_fr3_is_asked_for_its_model_over_the_network() {
-    let (robot, _sim) = connected(Sim::fr3().ideal()).await;
+    let (robot, _sim) = connected(Sim::new(before_5_9())).await;
     assert_eq!(robot.model(), Model::fr3());
     robot.shutdown().await;
 }

@@ -135,6 +135,21 @@ const JOINTS: JointLimits = JointLimits {
     torque_rate: joint_vector([1000.0; 7]),
 };
 
+/// Joints of a system from 5.9 on. `lower`, `upper` and the offsets of the envelope: the vendor's
+/// documentation of 2025-10-14. `hard_*` are assumed, since no hard range of these systems is
+/// published: the documented range and the margins of [`JOINTS`]. The others are as before.
+pub(super) static JOINTS_5_9: JointLimits = JointLimits {
+    lower: joint_vector([-2.9007, -1.8361, -2.9007, -3.077, -2.8763, 0.4398, -3.0508]),
+    upper: joint_vector([2.9007, 1.8361, 2.9007, -0.1169, 2.8763, 4.6216, 3.0508]),
+    hard_lower: joint_vector([-2.9071, -1.8442, -2.9065, -3.083, -2.8799, 0.43622, -3.0545]),
+    hard_upper: joint_vector([2.9071, 1.8442, 2.9065, -0.1109, 2.8799, 4.6252, 3.0545]),
+    envelope: Some(BrakingEnvelope {
+        deceleration: joint_vector([6.0, 2.585, 3.5, 4.0, 17.0, 5.5, 17.0]),
+        offset: joint_vector([0.6599, 0.2517, 0.2, 0.3533, 0.5757, 0.4878, 0.4628]),
+    }),
+    ..JOINTS
+};
+
 /// libfranka 0.21, `rate_limiting.h`.
 const CARTESIAN: CartesianLimits = CartesianLimits {
     translation: MotionLimits {

@@ -64,9 +64,18 @@ impl Model {
 }
 
 impl JointLimits {
-    /// The limits of a kind of robot.
+    /// The limits of a kind of robot. Those of the Franka Research 3 are the narrower ones, of
+    /// systems before 5.9; a robot serves its own.
     pub const fn of(kind: RobotKind) -> &'static Self {
         &of(kind).client.joints
+    }
+
+    /// The limits of a Franka Research 3 with a system from 5.9 on: wider ranges, and less speed
+    /// near their ends.
+    ///
+    /// The hard range is an assumption: no source publishes it.
+    pub const fn fr3_system_5_9() -> &'static Self {
+        &fr3::JOINTS_5_9
     }
 }
 

@@ -113,6 +113,21 @@ pub enum UrdfError {
         /// `upper`, `[rad]`.
         upper: f64,
     },
+    /// The margins at both ends of a joint's range leave no room to move.
+    #[error(
+        "the limits of joint {joint} are {lower} to {upper} rad, a range of {:.4} rad; \
+         expected {least:.4} rad or more, since margins are kept at both ends", .upper - .lower
+    )]
+    RangeTooNarrow {
+        /// Its name.
+        joint: String,
+        /// `lower`, `[rad]`.
+        lower: f64,
+        /// `upper`, `[rad]`.
+        upper: f64,
+        /// The least range that is accepted, `[rad]`.
+        least: f64,
+    },
     /// No body has such an inertia.
     #[error(
         "the inertia of link {link} has principal moments of {} {} {} kg m^2, expected {expected}",

@@ -18,9 +18,9 @@
 //!
 //! The text has no limits of acceleration, jerk and torque rate, and none for the end effector:
 //! those of the FR3 are taken. Nor has it the positions to command
-//! ([`lower`](crate::limits::JointLimits::lower), [`upper`](crate::limits::JointLimits::upper)),
-//! which are a little inside the limits: the documented ones are taken, or, where the text's limit
-//! is further in, a position as far inside it.
+//! ([`lower`](crate::limits::JointLimits::lower), [`upper`](crate::limits::JointLimits::upper)).
+//! They are as far inside the text's limits as the documented ones are inside the vendor's, in a
+//! range that is wider as well as in a narrower one.
 //!
 //! # What is refused
 //!
@@ -133,7 +133,7 @@ fn joint_limits(tree: &Tree<'_, '_>) -> Result<JointLimits, UrdfError> {
         envelope.offset[i] =
             braking.number_where("velocity_offset", "a number not below 0", |x| x >= 0.0)?;
         envelope.deceleration[i] =
-            braking.number_where("deceleration_limit", POSITIVE, |x| x > 0.0)?;
+            braking.number_where("deceleration_limit", BRAKING, |x| x >= BRAKING_LEAST)?;
         let (upper, lower) = (limit.number("upper")?, limit.number("lower")?);
         if lower >= upper {
             return Err(UrdfError::LimitsCrossed {
@@ -144,11 +144,20 @@ fn joint_limits(tree: &Tree<'_, '_>) -> Result<JointLimits, UrdfError> {
         }
         limits.torque[i] = limit.number_where("effort", POSITIVE, |x| x > 0.0)?;
         (limits.hard_lower[i], limits.hard_upper[i]) = (lower, upper);
-        if lower > nominal.hard_lower[i] {
-            limits.lower[i] = lower + (nominal.lower[i] - nominal.hard_lower[i]);
-        }
-        if upper < nominal.hard_upper[i] {
-            limits.upper[i] = upper - (nominal.hard_upper[i] - nominal.upper[i]);
+        // In this order nominal limits keep every bit.
+        limits.lower[i] = nominal.lower[i] + (lower - nominal.hard_lower[i]);
+        limits.upper[i] = nominal.upper[i] + (upper - nominal.hard_upper[i]);
+        // The envelope allows no speed within this distance from an end.
+        let still = 0.5 * envelope.offset[i] * envelope.offset[i] / envelope.deceleration[i];
+        let margins = (limits.lower[i] - lower) + (upper - limits.upper[i]);
+        let least = ROOM_LEAST + margins.max(2.0 * still);
+        if upper - lower < least {
+            return Err(UrdfError::RangeTooNarrow {
+                joint: String::from(joint.name),
+                lower,
+                upper,
+                least,
+            });
         }
     }
     limits.envelope = Some(envelope);
@@ -156,3 +165,11 @@ fn joint_limits(tree: &Tree<'_, '_>) -> Result<JointLimits, UrdfError> {
 }
 
 const POSITIVE: &str = "a number above 0";
+
+/// Least deceleration of an envelope, `[rad/s²]`. Controllers brake with half of what the vendor's
+/// gentlest joint has (2.585), or more gently near the ends of a range, never with nothing.
+const BRAKING_LEAST: f64 = 1.2;
+const BRAKING: &str = "a number of at least 1.2";
+
+/// Least range between the margins, `[rad]`. Controllers keep 0.05 rad from both ends of it.
+const ROOM_LEAST: f64 = 0.2;

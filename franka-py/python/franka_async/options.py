@@ -129,6 +129,7 @@ class SimOptions(TypedDict, total=False):
     arm: Literal["ideal", "nominal", "realistic", "bad"]
     arm_seed: int | None
     ideal: bool
+    limits: Literal["5.9", "before-5.9"]
     seed: int
     q: ArrayLike | None
     tool: Literal["hand"] | tuple[ArrayLike, float, ArrayLike] | None

@@ -7,7 +7,7 @@ use franka_proto::{
     MoveControllerMode, MoveGeneratorMode, MoveRequest, Request, RobotCommand, RobotMode,
     RobotState, Version,
 };
-use franka_sim::arm::Arm;
+use franka_sim::arm::{Arm, SystemLimits};
 use franka_sim::{Config, Robot, Tool};
 
 use super::control::{Control, Kind};
@@ -45,6 +45,11 @@ impl Member {
         seed: u64,
         q: Option<JointVector>,
     ) -> Result<Self, String> {
+        // The limits that actions are bounded by, those of `Model.fr3()`.
+        let arm = Arm {
+            limits: SystemLimits::Before5_9,
+            ..arm
+        };
         let mut robot = Robot::new(Config {
             kind: settings.kind,
             q: q.unwrap_or(READY),

@@ -50,17 +50,21 @@ pub(super) fn limits(
     }
 }
 
-/// The range of targets, `[rad]`, that plans can approach: the joint's own, less a few
-/// milliradians.
+/// The range of targets, `[rad]`, that plans can approach: the joint's own, less some milliradians
+/// where its envelope allows no speed. If nothing is left, the middle; never crossed.
 pub(super) fn range(i: usize, robot: &JointLimits) -> (f64, f64) {
     let room = robot.envelope.as_ref().map_or(0.0, |envelope| {
         let offset = envelope.offset[i] + MARGIN;
-        0.5 * offset * offset / (envelope.deceleration[i] - GENTLEST)
+        // A deceleration of no more than the gentlest leaves nothing.
+        0.5 * offset * offset / (envelope.deceleration[i] - GENTLEST).max(f64::MIN_POSITIVE)
     });
-    (
-        robot.lower[i].max(robot.hard_lower[i] + room),
-        robot.upper[i].min(robot.hard_upper[i] - room),
-    )
+    let lower = robot.lower[i].max(robot.hard_lower[i] + room);
+    let upper = robot.upper[i].min(robot.hard_upper[i] - room);
+    if lower <= upper {
+        return (lower, upper);
+    }
+    let middle = 0.5 * (robot.hard_lower[i] + robot.hard_upper[i]);
+    (middle, middle)
 }
 
 /// Whether the braking of `plan` keeps inside the envelope at every speed up to the plan's.
@@ -120,6 +124,17 @@ mod tests {
             }
         }
         assert!(gentler > 20, "{gentler} plans were too fast");
+    }
+
+    #[test]
+    fn a_range_without_room_is_its_middle() {
+        let mut robot = *Model::fr3().joint_limits();
+        (robot.hard_lower[0], robot.hard_upper[0]) = (1.0, 1.01);
+        (robot.lower[0], robot.upper[0]) = (1.006, 1.004);
+        assert_eq!(range(0, &robot), (1.005, 1.005));
+        let mut robot = *Model::fr3().joint_limits();
+        robot.envelope.as_mut().expect("one").deceleration[2] = GENTLEST;
+        assert_eq!(range(2, &robot), (0.0, 0.0));
     }
 
     #[test]

@@ -249,7 +249,7 @@ fn check_joints(q: &[f64; 7], model: &Model, state: &RobotState) -> Result<(), G
         // An arm that stands nearer to the end of its range than it could go may stay there, or
         // leave.
         let (lower, upper) = approach::range(i, limits);
-        let stands = state.q[i].clamp(limits.lower[i], limits.upper[i]);
+        let stands = state.q[i].min(limits.upper[i]).max(limits.lower[i]);
         let (lower, upper) = (lower.min(stands), upper.max(stands));
         if !(lower..=upper).contains(&got) {
             return Err(GoalError::OutOfRange {

@@ -3,6 +3,8 @@
 use franka_model::{AsBuilt, JointVector, Load, Model, RobotKind, joint_vector};
 use nalgebra::{Isometry3, Vector3};
 
+use super::SystemLimits;
+
 /// How the arm's body differs from the controllers' model. The robot's controllers, its state and
 /// its clients compute with the model; the physics and what touches the arm do not.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,7 +34,8 @@ pub struct Body {
 impl Body {
     /// An arm that is as its model says and stands upright.
     pub fn exact(kind: RobotKind) -> Self {
-        let limits = Model::of(kind).joint_limits();
+        // The metal is the same under every system: the widest limits are inside the stops.
+        let limits = SystemLimits::default().joints(kind);
         Self {
             mass_error: [0.0; 7],
             com_error: [Vector3::zeros(); 7],

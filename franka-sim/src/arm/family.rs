@@ -8,7 +8,7 @@ mod distribution;
 
 pub use distribution::{Distribution, Values};
 
-use super::{Arm, Body, Bristle, Drive, Elasticity, Friction, Ripple, Sensors};
+use super::{Arm, Body, Bristle, Drive, Elasticity, Friction, Ripple, Sensors, SystemLimits};
 use crate::network::Stalls;
 use crate::noise::Random;
 
@@ -101,6 +101,8 @@ pub struct Family {
     /// Stalls of the network interface per second, of a Franka Emika Robot, drawn once: a
     /// Franka Research 3 has none. Their length is that of [`Stalls::FER`].
     pub stalls_per_second: Distribution,
+    /// Joint limits of a Franka Research 3: `"5.9"` or `"before-5.9"`.
+    pub limits: SystemLimits,
 }
 
 /// Distributions of the joints' elasticity.
@@ -291,6 +293,7 @@ impl Family {
             drive,
             sensors,
             body,
+            limits: self.limits,
             stalls,
         }
     }

@@ -10,6 +10,7 @@
 //! | `drive` | [`Drive`]: rotors, torque loop, elasticity, ripple |
 //! | `sensors` | [`Sensors`]: offset, noise and quanta |
 //! | `body` | [`Body`]: errors of links, axes and load, base tilt, end stops |
+//! | `limits` | [`SystemLimits`]: joint limits by the robot's system |
 //! | `family` | [`Family`]: distributions of all of these, read from JSON |
 //!
 //! The sources of the figures are named with the fields and in the book (`docs/src/real-arm.md`).
@@ -18,15 +19,17 @@ mod body;
 mod drive;
 mod family;
 mod friction;
+mod limits;
 mod sensors;
 
 pub use body::{Body, EndStops};
 pub use drive::{Drive, Elasticity, Ripple};
 pub use family::{Distribution, Elastic, Family, FamilyError, Values};
 pub use friction::{Bristle, Friction};
+pub use limits::SystemLimits;
 pub use sensors::Sensors;
 
-use franka_model::RobotKind;
+use franka_model::{Model, RobotKind};
 
 use crate::network::Stalls;
 
@@ -41,6 +44,8 @@ pub struct Arm {
     pub sensors: Sensors,
     /// Links, axes, load and mounting as they are.
     pub body: Body,
+    /// Joint limits that the robot enforces and serves.
+    pub limits: SystemLimits,
     /// Stalls of the network interface that sends the states; `None` for an interface without.
     /// [`Sim`](crate::Sim) has them between its sockets unless it is given a network.
     pub stalls: Option<Stalls>,
@@ -57,6 +62,7 @@ impl Arm {
             drive: Drive::ideal(kind),
             sensors: Sensors::PERFECT,
             body: Body::exact(kind),
+            limits: SystemLimits::default(),
             stalls: None,
         }
     }
@@ -74,6 +80,14 @@ impl Arm {
     /// The central arm of [`Family::bad`]: worn, badly calibrated, with an undeclared load.
     pub fn bad(kind: RobotKind) -> Self {
         Self::central(kind, &Family::bad())
+    }
+
+    /// The controllers' model of this arm: that of its kind, with the limits of its system.
+    pub(crate) fn model(&self, kind: RobotKind) -> Model {
+        let limits = *self.limits.joints(kind);
+        Model::physically_consistent(kind)
+            .clone()
+            .with_joint_limits(limits)
     }
 
     /// The arm with every parameter in the middle of its distribution.

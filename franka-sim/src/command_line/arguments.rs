@@ -8,6 +8,7 @@ use clap::{ArgAction, Parser, ValueEnum};
 use franka_model::RobotKind;
 
 use super::values::{factor, mass, numbers, object_width, patience};
+use crate::arm::SystemLimits;
 
 /// Simulates a Franka Research 3 (protocol 10) or a Franka Emika Robot (protocol 5) until it is
 /// interrupted.
@@ -74,6 +75,10 @@ pub struct Arguments {
     /// Draws an arm from the family by this seed, instead of its middle.
     #[arg(long, value_name = "N")]
     pub arm_seed: Option<u64>,
+
+    /// Joint limits of the robot's system, in place of the arm's own (FR3 only).
+    #[arg(long, value_enum)]
+    pub limits: Option<LimitsKind>,
 
     /// Adds noise to the sensors, in place of the arm's own.
     #[arg(long)]
@@ -162,6 +167,17 @@ pub enum Kind {
     Fer,
 }
 
+/// Systems with joint limits of their own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum LimitsKind {
+    /// From 5.9 on: wider ranges, less speed near their ends
+    #[value(name = "5.9")]
+    From5_9,
+    /// Before 5.9
+    #[value(name = "before-5.9")]
+    Before5_9,
+}
+
 /// The plants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum PlantKind {
@@ -182,6 +198,15 @@ pub enum NetworkKind {
     Lossy,
     /// The same number is lost, eight in a row in the mean
     Bursts,
+}
+
+impl From<LimitsKind> for SystemLimits {
+    fn from(limits: LimitsKind) -> Self {
+        match limits {
+            LimitsKind::From5_9 => Self::From5_9,
+            LimitsKind::Before5_9 => Self::Before5_9,
+        }
+    }
 }
 
 impl From<Kind> for RobotKind {
@@ -248,6 +273,7 @@ mod tests {
             ["--gripper-object-width", "0.09"],
             ["--gripper-object-width", "nan"],
             ["--network", "carrier-pigeon"],
+            ["--limits", "5.8"],
         ] {
             assert!(parse(&wrong).is_err(), "{wrong:?}");
         }

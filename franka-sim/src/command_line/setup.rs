@@ -20,6 +20,11 @@ impl Arguments {
     fn config(&self) -> Result<Config, String> {
         let kind = self.robot.into();
         let mut arm = self.arm(kind)?;
+        match (self.limits, self.robot) {
+            (Some(_), Kind::Fer) => return Err("--limits needs --robot fr3".into()),
+            (limits, _) => arm.limits = limits.map_or(arm.limits, Into::into),
+        }
+        let limits = arm.limits.joints(kind);
         if self.noise {
             let offset = arm.sensors.torque_offset;
             arm.sensors = Sensors {
@@ -37,7 +42,7 @@ impl Arguments {
             ..Config::default()
         };
         if let Some(q) = self.q {
-            config.q = possible(kind, q.into())?;
+            config.q = possible(limits, q.into())?;
         }
         if self.hand {
             config.tool = Tool::hand();
@@ -189,8 +194,7 @@ impl NetworkKind {
 const LIBRARY_MAX: usize = franka_proto::framing::MAX_MESSAGE_SIZE - 64;
 
 /// Joint positions, where the joints can be.
-fn possible(kind: RobotKind, q: JointVector) -> Result<JointVector, String> {
-    let limits = JointLimits::of(kind);
+fn possible(limits: &JointLimits, q: JointVector) -> Result<JointVector, String> {
     match limits.outside_hard(&q) {
         None => Ok(q),
         Some(i) => Err(format!(
@@ -210,6 +214,7 @@ mod tests {
     use clap::Parser as _;
 
     use super::*;
+    use crate::arm::SystemLimits;
 
     fn parsed(arguments: &[&str]) -> Arguments {
         Arguments::try_parse_from([&["franka-sim"], arguments].concat()).expect("valid")
@@ -220,6 +225,21 @@ mod tests {
         let error = parsed(&["--q", "0,0,0,-2,0,9,0"]).config();
         let error = error.expect_err("out of range");
         assert!(error.contains("joint 6 of --q is 9 rad"), "{error}");
+    }
+
+    #[test]
+    fn limits_are_those_of_the_system() {
+        let q = ["--q", "2.9,0,0,-2,0,1.5,0"];
+        let before = ["--limits", "before-5.9"];
+        let config = parsed(&q).config().expect("within the range of 5.9");
+        assert_eq!(config.arm.expect("one").limits, SystemLimits::From5_9);
+        let config = parsed(&before).config().expect("an arm");
+        assert_eq!(config.arm.expect("one").limits, SystemLimits::Before5_9);
+        let error = parsed(&[q, before].concat()).config();
+        let error = error.expect_err("out of range");
+        assert!(error.contains("-2.7501 to 2.7501"), "{error}");
+        let error = parsed(&["--robot", "fer", "--limits", "5.9"]).config();
+        assert!(error.expect_err("one table").contains("--robot fr3"));
     }
 
     #[test]

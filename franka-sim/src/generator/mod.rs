@@ -72,7 +72,7 @@ impl Desired {
 #[derive(Clone, Copy)]
 pub(crate) struct ArmModel<'a> {
     pub(crate) kind: &'static Description,
-    pub(crate) model: &'static Model,
+    pub(crate) model: &'a Model,
     pub(crate) frames: &'a EndEffector,
     pub(crate) config: &'a Config,
 }
@@ -80,7 +80,7 @@ pub(crate) struct ArmModel<'a> {
 impl<'a> ArmModel<'a> {
     pub(crate) fn new(
         kind: &'static Description,
-        model: &'static Model,
+        model: &'a Model,
         frames: &'a EndEffector,
         config: &'a Config,
     ) -> Self {

@@ -95,7 +95,7 @@ impl Plant for RigidArm {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arm::Friction;
+    use crate::arm::{Friction, SystemLimits};
     use crate::plant::DriveTrain;
     use franka_model::{GRAVITY_EARTH, Model, READY};
 
@@ -141,7 +141,7 @@ mod tests {
 
     #[test]
     fn an_end_stop_holds_the_strongest_joint_without_ringing() {
-        let limits = Model::fr3().joint_limits();
+        let limits = SystemLimits::default().joints(RobotKind::Fr3);
         let (mut arm, mut train) = robot(&Arm::ideal(RobotKind::Fr3));
         let mut push = JointVector::zeros();
         push[0] = 87.0;

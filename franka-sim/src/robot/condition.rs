@@ -178,7 +178,7 @@ impl Robot {
         self.desired.joints = start;
         self.desired.follow_joints(&ArmModel::new(
             self.kind,
-            self.model,
+            &self.model,
             &self.settings.frames,
             &self.config,
         ));
@@ -193,7 +193,7 @@ impl Robot {
         let Activity::Moving(motion) = &mut self.activity else {
             return;
         };
-        let arm = ArmModel::new(self.kind, self.model, &self.settings.frames, &self.config);
+        let arm = ArmModel::new(self.kind, &self.model, &self.settings.frames, &self.config);
         let rules = Rules {
             limits: self.config.enforce_limits,
             communication: self.config.enforce_communication,

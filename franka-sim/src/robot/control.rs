@@ -138,7 +138,7 @@ impl Robot {
         if is_led {
             // Nothing generates a motion: what is desired is what happens.
             self.desired.joints = self.measured_signal();
-            let arm = ArmModel::new(self.kind, self.model, &self.settings.frames, &self.config);
+            let arm = ArmModel::new(self.kind, &self.model, &self.settings.frames, &self.config);
             self.desired.follow_joints(&arm);
         }
         torque
@@ -159,7 +159,7 @@ impl Robot {
             },
             Activity::Moving(_) | Activity::Guided(_) => return,
         }
-        let arm = ArmModel::new(self.kind, self.model, &self.settings.frames, &self.config);
+        let arm = ArmModel::new(self.kind, &self.model, &self.settings.frames, &self.config);
         self.desired.follow_joints(&arm);
     }
 
@@ -203,7 +203,7 @@ impl Robot {
                 &self.arm().pose(&desired.q),
                 &desired,
                 &self.measurement.q,
-                self.model,
+                &self.model,
                 &self.settings.frames,
                 &self.dynamics,
                 armature,
@@ -228,7 +228,7 @@ impl Robot {
             &self.arm().pose(&guidance.start),
             &JointSignal::resting(guidance.start),
             &self.measurement.q,
-            self.model,
+            &self.model,
             &frames,
             &self.dynamics,
             self.train.felt_inertia(),
@@ -281,12 +281,12 @@ impl Robot {
         let after = Instant::new(&self.measurement.dq, &self.dynamics);
         let gain = self.config.unpublished.observer_gain;
         self.observer.update(&before, &after, &torque, gain);
-        let arm = ArmModel::new(self.kind, self.model, &self.settings.frames, &self.config);
+        let arm = ArmModel::new(self.kind, &self.model, &self.settings.frames, &self.config);
         let external = self.observer.external_torque();
         self.estimate.update(external, &self.measurement.q, &arm);
         if self.kind.version.has_accelerometers() {
             self.boards
-                .advance(self.model, self.plant.q(), self.plant.dq());
+                .advance(&self.model, self.plant.q(), self.plant.dq());
         }
     }
 

@@ -62,10 +62,10 @@ impl Robot {
         self.refresh_dynamics();
         self.observer = MomentumObserver::new();
         self.estimate = Estimate::new();
-        let arm = ArmModel::new(self.kind, self.model, &self.settings.frames, &self.config);
+        let arm = ArmModel::new(self.kind, &self.model, &self.settings.frames, &self.config);
         self.estimate
             .update(&JointVector::zeros(), self.plant.q(), &arm);
-        self.boards = Boards::resting(self.model, q);
+        self.boards = Boards::resting(&self.model, q);
     }
 
     /// Hangs a load on the flange, beside the tool and in place of any before, without telling the
@@ -77,10 +77,12 @@ impl Robot {
     }
 
     /// Puts another arm in place of this one, at rest where this one stands and with its load, as
-    /// [`place`](Self::place) does. Tool, settings, client and errors stay. The
-    /// [stalls](Arm::stalls) of its network interface are not its own here: see
+    /// [`place`](Self::place) does. Tool, settings, client and errors stay, and so do the joint
+    /// limits, which clients have read. The [stalls](Arm::stalls) of its network interface are not its own here: see
     /// [`Running::with_network`](crate::Running::with_network).
     pub fn fit(&mut self, arm: Arm) {
+        let limits = self.arm.limits;
+        let arm = Arm { limits, ..arm };
         let q = *self.plant.q();
         self.plant.fit(self.config.kind, &arm);
         self.as_built = arm.body.as_built(self.config.kind);

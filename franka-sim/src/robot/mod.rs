@@ -65,7 +65,7 @@ pub struct Robot {
     config: Config,
     kind: &'static Description,
     /// The controllers' model.
-    model: &'static Model,
+    model: Model,
     /// The arm as it is, and what that makes of its links and axes.
     arm: Arm,
     as_built: AsBuilt,
@@ -141,10 +141,10 @@ impl Robot {
         let holding = plant.place(&config.q);
         let train = DriveTrain::new(&arm, &config.q, &holding);
         let kind = Description::of(config.kind);
-        let model = Model::physically_consistent(config.kind);
+        let model = arm.model(config.kind);
         let settings = Settings::new(config.tool, &config.unpublished);
         let q = *plant.q();
-        let desired = Desired::resting(&ArmModel::new(kind, model, &settings.frames, &config), q);
+        let desired = Desired::resting(&ArmModel::new(kind, &model, &settings.frames, &config), q);
         let dynamics = model.dynamics(
             &q,
             plant.dq(),
@@ -154,11 +154,7 @@ impl Robot {
         );
         let mut robot = Self {
             kind,
-            model,
-            description: kind.urdf_name.map(|name| match &config.urdf {
-                Some(text) => text.clone().into(),
-                None => crate::urdf::text(name, model).into(),
-            }),
+            description: description(kind, &config, &model),
             client: None,
             replies: VecDeque::new(),
             command: None,
@@ -180,7 +176,7 @@ impl Robot {
             train,
             load: config.payload,
             dynamics,
-            boards: Boards::resting(model, &q),
+            boards: Boards::resting(&model, &q),
             watch: Watch::new(&config),
             touches: Touches::default(),
             random: Random::new(config.seed),
@@ -189,6 +185,7 @@ impl Robot {
             settings,
             plant,
             config,
+            model,
         };
         robot.publish(&JointVector::zeros());
         robot
@@ -279,6 +276,11 @@ impl Robot {
         self.plant.as_mut()
     }
 
+    /// The model that the robot's controllers compute with, and the joint limits that it enforces.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
     /// The protocol version that the robot speaks.
     pub fn version(&self) -> Version {
         self.kind.version
@@ -290,7 +292,7 @@ impl Robot {
     }
 
     fn arm(&self) -> ArmModel<'_> {
-        ArmModel::new(self.kind, self.model, &self.settings.frames, &self.config)
+        ArmModel::new(self.kind, &self.model, &self.settings.frames, &self.config)
     }
 
     fn is_moving(&self) -> bool {
@@ -304,4 +306,13 @@ impl Robot {
             ..JointSignal::resting(self.measurement.q)
         }
     }
+}
+
+/// What the robot serves as its description.
+fn description(kind: &Description, config: &Config, model: &Model) -> Option<Bytes> {
+    let name = kind.urdf_name?;
+    Some(match &config.urdf {
+        Some(text) => text.clone().into(),
+        None => crate::urdf::text(name, model).into(),
+    })
 }

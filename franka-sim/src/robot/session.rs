@@ -111,7 +111,7 @@ impl Robot {
     fn refresh_frames(&mut self) {
         self.refresh_dynamics();
         if !self.is_moving() {
-            let arm = ArmModel::new(self.kind, self.model, &self.settings.frames, &self.config);
+            let arm = ArmModel::new(self.kind, &self.model, &self.settings.frames, &self.config);
             self.desired.follow_joints(&arm);
         }
     }

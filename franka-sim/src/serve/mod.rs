@@ -49,7 +49,7 @@ use std::time::Duration;
 use franka_model::RobotKind;
 use tokio::sync::watch;
 
-use crate::arm::Arm;
+use crate::arm::{Arm, SystemLimits};
 use crate::config::{Config, Tool};
 use crate::end_effector::{Fingers, Hand, Suction, VacuumGripper};
 use crate::network::Network;
@@ -187,6 +187,15 @@ impl Sim {
     pub fn ideal(self) -> Self {
         let kind = self.config.kind;
         self.arm(Arm::ideal(kind))
+    }
+
+    /// Enforces and serves the joint limits of this system, in place of the arm's own (Franka
+    /// Research 3 only).
+    pub fn limits(mut self, limits: SystemLimits) -> Self {
+        let mut arm = self.config.chosen_arm();
+        arm.limits = limits;
+        self.config.arm = Some(arm);
+        self
     }
 
     /// Mounts a tool that the controllers' model includes.

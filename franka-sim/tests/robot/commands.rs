@@ -71,7 +71,7 @@ fn a_joint_position_out_of_range_has_the_name_of_the_robots_generation() {
             E::JointPositionLimitsViolation,
         ),
     ] {
-        let limits = franka_model::limits::JointLimits::of(pair.robot.config().kind);
+        let limits = *pair.robot.model().joint_limits();
         let mut q = READY;
         q[0] = limits.hard_upper[0] - 1e-5;
         pair.robot.place(&q);

@@ -203,6 +203,24 @@ fn faults_of_limits_are_told_with_what_was_found_and_expected() {
             "'velocity_offset' in <position_based_velocity_limits> for joint: joint1 is '-0.3', expected a number not \
              below 0",
         ),
+        (
+            with("deceleration_limit=\"6\"", "deceleration_limit=\"0.3\""),
+            "'deceleration_limit' in <position_based_velocity_limits> for joint: joint1 is '0.3', expected a number \
+             of at least 1.2",
+        ),
+        (
+            with(
+                "lower=\"-2.7501\" upper=\"2.7501\"",
+                "lower=\"1.5\" upper=\"1.51\"",
+            ),
+            "the limits of joint joint1 are 1.5 to 1.51 rad, a range of 0.0100 rad; expected 0.2150 rad or more, \
+             since margins are kept at both ends",
+        ),
+        (
+            with("velocity_offset=\"0.3\"", "velocity_offset=\"6\""),
+            "the limits of joint joint1 are -2.7501 to 2.7501 rad, a range of 5.5002 rad; expected 6.2000 rad or \
+             more, since margins are kept at both ends",
+        ),
     ] {
         assert_eq!(refused(&text).to_string(), message);
     }

@@ -1,7 +1,7 @@
 //! The families that come with the simulator. Their sources stand in the book, in its chapter on
 //! real arms.
 
-use super::{Distribution, Elastic, Family, Values};
+use super::{Distribution, Elastic, Family, SystemLimits, Values};
 
 impl Family {
     /// Good arms, better than those that were measured: little friction, rigid joints.
@@ -36,6 +36,7 @@ impl Family {
             load_com_error: normal(0.0, 0.005),
             base_tilt: normal(0.0, 0.00105),
             stalls_per_second: constant(0.0),
+            limits: SystemLimits::From5_9,
         }
     }
 
@@ -83,6 +84,7 @@ impl Family {
             load_com_error: normal(0.0, 0.02),
             base_tilt: normal(0.0, 0.00436),
             stalls_per_second: constant(7.0),
+            limits: SystemLimits::From5_9,
         }
     }
 
@@ -130,6 +132,7 @@ impl Family {
             load_com_error: normal(0.0, 0.04),
             base_tilt: normal(0.0, 0.01222),
             stalls_per_second: constant(15.0),
+            limits: SystemLimits::From5_9,
         }
     }
 }

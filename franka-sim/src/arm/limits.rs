@@ -1,0 +1,29 @@
+//! Joint limits by the system of the robot.
+
+use franka_model::RobotKind;
+use franka_model::limits::JointLimits;
+
+/// The joint limits that a Franka Research 3 enforces and serves: its system has them, not its
+/// metal. A Franka Emika Robot has those of its kind in either case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum SystemLimits {
+    /// Systems from 5.9 on. Their hard range is an assumption: see
+    /// [`JointLimits::fr3_system_5_9`].
+    #[default]
+    #[cfg_attr(feature = "serde", serde(rename = "5.9"))]
+    From5_9,
+    /// Earlier systems.
+    #[cfg_attr(feature = "serde", serde(rename = "before-5.9"))]
+    Before5_9,
+}
+
+impl SystemLimits {
+    /// The limits of a robot of this kind.
+    pub fn joints(self, kind: RobotKind) -> &'static JointLimits {
+        match (kind, self) {
+            (RobotKind::Fr3, Self::From5_9) => JointLimits::fr3_system_5_9(),
+            _ => JointLimits::of(kind),
+        }
+    }
+}
