@@ -3,7 +3,6 @@
 
 use std::ffi::OsStr;
 use std::fs;
-use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use clap::ValueEnum;
@@ -249,8 +248,6 @@ fn without_features(workspace: &Workspace) -> anyhow::Result<()> {
     let packages = ["franka-async", "franka-sim", "franka-record", "franka-cli"];
     let mut arguments = packages.map(|name| format!("--package={name}")).to_vec();
     arguments.push("--no-default-features".to_owned());
-    // Other features, other dependencies: what the tests have built is of no use here.
-    arguments.push(format!("--target-dir={}", bare_folder(workspace).display()));
     clippy(workspace, &arguments)
 }
 
@@ -269,7 +266,7 @@ fn no_std(workspace: &Workspace) -> anyhow::Result<Outcome> {
         let mut command = workspace.cargo();
         command.arg("check").arg("--manifest-path");
         command.arg(package.join("Cargo.toml")).arg("--target-dir");
-        command.arg(bare_folder(workspace));
+        command.arg(workspace.target().join("no_std"));
         command.args(target.map(|target| format!("--target={target}")));
         workspace.run(&mut command)?;
     }
@@ -280,12 +277,6 @@ fn no_std(workspace: &Workspace) -> anyhow::Result<Outcome> {
             BARE_TARGETS[0]
         )),
     })
-}
-
-/// Where what is built without features goes, beside all else and at the same time: cargo builds
-/// one thing at a time in a folder.
-fn bare_folder(workspace: &Workspace) -> PathBuf {
-    workspace.target().join("bare")
 }
 
 /// Whether the toolchain has the `core` of a target.
