@@ -252,6 +252,8 @@ fn network_under(conditions: Conditions, seed: u64) -> Option<Network> {
         shortest: milliseconds(stall_ms),
         longest: milliseconds(stall_ms),
         excess: Duration::ZERO,
+        single: 0.0,
+        period: Duration::ZERO,
     });
     let to_client = network::Conditions { stalls, ..each_way };
     (to_client != network::Conditions::default()).then(|| Network::new(seed, to_client, each_way))
