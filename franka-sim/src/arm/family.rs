@@ -77,7 +77,9 @@ pub struct Family {
     /// `[N·m]`
     pub torque_quantum: Distribution,
     /// Standard deviation, `[N·m]`.
-    pub torque_noise: Distribution,
+    pub torque_noise_at_rest: Distribution,
+    /// Standard deviation at 1 rad/s and above, `[N·m]`.
+    pub torque_noise_in_motion: Distribution,
     /// Standard deviation, `[rad/s]`.
     pub velocity_noise_at_rest: Distribution,
     /// Standard deviation at 1 rad/s and above, `[rad/s]`.
@@ -101,6 +103,9 @@ pub struct Family {
     /// Stalls of the network interface per second, of a Franka Emika Robot, drawn once: a
     /// Franka Research 3 has none. Their length is that of [`Stalls::FER`].
     pub stalls_per_second: Distribution,
+    /// Zero error of the motors' positions, of a Franka Research 3, `[rad]`: a Franka Emika Robot
+    /// has none.
+    pub motor_offset: Distribution,
     /// Joint limits of a Franka Research 3: `"5.9"` or `"before-5.9"`.
     pub limits: SystemLimits,
 }
@@ -196,7 +201,16 @@ impl Family {
             ("ripple_order", &self.ripple_order, NotNegative),
             ("torque_offset", &self.torque_offset, Any),
             ("torque_quantum", &self.torque_quantum, NotNegative),
-            ("torque_noise", &self.torque_noise, NotNegative),
+            (
+                "torque_noise_at_rest",
+                &self.torque_noise_at_rest,
+                NotNegative,
+            ),
+            (
+                "torque_noise_in_motion",
+                &self.torque_noise_in_motion,
+                NotNegative,
+            ),
             (
                 "velocity_noise_at_rest",
                 &self.velocity_noise_at_rest,
@@ -212,6 +226,7 @@ impl Family {
             ("com_error", &self.com_error, Any),
             ("axis_error", &self.axis_error, Any),
             ("length_error", &self.length_error, Any),
+            ("motor_offset", &self.motor_offset, Any),
         ];
         for (field, distribution, bounds) in once {
             distribution.check_single(field)?;
@@ -262,13 +277,15 @@ impl Family {
                 order: draw.joints(&self.ripple_order),
             },
         };
-        let sensors = Sensors {
+        let mut sensors = Sensors {
             torque_offset: draw.joints(&self.torque_offset),
             torque_quantum: draw.joints(&self.torque_quantum),
-            torque_noise: draw.joints(&self.torque_noise),
+            torque_noise_at_rest: draw.joints(&self.torque_noise_at_rest),
+            torque_noise_in_motion: draw.joints(&self.torque_noise_in_motion),
             velocity_noise_at_rest: draw.joints(&self.velocity_noise_at_rest),
             velocity_noise_in_motion: draw.joints(&self.velocity_noise_in_motion),
             position_noise: draw.joints(&self.position_noise),
+            motor_offset: JointVector::zeros(),
         };
         let tilt = Vector3::new(draw.once(&self.base_tilt), draw.once(&self.base_tilt), 0.0);
         let exact = Body::exact(kind).tilted(tilt);
@@ -288,6 +305,10 @@ impl Family {
             per_second,
             ..Stalls::FER
         });
+        let motor_offset = draw.joints(&self.motor_offset);
+        if kind == RobotKind::Fr3 {
+            sensors.motor_offset = motor_offset;
+        }
         Arm {
             friction,
             drive,

@@ -12,15 +12,23 @@ pub struct Sensors {
     /// Steps of `tau_J`, `[N·m]`; 0 for none. Source: states in documentation and issues, 0.025
     /// (joints 1 to 4) and 0.006 (5 to 7).
     pub torque_quantum: JointVector,
-    /// Noise of `tau_J`, `[N·m]`. Source: the log of Gaz et al., 0.03 to 0.08.
-    pub torque_noise: JointVector,
-    /// Noise of `dq` at rest, `[rad/s]`. Source: published states, 5e-4.
+    /// Noise of `tau_J` at rest, `[N·m]`. Source: a recorded Franka Research 3, 0.007 to 0.027 with
+    /// the steps.
+    pub torque_noise_at_rest: JointVector,
+    /// Noise of `tau_J` at 1 rad/s and above, `[N·m]`; between, it grows with the speed. Source:
+    /// the log of Gaz et al., in motion, 0.03 to 0.08.
+    pub torque_noise_in_motion: JointVector,
+    /// Noise of `dq` at rest, `[rad/s]`. Sources: published states, 5e-4; a recorded Franka Research
+    /// 3, 7e-4 to 9e-4.
     pub velocity_noise_at_rest: JointVector,
     /// Noise of `dq` at 1 rad/s and above, `[rad/s]`; between, it grows with the speed. Source: the
     /// log of Gaz et al., 0.002 to 0.01.
     pub velocity_noise_in_motion: JointVector,
-    /// Noise of `q`, `[rad]`. Source: published states repeat to 1e-6 to 5e-6.
+    /// Noise of `q`, `[rad]`. Source: a recorded Franka Research 3, 1.5e-6 to 2.2e-6.
     pub position_noise: JointVector,
+    /// Zero error of the motors' positions: `theta` is higher by this, `[rad]`. Source: a Franka
+    /// Research 3, -3.8e-3 to 2.6e-3, others in each session; a Franka Emika Robot has none.
+    pub motor_offset: JointVector,
 }
 
 impl Sensors {
@@ -28,16 +36,19 @@ impl Sensors {
     pub const PERFECT: Self = Self {
         torque_offset: joint_vector([0.0; 7]),
         torque_quantum: joint_vector([0.0; 7]),
-        torque_noise: joint_vector([0.0; 7]),
+        torque_noise_at_rest: joint_vector([0.0; 7]),
+        torque_noise_in_motion: joint_vector([0.0; 7]),
         velocity_noise_at_rest: joint_vector([0.0; 7]),
         velocity_noise_in_motion: joint_vector([0.0; 7]),
         position_noise: joint_vector([0.0; 7]),
+        motor_offset: joint_vector([0.0; 7]),
     };
 
     /// Sensors with a noise that a controller has to cope with. The magnitudes are choices of this
     /// simulator, not measurements.
     pub const NOISY: Self = Self {
-        torque_noise: joint_vector([0.05; 7]),
+        torque_noise_at_rest: joint_vector([0.05; 7]),
+        torque_noise_in_motion: joint_vector([0.05; 7]),
         velocity_noise_at_rest: joint_vector([2e-3; 7]),
         velocity_noise_in_motion: joint_vector([2e-3; 7]),
         position_noise: joint_vector([5e-6; 7]),
@@ -46,8 +57,16 @@ impl Sensors {
 
     /// Noise of `dq` at these velocities, `[rad/s]`.
     pub(crate) fn velocity_noise(&self, dq: &JointVector) -> JointVector {
-        let [rest, motion] = [self.velocity_noise_at_rest, self.velocity_noise_in_motion];
-        JointVector::from_fn(|i, _| rest[i] + (motion[i] - rest[i]) * dq[i].abs().min(1.0))
+        between(
+            &self.velocity_noise_at_rest,
+            &self.velocity_noise_in_motion,
+            dq,
+        )
+    }
+
+    /// Noise of `tau_J` at these velocities, `[N·m]`.
+    pub(crate) fn torque_noise(&self, dq: &JointVector) -> JointVector {
+        between(&self.torque_noise_at_rest, &self.torque_noise_in_motion, dq)
     }
 
     /// A torque in the sensors' steps, `[N·m]`.
@@ -57,4 +76,9 @@ impl Sensors {
             _ => (torque / quantum).round() * quantum,
         })
     }
+}
+
+/// A deviation at rest that grows to another one at 1 rad/s.
+fn between(rest: &JointVector, motion: &JointVector, dq: &JointVector) -> JointVector {
+    JointVector::from_fn(|i, _| rest[i] + (motion[i] - rest[i]) * dq[i].abs().min(1.0))
 }

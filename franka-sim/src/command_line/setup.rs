@@ -26,9 +26,9 @@ impl Arguments {
         }
         let limits = arm.limits.joints(kind);
         if self.noise {
-            let offset = arm.sensors.torque_offset;
             arm.sensors = Sensors {
-                torque_offset: offset,
+                torque_offset: arm.sensors.torque_offset,
+                motor_offset: arm.sensors.motor_offset,
                 ..Sensors::NOISY
             };
         }
@@ -296,8 +296,8 @@ mod tests {
         let noisy = parsed(&["--arm", path, "--noise"])
             .config()
             .expect("an arm");
-        let noise = noisy.arm.expect("one").sensors.torque_noise;
-        assert_eq!(noise, Sensors::NOISY.torque_noise);
+        let noise = noisy.arm.expect("one").sensors.torque_noise_at_rest;
+        assert_eq!(noise, Sensors::NOISY.torque_noise_at_rest);
         fs::write(&file, family.to_json().replace("torque_lag", "lag")).expect("as before");
         let error = arm(&["--arm", path]).expect_err("an unknown field");
         assert!(

@@ -27,6 +27,10 @@ pub struct Unpublished {
     pub first_cycles: FirstCycles,
     /// Whether an accepted `Move` clears `reflex_reason`. Default yes.
     pub move_clears_reason: bool,
+    /// Whether fields that a motion does not use are zero, as recorded at rest: `O_T_EE_c`,
+    /// `elbow_c` and their derivatives under joint setpoints, `tau_J_d` under the robot's own
+    /// controllers. In motion nothing was recorded. Default yes.
+    pub zero_fields: bool,
     /// How many errors a cycle that breaks several bounds latches.
     pub error_bits: ErrorBits,
     /// The modes besides Idle in which setters are taken.
@@ -80,6 +84,7 @@ impl Default for Unpublished {
             command_filter: None,
             first_cycles: FirstCycles::SoFar,
             move_clears_reason: true,
+            zero_fields: true,
             error_bits: ErrorBits::All,
             setters: Setters::default(),
             setter_bounds: SetterBounds::default(),

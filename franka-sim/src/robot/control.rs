@@ -261,7 +261,7 @@ impl Robot {
     /// Takes in the mean sensor torque of the millisecond that began with joint velocities `dq`.
     fn measure(&mut self, sensed: &JointVector, dq: &JointVector) {
         let sensors = &self.arm.sensors;
-        let noise = self.random.joints(&sensors.torque_noise);
+        let noise = self.random.joints(&sensors.torque_noise(self.plant.dq()));
         let torque = sensors.quantised(&(sensed + sensors.torque_offset + noise));
         let q_error = self.random.joints(&sensors.position_noise);
         let deviation = sensors.velocity_noise(self.plant.dq());

@@ -1,6 +1,7 @@
 //! The state of one millisecond, as the robot publishes it.
 
 use franka_model::{Frame, JointVector, Load, Twist, elbow, transform};
+use franka_proto::MotionGeneratorMode;
 use nalgebra::Matrix4;
 
 use super::{Activity, Measurement, Robot};
@@ -13,13 +14,23 @@ impl Robot {
         let rigid = JointVector::repeat(self.config.unpublished.joint_elasticity);
         let elasticity = self.train.stiffness().unwrap_or(rigid);
         let (mode, (generator, controller)) = (self.robot_mode(), self.modes());
+        let zero_fields = self.config.unpublished.zero_fields;
         let (desired_torque, success_rate) = match &self.activity {
-            Activity::Moving(motion) if motion.is_external() => {
-                (*motion.torque(), motion.success_rate(rate))
+            Activity::Moving(motion) => {
+                let torque = match motion.is_external() {
+                    true => *motion.torque(),
+                    false if zero_fields => JointVector::zeros(),
+                    false => *torque,
+                };
+                (torque, motion.success_rate(rate))
             }
-            Activity::Moving(motion) => (*torque, motion.success_rate(rate)),
             _ => (JointVector::zeros(), 0.0),
         };
+        let has_commanded_pose = !(zero_fields
+            && matches!(
+                generator,
+                MotionGeneratorMode::JointPosition | MotionGeneratorMode::JointVelocity
+            ));
         let (pose_d, twist_d) = self.desired_pose();
 
         let Self {
@@ -28,6 +39,7 @@ impl Robot {
             estimate,
             measurement,
             state,
+            arm,
             ..
         } = self;
         let flag = |on: bool| if on { 1.0 } else { 0.0 };
@@ -58,7 +70,8 @@ impl Robot {
         state.q_d = desired.joints.q.into();
         state.dq_d = desired.joints.dq.into();
         state.ddq_d = desired.joints.ddq.into();
-        state.theta = (q + measurement.torque.component_div(&elasticity)).into();
+        let wound = measurement.torque.component_div(&elasticity);
+        state.theta = (q + wound + arm.sensors.motor_offset).into();
         state.dtheta = (dq + measurement.torque_rate.component_div(&elasticity)).into();
 
         state.joint_contact = estimate.joint_contact.map(flag);
@@ -76,6 +89,12 @@ impl Robot {
         state.O_ddP_O = franka_model::GRAVITY_EARTH.into();
         if self.kind.version.has_accelerometers() {
             (state.accelerometer_top, state.accelerometer_bottom) = self.boards.read();
+        }
+
+        if !has_commanded_pose {
+            state.O_T_EE_c = [0.0; 16];
+            (state.O_dP_EE_c, state.O_ddP_EE_c) = ([0.0; 6], [0.0; 6]);
+            (state.elbow_c, state.delbow_c, state.ddelbow_c) = ([0.0; 2], [0.0; 2], [0.0; 2]);
         }
 
         state.motion_generator_mode = generator;

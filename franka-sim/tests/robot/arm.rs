@@ -138,7 +138,8 @@ fn the_state_has_the_models_pose_and_the_robot_the_true_one() {
 fn torques_come_in_quanta_and_noise_is_as_large_as_the_arm_says() {
     let mut pair = pair(|arm| {
         arm.sensors.torque_quantum = JointVector::repeat(0.025);
-        arm.sensors.torque_noise = JointVector::repeat(0.06);
+        arm.sensors.torque_noise_at_rest = JointVector::repeat(0.06);
+        arm.sensors.torque_noise_in_motion = JointVector::repeat(0.3);
         arm.sensors.velocity_noise_at_rest = JointVector::repeat(5e-4);
         arm.sensors.position_noise = JointVector::repeat(5e-6);
     });

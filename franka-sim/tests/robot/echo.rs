@@ -1,6 +1,7 @@
-use franka_model::{Frame, JointVector, Model, READY, Wrench};
+use franka_model::{Frame, JointVector, Model, READY, RobotKind, Wrench};
 use franka_proto::{MoveControllerMode, MoveGeneratorMode, RobotCommand, RobotMode, RobotState};
-use franka_sim::{Config, Tool, Touch};
+use franka_sim::arm::{Arm, Family};
+use franka_sim::{Config, Tool, Touch, Unpublished};
 use nalgebra::Vector3;
 
 use crate::pair::{Pair, positions, ramp, torques};
@@ -197,4 +198,60 @@ fn contact_does_not_show_where_nothing_touches() {
         let felt = Wrench::from(pair.state.O_F_ext_hat_K).amax();
         assert!(felt < 1.0, "{cycle}: {felt}");
     }
+}
+
+#[test]
+fn fields_that_joint_setpoints_do_not_use_are_zero() {
+    for kind in RobotKind::ALL {
+        let unused = |state: &RobotState| {
+            let pose = state.O_T_EE_c == [0.0; 16] && state.O_dP_EE_c == [0.0; 6];
+            let elbow = state.elbow_c == [0.0; 2] && state.delbow_c == [0.0; 2];
+            (pose && elbow, state.tau_J_d == [0.0; 7])
+        };
+        let mut pair = Pair::of(kind);
+        assert!(!unused(&pair.state).0, "outside of motions it is a pose");
+        pair.start_joints();
+        // The controller carries the arm against a push.
+        pair.robot
+            .push_end_effector(Wrench::new(0.0, 4.0, 0.0, 0.0, 0.0, 0.0), 200);
+        for _ in 0..100 {
+            pair.tick(Some(positions(&READY)));
+        }
+        assert_eq!(unused(&pair.state), (true, true), "{kind:?}");
+
+        let mut pair = Pair::new(Config {
+            kind,
+            unpublished: Unpublished {
+                zero_fields: false,
+                ..Unpublished::default()
+            },
+            ..Config::default()
+        });
+        pair.start_joints();
+        pair.tick(Some(positions(&READY)));
+        assert!(!unused(&pair.state).0, "{kind:?}");
+    }
+}
+
+#[test]
+fn the_motor_side_has_the_offsets_of_the_session_beside_the_torque() {
+    let mut arm = Arm::ideal(RobotKind::Fr3);
+    arm.sensors.motor_offset = JointVector::from([-3.8e-3, 0.0, 1e-3, 2e-3, 0.0, 0.0, 2.6e-3]);
+    let offset = arm.sensors.motor_offset;
+    let mut pair = Pair::new(Config {
+        arm: Some(arm),
+        ..Config::default()
+    });
+    pair.idle(10);
+    let state = &pair.state;
+    for i in 0..7 {
+        let wound = state.theta[i] - state.q[i] - offset[i];
+        assert!((wound - state.tau_J[i] / 1e4).abs() < 1e-6, "{i}: {wound}");
+    }
+    let family = Family::realistic();
+    let drawn = |kind, seed| Arm::sample(kind, seed, &family).sensors.motor_offset;
+    let fr3 = drawn(RobotKind::Fr3, 1);
+    assert!(fr3.min() >= -3.8e-3 && fr3.max() <= 2.6e-3 && fr3.amax() > 1e-4);
+    assert_ne!(fr3, drawn(RobotKind::Fr3, 2));
+    assert_eq!(drawn(RobotKind::Fer, 1), JointVector::zeros());
 }

@@ -24,7 +24,8 @@ impl Family {
             ripple_order: constant(0.0),
             torque_offset: normal(0.0, [0.1, 0.15, 0.1, 0.15, 0.08, 0.05, 0.03]),
             torque_quantum: constant([0.025, 0.025, 0.025, 0.025, 0.006, 0.006, 0.006]),
-            torque_noise: constant([0.03, 0.03, 0.03, 0.03, 0.01, 0.01, 0.01]),
+            torque_noise_at_rest: constant([0.03, 0.03, 0.03, 0.03, 0.01, 0.01, 0.01]),
+            torque_noise_in_motion: constant([0.03, 0.03, 0.03, 0.03, 0.01, 0.01, 0.01]),
             velocity_noise_at_rest: constant(0.0002),
             velocity_noise_in_motion: constant(0.001),
             position_noise: constant(1e-06),
@@ -36,6 +37,7 @@ impl Family {
             load_com_error: normal(0.0, 0.005),
             base_tilt: normal(0.0, 0.00105),
             stalls_per_second: constant(0.0),
+            motor_offset: constant(0.0),
             limits: SystemLimits::From5_9,
         }
     }
@@ -72,10 +74,11 @@ impl Family {
             ripple_order: constant([242.0, 242.0, 242.0, 242.0, 160.0, 160.0, 0.0]),
             torque_offset: normal(0.0, [0.25, 0.3, 0.25, 0.3, 0.2, 0.15, 0.1]),
             torque_quantum: constant([0.025, 0.025, 0.025, 0.025, 0.006, 0.006, 0.006]),
-            torque_noise: constant([0.06, 0.06, 0.06, 0.06, 0.035, 0.035, 0.035]),
+            torque_noise_at_rest: constant([0.023, 0.026, 0.023, 0.021, 0.007, 0.007, 0.017]),
+            torque_noise_in_motion: constant([0.06, 0.06, 0.06, 0.06, 0.035, 0.035, 0.035]),
             velocity_noise_at_rest: constant(0.0005),
             velocity_noise_in_motion: constant(0.003),
-            position_noise: constant(5e-06),
+            position_noise: constant(2e-06),
             mass_error: uniform(-0.03, 0.03),
             com_error: uniform(-0.005, 0.005),
             axis_error: normal(0.0, 0.002),
@@ -84,6 +87,7 @@ impl Family {
             load_com_error: normal(0.0, 0.02),
             base_tilt: normal(0.0, 0.00436),
             stalls_per_second: constant(7.0),
+            motor_offset: uniform(-0.0038, 0.0026),
             limits: SystemLimits::From5_9,
         }
     }
@@ -120,7 +124,8 @@ impl Family {
             ripple_order: constant([242.0, 242.0, 242.0, 242.0, 160.0, 160.0, 0.0]),
             torque_offset: normal(0.0, [0.45, 0.6, 0.45, 0.6, 0.35, 0.3, 0.25]),
             torque_quantum: constant([0.036, 0.036, 0.036, 0.036, 0.006, 0.006, 0.006]),
-            torque_noise: constant([0.1, 0.1, 0.1, 0.1, 0.05, 0.05, 0.05]),
+            torque_noise_at_rest: constant([0.05, 0.05, 0.05, 0.05, 0.025, 0.025, 0.035]),
+            torque_noise_in_motion: constant([0.1, 0.1, 0.1, 0.1, 0.05, 0.05, 0.05]),
             velocity_noise_at_rest: constant(0.0013),
             velocity_noise_in_motion: constant(0.01),
             position_noise: constant(2e-05),
@@ -132,6 +137,7 @@ impl Family {
             load_com_error: normal(0.0, 0.04),
             base_tilt: normal(0.0, 0.01222),
             stalls_per_second: constant(15.0),
+            motor_offset: uniform(-0.0038, 0.0026),
             limits: SystemLimits::From5_9,
         }
     }
