@@ -335,6 +335,7 @@
 //! | [`control`] | control at 1 kHz by functions of the program |
 //! | [`gripper`], [`vacuum`] | the end effectors, each with a connection of its own |
 //! | [`settings`], [`identify`] | load, thresholds and the like; friction, bias and load, measured |
+//! | [`tare`] | the external wrench without what an untouched arm shows of it |
 //! | [`model`] | kinematics, dynamics, limits, inverse kinematics |
 //! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control is |
 //! | [`record`] | what every cycle saw and did |
@@ -439,6 +440,7 @@ pub mod supervision;
 mod supervisor;
 #[cfg(feature = "metrics")]
 mod tally;
+pub mod tare;
 pub mod team;
 mod telemetry;
 mod thresholds;

@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 
 use crate::destination::target;
 use crate::operation::seconds;
+use crate::tare::PyWrenchTare;
 
 /// What has to be the case: comparisons of quantities, flags of the robot and the time, joined by
 /// `&`, `|` and `~`. See `franka_async.condition`.
@@ -62,6 +63,16 @@ impl Condition {
         Self::new(
             self.condition.relative(),
             format!("{}.relative()", self.text),
+        )
+    }
+
+    /// Takes a tare off the forces, moments and joint torques of this condition, as
+    /// `await robot.tare()` returns it. The moment is then about the origin of the stiffness frame.
+    #[pyo3(signature = (tare, /))]
+    fn tared(&self, tare: &PyWrenchTare) -> PyResult<Self> {
+        Self::new(
+            self.condition.tared(&tare.0),
+            format!("{}.tared({})", self.text, tare.__repr__()),
         )
     }
 

@@ -6,7 +6,7 @@ use franka_async::connection::Version;
 use franka_async::diagnosis::{Diagnose, Diagnosis};
 use franka_async::error::{
     ActionError, ActionFailure, ActiveError, CommandError, ConnectError, ControlError,
-    GripperError, IdentifyError, ReadError, Status, VacuumGripperError,
+    GripperError, IdentifyError, ReadError, Status, TareError, VacuumGripperError,
 };
 use franka_async::model::RobotKind;
 use pyo3::prelude::*;
@@ -43,6 +43,7 @@ raise!(
     ReadError,
     ActiveError,
     IdentifyError,
+    TareError,
     GripperError,
     VacuumGripperError
 );
@@ -82,6 +83,7 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
         Error::Active(_) => "ActiveError",
         Error::Identify(_) => "IdentifyError",
         Error::Read(_) => "ReadError",
+        Error::Tare(_) => "TareError",
         Error::Gripper(_) | Error::VacuumGripper(_) => "ActionError",
         _ => "FrankaError",
     };
@@ -146,6 +148,7 @@ fn kind(error: &Error) -> String {
         Error::Active(error) => variant(error),
         Error::Identify(error) => variant(error),
         Error::Read(error) => variant(error),
+        Error::Tare(TareError::Refused(error)) => variant(error),
         Error::ConnectGripper(error) => variant(error),
         Error::Gripper(ActionError::Failure(ActionFailure::Aborted { .. }))
         | Error::VacuumGripper(ActionError::Failure(ActionFailure::Aborted { .. })) => {

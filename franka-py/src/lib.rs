@@ -56,6 +56,7 @@ mod states;
 mod stats;
 mod stream;
 mod supervision;
+mod tare;
 mod team;
 mod told;
 mod vacuum_gripper;
@@ -132,6 +133,8 @@ mod _native {
     use crate::stream::Source;
     #[pymodule_export]
     use crate::supervision::_check_policy;
+    #[pymodule_export]
+    use crate::tare::PyWrenchTare;
     #[pymodule_export]
     use crate::team::{Team, TeamGrasp};
     #[pymodule_export]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import connection, program, until
 
-from franka_async import ConnectError, FrankaError, MotionError, Robot, Sim
+from franka_async import ConnectError, FrankaError, MotionError, Robot, Sim, TareError, WrenchTare, condition
 
 
 def test_a_robot_is_connected_within_a_block_and_not_after_it(sim: Sim) -> None:
@@ -224,3 +224,23 @@ print("child", status, robot.move_by([0.0, 0.0, 0.01]).wait().duration > 0)
 """
     )
     assert text.count("True") == 4 and "child 0 True" in text and "no error" not in text, text
+
+
+def test_a_tare_takes_off_what_an_untouched_arm_shows(robot: Robot) -> None:
+    tare = robot.tare(0.1).wait()
+    assert isinstance(tare, WrenchTare) and tare.states > 20
+    assert tare.wrench.shape == tare.deviation.shape == (6,)
+    state = robot.state()
+    left = tare.compensate(state)
+    assert left is not None
+    np.testing.assert_allclose(left[:3], state.O_F_ext_hat_K[:3] - tare.wrench[:3])
+    torques = state.tau_ext_hat_filtered - tare.joint_torques
+    np.testing.assert_allclose(tare.compensate_torques(state), torques)
+    assert tare.turned(state) < WrenchTare.NEAR
+    touched = condition.force_z(8.0).tared(tare)
+    assert "tared(" in repr(touched)
+    report = robot.move_by([0.0, 0.0, 0.01], until=touched).wait()
+    assert report.reacted is None
+    with pytest.raises(TareError, match="expected 20 ms to 60 s") as caught:
+        robot.tare(0.001).wait()
+    assert (caught.value.kind, caught.value.party) == ("duration", "caller")

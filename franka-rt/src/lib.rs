@@ -51,6 +51,7 @@ pub mod stats;
 pub mod supervision;
 #[cfg(unix)]
 mod sys;
+pub mod tare;
 pub mod team;
 #[cfg(unix)]
 pub mod thread;

@@ -35,6 +35,7 @@ mod scripts;
 mod stalls;
 mod starving;
 mod supervising;
+mod taring;
 mod team;
 mod telemetry;
 mod together;

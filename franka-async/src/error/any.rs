@@ -5,7 +5,9 @@ use franka_rt::lifecycle::{ControlError, MotionError, Party};
 
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 use super::ModelLibraryError;
-use super::{ActionError, ActiveError, CommandError, ConnectError, IdentifyError, ReadError};
+use super::{
+    ActionError, ActiveError, CommandError, ConnectError, IdentifyError, ReadError, TareError,
+};
 
 /// Anything that can go wrong with a robot or its end effectors: what a program with many kinds of
 /// calls returns. Every error of this crate converts into it, so that `?` does, and `Display` is
@@ -35,6 +37,9 @@ pub enum Error {
     /// States could not be read any further.
     #[error(transparent)]
     Read(#[from] ReadError),
+    /// No tare was taken, for another reason than a lost link.
+    #[error(transparent)]
+    Tare(TareError),
     /// There is no connection to the Franka Hand.
     #[error(transparent)]
     ConnectGripper(#[from] ConnectError<gripper::Version>),
@@ -80,6 +85,15 @@ impl From<IdentifyError> for Error {
     }
 }
 
+impl From<TareError> for Error {
+    fn from(error: TareError) -> Self {
+        match error {
+            TareError::Read(error) => error.into(),
+            other => Self::Tare(other),
+        }
+    }
+}
+
 impl Error {
     /// Returns the name of its row in the book's chapter of errors, `errors.md`, which says what to
     /// do. Every error of a call has it.
@@ -101,6 +115,7 @@ impl Error {
             Self::Active(error) => error.entry(),
             Self::Identify(error) => error.entry(),
             Self::Read(error) => error.entry(),
+            Self::Tare(error) => error.entry(),
             Self::ConnectGripper(error) => error.entry(),
             Self::Gripper(error) => error.entry(),
             Self::ConnectVacuumGripper(error) => error.entry(),
@@ -120,6 +135,7 @@ impl Error {
             Self::Active(error) => error.party(),
             Self::Identify(error) => error.party(),
             Self::Read(error) => error.party(),
+            Self::Tare(error) => error.party(),
             Self::ConnectGripper(error) => error.party(),
             Self::Gripper(error) => error.party(),
             Self::ConnectVacuumGripper(error) => error.party(),

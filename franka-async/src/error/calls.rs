@@ -8,6 +8,7 @@ use franka_proto::gripper::Failure;
 use franka_proto::{Command, Refusal, RequestError, ServiceCommand, Violation};
 use franka_rt::identify::FitError;
 use franka_rt::lifecycle::{CloseReason, MotionError, Party};
+use franka_rt::tare::TareRefused;
 use franka_rt::thread::{BorrowError, WriteFault};
 
 /// Why a command other than a motion was not carried out.
@@ -268,6 +269,36 @@ impl IdentifyError {
             Self::Moved { .. } => Party::Caller,
             Self::Motion(error) => error.party(),
             Self::Fit(_) => Party::Robot,
+        }
+    }
+}
+
+/// Why no tare was taken.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TareError {
+    /// Caller: the arm moves, is touched or guided, or is near a singularity.
+    #[error(transparent)]
+    Refused(#[from] TareRefused),
+    /// States could not be read any further.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+}
+
+impl TareError {
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    pub fn entry(&self) -> &'static str {
+        match self {
+            Self::Refused(_) => "tare-refused",
+            Self::Read(error) => error.entry(),
+        }
+    }
+
+    /// Returns the party that can act on it.
+    pub fn party(&self) -> Party {
+        match self {
+            Self::Refused(_) => Party::Caller,
+            Self::Read(error) => error.party(),
         }
     }
 }

@@ -9,7 +9,7 @@ mod connecting;
 use franka_proto::{gripper, vacuum};
 
 pub use crate::endpoint::EndpointError;
-pub use calls::{ActionError, ActiveError, CommandError, IdentifyError, ReadError};
+pub use calls::{ActionError, ActiveError, CommandError, IdentifyError, ReadError, TareError};
 #[cfg(feature = "urdf")]
 pub use connecting::ModelError;
 pub use connecting::{Attempt, ConnectError};

@@ -42,6 +42,7 @@ from ._native import (
     Team,
     TeamGrasp,
     VirtualRobots,
+    WrenchTare,
     start_tickets,
     enable_logging,
     explain,
@@ -62,6 +63,7 @@ from .errors import (
     RecordError,
     RecordingError,
     ReplayError,
+    TareError,
     TeamError,
 )
 from .goal import (
@@ -174,6 +176,7 @@ __all__ = [
     "Sim",
     "StartTicket",
     "Stream",
+    "TareError",
     "Team",
     "TeamError",
     "TeamGrasp",
@@ -182,6 +185,7 @@ __all__ = [
     "VacuumGripper",
     "VacuumGripperState",
     "VirtualRobots",
+    "WrenchTare",
     "VirtualWall",
     "Waypoint",
     "condition",

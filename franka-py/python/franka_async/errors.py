@@ -26,6 +26,7 @@ __all__ = [
     "RecordError",
     "RecordingError",
     "ReplayError",
+    "TareError",
     "TeamError",
 ]
 
@@ -73,6 +74,10 @@ class ExportError(FrankaError):
 
 class IdentifyError(FrankaError):
     """An arm was not identified."""
+
+
+class TareError(FrankaError):
+    """No tare was taken: the arm moves, is touched or guided, or is near a singularity."""
 
 
 class MotionError(FrankaError):

@@ -13,7 +13,7 @@ from ..recording import RecordStatus, ReplayReport
 from ..settings import VirtualWall
 from ..streams import Reading, Stream
 from ..supervision import CloseReason, Event, Health, Policy, Reflex
-from .._native import ActiveControl, EpisodeUnderWay, Follow, GripperState, Identified, Latest, Model, Motion, Recording, RecordingFile, RobotState, VacuumGripperState
+from .._native import ActiveControl, EpisodeUnderWay, Follow, GripperState, Identified, Latest, Model, Motion, Recording, RecordingFile, RobotState, VacuumGripperState, WrenchTare
 from .. import _native
 from . import tools as tools
 
@@ -351,6 +351,9 @@ class Robot:
         ...
 
     def identify(self) -> IdentificationPlan:
+        ...
+
+    def tare(self, duration: float=0.5) -> WrenchTare:
         ...
 
     def stats(self) -> dict[str, Any]:

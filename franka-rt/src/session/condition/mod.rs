@@ -36,6 +36,8 @@ use core::time::Duration;
 
 pub use quantity::{Axis, Quantity};
 
+use crate::tare::WrenchTare;
+
 pub(super) use watch::{Observed, Watch};
 
 /// What has to be the case in a state: comparisons of [quantities](Quantity), flags of the robot
@@ -53,6 +55,22 @@ pub struct Condition {
     nodes: [Node; Self::ROOM],
     /// How many nodes it takes: more than there is room for, and it is refused.
     length: usize,
+    /// What tared comparisons take off.
+    tare: Offset,
+}
+
+/// Wrench at the stiffness frame, in axes of the base, and joint torques.
+type Offset = [f64; 13];
+
+/// What a comparison is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Since {
+    /// The value.
+    Never,
+    /// Its change since the first state of the goal.
+    Beginning,
+    /// Its change since a tare.
+    Tare,
 }
 
 /// An operand or an operator.
@@ -63,8 +81,7 @@ enum Node {
         bound: Bound,
         /// What it is compared with.
         value: f64,
-        /// Whether the change since the first state of the goal is compared.
-        relative: bool,
+        since: Since,
     },
     Flag(Flag),
     /// So many milliseconds since the goal began.
@@ -123,6 +140,9 @@ pub enum ConditionError {
         /// The number given.
         got: u8,
     },
+    /// The tare is not finite, or the condition has two different ones.
+    #[error("expected one tare of finite numbers for all comparisons of a condition")]
+    Tare,
     /// What follows the reaction cannot be hand guiding.
     #[error("a reaction goes on to joint positions, a pose or rest, not to hand guiding")]
     Guided,
@@ -203,10 +223,34 @@ impl Condition {
     #[must_use]
     pub fn relative(mut self) -> Self {
         for node in &mut self.nodes {
-            if let Node::Compare { relative, .. } = node {
-                *relative = true;
+            if let Node::Compare { since, .. } = node {
+                *since = Since::Beginning;
             }
         }
+        self
+    }
+
+    /// Takes a tare off the forces, moments and joint torques of this condition; what else it
+    /// compares stays as it is. The moment is then about the origin of the stiffness frame.
+    ///
+    /// A tare belongs to the posture in which it was taken: see [`tare`](crate::tare). Where the
+    /// robot has no estimate, near a singularity, no tared comparison of the wrench is true, and no
+    /// negation of one.
+    #[must_use]
+    pub fn tared(mut self, tare: &WrenchTare) -> Self {
+        for node in &mut self.nodes {
+            if let Node::Compare {
+                quantity, since, ..
+            } = node
+                && quantity.is_estimate()
+            {
+                *since = Since::Tare;
+            }
+        }
+        self.tare = core::array::from_fn(|i| match i {
+            0..6 => tare.wrench[i],
+            _ => tare.joint_torques[i - 6],
+        });
         self
     }
 
@@ -226,7 +270,23 @@ impl Condition {
         if self.length > Self::ROOM {
             return Err(ConditionError::TooLong { got: self.length });
         }
+        if !self.tare.iter().all(|number| number.is_finite()) {
+            return Err(ConditionError::Tare);
+        }
         self.nodes().iter().try_for_each(Node::check)
+    }
+
+    fn is_tared(&self) -> bool {
+        let tared = |node: &Node| {
+            matches!(
+                node,
+                Node::Compare {
+                    since: Since::Tare,
+                    ..
+                }
+            )
+        };
+        self.nodes().iter().any(tared)
     }
 
     fn nodes(&self) -> &[Node] {
@@ -247,8 +307,16 @@ impl Condition {
             .nodes()
             .iter()
             .fold(self, |all, node| all.then_node(*node));
+        // Two tares in one condition are refused.
+        let (ours, theirs) = (self.is_tared(), other.is_tared());
+        let tare = match (ours, theirs) {
+            (true, true) if self.tare != other.tare => [f64::NAN; 13],
+            (false, true) => other.tare,
+            _ => self.tare,
+        };
         Self {
             length,
+            tare,
             ..both.then_node(by)
         }
     }
@@ -259,6 +327,7 @@ impl From<Node> for Condition {
         let empty = Self {
             nodes: [Node::UNUSED; Self::ROOM],
             length: 0,
+            tare: [0.0; 13],
         };
         empty.then_node(node)
     }
@@ -297,7 +366,7 @@ impl Node {
             quantity,
             bound,
             value,
-            relative: false,
+            since: Since::Never,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use franka_model::{JointVector, Twist};
 
-use crate::session::condition::{Bound, Condition, Node, Observed};
+use crate::session::condition::{Bound, Condition, Node, Observed, Offset};
 use crate::session::running::Measured;
 
 /// An axis of the base frame.
@@ -75,6 +75,19 @@ impl Quantity {
     /// True while its magnitude is at or above `value`, which has to be above zero.
     pub fn beyond(self, value: f64) -> Condition {
         Node::compare(self, Bound::Beyond, value).into()
+    }
+
+    /// Whether it is one of the robot's estimates, which a tare may be taken off.
+    pub(super) fn is_estimate(self) -> bool {
+        matches!(
+            self,
+            Self::Force(_)
+                | Self::ForceNorm
+                | Self::Torque(_)
+                | Self::TorqueNorm
+                | Self::JointTorque(_)
+                | Self::LargestJointTorque
+        )
     }
 
     /// The joint that it is about, if it is about one.
@@ -151,6 +164,18 @@ impl Sample {
         put(JOINT_POSITION, arm.q.as_slice());
         put(JOINT_VELOCITY, &state.dq);
         Self(sample)
+    }
+
+    /// What has changed since a tare; the wrench is not finite where the robot has no estimate.
+    pub(super) fn tared(&self, tare: &Offset) -> Self {
+        let mut sample = *self;
+        for (number, offset) in sample.0.iter_mut().zip(tare) {
+            *number -= offset;
+        }
+        if self.0[..JOINT_TORQUE].iter().all(|number| *number == 0.0) {
+            sample.0[..JOINT_TORQUE].fill(f64::NAN);
+        }
+        sample
     }
 
     /// What has changed since `before`.

@@ -420,3 +420,57 @@ fn every_condition_survives_its_words() {
         assert_eq!(Condition::load(&words), condition);
     }
 }
+
+/// Of an arm whose stiffness frame is turned by half a turn about x against the base.
+#[test]
+fn tared_comparisons_are_of_what_has_changed_since_the_tare() {
+    let mut arm = Arm::new();
+    (arm.state.EE_T_K[5], arm.state.EE_T_K[10]) = (-1.0, -1.0);
+    arm.state.O_F_ext_hat_K = [1.0, 2.0, -4.0, 9.0, 9.0, 9.0];
+    arm.state.K_F_ext_hat_K = [1.0, -2.0, 4.0, 0.3, -0.2, -0.1];
+    arm.state.tau_ext_hat_filtered = [0.5; 7];
+    let tare = WrenchTare {
+        wrench: [1.5, 2.0, 1.0, 0.3, 0.0, 0.0],
+        joint_torques: [0.5; 7],
+        ..WrenchTare::default()
+    };
+    let position = Quantity::Position(Axis::Z);
+    for (condition, met) in [
+        (force_z(4.9), true),
+        (force_z(5.1), false),
+        (force_x(0.45), true),
+        (force_y(0.1), false),
+        (force(5.0), true),
+        (force(5.1), false),
+        // The moment of the stiffness frame, not that of the base.
+        (torque(0.2), true),
+        (torque(0.25), false),
+        (Quantity::Torque(Axis::Y).above(0.19), true),
+        (joint_torques(0.1), false),
+        // No tare is taken off these.
+        (position.above(0.49), true),
+        (position.above(0.51), false),
+    ] {
+        assert_eq!(arm.meets(condition.tared(&tare)), met, "{condition:?}");
+        // As it is on the other side of the slot.
+        let mut words = [u64::MAX; Condition::WORDS];
+        let tared = condition.tared(&tare);
+        tared.store(&mut words);
+        assert_eq!(Condition::load(&words), tared);
+    }
+    // Joined with others, which see the whole wrench.
+    let both = force_z(4.9).tared(&tare) & force_z(3.9) & !force_z(4.1);
+    assert!(arm.meets(both));
+    assert!(arm.meets(!force_z(5.1) & force_z(4.9).tared(&tare)));
+    let other = WrenchTare::default();
+    let two = force_z(1.0).tared(&tare) | force_z(1.0).tared(&other);
+    assert_eq!(two.check(), Err(ConditionError::Tare));
+    // Near a singularity the robot reports zeros: neither touched nor untouched.
+    arm.state.O_F_ext_hat_K = [0.0; 6];
+    arm.state.K_F_ext_hat_K = [0.0; 6];
+    for condition in [force_z(0.5), !force_z(0.5), torque(0.1), !force(0.1)] {
+        assert!(!arm.meets(condition.tared(&tare)), "{condition:?}");
+    }
+    assert!(!arm.meets(joint_torques(0.1).tared(&tare)));
+    assert!(arm.meets(!joint_torques(0.1).tared(&tare)));
+}

@@ -3,7 +3,7 @@
 use franka_proto::RobotState;
 
 use super::quantity::Sample;
-use super::{Bound, Condition, Flag, Node};
+use super::{Bound, Condition, Flag, Node, Since};
 use crate::session::running::Measured;
 
 /// What conditions need of a state, beside the joints and the pose that the session measures.
@@ -40,6 +40,7 @@ impl Observed {
 #[derive(Debug)]
 pub(in crate::session) struct Watch {
     condition: Condition,
+    is_tared: bool,
     /// When the goal began, `message_id` of the state.
     since: u64,
     /// The first state of the goal.
@@ -53,6 +54,7 @@ impl Watch {
     pub(in crate::session) fn new(condition: Condition, since: u64) -> Self {
         Self {
             condition,
+            is_tared: condition.is_tared(),
             since,
             first: None,
             held: [None; Condition::ROOM],
@@ -66,6 +68,10 @@ impl Watch {
         let first = self.first.get_or_insert(now);
         first.complete_from(&now);
         let change = now.since(first);
+        let tared = match self.is_tared {
+            true => now.tared(&self.condition.tare),
+            false => now,
+        };
         let mut stack = Stack::default();
         for (node, held) in self.condition.nodes().iter().zip(&mut self.held) {
             match *node {
@@ -73,9 +79,13 @@ impl Watch {
                     quantity,
                     bound,
                     value,
-                    relative,
+                    since,
                 } => {
-                    let number = quantity.of(if relative { &change } else { &now });
+                    let number = quantity.of(match since {
+                        Since::Never => &now,
+                        Since::Beginning => &change,
+                        Since::Tare => &tared,
+                    });
                     stack.push(number.is_finite().then(|| bound.admits(number, value)));
                 }
                 Node::Flag(flag) => stack.push(flag.is_set(state)),

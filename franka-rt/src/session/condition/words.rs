@@ -1,19 +1,24 @@
 //! The form of a condition in the slot that crosses into the thread.
 //!
-//! A word for the length, then two for each node: what it is, and its number. What it is takes a
-//! byte each, from the lowest: the kind of node; the kind of quantity or flag; its axis or joint;
-//! the kind of bound; whether it is relative.
+//! A word for the length, then two for each node: what it is, and its number; then the tare. What a
+//! node is takes a byte each, from the lowest: the kind of node; the kind of quantity or flag; its
+//! axis or joint; the kind of bound; what the change is counted from.
 
-use super::{Axis, Bound, Condition, Flag, Node, Quantity};
+use super::{Axis, Bound, Condition, Flag, Node, Quantity, Since};
 use crate::slot::Words;
 
+/// Words of the length and the nodes.
+const NODES: usize = 1 + 2 * Condition::ROOM;
+
 impl Words for Condition {
-    const WORDS: usize = 1 + 2 * Self::ROOM;
+    const WORDS: usize = NODES + 13;
 
     fn store(&self, words: &mut [u64]) {
         let nodes = self.nodes.iter().flat_map(|node| node.to_words());
         let length = self.length as u64;
-        for (word, value) in words.iter_mut().zip([length].into_iter().chain(nodes)) {
+        let tare = self.tare.map(f64::to_bits);
+        let values = [length].into_iter().chain(nodes).chain(tare);
+        for (word, value) in words.iter_mut().zip(values) {
             *word = value;
         }
     }
@@ -22,6 +27,7 @@ impl Words for Condition {
         Self {
             length: words[0] as usize,
             nodes: core::array::from_fn(|i| Node::from_words([words[1 + 2 * i], words[2 + 2 * i]])),
+            tare: core::array::from_fn(|i| f64::from_bits(words[NODES + i])),
         }
     }
 }
@@ -37,10 +43,10 @@ impl Node {
                 quantity,
                 bound,
                 value,
-                relative,
+                since,
             } => {
                 let (kind, part) = quantity.to_bytes();
-                let what = [0, kind, part, bound as u8, u8::from(relative)];
+                let what = [0, kind, part, bound as u8, since as u8];
                 [code(what), value.to_bits()]
             }
             Self::Flag(flag) => {
@@ -61,7 +67,7 @@ impl Node {
     }
 
     fn from_words([what, number]: [u64; 2]) -> Self {
-        let [node, kind, part, bound, relative, ..] = what.to_le_bytes();
+        let [node, kind, part, bound, since, ..] = what.to_le_bytes();
         match node {
             0 => Self::Compare {
                 quantity: Quantity::from_bytes(kind, part),
@@ -71,7 +77,11 @@ impl Node {
                     _ => Bound::Beyond,
                 },
                 value: f64::from_bits(number),
-                relative: relative == 1,
+                since: match since {
+                    0 => Since::Never,
+                    1 => Since::Beginning,
+                    _ => Since::Tare,
+                },
             },
             1 => Self::Flag(match kind {
                 0 => Flag::Contact,

@@ -1,0 +1,337 @@
+//! What a robot's estimate of the external wrench shows of an arm that nothing touches.
+//!
+//! Model, tool and friction are never exact, so the estimate shows a newton or two with nothing
+//! attached. A [`WrenchTare`] is its average at rest, to take off later. It belongs to the posture
+//! in which it was taken: the part that errors of weight make turns with the arm, and friction
+//! sticks differently after each motion.
+//!
+//! # The moment
+//!
+//! The vendor's documentation has `O_F_ext_hat_K` act on the stiffness frame, in axes of the base.
+//! Recordings of both robots have its moment about the origin of the base, which changes with the
+//! position. `K_F_ext_hat_K` has the moment about the stiffness frame in both readings, so moments
+//! are taken from it here, turned into axes of the base.
+
+use core::time::Duration;
+
+use franka_proto::{RobotMode, RobotState};
+
+/// The average of what the estimates show at rest.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct WrenchTare {
+    /// Force, then moment about the origin of the stiffness frame, in axes of the base, `[N, N m]`.
+    pub wrench: [f64; 6],
+    /// Standard deviation of each of its numbers over the average, `[N, N m]`.
+    pub deviation: [f64; 6],
+    /// External joint torques, `tau_ext_hat_filtered`, `[N m]`.
+    pub joint_torques: [f64; 7],
+    /// Joint positions in which it was taken, `[rad]`.
+    pub q: [f64; 7],
+    /// `message_id` of the last state of the average, `[ms]` of the robot's clock.
+    pub time: u64,
+    /// How many states it is the average of.
+    pub states: u32,
+}
+
+impl WrenchTare {
+    /// How long the states of an average last unless asked otherwise.
+    pub const DURATION: Duration = Duration::from_millis(500);
+
+    /// A tare is taken to hold within so much of the posture in which it was taken, `[rad]` of any
+    /// joint. A convention: two degrees change the torque of an undeclared kilogram half a metre
+    /// away by less than 0.2 N m.
+    pub const NEAR: f64 = 0.035;
+
+    /// The wrench of a state without the tare: force, then moment about the origin of the stiffness
+    /// frame, in axes of the base, `[N, N m]`; positive is what the arm exerts. `None` where the
+    /// robot has no estimate: near a singularity it reports zeros.
+    pub fn compensate(&self, state: &RobotState) -> Option<[f64; 6]> {
+        let wrench = estimate(state)?;
+        Some(core::array::from_fn(|i| wrench[i] - self.wrench[i]))
+    }
+
+    /// The external joint torques of a state without the tare, `[N m]`.
+    pub fn compensate_torques(&self, state: &RobotState) -> [f64; 7] {
+        core::array::from_fn(|i| state.tau_ext_hat_filtered[i] - self.joint_torques[i])
+    }
+
+    /// The largest change of a joint since the tare, `[rad]`: within [`Self::NEAR`] it is taken to
+    /// hold.
+    pub fn turned(&self, state: &RobotState) -> f64 {
+        let turned = (0..7).map(|i| (state.q[i] - self.q[i]).abs());
+        turned.fold(0.0, f64::max)
+    }
+}
+
+/// Why there is no tare.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TareRefused {
+    /// A joint moves.
+    #[error(
+        "joint {joint} moves: got {speed:.3} rad/s or {way:.4} rad since the first state, expected \
+         an arm at rest, with at most {SPEED} rad/s and {WAY} rad; await the end of the motion"
+    )]
+    Moves {
+        /// The joint, 1 to 7.
+        joint: u8,
+        /// Its velocity, `[rad/s]`.
+        speed: f64,
+        /// Its way since the first state of the average, `[rad]`.
+        way: f64,
+    },
+    /// A goal is under way: the arm may stick yet, and is pushed.
+    #[error("a motion is under way: await its end, and take the tare of an arm that holds itself")]
+    UnderWay,
+    /// The robot is in a mode in which its torques show something else.
+    #[error("got the mode {got}, expected idle or move: the arm has to hold itself, untouched")]
+    Mode {
+        /// The mode.
+        got: RobotMode,
+    },
+    /// The robot reports a contact.
+    #[error("the robot reports a contact: nothing may touch the arm while a tare is taken")]
+    Contact,
+    /// The robot has no estimate in this posture.
+    #[error(
+        "the robot reports no external wrench, expected one: this posture is near a singularity; \
+         take the tare in another one"
+    )]
+    NoEstimate,
+    /// The time is out of range.
+    #[error("a tare over {got:?}, expected 20 ms to 60 s")]
+    Duration {
+        /// The time given.
+        got: Duration,
+    },
+}
+
+/// Takes an average, state by state.
+#[derive(Clone, Debug)]
+pub struct Taring {
+    duration: u64,
+    first: Option<RobotState>,
+    states: u32,
+    sum: [f64; NUMBERS],
+    squares: [f64; 6],
+}
+
+/// Wrench, joint torques, joint positions.
+const NUMBERS: usize = 6 + 7 + 7;
+
+impl Taring {
+    /// For states that last for `duration`, by the robot's clock.
+    ///
+    /// # Errors
+    /// [`TareRefused::Duration`].
+    pub fn over(duration: Duration) -> Result<Self, TareRefused> {
+        let range = Duration::from_millis(20)..=Duration::from_secs(60);
+        if !range.contains(&duration) {
+            return Err(TareRefused::Duration { got: duration });
+        }
+        Ok(Self {
+            duration: duration.as_millis() as u64,
+            first: None,
+            states: 0,
+            sum: [0.0; NUMBERS],
+            squares: [0.0; 6],
+        })
+    }
+
+    /// Takes in a state; returns the tare once the states have lasted long enough. One that is as
+    /// old as the last changes nothing.
+    ///
+    /// # Errors
+    /// [`TareRefused`] if the state is not one of an untouched arm at rest.
+    pub fn push(&mut self, state: &RobotState) -> Result<Option<WrenchTare>, TareRefused> {
+        let first = *self.first.get_or_insert(*state);
+        check(state, &first)?;
+        let wrench = estimate(state).ok_or(TareRefused::NoEstimate)?;
+        // Sums of what differs from the first state lose no digits.
+        let start = estimate(&first).ok_or(TareRefused::NoEstimate)?;
+        self.states += 1;
+        for i in 0..6 {
+            let off = wrench[i] - start[i];
+            self.sum[i] += off;
+            self.squares[i] += off * off;
+        }
+        for i in 0..7 {
+            self.sum[6 + i] += state.tau_ext_hat_filtered[i];
+            self.sum[13 + i] += state.q[i];
+        }
+        let lasted = state.message_id.saturating_sub(first.message_id);
+        if lasted < self.duration {
+            return Ok(None);
+        }
+        let count = f64::from(self.states);
+        let mean = self.sum.map(|sum| sum / count);
+        Ok(Some(WrenchTare {
+            wrench: core::array::from_fn(|i| start[i] + mean[i]),
+            deviation: core::array::from_fn(|i| {
+                (self.squares[i] / count - mean[i] * mean[i])
+                    .max(0.0)
+                    .sqrt()
+            }),
+            joint_torques: core::array::from_fn(|i| mean[6 + i]),
+            q: core::array::from_fn(|i| mean[13 + i]),
+            time: state.message_id,
+            states: self.states,
+        }))
+    }
+}
+
+/// Whether the arm rests, holds itself and is not touched.
+fn check(state: &RobotState, first: &RobotState) -> Result<(), TareRefused> {
+    if !matches!(state.robot_mode, RobotMode::Idle | RobotMode::Move) {
+        return Err(TareRefused::Mode {
+            got: state.robot_mode,
+        });
+    }
+    for i in 0..7 {
+        let (speed, way) = (state.dq[i], state.q[i] - first.q[i]);
+        // What is not a number is no rest.
+        if !(speed.abs() <= SPEED && way.abs() <= WAY) {
+            let joint = i as u8 + 1;
+            return Err(TareRefused::Moves { joint, speed, way });
+        }
+    }
+    let mut flags = state.joint_contact.iter().chain(&state.cartesian_contact);
+    if flags.any(|flag| *flag != 0.0) {
+        return Err(TareRefused::Contact);
+    }
+    Ok(())
+}
+
+/// Force and moment at the origin of the stiffness frame, in axes of the base; `None` where the
+/// robot has none, and reports zeros.
+fn estimate(state: &RobotState) -> Option<[f64; 6]> {
+    let wrench = state.wrench_at_stiffness_frame();
+    let is_there = wrench.iter().all(|number| number.is_finite())
+        && wrench.iter().any(|number| *number != 0.0);
+    is_there.then_some(wrench)
+}
+
+/// Greatest joint velocity of an arm at rest, `[rad/s]`: twenty times what real ones show.
+const SPEED: f64 = 0.02;
+
+/// Greatest way of a joint during the average, `[rad]`.
+const WAY: f64 = 0.002;
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    /// An arm whose estimate is off by this force and moment, and noisy.
+    fn state(message_id: u64) -> RobotState {
+        let noise = if message_id % 2 == 0 { 0.5 } else { -0.5 };
+        let mut state = RobotState {
+            message_id,
+            robot_mode: RobotMode::Idle,
+            q: [0.0, -0.8, 0.0, -2.4, 0.0, 1.6, 0.8],
+            tau_ext_hat_filtered: [0.2; 7],
+            O_F_ext_hat_K: [1.0, -2.0, 0.5 + noise, 0.3, 0.0, 0.0],
+            K_F_ext_hat_K: [1.0, 2.0, -0.5 - noise, 0.3, 0.1, 0.0],
+            ..RobotState::default()
+        };
+        // Half a turn about x: the hand points down.
+        for (index, value) in [(5, -1.0), (10, -1.0)] {
+            state.O_T_EE[index] = value;
+        }
+        state
+    }
+
+    fn taken(state: impl Fn(u64) -> RobotState) -> Result<WrenchTare, TareRefused> {
+        let mut taring = Taring::over(Duration::from_millis(100))?;
+        for time in 1000..2000 {
+            if let Some(tare) = taring.push(&state(time))? {
+                return Ok(tare);
+            }
+        }
+        panic!("the states lasted long enough");
+    }
+
+    #[test]
+    fn a_tare_is_the_average_and_leaves_nothing_where_it_was_taken() {
+        let tare = taken(state).unwrap();
+        assert_eq!((tare.time, tare.states), (1100, 101));
+        for (got, expected) in tare.wrench.iter().zip([1.0, -2.0, 0.5, 0.3, -0.1, 0.0]) {
+            assert!((got - expected).abs() < 0.01, "{tare:?}");
+        }
+        assert!((tare.deviation[2] - 0.5).abs() < 1e-3, "{tare:?}");
+        assert!(tare.deviation[0] < 1e-9);
+        let mut later = state(5001);
+        later.O_F_ext_hat_K[2] -= 8.0;
+        later.q[3] += 0.2;
+        let [x, y, z, ..] = tare.compensate(&later).expect("an estimate");
+        assert!(x.abs() < 1e-9 && y.abs() < 1e-9, "{x} {y}");
+        assert!((z + 8.5).abs() < 0.01, "{z}");
+        assert!(tare.compensate_torques(&later)[0].abs() < 1e-9);
+        assert!((tare.turned(&later) - 0.2).abs() < 1e-9);
+    }
+
+    /// About the origin of the base, the moment of a constant force changes with the position.
+    #[test]
+    fn the_moment_does_not_depend_on_where_the_base_is() {
+        let tare = taken(state).unwrap();
+        let shifted = |mut state: RobotState| {
+            let force = Vector3::new(1.0, -2.0, 0.5);
+            let moment = Vector3::new(0.5, 0.1, 0.4).cross(&force);
+            for i in 0..3 {
+                state.O_F_ext_hat_K[3 + i] += moment[i];
+            }
+            state
+        };
+        let other = taken(|time| shifted(state(time))).unwrap();
+        assert_eq!(other, tare);
+        let seen = tare.compensate(&shifted(state(7001)));
+        assert_eq!(seen, tare.compensate(&state(7001)));
+    }
+
+    #[test]
+    fn a_posture_without_an_estimate_has_no_compensated_wrench() {
+        let tare = taken(state).unwrap();
+        let singular = |time| RobotState {
+            O_F_ext_hat_K: [0.0; 6],
+            K_F_ext_hat_K: [0.0; 6],
+            ..state(time)
+        };
+        assert_eq!(tare.compensate(&singular(1)), None);
+        assert_eq!(taken(singular), Err(TareRefused::NoEstimate));
+    }
+
+    #[test]
+    fn only_an_untouched_arm_at_rest_is_tared() {
+        type Change = fn(&mut RobotState);
+        let refused = |change: Change| {
+            let changed = |time| {
+                let mut state = state(time);
+                if time > 1050 {
+                    change(&mut state);
+                }
+                state
+            };
+            taken(changed).expect_err("refused").to_string()
+        };
+        let changes: [(Change, &str); 6] = [
+            (|it| it.dq[3] = -0.05, "joint 4 moves: got -0.050 rad/s"),
+            (
+                |it| it.q[1] += 0.01,
+                "joint 2 moves: got 0.000 rad/s or 0.0100",
+            ),
+            (|it| it.dq[0] = f64::NAN, "joint 1 moves"),
+            (|it| it.robot_mode = RobotMode::Guiding, "got the mode"),
+            (|it| it.joint_contact[2] = 1.0, "reports a contact"),
+            (|it| it.cartesian_contact[5] = 1.0, "reports a contact"),
+        ];
+        for (change, text) in changes {
+            let error = refused(change);
+            assert!(error.starts_with(text) || error.contains(text), "{error}");
+        }
+        let short = Taring::over(Duration::from_millis(5)).unwrap_err();
+        assert!(short.to_string().contains("expected 20 ms to 60 s"));
+    }
+}
