@@ -10,6 +10,7 @@ use std::time::Instant;
 
 use super::{Benchmark, Statistic, Subject};
 use franka_lockstep::{Guarded, Part, Workload};
+use franka_rt::session::Backend;
 
 /// Benchmarks of all kinds of goals mixed, of each kind, and of the longest cycle, as first
 /// measured and measured again.
@@ -55,9 +56,31 @@ pub fn all() -> Vec<Benchmark> {
     benchmarks
 }
 
-/// The mix, for counting instructions: one millisecond of each kind of goal in turn, of which only
-/// the cycle counts.
+/// For counting instructions: the mix, one millisecond of each kind of goal in turn, of which only
+/// the answer counts; and the whole cycle of each back end, with what is done before its state.
 pub fn subjects() -> Vec<Subject> {
+    let backends = BACKENDS.iter().map(|&(key, backend)| whole(key, backend));
+    [mix()].into_iter().chain(backends).collect()
+}
+
+/// Everything between a state and its command, on the way to joint positions and poses: the step
+/// that was prepared for the state, and the answer.
+fn whole(key: &'static str, backend: Backend) -> Subject {
+    let mut arm: Option<Guarded> = None;
+    Subject {
+        key,
+        within: &[
+            "*lockstep*DriverStack*answer*",
+            "*lockstep*DriverStack*prepare*",
+        ],
+        call: Box::new(move || {
+            arm.get_or_insert_with(|| Guarded::with_backend(backend, SEED))
+                .tick_around(|_, work| work());
+        }),
+    }
+}
+
+fn mix() -> Subject {
     let mut arms: Option<Vec<Guarded>> = None;
     let mut turn = 0;
     let call = move || {
@@ -71,11 +94,11 @@ pub fn subjects() -> Vec<Subject> {
         turn += 1;
         arms[arm].tick_around(|_, work| work());
     };
-    vec![Subject {
+    Subject {
         key: "rt.cycle_guarded_ns",
-        within: Some("*lockstep*DriverStack*answer*"),
+        within: &["*lockstep*DriverStack*answer*"],
         call: Box::new(call),
-    }]
+    }
 }
 
 /// Samples of a part of the cycle, from one episode of each of these kinds per round.
@@ -191,6 +214,22 @@ impl Survey {
         }
     }
 }
+
+/// Every back end.
+const BACKENDS: [(&str, Backend); 9] = {
+    let [jq, jdq, jposes, jtwists, cq, cdq, cposes, ctwists] = Backend::ROBOT_CONTROLLERS;
+    [
+        ("rt.whole_torques", Backend::Torques),
+        ("rt.whole_joint_positions", jq),
+        ("rt.whole_joint_velocities", jdq),
+        ("rt.whole_joint_poses", jposes),
+        ("rt.whole_joint_twists", jtwists),
+        ("rt.whole_cartesian_positions", cq),
+        ("rt.whole_cartesian_velocities", cdq),
+        ("rt.whole_cartesian_poses", cposes),
+        ("rt.whole_cartesian_twists", ctwists),
+    ]
+};
 
 const SEED: u64 = 100;
 

@@ -8,9 +8,9 @@ use super::{Benchmark, Inputs, Statistic, timed};
 pub struct Subject {
     /// The key, as in [`Benchmark`].
     pub key: &'static str,
-    /// The function whose instructions count, as a pattern of callgrind; `None` counts all
-    /// instructions.
-    pub within: Option<&'static str>,
+    /// The functions whose instructions count, as patterns of callgrind; without any, all
+    /// instructions count. None of them calls another one.
+    pub within: &'static [&'static str],
     /// Makes one call.
     pub call: Box<dyn FnMut()>,
 }
@@ -24,7 +24,7 @@ impl Subject {
     ) -> Self {
         Self {
             key,
-            within: None,
+            within: &[],
             call: Box::new(move || {
                 black_box(function(black_box(inputs.next())));
             }),

@@ -202,6 +202,15 @@ impl DriverStack {
         }
     }
 
+    /// What the control thread does for the next state before it comes. Never inlined, as
+    /// [`Self::answer`].
+    #[inline(never)]
+    pub fn prepare(&mut self) {
+        self.driver.prepare();
+        // Something to come back to: what ends in a jump is not counted.
+        core::hint::black_box(&self.step);
+    }
+
     /// Passes on the driver's events, checks deadlines, and carries out the lifecycle's outputs.
     /// Returns whether there were any: the driver may then have more events.
     pub fn settle(&mut self) -> bool {

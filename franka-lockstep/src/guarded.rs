@@ -98,6 +98,16 @@ impl Guarded {
         )
     }
 
+    /// Returns an arm whose session commands by this back end, with the goals of
+    /// [`Workload::RobotController`].
+    ///
+    /// # Panics
+    /// If the motion does not begin.
+    pub fn with_backend(backend: Backend, seed: u64) -> Self {
+        let random = SmallRng::seed_from_u64(seed);
+        Self::begin(Workload::RobotController, backend, random)
+    }
+
     fn begin(workload: Workload, backend: Backend, random: SmallRng) -> Self {
         let mut lockstep = Lockstep::ready();
         let most = CollisionBehavior::uniform([1000.0; 7], [1000.0; 7], [1000.0; 6], [1000.0; 6]);

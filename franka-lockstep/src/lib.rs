@@ -212,7 +212,7 @@ impl Lockstep {
             around(Part::Aftermath, &mut || {
                 self.client.conclude(answer.is_some());
             });
-            around(Part::Preparation, &mut || self.client.driver.prepare());
+            around(Part::Preparation, &mut || self.client.prepare());
             if let Some(size) = answer {
                 self.pass_command(&command[..size]);
             }

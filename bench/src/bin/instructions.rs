@@ -1,5 +1,6 @@
-//! Counts instructions: `instructions` prints, for every call of the model that the benchmarks time
-//! and for the guarded cycle, how many machine instructions it takes. Time on a shared machine is
+//! Counts instructions: `instructions` prints, for every call of the model that the benchmarks time,
+//! for the guarded cycle and for the whole cycle of each back end, how many machine instructions it
+//! takes. Time on a shared machine is
 //! noisy; this is not.
 //!
 //! Needs `valgrind`. Every call is made a few and many times under its callgrind tool; the
@@ -55,9 +56,17 @@ fn table() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Instructions of a process that makes `calls` calls; those in the function `within` alone if
-/// there is one.
-fn count(key: &str, within: Option<&str>, calls: u64) -> Option<u64> {
+/// Instructions of a process that makes `calls` calls; those in the functions `within` alone if
+/// there are any. Callgrind takes the pattern of one function: each has a run of its own.
+fn count(key: &str, within: &[&str], calls: u64) -> Option<u64> {
+    if within.is_empty() {
+        return collected(key, None, calls);
+    }
+    let counts = within.iter().map(|it| collected(key, Some(it), calls));
+    counts.sum()
+}
+
+fn collected(key: &str, within: Option<&str>, calls: u64) -> Option<u64> {
     let within = within.map(|within| format!("--toggle-collect={within}"));
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
