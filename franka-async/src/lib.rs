@@ -329,18 +329,16 @@
 //! | [`goal`], [`condition`] | targets, limits, gains, chunks, guards; what a motion goes on until |
 //! | [`motion`] | futures, handles and progress of motions; several robots that begin together |
 //! | [`team`] | several arms as one, with one stop |
-//! | [`state`] | every state, or the newest as it changes |
+//! | [`state`] | every state, or the newest as it changes; external wrenches without what an untouched arm shows |
 //! | [`error`], [`diagnosis`] | what can go wrong, by who can act on it; why the robot ended a motion |
 //! | [`supervision`] | connections that are made again, recovery by a policy, events and health |
 //! | [`control`] | control at 1 kHz by functions of the program |
 //! | [`gripper`], [`vacuum`] | the end effectors, each with a connection of its own |
 //! | [`settings`], [`identify`] | load, thresholds and the like; friction, bias and load, measured |
-//! | [`tare`] | the external wrench without what an untouched arm shows of it |
 //! | [`model`] | kinematics, dynamics, limits, inverse kinematics |
 //! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control is |
 //! | [`record`] | what every cycle saw and did |
-//! | `recording` | all of that, and what was asked of the robot, in files (feature `record`) |
-//! | `control_log` | logs of libfranka and texts of its exceptions (feature `record`) |
+//! | `recording` | all of that, and what was asked of the robot, in files; logs of libfranka (feature `record`) |
 //! | `explain` | why a motion ended, and where the arm was touched (feature `record`) |
 //! | `replay`, `export` | recorded motions again, and as tables and datasets (features `record`, `export`) |
 //! | `cassette` | sessions byte for byte, played back as the robot (features `record`, `pcap`) |
@@ -397,7 +395,7 @@ mod end_effector_pose;
 mod endpoint;
 pub mod error;
 #[cfg(feature = "record")]
-pub use franka_record::{cassette, control_log, explain, export};
+pub use franka_record::{cassette, explain, export};
 mod follow;
 mod franka_hand;
 pub mod goal;
@@ -440,7 +438,7 @@ pub mod supervision;
 mod supervisor;
 #[cfg(feature = "metrics")]
 mod tally;
-pub mod tare;
+mod tare;
 pub mod team;
 mod telemetry;
 mod thresholds;

@@ -6,3 +6,4 @@ pub use crate::states::States;
 pub use franka_proto::{
     ControllerMode, Errors, MotionGeneratorMode, RobotError, RobotMode, RobotState, TotalLoad,
 };
+pub use franka_rt::tare::{TareRefused, Taring, WrenchTare};

@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-pub use franka_rt::tare::{TareRefused, Taring, WrenchTare};
+use franka_rt::tare::{TareRefused, Taring, WrenchTare};
 
 use crate::error::TareError;
 use crate::robot::Robot;

@@ -93,5 +93,6 @@ impl Way {
     }
 }
 
-/// Distance from the end of a joint's range that a target keeps, `[rad]`.
-const MARGIN: f64 = 0.02;
+/// Distance from the end of a joint's range that a target keeps, `[rad]`. Of the ranges of system
+/// 5.9 the driver accepts no target in the last 0.05 rad: the velocity envelope ends before.
+const MARGIN: f64 = 0.06;

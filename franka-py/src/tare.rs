@@ -1,6 +1,6 @@
 //! The external wrench without what the robot shows of it with nothing attached.
 
-use franka_async::tare::WrenchTare;
+use franka_async::state::WrenchTare;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 

@@ -39,6 +39,9 @@ def test_flat_has_the_parts_that_its_layout_names(state: RobotState) -> None:
 def quaternion_of(rotation: np.ndarray) -> np.ndarray:
     """x y z w with w >= 0: the eigenvector that a rotation's quaternion is."""
     r = rotation
+    if not r.any():
+        # O_T_EE_c of a robot that no Cartesian command moves.
+        return np.zeros(4)
     k = np.array([
         [r[0, 0] - r[1, 1] - r[2, 2], 0, 0, 0],
         [r[0, 1] + r[1, 0], r[1, 1] - r[0, 0] - r[2, 2], 0, 0],

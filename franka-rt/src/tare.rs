@@ -227,7 +227,11 @@ mod tests {
 
     /// An arm whose estimate is off by this force and moment, and noisy.
     fn state(message_id: u64) -> RobotState {
-        let noise = if message_id % 2 == 0 { 0.5 } else { -0.5 };
+        let noise = if message_id.is_multiple_of(2) {
+            0.5
+        } else {
+            -0.5
+        };
         let mut state = RobotState {
             message_id,
             robot_mode: RobotMode::Idle,

@@ -6,7 +6,7 @@ use std::time::Duration;
 use franka_async::condition::{elapsed, force, force_z};
 use franka_async::error::{Party, TareError};
 use franka_async::settings::CollisionBehavior;
-use franka_async::tare::{TareRefused, Taring, WrenchTare};
+use franka_async::state::{TareRefused, Taring, WrenchTare};
 use franka_async::{Pose, Robot};
 use franka_sim::{Running, Sim, Touch};
 use nalgebra::Vector3;

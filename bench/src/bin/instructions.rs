@@ -1,7 +1,6 @@
-//! Counts instructions: `instructions` prints, for every call of the model that the benchmarks time,
-//! for the guarded cycle and for the whole cycle of each back end, how many machine instructions it
-//! takes. Time on a shared machine is
-//! noisy; this is not.
+//! Counts instructions: `instructions` prints how many machine instructions every call of the model
+//! that the benchmarks time takes, the guarded cycle, and the whole cycle of each back end. Time on
+//! a shared machine is noisy; this is not.
 //!
 //! Needs `valgrind`. Every call is made a few and many times under its callgrind tool; the
 //! difference is that of the calls, without what starting and preparing the inputs takes.

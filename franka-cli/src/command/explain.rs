@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use anyhow::Context as _;
 use clap::Args;
-use franka_async::control_log::{ControlLogError, ControlLogFile};
 use franka_async::explain::Explanation;
 use franka_async::model::Model;
+use franka_async::recording::control_log::{ControlLogError, ControlLogFile};
 use franka_async::recording::{HostTime, Recording, RecordingError};
 use franka_async::state::{Errors, RobotError};
 use serde_json::Value;
@@ -62,7 +62,7 @@ pub(crate) struct Recorded {
 /// What a file holds.
 pub(crate) enum Source {
     /// A recording, with the name and the model of the robot.
-    Recording(Recording, String, &'static Model),
+    Recording(Box<Recording>, String, &'static Model),
     /// A log of libfranka.
     Log(ControlLogFile),
 }
@@ -73,7 +73,7 @@ impl Recorded {
         match Recording::open(&self.file) {
             Ok(recording) => {
                 let (recording, name, model) = self.of_recording(recording)?;
-                Ok(Source::Recording(recording, name, model))
+                Ok(Source::Recording(Box::new(recording), name, model))
             }
             Err(RecordingError::NotMcap { .. }) => Ok(Source::Log(self.open_log()?)),
             Err(error) => Err(Failure::new(Ending::Host, error.to_string()).into()),

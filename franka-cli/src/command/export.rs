@@ -28,8 +28,8 @@ use crate::output::Output;
 
 /// Export a recording as tables, or as a dataset for training
 ///
-/// FILE is a recording, or a table of libfranka's logToCSV. Tables have a row per cycle; a dataset has the episodes of the recording, in the layout of
-/// LeRobot.
+/// FILE is a recording, or a table of libfranka's logToCSV. Tables have a row per cycle; a dataset
+/// has the episodes of the recording, in the layout of LeRobot.
 #[derive(Debug, Args)]
 #[group(id = "to", required = true, multiple = true, args = ["csv", "parquet", "lerobot"])]
 pub(crate) struct Export {

@@ -122,8 +122,8 @@ impl Lifecycle {
     ///
     /// # Errors
     /// Nothing is resolved then, everything stays as it was, and a ticket is dropped.
-    /// - [`MotionError::Goal`] for goals, regions or a posture that are not accepted, and for a path
-    ///   while as many chunks are under way as there can be.
+    /// - [`MotionError::Goal`] for goals, regions or a posture that are not accepted, and for a
+    ///   path while as many chunks are under way as there can be.
     /// - [`MotionError::Busy`] while another motion runs or waits and does not give way. One that
     ///   runs gives way when it is ending, stopped or cancelled. Goals outside a session also give
     ///   way to a new goal without a ticket.

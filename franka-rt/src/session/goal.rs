@@ -269,8 +269,8 @@ impl Goal {
         }
     }
 
-    /// Returns the goal with rest as its target, without a path, a reaction or a team. Gains for guiding
-    /// are replaced by gains that hold.
+    /// Returns the goal with rest as its target, without a path, a reaction or a team. Gains for
+    /// guiding are replaced by gains that hold.
     pub(crate) fn at_rest(&self, on_arrival: OnArrival) -> Self {
         let gains = match self.target {
             Target::Guide(_) => Gains::cartesian(),

@@ -18,8 +18,8 @@ pub struct Sensors {
     /// Noise of `tau_J` at 1 rad/s and above, `[N·m]`; between, it grows with the speed. Source:
     /// the log of Gaz et al., in motion, 0.03 to 0.08.
     pub torque_noise_in_motion: JointVector,
-    /// Noise of `dq` at rest, `[rad/s]`. Sources: published states, 5e-4; a recorded Franka Research
-    /// 3, 7e-4 to 9e-4.
+    /// Noise of `dq` at rest, `[rad/s]`. Sources: published states, 5e-4; a recorded Franka
+    /// Research 3, 7e-4 to 9e-4.
     pub velocity_noise_at_rest: JointVector,
     /// Noise of `dq` at 1 rad/s and above, `[rad/s]`; between, it grows with the speed. Source: the
     /// log of Gaz et al., 0.002 to 0.01.

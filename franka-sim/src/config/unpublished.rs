@@ -12,8 +12,8 @@ pub struct Unpublished {
     /// Smallest singular value of the end effector's Jacobian at which a Cartesian motion may not
     /// start. Default 0.05: a pose that a robot refuses has 0.011, ordinary ones 0.14 to 0.23.
     pub singular: f64,
-    /// Smallest singular value of the stiffness frame's Jacobian up to which the estimated wrench is
-    /// zero. Default 0.1: of two recorded Franka Research 3 one has no wrench at 0.076, in three
+    /// Smallest singular value of the stiffness frame's Jacobian up to which the estimated wrench
+    /// is zero. Default 0.1: of two recorded Franka Research 3 one has no wrench at 0.076, in three
     /// states, and one has it at 0.159; what is between is not known.
     pub wrench_singular: f64,
     /// How the orientation goes on in a cycle whose command is lost.

@@ -78,7 +78,8 @@ impl Robot {
 
     /// Puts another arm in place of this one, at rest where this one stands and with its load, as
     /// [`place`](Self::place) does. Tool, settings, client and errors stay, and so do the joint
-    /// limits, which clients have read. The [stalls](Arm::stalls) of its network interface are not its own here: see
+    /// limits, which clients have read. The [stalls](Arm::stalls) of its network interface are not
+    /// its own here: see
     /// [`Running::with_network`](crate::Running::with_network).
     pub fn fit(&mut self, arm: Arm) {
         let limits = self.arm.limits;
