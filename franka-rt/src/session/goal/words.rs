@@ -69,9 +69,9 @@ impl Words for Target {
 }
 
 /// Name, revision, what follows, whether it is paused and along a path, the round, 2 of the
-/// watchdog; then 27 numbers of budget, the gains, 2 of tolerance, the force cap, 3 of the lead, 7 of the grasp and 7
-/// of the posture, which are zero or no numbers without one, 3 of the leash, 3 of the deviation and
-/// 2 of the settling; then the target and the reaction.
+/// watchdog; then 27 numbers of budget, the gains, 2 of tolerance, the force cap, 3 of the lead, 7
+/// of the grasp and 7 of the posture, which are zero or no numbers without one, 3 of the leash, 3
+/// of the deviation and 2 of the settling; then the target and the reaction.
 ///
 /// Written by hand: generated code needs an implementation for the type of each field, which comes
 /// to as many lines. The test below fails if a field is left out.
