@@ -30,7 +30,7 @@ pub enum RecordingError {
     },
     /// A chunk is damaged. Those after it can be read.
     #[error(
-        "the chunk at byte {offset} is damaged: {reason}; `franka recover` makes a copy without it"
+        "the chunk at byte {offset} is damaged: {reason}; `Recording::recover` makes a copy without it"
     )]
     Chunk {
         /// Where it begins.
@@ -74,5 +74,22 @@ impl From<io::Error> for RecordingError {
         Self::Read {
             source: source.into(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `franka recover` is the recovery of a robot from a reflex.
+    #[test]
+    fn advice_about_a_damaged_file_acts_on_no_robot() {
+        let error = RecordingError::Chunk {
+            offset: 8,
+            reason: "cut".to_owned(),
+        };
+        let text = error.to_string();
+        assert!(text.contains("Recording::recover"), "{text}");
+        assert!(!text.contains("franka recover"), "{text}");
     }
 }
