@@ -93,6 +93,6 @@ impl Way {
     }
 }
 
-/// Distance from the end of a joint's range that a target keeps, `[rad]`. Of the ranges of system
-/// 5.9 the driver accepts no target in the last 0.05 rad: the velocity envelope ends before.
+/// Distance from the end of a joint's range that a target keeps, `[rad]`. The driver refuses
+/// targets in the last 0.05 rad of the ranges of system 5.9, where its velocity envelope ends.
 const MARGIN: f64 = 0.06;

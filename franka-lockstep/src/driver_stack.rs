@@ -202,7 +202,7 @@ impl DriverStack {
         }
     }
 
-    /// What the control thread does for the next state before it comes. Never inlined, as
+    /// Prepares the next state, as the control thread does before it comes. Never inlined, as
     /// [`Self::answer`].
     #[inline(never)]
     pub fn prepare(&mut self) {

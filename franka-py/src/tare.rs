@@ -25,7 +25,7 @@ impl Robot {
     }
 }
 
-/// What the robot estimates of an untouched arm at rest, to take off later. It belongs to the
+/// The robot's estimate for an untouched arm at rest, to take off later. It belongs to the
 /// posture in which it was taken.
 #[pyclass(frozen, eq, name = "WrenchTare", module = "franka_async")]
 #[derive(Clone, PartialEq)]

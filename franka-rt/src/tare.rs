@@ -1,4 +1,4 @@
-//! What a robot's estimate of the external wrench shows of an arm that nothing touches.
+//! The estimate of the external wrench that a robot shows of an untouched arm.
 //!
 //! Model, tool and friction are never exact, so the estimate shows a newton or two with nothing
 //! attached. A [`WrenchTare`] is its average at rest, to take off later. It belongs to the posture

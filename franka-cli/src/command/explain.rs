@@ -59,7 +59,7 @@ pub(crate) struct Recorded {
     of: Option<String>,
 }
 
-/// What a file holds.
+/// Content of a file.
 pub(crate) enum Source {
     /// A recording, with the name and the model of the robot.
     Recording(Box<Recording>, String, &'static Model),

@@ -43,7 +43,7 @@ pub enum ControlLogError {
         name: String,
         /// The text of the cell.
         got: String,
-        /// What was expected.
+        /// Expected in its place.
         expected: String,
     },
     /// A table has no column of this name.
@@ -87,7 +87,7 @@ pub enum ControlLogError {
         column: usize,
         /// The text there.
         got: String,
-        /// What was expected.
+        /// Expected in its place.
         expected: &'static str,
     },
 }

@@ -97,7 +97,7 @@ impl Reader<'_> {
         }
     }
 
-    /// What libfranka adds if its log has two cycles or more.
+    /// Added by libfranka if its log has two cycles or more.
     fn success_rate(&mut self) -> Result<Option<SuccessRate>, ControlLogError> {
         let until = begins(self.rest()).unwrap_or(self.rest().len());
         let Some(found) = self.rest()[..until].find(RATE) else {
