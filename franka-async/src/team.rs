@@ -179,6 +179,9 @@ impl<const N: usize> Team<N> {
     /// Brakes all arms, each within two of its cycles, whatever the runtime is busy with: the
     /// real-time threads see it by themselves. Motions resolve as [`MotionError::Braked`] with
     /// [`TeamStop::Requested`]. The sessions go on and hold the arms.
+    ///
+    /// No newer motion hides the stop. A joint motion that begins before every arm has seen it does
+    /// not start, and resolves in the same way.
     pub fn stop(&self) {
         self.coordinator.stop();
     }

@@ -139,7 +139,8 @@ impl Team {
     }
 
     /// Brakes all arms, each within two of its cycles. Never waits, fit for any thread. Motions
-    /// raise, the sessions go on and hold the arms.
+    /// raise, the sessions go on and hold the arms. A joint motion that begins before every arm has
+    /// seen the stop does not start, and raises in the same way.
     fn stop(&self) {
         with_team!(&**self.members, team => team.stop());
     }

@@ -14,7 +14,8 @@
 //! their own cycles: a load. Whoever sees a fault writes it there, by a compare-and-exchange. No
 //! thread waits for another one, and no async runtime is on the way: a member that brakes begins to
 //! within two of its cycles after the fault was seen by the thread of the member that has it. The
-//! first fault of a round stays.
+//! first fault of a round stays. A newer round hides no stop: a member that has not looked yet still
+//! sees it, and a round that begins before all have seen a stop of the team is stopped by it.
 //!
 //! [`together`](crate::together) has common starts of motions that end by themselves; here a
 //! session goes from goal to goal.
@@ -175,6 +176,8 @@ pub fn team_tolerating<const N: usize>(silence: Duration) -> (Coordinator, [Memb
     const { assert!(0 < N && N <= MEMBERS_MAX, "a team has one member to 254") };
     let shared = Arc::new(Shared {
         word: AtomicU64::new(Word::default().0),
+        stopped: AtomicU64::new(Word::default().0),
+        seen: (0..N).map(|_| AtomicU64::new(0)).collect(),
         carrying: (0..N).map(|_| AtomicU64::new(0)).collect(),
         members: N as u8,
         silence,
@@ -193,8 +196,16 @@ pub fn team_tolerating<const N: usize>(silence: Duration) -> (Coordinator, [Memb
 impl Coordinator {
     /// Begins a round: the members wait until each has a goal of it. A round before it that has not
     /// begun never does; goals under way of an older one go on until theirs of this one begin.
+    ///
+    /// A round that begins before every member has seen a [stop](Self::stop), or that the session
+    /// of one has ended, is stopped for the same cause and never opens. A member looks in each
+    /// cycle of its robot; while one does not, every round ends at once in this way.
     pub fn begin(&self) -> Round {
-        let word = self.shared.change(|word| Some(word.next_round()));
+        let word = self.shared.change(|word| {
+            let next = word.next_round();
+            let unseen = word.is_of_the_team() && !self.shared.have_all_seen(word);
+            Some(if unseen { next.stopped_as(word) } else { next })
+        });
         word.round().unwrap_or(Round(NonZeroU32::MIN))
     }
 
@@ -272,9 +283,11 @@ impl Member {
     /// The stop of the team, if this is the first call since then. That it has taken back a motion
     /// itself is none for this member: what it does instead goes on.
     pub fn take_stop(&mut self) -> Option<TeamStop> {
-        let word = self.shared.look();
-        let stop = word.stop().filter(|_| word != self.seen)?;
+        let (word, stop) = self.shared.stop_after(self.seen)?;
         self.seen = word;
+        if !self.has_left {
+            self.shared.note_seen(self.number, word);
+        }
         let own = TeamStop::Member {
             member: self.number(),
             fault: MemberFault::TakenBack,
@@ -320,6 +333,7 @@ impl Member {
     /// Leaves the team, which goes on for as long as it needs no goal of this member.
     pub fn leave(&mut self) {
         self.has_left = true;
+        self.shared.note_seen(self.number, GONE);
     }
 }
 
@@ -327,6 +341,7 @@ impl Drop for Member {
     fn drop(&mut self) {
         if !self.has_left {
             self.stop(MemberFault::Gone);
+            self.shared.note_seen(self.number, GONE);
         }
     }
 }
@@ -334,6 +349,11 @@ impl Drop for Member {
 #[derive(Debug)]
 struct Shared {
     word: AtomicU64,
+    /// The word of the newest round that was stopped, if a newer round has replaced it. Written
+    /// after the word.
+    stopped: AtomicU64,
+    /// The newest stop that each member has seen; [`GONE`] for one that has left.
+    seen: Box<[AtomicU64]>,
     /// What each member says of its [`Carrying`]: bits 0 to 30 the remaining way in micrometres, 31
     /// whether it lags, 32 to 63 the round.
     carrying: Box<[AtomicU64]>,
@@ -352,15 +372,50 @@ impl Shared {
     fn stop(&self, member: u8, cause: Cause) {
         self.change(|word| {
             let going = match word.stop() {
-                None => word,
-                Some(_) => word.next_round(),
+                None if word.round().is_some() => word,
+                // Each stop has a round of its own.
+                _ => word.next_round(),
             };
-            Some(going.stopped(member, cause))
+            Some(going.stopped(member, cause).of_the_team())
         });
     }
 
     fn stop_round(&self, round: Round, member: u8, cause: Cause) {
         self.change(|word| word.is_going(round).then(|| word.stopped(member, cause)));
+    }
+
+    /// The newest stop, unless it is the one that was `seen`, with its word.
+    fn stop_after(&self, seen: Word) -> Option<(Word, TeamStop)> {
+        let word = self.look();
+        if let Some(stop) = word.stop() {
+            return (word != seen).then_some((word, stop));
+        }
+        let kept = Word(self.stopped.load(Ordering::Relaxed));
+        let stop = kept.stop().filter(|_| kept.is_newer_than(seen));
+        stop.map(|stop| (kept, stop))
+    }
+
+    fn note_seen(&self, member: u8, word: Word) {
+        self.seen[usize::from(member)].store(word.0, Ordering::Relaxed);
+    }
+
+    /// Whether all members that are left have seen this stop, which is the newest.
+    fn have_all_seen(&self, stop: Word) -> bool {
+        let seen = |by: &AtomicU64| [stop, GONE].contains(&Word(by.load(Ordering::Relaxed)));
+        self.seen.iter().all(seen)
+    }
+
+    /// Keeps a stop for the members that look after a newer round has begun.
+    fn keep(&self, stop: Word) {
+        let order = Ordering::Relaxed;
+        let mut kept = Word(self.stopped.load(order));
+        // Two threads may come here in the other order than to the word.
+        while stop.is_newer_than(kept) {
+            match self.stopped.compare_exchange(kept.0, stop.0, order, order) {
+                Ok(_) => return,
+                Err(newer) => kept = Word(newer),
+            }
+        }
     }
 
     /// Replaces the word, as long as there is something to change; returns the newest.
@@ -371,7 +426,12 @@ impl Shared {
             // does that twice at most; other changes are calls from outside.
             let order = Ordering::Relaxed;
             match self.word.compare_exchange(word.0, next.0, order, order) {
-                Ok(_) => return next,
+                Ok(_) => {
+                    if next.stop().is_some() {
+                        self.keep(next);
+                    }
+                    return next;
+                }
                 Err(newer) => word = Word(newer),
             }
         }
@@ -386,7 +446,7 @@ enum Cause {
 }
 
 /// Bits: 0 to 7 members present, 8 to 15 the member that stopped it, 16 to 23 why (0: it goes on),
-/// 32 to 63 the round.
+/// 24 whether that stops the team and not only its round, 32 to 63 the round.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Word(u64);
 
@@ -420,6 +480,25 @@ impl Word {
         Self(u64::from(round) << 32)
     }
 
+    /// Whether its round comes after that of `other`, also where the numbers begin anew.
+    fn is_newer_than(self, other: Self) -> bool {
+        let ahead = ((self.0 >> 32) as u32).wrapping_sub((other.0 >> 32) as u32);
+        other.round().is_none() || 0 < ahead as i32
+    }
+
+    fn is_of_the_team(self) -> bool {
+        self.0 & OF_THE_TEAM != 0
+    }
+
+    fn of_the_team(self) -> Self {
+        Self(self.0 | OF_THE_TEAM)
+    }
+
+    /// Stopped for the same cause as `other`.
+    fn stopped_as(self, other: Self) -> Self {
+        Self(self.0 | other.0 & (0xffff << 8 | OF_THE_TEAM))
+    }
+
     fn with_one_more(self) -> Self {
         Self(self.0 + 1)
     }
@@ -439,6 +518,12 @@ impl Word {
 
 /// The longest way that is told, `[um]`.
 const WAY_MAX: u64 = (1 << 31) - 1;
+
+/// Bit of a stop that is not that of a round.
+const OF_THE_TEAM: u64 = 1 << 24;
+
+/// Stands for the newest stop that was seen by a member that has left, whatever the newest is.
+const GONE: Word = Word(u64::MAX);
 
 /// Stands for the caller in the place of a member.
 const CALLER: u8 = u8::MAX;

@@ -70,6 +70,8 @@ impl Membership {
             match self.member.pass(round, now) {
                 Passage::Waiting => return (taken, stop),
                 Passage::Open => {
+                    // Taken from an older round: a stop of the team would have stopped this one.
+                    stop = None;
                     self.pursued = Some(Pursued {
                         round,
                         goal: goal.id,

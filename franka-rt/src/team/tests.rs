@@ -65,6 +65,78 @@ fn a_session_that_ends_stops_what_is_done_after_a_stop_too() {
 }
 
 #[test]
+fn a_stop_is_seen_by_each_member_whatever_begins_before_it_looks() {
+    let (coordinator, [mut first, mut second]) = team();
+    let round = coordinator.begin();
+    first.pass(round, 0);
+    second.pass(round, 0);
+    coordinator.stop();
+    assert_eq!(first.take_stop(), Some(TeamStop::Requested));
+    // The second has not looked yet.
+    let next = coordinator.begin();
+    assert_eq!(coordinator.stopped(), Some(TeamStop::Requested));
+    let stopped = Passage::Stopped(TeamStop::Requested);
+    assert_eq!(first.pass(next, 1), stopped);
+    assert_eq!(second.take_stop(), Some(TeamStop::Requested));
+    assert_eq!(second.pass(next, 1), stopped);
+    first.take_stop();
+    let next = coordinator.begin();
+    assert_eq!(first.take_stop(), None);
+    assert_eq!(first.pass(next, 2), Passage::Waiting);
+    assert_eq!(second.pass(next, 2), Passage::Open, "all have seen it");
+}
+
+#[test]
+fn a_fault_in_a_round_is_seen_by_each_member_and_lets_the_next_round_begin() {
+    let (coordinator, [mut first, mut second]) = team();
+    let round = coordinator.begin();
+    first.pass(round, 0);
+    second.pass(round, 0);
+    second.give_up(round, MemberFault::GivenUp);
+    let next = coordinator.begin();
+    assert_eq!(first.take_stop(), Some(stop_of(1, MemberFault::GivenUp)));
+    assert_eq!(first.take_stop(), None);
+    assert_eq!(first.pass(next, 1), Passage::Waiting);
+    assert_eq!(second.pass(next, 1), Passage::Open);
+}
+
+#[test]
+fn a_member_that_never_looks_stops_each_round_until_it_has_left() {
+    let (coordinator, [mut first, mut second]) = team();
+    coordinator.stop();
+    for _ in 0..3 {
+        let round = coordinator.begin();
+        assert_eq!(
+            first.pass(round, 0),
+            Passage::Stopped(TeamStop::Requested),
+            "it does not wait"
+        );
+        first.take_stop();
+    }
+    // A session that has left may still look.
+    second.leave();
+    assert_eq!(second.take_stop(), Some(TeamStop::Requested));
+    coordinator.stop();
+    first.take_stop();
+    let round = coordinator.begin();
+    assert_eq!(first.pass(round, 0), Passage::Waiting);
+}
+
+#[test]
+fn a_stop_is_seen_once_where_the_numbers_of_rounds_begin_anew() {
+    let (coordinator, [mut only]) = team();
+    let last = Word(u64::from(u32::MAX) << 32);
+    coordinator.shared.word.store(last.0, Ordering::Relaxed);
+    for _ in 0..3 {
+        coordinator.take_back(coordinator.begin());
+        let next = coordinator.begin();
+        assert_eq!(only.take_stop(), Some(TeamStop::Requested), "{next:?}");
+        assert_eq!(only.take_stop(), None);
+        assert_eq!(only.pass(next, 0), Passage::Open);
+    }
+}
+
+#[test]
 fn what_is_taken_back_stops_if_it_is_the_newest_round_and_goes_on() {
     let (coordinator, [mut first]) = team();
     let (older, round) = (coordinator.begin(), coordinator.begin());

@@ -29,6 +29,48 @@ fn a_stop_from_outside_brakes_all_and_the_next_motion_begins() {
     assert_eq!(pair.until_resolved(goals, 20_000), [Ok(()), Ok(())]);
 }
 
+/// As by a program that sets goals in a loop, with the stop of a person in between.
+#[test]
+fn a_stop_is_not_lost_to_a_round_that_begins_before_the_arms_look() {
+    for swapped in [false, true] {
+        let mut pair = Pair::new(swapped);
+        let older = pair.both([0.6, 0.6]);
+        pair.run(500);
+        pair.coordinator.stop();
+        let (stopped, at) = (pair.ticks, [0, 1].map(|i| pair.moved(i)));
+        let newer = pair.both([-0.6, -0.6]);
+        pair.run(2);
+        for braked in pair.braked {
+            assert!(braked.is_some_and(|braked| braked <= stopped + 2));
+        }
+        let requested = || Err(MotionError::Braked(Lapse::Team(TeamStop::Requested)));
+        assert_eq!(pair.until_resolved(newer, 3000), [requested(), requested()]);
+        let superseded = || Err(MotionError::Superseded);
+        assert_eq!(pair.until_resolved(older, 1), [superseded(), superseded()]);
+        pair.run(1000);
+        for member in [0, 1] {
+            let further = pair.moved(member) - at[member];
+            assert!((0.0..0.2).contains(&further), "member {member}: {further}");
+        }
+        let goals = pair.both([0.1, 0.1]);
+        assert_eq!(pair.until_resolved(goals, 20_000), [Ok(()), Ok(())]);
+    }
+}
+
+/// A joint motion that is dropped, and the next one at once.
+#[test]
+fn a_motion_taken_back_does_not_stop_the_motion_that_follows() {
+    let mut pair = Pair::new(false);
+    let round = pair.coordinator.begin();
+    for member in [0, 1] {
+        pair.submit(member, Some(round), turned(0.6));
+    }
+    pair.run(500);
+    pair.coordinator.take_back(round);
+    let goals = pair.both([0.1, 0.1]);
+    assert_eq!(pair.until_resolved(goals, 20_000), [Ok(()), Ok(())]);
+}
+
 #[test]
 fn no_target_that_comes_after_a_stop_sets_an_arm_in_motion() {
     for after in [0, 1, 50, 1000] {
