@@ -165,6 +165,18 @@ impl Landing {
         self.target
     }
 
+    /// Whether the arm, measured at one pose, rests at the pose of its `reference`, and that one is
+    /// short of the target.
+    pub(super) fn is_short_at(
+        &self,
+        reference: &Isometry3<f64>,
+        measured: &Isometry3<f64>,
+    ) -> bool {
+        let near =
+            |pose: &Isometry3<f64>| PoseError::between(pose, reference).within(&self.tolerance);
+        near(measured) && self.target.is_some_and(|target| !near(&target))
+    }
+
     /// Judges one cycle; `working` says that the law does something yet to move an arm at rest.
     pub(super) fn judge(
         &mut self,

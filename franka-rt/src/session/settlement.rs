@@ -74,6 +74,12 @@ pub enum Lapse {
         /// The index of the region, as the session was given them; `None` for the arm itself.
         region: Option<usize>,
     },
+    /// The joints have no way on to the target from where the arm came to rest: one is at the end
+    /// of its range, or the arm is stretched.
+    OutOfReach {
+        /// The joint at the end of its range, from 1, if one is.
+        joint: Option<usize>,
+    },
     /// The team that it is a member of has stopped.
     Team(TeamStop),
     /// The arm was faster than the speed cap of its session.
@@ -88,6 +94,7 @@ impl Lapse {
             Self::Deadman
             | Self::Displaced
             | Self::Blocked { .. }
+            | Self::OutOfReach { .. }
             | Self::Team(_)
             | Self::TooFast => true,
         }
@@ -102,6 +109,7 @@ impl Lapse {
             Self::Deadman => "lapse-deadman",
             Self::Displaced => "lapse-displaced",
             Self::Blocked { .. } => "lapse-blocked",
+            Self::OutOfReach { .. } => "lapse-out-of-reach",
             Self::Team(_) => "lapse-team",
             Self::TooFast => "lapse-too-fast",
         }
@@ -121,6 +129,12 @@ impl core::fmt::Display for Lapse {
                 f,
                 "the way leads too near to a region to keep out of, keep_out[{region}]"
             ),
+            Self::OutOfReach { joint: Some(joint) } => {
+                write!(f, "joint {joint} came to the end of its range on the way")
+            }
+            Self::OutOfReach { joint: None } => {
+                write!(f, "the joints have no way on to the target from there")
+            }
             Self::Team(stop) => stop.fmt(f),
             Self::TooFast => write!(f, "the arm moved faster than its speed cap"),
         }

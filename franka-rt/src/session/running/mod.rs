@@ -87,6 +87,10 @@ pub(super) struct RunningSession {
     yields: bool,
     /// Grows by 1 in a cycle in which the course is held back, and falls by 1 in any other.
     held_back: u64,
+    /// The same for cycles in which the leash is what holds it back.
+    leashed: u64,
+    /// Whether that is how its goal came to land short of its target.
+    obstructed: bool,
     /// Whether the reference waits for the others that carry the same object.
     waits: bool,
     /// Whether the arm is held back from the reference of an object that is carried.
@@ -188,6 +192,8 @@ impl RunningSession {
             afterwards,
             stage: GoalStage::UnderWay,
             held_back: 0,
+            leashed: 0,
+            obstructed: false,
             arm: Measured {
                 time: state.message_id,
                 q: measured,
@@ -396,6 +402,11 @@ impl RunningSession {
             self.held_back + 1
         } else {
             self.held_back.saturating_sub(1)
+        };
+        self.leashed = if leashed {
+            self.leashed + 1
+        } else {
+            self.leashed.saturating_sub(1)
         };
         let met = self.reacted().is_some();
         let answer = match &mut self.drive {

@@ -3,6 +3,7 @@
 use franka_model::{Frame, Model};
 
 use super::{Drive, RunningSession, Standing};
+use crate::session::guard::joint_bounds;
 use crate::session::landing::{self, Landing, PoseError, Release, Verdict};
 use crate::session::reference::Reference;
 use crate::session::{
@@ -48,6 +49,9 @@ impl RunningSession {
                     Verdict::Settled(settlement, held) => (settlement, held),
                 };
                 let target = landing.target();
+                let reference = model.pose(Frame::EndEffector, &self.reference.q, &self.hand);
+                let out_of_reach =
+                    !self.obstructed && landing.is_short_at(&rigid(&reference), &self.arm.pose);
                 if self.goal.on_arrival == OnArrival::ReportAndFinish
                     && self.reference.dq.amax() > REFERENCE_REST
                 {
@@ -71,6 +75,10 @@ impl RunningSession {
                     && short.error.within(&near)
                 {
                     settlement = Settlement::Arrived(short.error);
+                }
+                if out_of_reach && matches!(settlement, Settlement::TargetNotReached(_)) {
+                    let joint = joint_bounds::at_end(model.joint_limits(), &self.reference.q);
+                    settlement = Settlement::Braked(Lapse::OutOfReach { joint });
                 }
                 let compensation = effort.map(|effort| effort.compensated().into());
                 self.stage = match (self.goal.on_arrival, &self.drive) {
@@ -154,6 +162,7 @@ impl RunningSession {
                 Drive::Torques(_) => Tolerance::of(&self.goal.gains),
                 Drive::Setpoints(stream) => Tolerance::under(stream.controller()),
             });
+            self.obstructed = stalled && 2 * self.leashed >= self.held_back;
             self.stage = GoalStage::Landing(Landing::new(target, tolerance, self.goal.settling));
         }
     }
