@@ -149,7 +149,11 @@ impl Robot {
             },
         });
         match began.await {
-            Ok(()) => Ok(arm),
+            Ok(()) => {
+                let reference = self.link().course.reference();
+                arm.session.keep(reference.map(|reference| reference.q));
+                Ok(arm)
+            }
             Err(_) => Err(arm.ended().await.err().unwrap_or(MotionError::Stopped)),
         }
     }
@@ -459,6 +463,7 @@ impl Arm {
             },
             destination: Some(Box::new(destination)),
             path: None,
+            refused: None,
         }
     }
 

@@ -81,15 +81,26 @@ pub(crate) struct Beginning {
     pub(crate) destination: Option<Box<Destination>>,
     /// What it goes through on the way there.
     pub(crate) path: Option<Arc<[Waypoint]>>,
+    /// Why it is not to begin: the arm cannot go to its target on a straight line.
+    pub(crate) refused: Option<GoalError>,
+}
+
+impl Beginning {
+    /// Has its goal ask for this posture.
+    pub(crate) fn lead(&mut self, posture: Option<[f64; 7]>) {
+        if let NewMotion::Goal { goal, .. } = &mut self.motion {
+            goal.posture = posture;
+        }
+    }
 }
 
 impl From<NewMotion> for Beginning {
     fn from(motion: NewMotion) -> Self {
-        let (destination, path) = (None, None);
         Self {
             motion,
-            destination,
-            path,
+            destination: None,
+            path: None,
+            refused: None,
         }
     }
 }

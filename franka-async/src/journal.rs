@@ -284,6 +284,7 @@ impl Given {
             motion,
             destination,
             path,
+            refused: _,
         } = motion;
         let (kind, goal) = match motion {
             NewMotion::Goal { goal, .. } => {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::task::{Context, Poll};
 
 use franka_model::JointVector;
+use franka_proto::RobotMode;
 use franka_rt::lifecycle::{MotionError, NewMotion, Outcome};
 use franka_rt::session::{Goal, GoalError, GoalId, OnArrival, Preview, Target, Waypoint};
 use franka_rt::team::Round;
@@ -45,6 +46,12 @@ impl Robot {
     /// A motion to a pose of the end effector in the base frame, or to joint positions, `[rad]`. To
     /// a pose it is a straight line and a rotation about one axis if it begins at rest, and the arm
     /// is compliant on the way, see [`Motion::stiffness`]; of joints all arrive together.
+    ///
+    /// The line to a pose is planned by the task that awaits the motion, in a millisecond as a
+    /// rule. If joints would come to the ends of their ranges on it, the elbow is led to a posture
+    /// with which they do not. If there is none, the motion is refused as
+    /// [`GoalError::NoLine`](crate::error::GoalError::NoLine), which names joint positions that
+    /// reach the pose, and nothing moves.
     pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
         Motion::of_robot(self, destination.into())
     }
@@ -159,7 +166,10 @@ impl Motion {
     /// count as a handle: dropping the last handle of its session or robot still brakes it.
     pub fn detach(mut self) {
         match self.begin() {
-            Ok(motion) => drop(self.canceller.begin(motion)),
+            Ok(mut motion) => {
+                plan_line(&mut motion, self.canceller.robot(), self.session.as_deref());
+                drop(self.canceller.begin(motion));
+            }
             Err(error) => tracing::info!(goal = self.canceller.id().0, %error, "motion ended"),
         }
     }
@@ -188,10 +198,15 @@ impl Motion {
             self.on_arrival,
             model.joint_limits(),
         );
-        let goal = self.options.apply(goal, model)?;
+        let mut goal = self.options.apply(goal, model)?;
         let one = [Waypoint::new(target)];
         let path = self.path.as_deref().unwrap_or(&one);
         let q = reference.unwrap_or(state.q);
+        if self.path.is_none() {
+            let session = self.session.as_deref();
+            let kept = session.and_then(Session::posture).unwrap_or(q);
+            goal.plan_line(&q, &kept, model, &state)?;
+        }
         Ok(Preview::of(path, &q, &goal, model, &state)?)
     }
 
@@ -210,7 +225,36 @@ impl Motion {
             motion,
             destination,
             path: self.path.clone(),
+            refused: None,
         })
+    }
+}
+
+/// Looks for the straight line of a motion to a pose, from where the arm is now: see
+/// [`Goal::plan_line`].
+fn plan_line(motion: &mut Beginning, robot: &Robot, session: Option<&Session>) {
+    let (NewMotion::Goal { goal, .. }, Some(destination), None) =
+        (&motion.motion, &motion.destination, &motion.path)
+    else {
+        return;
+    };
+    let (model, state, course) = (robot.model(), robot.state(), &robot.link().course);
+    let reference = course.reference().map(|reference| reference.q);
+    // The bridge says that a session has ended, or that a program moves the arm.
+    let ended = session.is_some_and(Session::has_ended);
+    if ended || reference.is_none() && state.robot_mode == RobotMode::Move {
+        return;
+    }
+    let now = Now::of(model, &state, course.target(), reference);
+    let mut goal = Goal {
+        target: destination.seen_from(&now),
+        ..**goal
+    };
+    let q = reference.unwrap_or(state.q);
+    let kept = session.and_then(Session::posture).unwrap_or(q);
+    match goal.plan_line(&q, &kept, model, &state) {
+        Ok(()) => motion.lead(goal.posture),
+        Err(error) => motion.refused = Some(error),
     }
 }
 
@@ -322,10 +366,13 @@ impl Future for Moving {
     fn poll(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Outcome> {
         let mut outcome = match std::mem::replace(&mut self.stage, Stage::Over) {
             Stage::Ready(Err(error)) => return Poll::Ready(Err(error.into())),
-            Stage::Ready(Ok(motion)) => match self.canceller.begin(motion) {
-                Some(outcome) => outcome,
-                None => return Poll::Ready(Err(MotionError::Stopped)),
-            },
+            Stage::Ready(Ok(mut motion)) => {
+                plan_line(&mut motion, self.canceller.robot(), self.session.as_deref());
+                match self.canceller.begin(motion) {
+                    Some(outcome) => outcome,
+                    None => return Poll::Ready(Err(MotionError::Stopped)),
+                }
+            }
             Stage::Begun(outcome) => outcome,
             Stage::Over => panic!("a motion is not polled after it has resolved"),
         };

@@ -1,7 +1,7 @@
 //! What all handles of a session share.
 
 use std::future::Future;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 use franka_rt::lifecycle::{MotionError, Outcome, Tuning};
 use franka_rt::session::{GoalId, Lapse, Pulse};
@@ -17,6 +17,8 @@ pub(crate) struct Session {
     robot: Robot,
     id: GoalId,
     tuning: Mutex<Tuning>,
+    /// Where it began, `[rad]`: the posture that goals without one keep.
+    posture: OnceLock<[f64; 7]>,
     /// Of the deadman that it is bound to.
     pulse: Option<Arc<Pulse>>,
     /// What was set without waiting.
@@ -37,6 +39,7 @@ impl Session {
             robot,
             id,
             tuning: Mutex::new(tuning),
+            posture: OnceLock::new(),
             pulse,
             waiting: Waiting::default(),
             ended,
@@ -60,6 +63,18 @@ impl Session {
     pub(crate) fn tuning(&self) -> MutexGuard<'_, Tuning> {
         // Nothing can panic while it is held.
         self.tuning.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Notes where it has begun, if that is known.
+    pub(crate) fn keep(&self, posture: Option<[f64; 7]>) {
+        if let Some(posture) = posture {
+            self.posture.get_or_init(|| posture);
+        }
+    }
+
+    /// Where it began, `[rad]`, if that is known.
+    pub(crate) fn posture(&self) -> Option<[f64; 7]> {
+        self.posture.get().copied()
     }
 
     pub(crate) fn has_ended(&self) -> bool {

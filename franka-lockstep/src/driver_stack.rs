@@ -249,12 +249,21 @@ impl DriverStack {
         })
     }
 
-    /// Begins a motion and returns its name.
+    /// Begins a motion, to a pose on the way that is planned for it, and returns its name.
     ///
     /// # Errors
-    /// As the lifecycle.
-    pub fn begin(&mut self, motion: NewMotion) -> Result<GoalId, MotionError> {
+    /// As [`Goal::plan_line`] and the lifecycle.
+    ///
+    /// [`Goal::plan_line`]: franka_rt::session::Goal::plan_line
+    pub fn begin(&mut self, mut motion: NewMotion) -> Result<GoalId, MotionError> {
         let id = motion.id();
+        if let NewMotion::Goal {
+            goal, path: None, ..
+        } = &mut motion
+        {
+            let q = self.reference_q();
+            goal.plan_line(&q, &q, self.lifecycle.model(), &self.state)?;
+        }
         let begun = self.lifecycle.begin(motion, &self.state, self.now);
         self.carry_out();
         begun.map(|()| id)
@@ -274,15 +283,18 @@ impl DriverStack {
             panic!("a goal goes along a path");
         };
         let model = self.lifecycle.model();
-        let moved = self.record.goal != GoalId::default().0;
-        let q = if moved {
-            self.record.q_ref
-        } else {
-            self.state.q
-        };
-        let chunk = Chunk::through(waypoints, &q, goal, model, &self.state)?;
+        let chunk = Chunk::through(waypoints, &self.reference_q(), goal, model, &self.state)?;
         *path = Some(Box::new(chunk));
         self.begin(motion)
+    }
+
+    /// The reference if target control runs, or the arm, `[rad]`.
+    fn reference_q(&self) -> [f64; 7] {
+        if self.record.goal == GoalId::default().0 {
+            self.state.q
+        } else {
+            self.record.q_ref
+        }
     }
 
     /// Brakes and returns the id of the stop; `None` if nothing moves.

@@ -6,7 +6,7 @@ use std::time::Duration;
 use franka_async::control::{Finish, Torques};
 use franka_async::error::{CommandError, GoalError, PoseError};
 use franka_async::settings::{CollisionBehavior, Load};
-use franka_async::{Engage, MotionError, Pose};
+use franka_async::{Engage, MotionError, Pose, pose};
 use franka_proto::{SetterStatus, Status};
 use tokio::sync::watch;
 
@@ -36,6 +36,27 @@ async fn a_pose_and_joints_are_reached() {
         error.translation < 1e-3 && error.rotation < 2e-3,
         "{error:?}"
     );
+    robot.shutdown().await;
+}
+
+/// The straight line to this pose winds the joints to the ends of their ranges.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_line_that_the_arm_cannot_follow_is_refused_at_rest() {
+    let _alone = alone();
+    let (robot, _sim) = simulated().await;
+    let begin = [-0.4781, -0.8056, -0.3814, -2.3850, 0.2325, 3.4186, 0.5198];
+    robot.move_joints(begin).await.unwrap();
+    let there = pose::from_xyzw([0.6206, 0.0244, 0.1662], [0.4635, 0.8860, 0.0, 0.0]).unwrap();
+    let refused = robot.move_to(there).await.unwrap_err();
+    let MotionError::Goal(GoalError::NoLine { posture, .. }) = refused else {
+        panic!("{refused}");
+    };
+    assert!(!robot.state().motion_running());
+    let previewed = robot.move_to(there).preview().unwrap_err();
+    assert_eq!(previewed, refused);
+    robot.move_joints(posture.unwrap()).await.unwrap();
+    let error = PoseError::between(&robot.pose(), &there);
+    assert!(error.translation < 1e-3, "{error:?}");
     robot.shutdown().await;
 }
 

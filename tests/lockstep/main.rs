@@ -30,6 +30,7 @@ mod schedules;
 mod silence;
 mod stalls;
 mod steps;
+mod straight_lines;
 mod supervised;
 mod switching;
 mod taking_over;

@@ -109,7 +109,11 @@ impl Bridge {
             mut motion,
             destination,
             path,
+            refused,
         } = beginning;
+        if let Some(error) = refused {
+            return Err(error.into());
+        }
         let NewMotion::Goal {
             goal, path: chunk, ..
         } = &mut motion

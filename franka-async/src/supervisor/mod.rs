@@ -325,10 +325,12 @@ impl Inner {
                             motion: NewMotion::Goal { goal: waiting, .. },
                             destination,
                             path,
+                            refused,
                         },
                     ..
                 }) if waiting.id == goal => {
                     (waiting.target, *destination, *path) = (target, None, None);
+                    *refused = None;
                     // Its receiver may have been dropped.
                     let _ = taken.send(Ok(true));
                     return;

@@ -47,6 +47,27 @@ pub enum GoalError {
         /// See `x`.
         z: f64,
     },
+    /// The arm reaches the pose, but not on a straight line from where it is: joints come to the
+    /// ends of their ranges on the way, with every posture that was tried.
+    #[error(
+        "the arm cannot go to {} on a straight line{}: {}",
+        place([*x, *y, *z]),
+        at_end_of_range(*joint),
+        way_on(posture.as_ref())
+    )]
+    NoLine {
+        /// Position asked for, base frame, `[m]`.
+        x: f64,
+        /// See `x`.
+        y: f64,
+        /// See `x`.
+        z: f64,
+        /// The joint, from 1, that comes to the end of its range with the elbow where it is.
+        joint: Option<usize>,
+        /// Joint positions that reach the pose, `[rad]`, and to which the joints can move; regions
+        /// to keep out of are not considered. `None` if none were found.
+        posture: Option<[f64; 7]>,
+    },
     /// A limit of the budget is not positive, or as good as zero, or exceeds the robot's.
     #[error("{what} limit {got}, expected above 0 and at most {most}")]
     Budget {
@@ -164,6 +185,7 @@ impl GoalError {
             Self::Moves => "goal-moves",
             Self::OutOfRange { .. } => "goal-out-of-range",
             Self::Unreachable { .. } => "goal-unreachable",
+            Self::NoLine { .. } => "goal-no-line",
             Self::Budget { .. } => "goal-budget",
             Self::Speed { .. } => "goal-speed",
             Self::Gains(_) => "goal-gains",
@@ -190,6 +212,20 @@ fn place(position: [f64; 3]) -> String {
         return format!("({x:.3e}, {y:.3e}, {z:.3e}) m (expected metres)");
     }
     format!("({x:.4}, {y:.4}, {z:.4}) m")
+}
+
+fn at_end_of_range(joint: Option<usize>) -> String {
+    joint.map_or(String::new(), |joint| {
+        format!(", joint {joint} comes to the end of its range on the way")
+    })
+}
+
+/// What to do instead of a straight line.
+fn way_on(posture: Option<&[f64; 7]>) -> String {
+    match posture {
+        Some(q) => format!("`move_joints` to {q:.4?} reaches the pose"),
+        None => "go there through other poses (`move_through`), or to another pose".to_owned(),
+    }
 }
 
 /// Chunks came faster than the control thread takes them up.

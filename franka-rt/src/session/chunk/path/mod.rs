@@ -13,6 +13,7 @@ mod fastest;
 mod joints;
 mod least_time;
 mod legs;
+mod line;
 #[cfg(test)]
 mod oracle;
 mod poses;
@@ -28,6 +29,7 @@ use franka_proto::RobotState;
 
 pub use self::error::PathError;
 pub use self::preview::{Blocked, Preview};
+use self::reach::Arm;
 use super::value::{Chunk, Points};
 use crate::session::kinematics::Posture;
 use crate::session::{Goal, Target, check, end_effector_of, rigid};
@@ -139,7 +141,13 @@ impl Chunk {
             let posture = goal
                 .posture
                 .map_or(Posture::kept(q), |q| Posture::asked(q.into()));
-            reach::check(&way, q, &posture, budget, model, &ee, &mut pass)?;
+            let arm = Arm {
+                posture: &posture,
+                budget,
+                model,
+                ee: &ee,
+            };
+            reach::check(&way, q, &arm, &mut pass)?;
             let pace = poses::pace(&way.states, budget);
             (Points::Poses(way.into_curve()), pace)
         };

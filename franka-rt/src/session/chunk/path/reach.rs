@@ -8,6 +8,8 @@
 //!
 //! Joint positions need no such check: where two of them are in range, all between them are.
 
+use core::ops::ControlFlow;
+
 use franka_model::differential_ik::{DifferentialIk, JointBox, Side};
 use franka_model::{EndEffector, Frame, JointVector, Model, Twist, rotation};
 use nalgebra::Isometry3;
@@ -46,60 +48,47 @@ const STEPS_MAX: f64 = 1e4;
 /// The most that a joint turns in one attempt, `[rad]`.
 const TURN: f64 = 0.1;
 
+/// A step of the joints along a way.
+#[derive(Debug)]
+pub(super) struct Step {
+    /// Since the begin of the way, `[s]`.
+    pub(super) time: f64,
+    /// The leg that it lies on.
+    pub(super) leg: usize,
+    /// Where the end effector is to be.
+    pub(super) pose: Isometry3<f64>,
+    /// Where the joints then are, `[rad]`.
+    pub(super) q: JointVector,
+    /// How far off the end effector stays.
+    pub(super) off: Off,
+}
+
 /// Checks that the arm follows `way` from the joint positions `q` on. `pass` is called with the
 /// time and the joint positions of each step.
 pub(super) fn check(
     way: &Timed<PoseState>,
     q: JointVector,
-    posture: &Posture,
-    budget: &Budget,
-    model: &Model,
-    ee: &EndEffector,
+    arm: &Arm<'_>,
     pass: &mut impl FnMut(f64, &JointVector),
 ) -> Result<(), PathError> {
-    let arm = Arm {
-        posture,
-        budget,
-        model,
-        ee,
-    };
-    let mut q = q;
-    for (k, times) in way.times.windows(2).enumerate() {
-        let duration = times[1] - times[0];
-        let [v, omega] = [0.0, 0.5, 1.0]
-            .map(|u| way.between(k, u).twist)
-            .map(|twist| {
-                [
-                    twist.fixed_rows::<3>(0).norm(),
-                    twist.fixed_rows::<3>(3).norm(),
-                ]
-            })
-            .into_iter()
-            .fold([0.0_f64; 2], |[v, omega], [a, b]| [v.max(a), omega.max(b)]);
-        let steps = duration * (v / STEP_TRANSLATION).max(omega / STEP_ROTATION);
-        let steps = steps.ceil().clamp(1.0, STEPS_MAX);
-        for step in 1..=steps as usize {
-            let at = way.between(k, step as f64 / steps);
-            let (reached, off) = arm.step(q, &at, duration / steps);
-            q = reached;
-            pass(times[0] + duration * step as f64 / steps, &q);
-            if off.size() > 1.0 {
-                let from = way.legs[k];
-                let p = at.pose.translation.vector;
-                return Err(PathError::Way {
-                    from,
-                    to: from + 1,
-                    x: p.x,
-                    y: p.y,
-                    z: p.z,
-                    translation: off.translation,
-                    rotation: off.rotation,
-                    joint: joint_bounds::at_end(model.joint_limits(), &q),
-                });
-            }
+    let way = arm.along(way, q, |step| {
+        pass(step.time, &step.q);
+        if step.off.size() <= 1.0 {
+            return ControlFlow::Continue(());
         }
-    }
-    Ok(())
+        let p = step.pose.translation.vector;
+        ControlFlow::Break(PathError::Way {
+            from: step.leg,
+            to: step.leg + 1,
+            x: p.x,
+            y: p.y,
+            z: p.z,
+            translation: step.off.translation,
+            rotation: step.off.rotation,
+            joint: joint_bounds::at_end(arm.model.joint_limits(), &step.q),
+        })
+    });
+    way.break_value().map_or(Ok(()), Err)
 }
 
 /// How far the end effector is off the way.
@@ -127,14 +116,55 @@ impl Off {
     }
 }
 
-struct Arm<'a> {
-    posture: &'a Posture,
-    budget: &'a Budget,
-    model: &'a Model,
-    ee: &'a EndEffector,
+/// The arm that is to follow a way.
+pub(super) struct Arm<'a> {
+    /// Where its free direction goes.
+    pub(super) posture: &'a Posture,
+    /// How fast that may be.
+    pub(super) budget: &'a Budget,
+    pub(super) model: &'a Model,
+    pub(super) ee: &'a EndEffector,
 }
 
 impl Arm<'_> {
+    /// Moves the joints from `q` along `way`, until `each` breaks off.
+    pub(super) fn along<B>(
+        &self,
+        way: &Timed<PoseState>,
+        q: JointVector,
+        mut each: impl FnMut(&Step) -> ControlFlow<B>,
+    ) -> ControlFlow<B> {
+        let mut q = q;
+        for (k, times) in way.times.windows(2).enumerate() {
+            let duration = times[1] - times[0];
+            let [v, omega] = [0.0, 0.5, 1.0]
+                .map(|u| way.between(k, u).twist)
+                .map(|twist| {
+                    [
+                        twist.fixed_rows::<3>(0).norm(),
+                        twist.fixed_rows::<3>(3).norm(),
+                    ]
+                })
+                .into_iter()
+                .fold([0.0_f64; 2], |[v, omega], [a, b]| [v.max(a), omega.max(b)]);
+            let steps = duration * (v / STEP_TRANSLATION).max(omega / STEP_ROTATION);
+            let steps = steps.ceil().clamp(1.0, STEPS_MAX);
+            for step in 1..=steps as usize {
+                let at = way.between(k, step as f64 / steps);
+                let (reached, off) = self.step(q, &at, duration / steps);
+                q = reached;
+                each(&Step {
+                    time: times[0] + duration * step as f64 / steps,
+                    leg: way.legs[k],
+                    pose: at.pose,
+                    q,
+                    off,
+                })?;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
     /// The joints that follow those at `q` to the state `at` within `duration`, and how far off
     /// they stay.
     fn step(&self, q: JointVector, at: &PoseState, duration: f64) -> (JointVector, Off) {

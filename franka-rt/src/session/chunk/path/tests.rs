@@ -402,15 +402,13 @@ fn ways_are_accepted_where_the_control_cycle_gets_along_them() {
             let Ok(way) = poses::through_poses(&over_poses(&places), start, &budget) else {
                 continue;
             };
-            let verdict = reach::check(
-                &way,
-                q,
-                &Posture::kept(q),
-                &budget,
+            let arm = Arm {
+                posture: &Posture::kept(q),
+                budget: &budget,
                 model,
-                &ee,
-                &mut |_, _| {},
-            );
+                ee: &ee,
+            };
+            let verdict = reach::check(&way, q, &arm, &mut |_, _| {});
             let gone = go(way, q, &budget, model);
             let case = (model.kind(), seed, accepted + refused);
             match verdict {

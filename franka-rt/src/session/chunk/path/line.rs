@@ -1,0 +1,231 @@
+//! Straight lines to a pose: whether the arm can follow one from where it is, and with which elbow.
+//!
+//! A pose within reach says nothing about the way there. The elbow is kept near where it is, and on
+//! a line that turns the hand far, joints may come to the ends of their ranges that way, while with
+//! the elbow elsewhere they would not. So the line is followed before anything moves, as a path is:
+//! first with the elbow kept, then drawn towards each of the postures that reach the pose.
+
+use core::ops::ControlFlow;
+
+use franka_model::{EndEffector, Frame, JointVector, Model, analytic_ik, rotation};
+use franka_proto::RobotState;
+use nalgebra::{Isometry3, Translation3};
+
+use super::fastest::Timed;
+use super::poses::through_poses;
+use super::reach::Arm;
+use super::{Preview, Waypoint};
+use crate::session::chunk::value::TURN_MAX;
+use crate::session::guard::clearance::{Clearance, KeepOut};
+use crate::session::guard::joint_bounds;
+use crate::session::kinematics::Posture;
+use crate::session::pose::PoseState;
+use crate::session::{Budget, Goal, GoalError, OnArrival, Target, end_effector_of, rigid};
+
+impl Goal {
+    /// Looks for a way to the pose of a goal that is to arrive there, on a straight line from the
+    /// joint positions `q`, `[rad]`. If the arm cannot follow the line with its elbow kept near
+    /// `kept`, `[rad]`, but can with its elbow drawn to another posture, the goal asks for that
+    /// [posture](Self::posture) from then on.
+    ///
+    /// A goal that the arm gets to off the line is left as it is, and one on whose way it comes too
+    /// near itself: it is braked there. So are goals that end elsewhere than at a pose, on their
+    /// way by a [reaction](Self::reaction), or with an object in the hand, and goals that
+    /// [`check`](Self::check) refuses.
+    ///
+    /// It takes about half a millisecond, some where the elbow has to be led, and up to 15 for a
+    /// refusal. It is not for the control thread.
+    ///
+    /// # Errors
+    /// [`GoalError::NoLine`] if the arm gets there with none of these postures.
+    pub fn plan_line(
+        &mut self,
+        q: &[f64; 7],
+        kept: &[f64; 7],
+        model: &Model,
+        state: &RobotState,
+    ) -> Result<(), GoalError> {
+        let Target::Pose(there) = self.target else {
+            return Ok(());
+        };
+        let arrives = self.on_arrival != OnArrival::Hold && self.reaction.is_none();
+        if !arrives || self.along_path || self.grasp.is_some() || self.check(model, state).is_err()
+        {
+            return Ok(());
+        }
+        let ee = end_effector_of(state).unwrap_or_default();
+        let q = JointVector::from(*q);
+        let Some(line) = Line::new(&there, q, &self.budget, model, (ee, state.m_ee > 0.0)) else {
+            return Ok(());
+        };
+        let own = match self.posture {
+            Some(posture) => Posture::asked(posture.into()),
+            None => Posture::kept((*kept).into()),
+        };
+        let Err(hindrance) = line.follow(&own) else {
+            return Ok(());
+        };
+        let postures = postures(model, &there, &line.ee, &q);
+        if self.posture.is_none() {
+            let leads = |q: &&JointVector| line.follow(&Posture::asked(**q)).is_ok();
+            if let Some(posture) = postures.iter().take(LED).find(leads) {
+                self.posture = Some((*posture).into());
+                return Ok(());
+            }
+        }
+        let Hindrance::Range(joint) = hindrance else {
+            return Ok(());
+        };
+        if line.ends_there(&own) {
+            return Ok(());
+        }
+        let over_joints = |to: &&JointVector| {
+            let way = [Waypoint::new(Target::Joints((**to).into()))];
+            let preview = Preview::of(&way, &q.into(), self, model, state);
+            preview.is_ok_and(|preview| matches!(preview.blocked(model, state, &[]), Ok(None)))
+        };
+        let p = there.translation.vector;
+        Err(GoalError::NoLine {
+            x: p.x,
+            y: p.y,
+            z: p.z,
+            joint,
+            posture: postures.iter().find(over_joints).map(|q| (*q).into()),
+        })
+    }
+}
+
+/// Postures towards which the elbow is led before a line is given up: the nearest ones.
+const LED: usize = 8;
+
+/// A straight line and a turn about one axis.
+struct Line<'a> {
+    way: Timed<PoseState>,
+    q: JointVector,
+    budget: &'a Budget,
+    model: &'a Model,
+    ee: EndEffector,
+    clearance: Clearance,
+}
+
+/// Why a line cannot be followed.
+enum Hindrance {
+    /// The arm leaves it, with this joint, from 1, at the end of its range, if one is.
+    Range(Option<usize>),
+    /// The arm comes too near itself.
+    Itself,
+}
+
+impl<'a> Line<'a> {
+    /// From the joint positions `q` to the pose `there`; `None` if it has no plan.
+    fn new(
+        there: &Isometry3<f64>,
+        q: JointVector,
+        budget: &'a Budget,
+        model: &'a Model,
+        (ee, hand): (EndEffector, bool),
+    ) -> Option<Self> {
+        let start = rigid(&model.pose(Frame::EndEffector, &q, &ee));
+        let turn = rotation::error(&there.rotation, &start.rotation);
+        // A path turns less between two waypoints.
+        let middle = (turn.norm() >= TURN_MAX).then(|| {
+            let middle = start
+                .translation
+                .vector
+                .lerp(&there.translation.vector, 0.5);
+            let turned = rotation::exp(&(turn * 0.5)) * start.rotation;
+            Isometry3::from_parts(Translation3::from(middle), turned)
+        });
+        let places = middle.into_iter().chain([*there]);
+        let waypoints: Vec<Waypoint> = places.map(Waypoint::new).collect();
+        let way = through_poses(&waypoints, start, budget).ok()?;
+        Some(Self {
+            way,
+            q,
+            budget,
+            model,
+            ee,
+            clearance: Clearance::new(model.kind(), hand, KeepOut::default()),
+        })
+    }
+
+    /// Follows the line to its end.
+    fn follow(&self, posture: &Posture) -> Result<(), Hindrance> {
+        let mut last = self.q;
+        let way = self.arm(posture).along(&self.way, self.q, |step| {
+            let before = core::mem::replace(&mut last, step.q);
+            if step.off.size() > 1.0 {
+                let joint = joint_bounds::at_end(self.model.joint_limits(), &step.q);
+                return ControlFlow::Break(Hindrance::Range(joint));
+            }
+            match self.clearance.too_near(&before, &step.q) {
+                Some(_) => ControlFlow::Break(Hindrance::Itself),
+                None => ControlFlow::Continue(()),
+            }
+        });
+        way.break_value().map_or(Ok(()), Err)
+    }
+
+    /// Whether the arm comes to the end of the line, if it may leave it.
+    fn ends_there(&self, posture: &Posture) -> bool {
+        let mut off = 0.0;
+        let _: ControlFlow<()> = self.arm(posture).along(&self.way, self.q, |step| {
+            off = step.off.size();
+            ControlFlow::Continue(())
+        });
+        off <= 1.0
+    }
+
+    fn arm<'b>(&'b self, posture: &'b Posture) -> Arm<'b> {
+        Arm {
+            posture,
+            budget: self.budget,
+            model: self.model,
+            ee: &self.ee,
+        }
+    }
+}
+
+/// Postures that reach a pose with room to the ends of the joints' ranges, the nearest to `q` first:
+/// of each branch the nearest one and the one with the most room.
+fn postures(
+    model: &Model,
+    there: &Isometry3<f64>,
+    ee: &EndEffector,
+    q: &JointVector,
+) -> Vec<JointVector> {
+    let limits = model.joint_limits();
+    let [lower, upper] = [limits.lower[6], limits.upper[6]];
+    let mut found: [[Option<(f64, JointVector)>; 2]; 8] = Default::default();
+    for step in 0..=SWEEP {
+        let joint_7 = lower + (upper - lower) * f64::from(step) / f64::from(SWEEP);
+        let given = analytic_ik::Redundancy::Joint7(joint_7);
+        let Ok(solutions) = analytic_ik::solve(model, there, ee, given) else {
+            break;
+        };
+        for solution in solutions.iter() {
+            let room = solution.limit_margin(limits);
+            if room < ROOM {
+                continue;
+            }
+            let [nearest, roomiest] = &mut found[solution.branch.index()];
+            for (best, worth) in [(nearest, -(solution.q - q).norm()), (roomiest, room)] {
+                if best.is_none_or(|(least, _)| worth > least) {
+                    *best = Some((worth, solution.q));
+                }
+            }
+        }
+    }
+    let mut postures: Vec<_> = found.iter().flatten().flatten().map(|(_, q)| *q).collect();
+    let away = |posture: &JointVector| (posture - q).norm();
+    postures.sort_by(|a, b| away(a).total_cmp(&away(b)));
+    postures.dedup();
+    postures
+}
+
+/// Intervals of the sweep of joint 7 through its range.
+const SWEEP: u32 = 64;
+
+/// Room of a posture to the ends of the joints' ranges, `[rad]`: a little more than the joints keep
+/// on the way to a pose.
+const ROOM: f64 = 0.06;

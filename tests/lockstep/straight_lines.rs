@@ -1,0 +1,136 @@
+//! Poses that the arm reaches, though not on a straight line with its elbow where it is.
+
+use std::time::Duration;
+
+use franka_lockstep::{Lockstep, pose_of, self_distance};
+use franka_model::{EndEffector, JointVector, Model, RobotKind};
+use franka_proto::{CollisionBehavior, Request};
+use franka_rt::lifecycle::MotionError;
+use franka_rt::session::condition::elapsed;
+use franka_rt::session::{GoalError, Lapse, OnArrival, PoseError, SELF_STOP, Target};
+use franka_sim::{Config, Tool};
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
+
+/// A robot that ends no motion because of a push.
+fn insensitive(config: Config) -> Lockstep {
+    let mut lockstep = Lockstep::new(config);
+    let tolerant = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
+    lockstep.request(&Request::SetCollisionBehavior(tolerant));
+    lockstep.run(5);
+    lockstep
+}
+
+/// Where the arm begins, and where it is to go: the straight line winds the joints to the ends of
+/// their ranges unless the elbow is led.
+fn winding(kind: RobotKind, tool: Tool) -> (Lockstep, Isometry3<f64>) {
+    let q = [-0.4781, -0.8056, -0.3814, -2.3850, 0.2325, 3.4186, 0.5198];
+    let turn = UnitQuaternion::new_normalize(Quaternion::new(0.0, 0.4635, 0.8860, 0.0));
+    let there = Isometry3::from_parts(Translation3::new(0.6206, 0.0244, 0.1662), turn);
+    let config = Config {
+        tool,
+        q: q.into(),
+        ..Lockstep::config_of(kind)
+    };
+    (insensitive(config), there)
+}
+
+#[test]
+fn a_line_that_winds_the_joints_is_taken_with_another_elbow_or_refused() {
+    for kind in RobotKind::ALL {
+        for tool in [Tool::hand(), Tool::NONE] {
+            let (mut lockstep, there) = winding(kind, tool);
+            let goal = lockstep.goal(Target::Pose(there), OnArrival::ReportAndFinish);
+            let id = match lockstep.submit(goal) {
+                Ok(id) => id,
+                Err(MotionError::Goal(error @ GoalError::NoLine { posture, .. })) => {
+                    println!("{kind:?}: {error}");
+                    let posture = posture.expect("joint positions that reach the pose");
+                    lockstep.begin(Target::Joints(posture))
+                }
+                Err(other) => panic!("{kind:?}: {other}"),
+            };
+            let outcome = lockstep.until_resolved(id, 40_000);
+            outcome.unwrap_or_else(|error| panic!("{kind:?}: {error}"));
+            let off = PoseError::between(&lockstep.arm_pose(), &there);
+            assert!(off.translation < 1e-3 && off.rotation < 5e-3, "{off:?}");
+        }
+    }
+}
+
+/// A motion that is not planned, as it may end anywhere on its way, does not blame the surroundings
+/// for the ends of the joints' ranges.
+#[test]
+fn an_unplanned_line_ends_where_the_joints_have_no_way_on() {
+    for kind in RobotKind::ALL {
+        let (mut lockstep, there) = winding(kind, Tool::hand());
+        let mut goal = lockstep.goal(Target::Pose(there), OnArrival::ReportAndFinish);
+        goal.reaction = Some(elapsed(Duration::from_secs(3600)).into());
+        let id = lockstep.submit(goal).expect("within reach");
+        let outcome = lockstep.until_resolved(id, 60_000);
+        let braked = matches!(
+            outcome,
+            Err(MotionError::Braked(Lapse::OutOfReach { joint: Some(_) }))
+        );
+        assert!(braked, "{kind:?}: {outcome:?}");
+    }
+}
+
+/// No motion to a pose ends short of it where nothing holds the arm.
+#[test]
+fn random_reachable_poses_are_reached_or_refused() {
+    let seed = 10;
+    let cases = if franka_tests::thorough() { 200 } else { 20 };
+    for kind in RobotKind::ALL {
+        let mut random = SmallRng::seed_from_u64(seed);
+        let model = Model::of(kind);
+        let limits = model.joint_limits();
+        let hand = EndEffector {
+            f_t_ee: Tool::hand().f_t_ne,
+            ..EndEffector::default()
+        };
+        let [mut reached, mut refused, mut blocked, mut short] = [0; 4];
+        for case in 0..cases {
+            let posture = loop {
+                let q = JointVector::from_fn(|i, _| {
+                    random.random_range(limits.lower[i] + 0.15..limits.upper[i] - 0.15)
+                });
+                if self_distance(&q) > SELF_STOP && pose_of(&q, &hand).translation.z > 0.05 {
+                    break q;
+                }
+            };
+            let target = pose_of(&posture, &hand);
+            let mut lockstep = insensitive(Lockstep::config_of(kind));
+            let goal = lockstep.goal(Target::Pose(target), OnArrival::ReportAndFinish);
+            let outcome = match lockstep.submit(goal) {
+                Ok(id) => lockstep.until_resolved(id, 60_000),
+                Err(MotionError::Goal(GoalError::NoLine { posture, .. })) => {
+                    refused += 1;
+                    // The way on that the refusal names is one.
+                    let posture = posture.expect("joint positions that reach the pose");
+                    let id = lockstep.begin(Target::Joints(posture));
+                    let outcome = lockstep.until_resolved(id, 60_000);
+                    outcome.unwrap_or_else(|error| {
+                        panic!("{kind:?}, seed {seed}, case {case}: {error}")
+                    });
+                    let off = PoseError::between(&lockstep.arm_pose(), &target);
+                    assert!(off.translation < 1e-3 && off.rotation < 5e-3, "{off:?}");
+                    continue;
+                }
+                Err(error) => panic!("{kind:?}, seed {seed}, case {case}: {error}"),
+            };
+            match outcome {
+                Ok(_) => reached += 1,
+                Err(MotionError::Braked(Lapse::Blocked { .. })) => blocked += 1,
+                Err(error) => {
+                    println!("{kind:?}, seed {seed}, case {case}: {error}");
+                    short += 1;
+                }
+            }
+        }
+        println!("{kind:?}: {reached} reached, {refused} refused, {blocked} blocked of {cases}");
+        assert_eq!(short, 0, "{kind:?}, seed {seed}");
+        assert!(reached >= cases * 6 / 10);
+    }
+}
