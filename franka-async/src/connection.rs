@@ -1,5 +1,9 @@
 //! Options of a connection: see [`Robot::builder`](crate::Robot::builder). For the scheduling of
-//! the control thread see [`realtime`](crate::realtime).
+//! the control thread see [`realtime`](crate::realtime). Services that pass a robot on to their own
+//! clients check these with `admission` (feature `admission`).
+
+#[cfg(feature = "admission")]
+pub mod admission;
 
 pub use crate::builder::{Builder, VersionPolicy};
 pub use crate::endpoint::Endpoint;

@@ -344,6 +344,7 @@
 //! | `cassette` | sessions byte for byte, played back as the robot (features `record`, `pcap`) |
 //! | `doctor` | checks of this computer (features `doctor`, `doctor-desk`) |
 //! | `metrics` | statistics as OpenMetrics text (feature `metrics`) |
+//! | `connection::admission` | checks of who asks a service (feature `admission`) |
 //! | `blocking` | programs without async (feature `blocking`) |
 //!
 //! # How it works

@@ -53,7 +53,14 @@ pub(crate) fn serve(workspace: &Workspace, port: Option<u16>) -> anyhow::Result<
     remove(&workspace.target().join("doc"))?;
     let mut rust = workspace.cargo();
     rust.args(["doc", "--no-deps", "--features"]);
-    let features = ["blocking", "doctor", "export", "metrics", "pcap"];
+    let features = [
+        "admission",
+        "blocking",
+        "doctor",
+        "export",
+        "metrics",
+        "pcap",
+    ];
     rust.arg(
         features
             .map(|name| format!("franka-async/{name}"))
