@@ -8,7 +8,7 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | `admission` | `Host`, `Origin` and token of a request |
+//! | `admission` | the checks in front of the files of a page, and of everything else |
 //! | `any_messages` | what has to hold whatever viewers send, for tests |
 //! | `authority` | lease, hold and deadman: a state machine without clock and sockets |
 //! | `contact` | where something touches the arm, estimated |
@@ -47,8 +47,10 @@
 //! # }
 //! ```
 //!
-//! `axum::serve(listener, page)` then serves it; any back end may nest the router instead, under a
-//! path that ends with a slash. [`several`] serves more than one robot.
+//! `axum::serve(listener, page.into_make_service_with_connect_info::<SocketAddr>())` then serves it;
+//! any back end may nest the router instead, under a path that ends with a slash, and has to serve
+//! it so as well: a server that does not know the addresses of its peers asks all of them for a
+//! token. [`several`] serves more than one robot.
 //!
 //! # Moving the arm
 //!
@@ -98,12 +100,13 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 
 use axum::Router;
-use axum::extract::{Request, State, WebSocketUpgrade};
-use axum::http::{HeaderValue, StatusCode, header};
-use axum::middleware::{Next, from_fn_with_state};
+use axum::extract::{State, WebSocketUpgrade};
+use axum::http::StatusCode;
+use axum::middleware::from_fn_with_state;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use franka_async::Robot;
+use franka_async::connection::admission::{Admission, NoToken};
 use franka_sim::{Running, Stopped};
 use tokio::net::{TcpListener, TcpSocket};
 
@@ -117,13 +120,8 @@ use source::{Source, Watched};
 #[non_exhaustive]
 pub enum BindError {
     /// Other computers could connect, and nothing keeps them out.
-    #[error(
-        "{address} can be reached from other computers: options need a token, or a loopback address"
-    )]
-    NoToken {
-        /// Where it was to listen.
-        address: SocketAddr,
-    },
+    #[error(transparent)]
+    NoToken(#[from] NoToken),
     /// The operating system refuses.
     #[error("listening on {address}")]
     Io {
@@ -144,9 +142,7 @@ pub enum BindError {
 /// # Cancel safety
 /// Dropping the future leaves nothing behind.
 pub async fn bind(address: SocketAddr, options: &Options) -> Result<TcpListener, BindError> {
-    if !address.ip().is_loopback() && options.admission.token.is_none() {
-        return Err(BindError::NoToken { address });
-    }
+    options.admission.check_listener(address)?;
     listen(address).map_err(|source| BindError::Io { address, source })
 }
 
@@ -167,7 +163,8 @@ fn listen(address: SocketAddr) -> io::Result<TcpListener> {
 /// The page and its socket (`/ws`) for a connected robot. Must be called within a Tokio runtime.
 /// The router keeps a handle of the robot.
 pub fn router(robot: Robot, options: Options) -> Router {
-    serve(Hub::start(Source::Robot(robot), options))
+    let admission = options.admission.clone();
+    serve(Hub::start(Source::Robot(robot), options), admission)
 }
 
 /// The page for a simulated robot that another program controls: it is shown and can be disturbed.
@@ -182,49 +179,23 @@ pub async fn simulator(running: &Arc<Running>, options: Options) -> Result<Route
     let newest = |robot: &mut franka_sim::Robot| (robot.config().kind, *robot.state());
     let (kind, state) = running.with(newest).await?;
     let watched = Source::Watched(Box::new(Watched::new(kind, state)));
-    Ok(serve(Hub::start(watched, options.simulated(running))))
+    let admission = options.admission.clone();
+    let hub = Hub::start(watched, options.simulated(running));
+    Ok(serve(hub, admission))
 }
 
-fn serve(hub: Arc<Hub>) -> Router {
+fn serve(hub: Arc<Hub>, admission: Admission) -> Router {
+    let admissions: Arc<[Admission]> = [admission].into();
     Router::new()
         .route("/ws", get(connect))
-        .merge(page::routes())
-        .layer(from_fn_with_state(hub.clone(), guard))
+        // A page is not told why its socket was refused: it asks here.
+        .route("/access", get(async || StatusCode::NO_CONTENT))
+        .layer(from_fn_with_state(admissions.clone(), admission::rest))
+        .merge(page::routes().layer(from_fn_with_state(admissions, admission::files)))
         .with_state(hub)
 }
 
-/// Refuses unknown hosts.
-async fn guard(State(hub): State<Arc<Hub>>, request: Request, next: Next) -> Response {
-    secured(match hub.admission.check_host(request.headers()) {
-        Ok(()) => next.run(request).await,
-        Err(refused) => refused.into_response(),
-    })
-}
-
-/// A response that says that nothing comes from elsewhere.
-fn secured(mut response: Response) -> Response {
-    for (name, value) in [
-        (header::CONTENT_SECURITY_POLICY, POLICY),
-        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
-        (header::X_FRAME_OPTIONS, "DENY"),
-        (header::REFERRER_POLICY, "no-referrer"),
-    ] {
-        let headers = response.headers_mut();
-        headers.insert(name, HeaderValue::from_static(value));
-    }
-    response
-}
-
-const POLICY: &str = "default-src 'self'; frame-ancestors 'none'; base-uri 'none'";
-
-async fn connect(
-    State(hub): State<Arc<Hub>>,
-    headers: axum::http::HeaderMap,
-    upgrade: WebSocketUpgrade,
-) -> Response {
-    if let Err(refused) = hub.admission.check_socket(&headers) {
-        return refused.into_response();
-    }
+async fn connect(State(hub): State<Arc<Hub>>, upgrade: WebSocketUpgrade) -> Response {
     let Ok(seat) = hub.seats.clone().try_acquire_owned() else {
         return (StatusCode::SERVICE_UNAVAILABLE, "too many viewers").into_response();
     };

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
+use franka_async::connection::admission::{Admission, Token};
 use franka_async::gripper::Gripper;
 use franka_async::model::collision::Obstacle;
 use franka_sim::Running;
 
-use crate::admission::Admission;
 use crate::simulated::Simulated;
 
 /// Who may see and do what. The default is view-only, for this computer.
@@ -34,16 +34,15 @@ impl Options {
     }
 
     /// Asks every page for this token, in the fragment of its address: `http://HOST/#TOKEN`. With
-    /// it, other computers are served as well. It should be long and random, of letters, digits
-    /// and `-`, `_`, `.`, `~`.
-    pub fn token(mut self, token: impl Into<String>) -> Self {
-        self.admission.token = Some(token.into());
+    /// it, other computers are served as well.
+    pub fn token(mut self, token: Token) -> Self {
+        self.admission = self.admission.token(token);
         self
     }
 
     /// Accepts requests under this name, besides `localhost` and addresses.
     pub fn host(mut self, name: impl Into<String>) -> Self {
-        self.admission.hosts.push(name.into());
+        self.admission = self.admission.host(name);
         self
     }
 

@@ -21,7 +21,7 @@ pub(crate) fn is_file(name: &str) -> bool {
     let first = |path: &str| path.split('/').nth(1) == Some(name);
     let files = FILES.iter().chain(COMPRESSED).chain(MESHES);
     let mut paths = files.map(|(path, ..)| path);
-    paths.any(|path| first(path)) || ["ws", "robots.json"].contains(&name)
+    paths.any(|path| first(path)) || ["ws", "access", "robots.json"].contains(&name)
 }
 
 /// The routes of all files; `page` is what comes first.

@@ -3,18 +3,17 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use axum::extract::{Request, State};
-use axum::middleware::{Next, from_fn_with_state};
-use axum::response::{IntoResponse, Json, Redirect, Response};
+use axum::Router;
+use axum::middleware::from_fn_with_state;
+use axum::response::{Json, Redirect};
 use axum::routing::get;
-use axum::{Router, http::StatusCode};
 use franka_async::Robot;
+use franka_async::connection::admission::Admission;
 
-use crate::admission::Admission;
 use crate::hub::Hub;
 use crate::options::Options;
 use crate::source::Source;
-use crate::{page, secured, serve};
+use crate::{admission, page, serve};
 
 /// Why names of robots are not accepted: they are parts of addresses.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -63,18 +62,22 @@ pub fn several<N: Into<String>>(
     let listed = Json(names.to_vec());
     let mut router = Router::new()
         .route("/robots.json", get(async move || listed))
-        .merge(page::overview())
-        .layer(from_fn_with_state(admissions, guard));
+        .layer(from_fn_with_state(admissions.clone(), admission::rest))
+        .merge(page::overview().layer(from_fn_with_state(admissions, admission::files)));
     for (name, robot, options) in robots {
         let options = Options {
             siblings: names.clone(),
             ..options
         };
+        let admission = options.admission.clone();
         let there = format!("/{name}/");
         let redirect = Redirect::permanent(&there);
         router = router
             .route(&format!("/{name}"), get(async || redirect))
-            .nest(&there, serve(Hub::start(Source::Robot(robot), options)));
+            .nest(
+                &there,
+                serve(Hub::start(Source::Robot(robot), options), admission),
+            );
     }
     Ok(router)
 }
@@ -83,21 +86,6 @@ fn is_part_of_an_address(name: &str) -> bool {
     let fits = |c: char| c.is_ascii_alphanumeric() || "-_.:~".contains(c);
     // Dots alone are steps between folders.
     (1..=40).contains(&name.len()) && name.chars().all(fits) && name.contains(|c| c != '.')
-}
-
-/// Refuses hosts that are unknown to every robot.
-async fn guard(
-    State(admissions): State<Arc<[Admission]>>,
-    request: Request,
-    next: Next,
-) -> Response {
-    let checks = admissions.iter().map(|it| it.check_host(request.headers()));
-    let refused = checks.reduce(|a, b| if a.is_ok() { a } else { b });
-    secured(match refused {
-        Some(Ok(())) => next.run(request).await,
-        Some(Err(refused)) => refused.into_response(),
-        None => StatusCode::NOT_FOUND.into_response(),
-    })
 }
 
 #[cfg(test)]

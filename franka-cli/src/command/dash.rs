@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Args;
+use franka_async::connection::admission::{Token, TokenError};
 use franka_dash::{BindError, Options};
 use tokio::net::TcpListener;
 use tokio::task::JoinSet;
@@ -24,7 +25,7 @@ pub(crate) struct Dash {
     /// Names of robots, or their addresses [default: FRANKA_ROBOT, or the only robot in the file]
     #[arg(value_name = "ROBOT")]
     robots: Vec<String>,
-    /// Where to listen; other addresses than this computer's own take --token
+    /// Where to listen. Addresses that other computers reach need a token
     #[arg(long, value_name = "ADDRESS:PORT", default_value_t = PAGE)]
     listen: SocketAddr,
     /// Let the viewer that takes command move the arm and recover the robot
@@ -41,9 +42,39 @@ pub(crate) struct Dash {
     /// Let the viewer that takes command record to new files in this folder
     #[arg(long, value_name = "FOLDER")]
     record: Option<PathBuf>,
-    /// Ask pages for this token: http://ADDRESS:PORT/#TOKEN
+    #[command(flatten)]
+    access: Access,
+}
+
+/// Token that admits other computers to a page.
+#[derive(Debug, Args)]
+#[group(multiple = false)]
+struct Access {
+    /// Require the token in this file from each page: http://ADDRESS:PORT/#TOKEN [default:
+    /// FRANKA_ACCESS_TOKEN, if it is set]
+    #[arg(long, value_name = "FILE")]
+    token_file: Option<PathBuf>,
+    /// Require a new random token from each page, and print the addresses with it
     #[arg(long)]
-    token: Option<String>,
+    new_token: bool,
+}
+
+impl Access {
+    fn token(&self) -> Result<Option<Token>, Failure> {
+        match self.new_token {
+            true => Token::generate().map(Some),
+            false => Token::configured(self.token_file.as_deref()),
+        }
+        .map_err(no_token)
+    }
+
+    /// Fragment of the addresses that are printed. A token that the user has is not shown again.
+    fn fragment(&self, token: Option<&Token>) -> String {
+        match token {
+            Some(token) if self.new_token => format!("#{}", token.reveal()),
+            _ => String::new(),
+        }
+    }
 }
 
 impl Dash {
@@ -52,7 +83,9 @@ impl Dash {
         if self.allow_motion {
             options = options.allow_motion();
         }
-        if let Some(token) = &self.token {
+        let token = self.access.token()?;
+        let fragment = self.access.fragment(token.as_ref());
+        if let Some(token) = token {
             options = options.token(token);
         }
         if let Some(folder) = &self.record {
@@ -99,11 +132,11 @@ impl Dash {
         }
         let page = match &robots[..] {
             [(place, robot, options)] => {
-                line(&format!("{place}: http://{address}/"))?;
+                line(&format!("{place}: http://{address}/{fragment}"))?;
                 franka_dash::router(robot.clone(), options.clone())
             }
             several => {
-                line(&format!("http://{address}/"))?;
+                line(&format!("http://{address}/{fragment}"))?;
                 let each = several
                     .iter()
                     .map(|(place, robot, options)| (place.name(), robot.clone(), options.clone()));
@@ -112,11 +145,13 @@ impl Dash {
                         .advice("Give the robot a name: franka robots add NAME ADDRESS")
                 })?;
                 for (place, ..) in several {
-                    line(&format!("{place}: http://{address}/{}/", place.name()))?;
+                    let name = place.name();
+                    line(&format!("{place}: http://{address}/{name}/{fragment}"))?;
                 }
                 page
             }
         };
+        let page = page.into_make_service_with_connect_info::<SocketAddr>();
         let mut closed = JoinSet::new();
         for (place, robot, _) in &robots {
             let (place, robot) = (place.to_string(), robot.clone());
@@ -128,7 +163,7 @@ impl Dash {
                 let text = format!("the connection to {place} has ended: {reason}");
                 Err(Failure::new(Ending::NoRobot, text).into())
             }
-            served = async { axum::serve(listener, page).await } => {
+            served = axum::serve(listener, page).into_future() => {
                 served.map(|()| Ending::Done).map_err(Into::into)
             }
         };
@@ -143,11 +178,19 @@ impl Dash {
 pub(super) async fn listen(address: SocketAddr, options: &Options) -> Result<TcpListener, Failure> {
     let bound = franka_dash::bind(address, options).await;
     bound.map_err(|error| match &error {
-        BindError::NoToken { .. } => Failure::usage(error.to_string())
-            .advice("franka dash --token TOKEN asks pages for one; franka sim has none."),
+        BindError::NoToken { .. } => Failure::usage(error.to_string()).advice(ADVICE),
         _ => Failure::new(Ending::Host, format!("{:#}", anyhow::Error::new(error))),
     })
 }
+
+/// Failure of a token that was given.
+pub(super) fn no_token(error: TokenError) -> Failure {
+    let text = format!("{:#}", anyhow::Error::new(error));
+    Failure::usage(text).advice(ADVICE)
+}
+
+const ADVICE: &str = "Put a token into the variable FRANKA_ACCESS_TOKEN. franka dash also has --token-file FILE, and \
+    --new-token, which makes one.";
 
 /// Where pages find the dashboard by default.
 pub(super) const PAGE: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 8080));

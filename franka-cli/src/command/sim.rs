@@ -5,11 +5,12 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 
 use clap::Args;
+use franka_async::connection::admission::Token;
 use franka_dash::Options;
 use franka_sim::Running;
 use franka_sim::command_line::Arguments;
 
-use super::dash::{PAGE, listen};
+use super::dash::{PAGE, listen, no_token};
 use crate::ending::{Ending, Failure};
 use crate::output::line;
 
@@ -30,7 +31,8 @@ pub(crate) struct Sim {
     #[command(flatten)]
     arguments: Arguments,
     /// Show the robot in the browser, where it can be pushed and disturbed, at this address:
-    /// 127.0.0.1:8080 if none is given
+    /// 127.0.0.1:8080 if none is given. Addresses that other computers reach need the token in
+    /// FRANKA_ACCESS_TOKEN
     #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1)]
     dash: Option<Option<SocketAddr>>,
 }
@@ -38,7 +40,12 @@ pub(crate) struct Sim {
 impl Sim {
     /// Simulates until Ctrl-C.
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
-        let options = Options::default();
+        let mut options = Options::default();
+        if self.dash.is_some()
+            && let Some(token) = Token::configured(None).map_err(no_token)?
+        {
+            options = options.token(token);
+        }
         let page = match self.dash {
             Some(address) => Some(listen(address.unwrap_or(PAGE), &options).await?),
             None => None,
@@ -52,7 +59,8 @@ impl Sim {
                 .map_err(io::Error::other)?;
             let router = franka_dash::simulator(sim, options).await;
             let router = router.map_err(io::Error::other)?;
-            tokio::spawn(async move { axum::serve(page, router).await });
+            let router = router.into_make_service_with_connect_info::<SocketAddr>();
+            tokio::spawn(axum::serve(page, router).into_future());
             Ok(())
         };
         let outcome = self.arguments.run(ready).await;

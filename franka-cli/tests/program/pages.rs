@@ -84,7 +84,49 @@ fn a_folder_for_recordings_has_to_be_there() {
 fn pages_for_other_computers_take_a_token() {
     let (home, sim) = (Home::new(), Simulated::fr3());
     let open = ["dash", &sim.address(), "--listen", "0.0.0.0:0"];
-    home.run(&open).failed(2, &["--token"]);
+    home.run(&open).failed(2, &["set a token", "--token-file"]);
     let open = ["sim", "--port", "0", "--dash", "0.0.0.0:0"];
-    home.run(&open).failed(2, &["--token"]);
+    home.run(&open).failed(2, &["FRANKA_ACCESS_TOKEN"]);
+}
+
+#[test]
+fn a_token_is_made_or_read_from_a_file_and_never_an_argument() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let dash = ["dash", &sim.address(), "--listen", "127.0.0.1:0"];
+    let access = |address: &str, token: &str| {
+        let mut socket = TcpStream::connect(address).expect("it listens");
+        let request = format!(
+            "GET /access HTTP/1.1\r\nHost: {address}\r\nAuthorization: Bearer {token}\r\n\r\n"
+        );
+        socket.write_all(request.as_bytes()).expect("it reads");
+        let mut status = [0; 12];
+        socket.read_exact(&mut status).expect("an answer");
+        String::from_utf8_lossy(&status[9..]).into_owned()
+    };
+    let mut program = home.start(&[&dash[..], &["--new-token"]].concat());
+    let address = page(&mut program);
+    let (address, token) = address.split_once("/#").expect("a token");
+    assert_eq!(access(address, token), "204");
+    assert_eq!(access(address, "another-token-of-32-characters--"), "401");
+    program.signal(Signal::SIGINT);
+    program.ended().done();
+
+    let file = std::env::temp_dir().join(format!("franka-dash-token-{}", std::process::id()));
+    std::fs::write(&file, "token-of-the-file\n").expect("a file");
+    let path = file.to_str().expect("text");
+    let mut program = home.start(&[&dash[..], &["--token-file", path]].concat());
+    let address = page(&mut program);
+    assert!(!address.contains('#'), "{address} shows the token");
+    assert_eq!(access(&address, "token-of-the-file"), "204");
+    program.signal(Signal::SIGINT);
+    program.ended().done();
+
+    std::fs::write(&file, "").expect("a file");
+    let empty = [&dash[..], &["--token-file", path]].concat();
+    home.run(&empty).failed(2, &["the token is empty"]);
+    std::fs::remove_file(&file).expect("it was there");
+    let both = [&dash[..], &["--token-file", path, "--new-token"]].concat();
+    home.run(&both).failed(2, &["--new-token"]);
+    let argument = [&dash[..], &["--token", "token-of-the-argument"]].concat();
+    home.run(&argument).failed(2, &["--token"]);
 }

@@ -1,10 +1,19 @@
-// The socket: frames and messages in, requests out. Connects again by itself; nothing else begins
-// by that.
+// The socket: frames and messages in, requests out. Connects again by itself, unless the server has
+// refused this page; nothing else begins by that.
 
 import { parse } from "./frame.js";
 
 const AGAIN_MS = 1000;
 const BUFFERED_MAX = 4096;
+
+/** The secret in the fragment of the page's address; empty if there is none. */
+export const token = () => location.hash.slice(1);
+
+/** Asks the server for something other than a file of the page. */
+export const ask = (url) => fetch(url, token() ? { headers: { Authorization: `Bearer ${token()}` } } : {});
+
+// With another token, everything begins anew.
+addEventListener("hashchange", () => location.reload());
 
 export class Connection extends EventTarget {
   #socket = null;
@@ -15,21 +24,43 @@ export class Connection extends EventTarget {
     this.url = new URL(`${path}ws`, location.href);
     this.url.protocol = location.protocol === "https:" ? "wss:" : "ws:";
     this.url.hash = "";
+    this.access = `${path}access`;
     this.#open();
   }
 
   #open() {
-    const token = location.hash.slice(1);
-    const protocols = token ? ["franka-dash", `token.${token}`] : ["franka-dash"];
-    const socket = new WebSocket(this.url, protocols);
+    const protocols = token() ? ["franka-dash", `token.${token()}`] : ["franka-dash"];
+    let socket;
+    try {
+      socket = new WebSocket(this.url, protocols);
+    } catch {
+      // The fragment has characters that no token has.
+      this.#refuse();
+      return;
+    }
     socket.binaryType = "arraybuffer";
     socket.onopen = () => { this.#socket = socket; };
     socket.onmessage = ({ data }) => this.#take(data);
-    socket.onclose = () => {
-      this.#socket = null;
-      this.dispatchEvent(new Event("closed"));
-      setTimeout(() => this.#open(), AGAIN_MS);
-    };
+    socket.onclose = () => this.#closed();
+  }
+
+  // A browser does not say why a socket was refused, so the page asks.
+  async #closed() {
+    const wasOpen = this.#socket !== null;
+    this.#socket = null;
+    if (!wasOpen) {
+      const answer = await ask(this.access).catch(() => null);
+      if (answer && [401, 403].includes(answer.status)) {
+        this.#refuse(answer.status === 403 ? await answer.text() : undefined);
+        return;
+      }
+    }
+    this.dispatchEvent(new Event("closed"));
+    setTimeout(() => this.#open(), AGAIN_MS);
+  }
+
+  #refuse(why = token() ? "the token in the address is wrong" : "the address needs a token: http://HOST:PORT/#TOKEN") {
+    this.dispatchEvent(new CustomEvent("denied", { detail: { why } }));
   }
 
   #take(data) {

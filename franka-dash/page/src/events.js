@@ -29,6 +29,7 @@ export function events(connection) {
   connection.addEventListener("event", ({ detail }) => add(detail.level, detail.text, detail.detail));
   connection.addEventListener("missed", ({ detail }) => add("warning", `${detail.events} events missed`, null));
   connection.addEventListener("closed", () => add("error", "Connection to the server lost", null));
+  connection.addEventListener("denied", ({ detail }) => add("error", `No access: ${detail.why}`, null));
   connection.addEventListener("refused", ({ detail }) => {
     notice.textContent = `Refused: ${detail.why}`;
     notice.hidden = false;

@@ -1,6 +1,6 @@
 // All robots of the server side by side: what they do, and one button that stops them all.
 
-import { Connection } from "./connection.js";
+import { ask, Connection } from "./connection.js";
 import { endEffector, MODES, MODE_CLASSES } from "./frame.js";
 import { Scene } from "./scene.js";
 import { tabs } from "./tabs.js";
@@ -42,6 +42,10 @@ class Card {
     this.connection.addEventListener("heading", ({ detail }) => this.#scene.heading(detail.way));
     this.connection.addEventListener("contact", ({ detail }) => this.#scene.showContact(detail.contact));
     this.connection.addEventListener("closed", () => this.#show("no connection", ""));
+    this.connection.addEventListener("denied", ({ detail }) => {
+      this.#show("no access", "");
+      this.badge.title = detail.why;
+    });
     this.connection.addEventListener("frame", ({ detail }) => this.#take(detail));
   }
 
@@ -71,7 +75,14 @@ class Card {
 }
 
 export async function overview() {
-  const answer = await fetch("robots.json");
+  const answer = await ask("robots.json");
+  if (!answer.ok) {
+    const denied = document.createElement("p");
+    denied.setAttribute("role", "alert");
+    denied.textContent = `No access: ${await answer.text()}`;
+    document.getElementById("cards").append(denied);
+    return;
+  }
   const names = await answer.json();
   tabs(names, "", "");
   const cards = names.map((name) => new Card(name));

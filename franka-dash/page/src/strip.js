@@ -33,14 +33,17 @@ export class Strip {
     });
     byId("recover").addEventListener("click", () => connection.send({ type: "recover" }));
     setInterval(() => { if (this.commands) connection.send({ type: "alive" }); }, ALIVE_MS);
-    connection.addEventListener("closed", () => {
-      this.mode.textContent = "no connection";
-      this.mode.className = "badge";
-      this.setStatus({ commander: null, name: null, holding: false });
-    });
+    connection.addEventListener("closed", () => this.#without("no connection"));
+    connection.addEventListener("denied", () => this.#without("no access"));
   }
 
   get commands() { return this.#hello !== null && this.status.commander === this.#hello.viewer; }
+
+  #without(what) {
+    this.mode.textContent = what;
+    this.mode.className = "badge";
+    this.setStatus({ commander: null, name: null, holding: false });
+  }
 
   stop() { this.connection.send({ type: "stop" }); }
 

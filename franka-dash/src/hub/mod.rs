@@ -10,7 +10,6 @@ use std::time::{Duration, Instant};
 use franka_async::model::collision::Obstacle;
 use tokio::sync::{Semaphore, broadcast, watch};
 
-use crate::admission::Admission;
 use crate::authority::{Authority, Lost, Permissions, Refusal, Step, ViewerId};
 use crate::contact::Contact;
 use crate::fingers::Fingers;
@@ -26,7 +25,6 @@ use crate::source::Source;
 /// What all viewers share.
 pub(crate) struct Hub {
     pub(crate) source: Source,
-    pub(crate) admission: Admission,
     pub(crate) permissions: Permissions,
     pub(crate) news: broadcast::Sender<News>,
     pub(crate) status: watch::Sender<Status>,
@@ -59,7 +57,7 @@ impl Hub {
     /// Starts the tasks that end with the last handle. Needs a Tokio runtime.
     pub(crate) fn start(source: Source, options: Options) -> Arc<Self> {
         let Options {
-            admission,
+            admission: _,
             motion,
             simulated,
             gripper,
@@ -80,7 +78,6 @@ impl Hub {
             },
         };
         let hub = Arc::new(Self {
-            admission,
             permissions,
             news: broadcast::Sender::new(NEWS),
             status: watch::Sender::default(),

@@ -1,6 +1,7 @@
 //! The page in a real browser, before simulated robots: what it shows is what the robot is, what a
 //! person does with it has its effect, and a hold that is lost in any way has the arm rest.
 
+mod access;
 mod animation;
 mod checks;
 mod driver;
@@ -52,6 +53,8 @@ fn the_page_shows_and_moves_simulated_robots() -> anyhow::Result<()> {
     pictures::resize(&page, 1180, 820)?;
     several::run(&page, [&fr3, &fer], &folder.join("several.png"))?;
     page.check_console()?;
+    // Its console has what the server refused.
+    access::run(&open((900, 640))?, &fr3)?;
     println!("pictures: {}", folder.display());
     Ok(())
 }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Context as _, ensure};
+use franka_async::connection::admission::Token;
 use franka_async::gripper::Gripper;
 use franka_async::model::collision::Obstacle;
 use franka_async::motion::Outcome;
@@ -48,7 +49,8 @@ impl Served {
             let listener = franka_dash::bind("127.0.0.1:0".parse()?, &options).await?;
             let address = listener.local_addr()?;
             let router = franka_dash::router(robot.clone(), options);
-            tokio::spawn(async move { axum::serve(listener, router).await });
+            let router = router.into_make_service_with_connect_info::<SocketAddr>();
+            tokio::spawn(axum::serve(listener, router).into_future());
             anyhow::Ok((address, robot, gripper, running))
         })?;
         Ok(Self {
@@ -70,7 +72,21 @@ impl Served {
             let robots = [("left", &self.robot), ("right", &other.robot)];
             let robots = robots.map(|(name, robot)| (name, robot.clone(), options.clone()));
             let pages = franka_dash::several(robots)?;
-            tokio::spawn(async move { axum::serve(listener, pages).await });
+            let pages = pages.into_make_service_with_connect_info::<SocketAddr>();
+            tokio::spawn(axum::serve(listener, pages).into_future());
+            Ok(address)
+        })
+    }
+
+    /// Serves another page of this robot, which requires a token.
+    pub(crate) fn with_token(&self, token: &str) -> anyhow::Result<SocketAddr> {
+        self.runtime.block_on(async {
+            let options = Options::default().token(Token::new(token)?);
+            let listener = franka_dash::bind("127.0.0.1:0".parse()?, &options).await?;
+            let address = listener.local_addr()?;
+            let page = franka_dash::router(self.robot.clone(), options);
+            let page = page.into_make_service_with_connect_info::<SocketAddr>();
+            tokio::spawn(axum::serve(listener, page).into_future());
             Ok(address)
         })
     }

@@ -3,17 +3,26 @@
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
 
+use franka_async::connection::admission::Token;
 use franka_dash::{BindError, Options};
 
 use crate::viewer::Served;
 
+/// Lines of a request that opens a socket.
+const UPGRADE: &str = "Connection: Upgrade\r\nUpgrade: websocket\r\n\
+    Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n";
+
+const SECRET: &str = "correct-horse-battery";
+
 /// The status of the answer to a request for a socket with these lines.
 fn status(address: SocketAddr, lines: &str) -> u16 {
+    status_of(address, "/ws", lines)
+}
+
+/// The same at another path.
+fn status_of(address: SocketAddr, path: &str, lines: &str) -> u16 {
     let mut stream = TcpStream::connect(address).expect("a connection");
-    let request = format!(
-        "GET /ws HTTP/1.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n\
-         Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n{lines}\r\n\r\n"
-    );
+    let request = format!("GET {path} HTTP/1.1\r\n{UPGRADE}{lines}\r\n\r\n");
     stream.write_all(request.as_bytes()).expect("a request");
     let mut answer = [0; 12];
     stream.read_exact(&mut answer).expect("an answer");
@@ -21,43 +30,69 @@ fn status(address: SocketAddr, lines: &str) -> u16 {
     status.parse().expect("a status")
 }
 
+fn token() -> Token {
+    Token::new(SECRET).expect("a token")
+}
+
 #[test]
-fn foreign_pages_and_names_are_refused() {
-    let served = Served::new(|_| Options::default());
-    let address = served.address;
+fn foreign_pages_names_and_proxies_are_refused_and_move_nothing() {
+    let served = Served::movable();
+    let (address, start) = (served.address, served.height());
     for (lines, wanted) in [
         ("Host: localhost", 101),
         ("Host: localhost\r\nOrigin: http://localhost", 101),
         ("Host: localhost\r\nOrigin: http://evil.example", 403),
         ("Host: localhost\r\nOrigin: null", 403),
+        ("Host: localhost\r\nSec-Fetch-Site: cross-site", 403),
         ("Host: evil.example\r\nOrigin: http://evil.example", 403),
         ("Host: 192.168.0.7", 403),
+        ("Host: localhost\r\nX-Forwarded-For: 192.168.0.9", 403),
+        ("Host: localhost\r\nForwarded: for=192.168.0.9", 403),
+        ("Host: localhost\r\nHost: evil.example", 400),
     ] {
         assert_eq!(status(address, lines), wanted, "{lines}");
+        let rest = if wanted == 101 { 204 } else { wanted };
+        assert_eq!(status_of(address, "/access", lines), rest, "{lines}");
     }
+    assert!((served.height() - start).abs() < 1e-3 && !served.robot.state().motion_running());
 }
 
 #[test]
 fn a_token_is_asked_for() {
-    let served = Served::new(|_| Options::default().token("f00d"));
+    let served = Served::new(|_| Options::default().allow_motion().token(token()));
     let address = served.address;
+    let protocol = |token: &str| {
+        format!("Sec-WebSocket-Protocol: franka-dash, token.{token}\r\nX-Forwarded-For: ::2")
+    };
     for (lines, wanted) in [
-        ("Host: localhost", 401),
-        (
-            "Host: localhost\r\nSec-WebSocket-Protocol: franka-dash, token.beef",
-            401,
-        ),
-        (
-            "Host: localhost\r\nSec-WebSocket-Protocol: franka-dash, token.f00d",
-            101,
-        ),
-        (
-            "Host: 192.168.0.7\r\nSec-WebSocket-Protocol: franka-dash, token.f00d",
-            101,
-        ),
+        ("Host: localhost".to_owned(), 401),
+        (format!("Host: localhost\r\n{}", protocol("")), 401),
+        (format!("Host: localhost\r\n{}", protocol("beef")), 401),
+        (format!("Host: localhost\r\n{}", protocol(SECRET)), 101),
+        (format!("Host: 192.168.0.7\r\n{}", protocol(SECRET)), 101),
+        (format!("Host: evil.example\r\n{}", protocol(SECRET)), 403),
     ] {
-        assert_eq!(status(address, lines), wanted, "{lines}");
+        assert_eq!(status(address, &lines), wanted, "{lines}");
     }
+    // A page is no secret, and says in words what is missing.
+    assert_eq!(status_of(address, "/", "Host: 192.168.0.7"), 200);
+    let bearer = format!("Host: localhost\r\nAuthorization: Bearer {SECRET}");
+    assert_eq!(status_of(address, "/access", &bearer), 204);
+}
+
+/// The header is written by whoever asks: it does not say where that is.
+#[test]
+fn a_peer_elsewhere_that_says_localhost_needs_a_token() {
+    let far = |peer: &str, options: Options| {
+        let peer: SocketAddr = peer.parse().expect("an address");
+        let served = Served::seen_from(peer, options);
+        status(served.address, "Host: localhost")
+    };
+    let (here, elsewhere) = ("127.0.0.1:40000", "192.0.2.7:40000");
+    let options = || Options::default().allow_motion();
+    assert_eq!(far(here, options()), 101);
+    assert_eq!(far(elsewhere, options()), 403);
+    assert_eq!(far(elsewhere, options().token(token())), 401);
 }
 
 #[tokio::test]
@@ -65,7 +100,7 @@ async fn without_a_token_only_this_computer_is_served() {
     let everywhere = "0.0.0.0:0".parse().expect("an address");
     let refused = franka_dash::bind(everywhere, &Options::default()).await;
     assert!(matches!(refused, Err(BindError::NoToken { .. })));
-    let options = Options::default().token("f00d");
+    let options = Options::default().token(token());
     franka_dash::bind(everywhere, &options)
         .await
         .expect("a port");

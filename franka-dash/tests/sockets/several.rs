@@ -1,5 +1,7 @@
 //! Several robots on one server.
 
+use std::net::SocketAddr;
+
 use franka_async::{Realtime, Robot};
 use franka_dash::{NameError, Options};
 use franka_sim::Sim;
@@ -38,7 +40,8 @@ fn each_robot_has_a_page_and_a_commander_of_its_own() {
         let listener = bound.expect("a port");
         let address = listener.local_addr().expect("an address");
         let pages = franka_dash::several(robots).expect("names");
-        tokio::spawn(async move { axum::serve(listener, pages).await });
+        let pages = pages.into_make_service_with_connect_info::<SocketAddr>();
+        tokio::spawn(axum::serve(listener, pages).into_future());
         (address, running)
     });
     let get = |path: &str| {
@@ -85,7 +88,8 @@ fn a_page_nested_under_a_path_without_a_slash_says_so() {
         let nested = axum::Router::new()
             .nest("/wrong", page.clone())
             .nest("/right/", page);
-        tokio::spawn(async move { axum::serve(listener, nested).await });
+        let nested = nested.into_make_service_with_connect_info::<SocketAddr>();
+        tokio::spawn(axum::serve(listener, nested).into_future());
         (address, sim)
     });
     let agent: ureq::Agent = ureq::Agent::config_builder()

@@ -5,6 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use axum::extract::ConnectInfo;
+use axum::{Extension, Router};
 use franka_async::gripper::Gripper;
 use franka_async::{Realtime, Robot};
 use franka_dash::Options;
@@ -28,6 +30,12 @@ impl Served {
         Self::start(Sim::fr3(), async |running| options(running))
     }
 
+    /// A server to which all requests come from this address.
+    pub(crate) fn seen_from(peer: SocketAddr, options: Options) -> Self {
+        let peer = Extension(ConnectInfo(peer));
+        Self::start_as(Sim::fr3(), async |_| options, |page| page.layer(peer))
+    }
+
     /// A server of an ideal arm with a Hand that may do all there is, and records to `folder`. A
     /// hold outlasts a busy machine.
     pub(crate) fn equipped(folder: &Path) -> Self {
@@ -42,6 +50,14 @@ impl Served {
     }
 
     fn start(sim: Sim, options: impl AsyncFnOnce(&Arc<Running>) -> Options) -> Self {
+        Self::start_as(sim, options, |page| page)
+    }
+
+    fn start_as(
+        sim: Sim,
+        options: impl AsyncFnOnce(&Arc<Running>) -> Options,
+        page: impl FnOnce(Router) -> Router,
+    ) -> Self {
         let runtime = Runtime::new().expect("a runtime");
         let (address, robot, running) = runtime.block_on(async {
             let sim = sim.wait_for_commands(Duration::from_millis(500));
@@ -52,8 +68,9 @@ impl Served {
             let here = "127.0.0.1:0".parse().expect("an address");
             let listener = franka_dash::bind(here, &options).await.expect("a port");
             let address = listener.local_addr().expect("an address");
-            let router = franka_dash::router(robot.clone(), options);
-            tokio::spawn(async move { axum::serve(listener, router).await });
+            let router = page(franka_dash::router(robot.clone(), options));
+            let router = router.into_make_service_with_connect_info::<SocketAddr>();
+            tokio::spawn(axum::serve(listener, router).into_future());
             (address, robot, running)
         });
         Self {

@@ -1,5 +1,6 @@
 //! What viewers see.
 
+use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -60,7 +61,8 @@ fn a_simulated_robot_of_another_program_is_shown_and_pushed() {
         let bound = franka_dash::bind(here, &Options::default()).await;
         let listener = bound.expect("a port");
         let address = listener.local_addr().expect("an address");
-        tokio::spawn(async move { axum::serve(listener, router).await });
+        let router = router.into_make_service_with_connect_info::<SocketAddr>();
+        tokio::spawn(axum::serve(listener, router).into_future());
         (address, running)
     });
     let mut viewer = Viewer::connect(address);

@@ -38,7 +38,8 @@ async fn measure(programs: &Path, seconds: u32) -> anyhow::Result<()> {
     let listener = franka_dash::bind("127.0.0.1:0".parse()?, &options).await?;
     let page = listener.local_addr()?;
     let router = franka_dash::router(robot.clone(), options);
-    tokio::spawn(async move { axum::serve(listener, router).await });
+    let router = router.into_make_service_with_connect_info::<SocketAddr>();
+    tokio::spawn(axum::serve(listener, router).into_future());
     let moving = tokio::spawn(keep_moving(robot.clone()));
     let mut turns = [Turn::default(), Turn::default()];
     let (mut spent, mut memory, mut frames) = ([Duration::ZERO; 2], Vec::new(), 0);
