@@ -22,7 +22,7 @@ use franka_async::connection::CancellationToken;
 use franka_async::error::Party;
 use franka_async::nalgebra::Translation3;
 use franka_async::{MotionError, Offset, Robot, metrics};
-use franka_examples::{Job, Serving, serve_until_told};
+use franka_examples::{Job, Serving, admit, serve_until_told};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio_stream::StreamExt;
@@ -62,8 +62,9 @@ async fn main() -> anyhow::Result<()> {
         .route("/recover", post(recover))
         .route("/metrics", get(scrape))
         .with_state(service);
-    let listener = arguments.listen().await?;
-    serve_until_told(&robot, closing, arguments.deadline(), |quit| {
+    let (listener, admission) = arguments.listen().await?;
+    let app = admit(app, &admission);
+    serve_until_told(&robot, closing, arguments.deadline, |quit| {
         let serving = axum::serve(listener, app).with_graceful_shutdown(quit);
         serving.into_future()
     })

@@ -4,9 +4,12 @@
 //! prints: 5 cm up by `curl 127.0.0.1:PORT/jobs --json '[0, 0, 0.05]'`; the outcomes by
 //! `curl 127.0.0.1:PORT/jobs`
 
+use std::net::SocketAddr;
+
 use anyhow::bail;
-use axum::http::StatusCode;
-use axum::{Json, Router, routing::post};
+use axum::http::{Extensions, StatusCode};
+use axum::{Json, Router, extract::ConnectInfo, response::IntoResponse, routing::post};
+use franka_async::connection::admission::{Admission, Refused};
 use franka_async::prelude::*;
 use tokio::signal::{ctrl_c, unix};
 use tokio::sync::{mpsc, watch};
@@ -39,12 +42,17 @@ async fn main() -> anyhow::Result<()> {
         Err(error) => (StatusCode::CONFLICT, error.to_string()),
     };
     let jobs = Router::new().route("/jobs", post(take).get(list));
+    let jobs = jobs.route("/recover", post(recover));
+    // Other computers, and pages of other sites in a browser here, are refused.
+    let peer = |of: &Extensions| of.get::<ConnectInfo<SocketAddr>>().map(|peer| peer.0);
+    let refuse = |refused: Refused| (refused.status(), refused.to_string()).into_response();
+    let jobs = jobs.layer(Admission::default().layer(peer, refuse));
+    let jobs = jobs.into_make_service_with_connect_info::<SocketAddr>();
     let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await?;
     println!("listening on {}", listener.local_addr()?);
     let mut terminated = unix::signal(unix::SignalKind::terminate())?;
-    let serving = axum::serve(listener, jobs.route("/recover", post(recover)));
     tokio::select! {
-        served = serving => served?,
+        served = axum::serve(listener, jobs).into_future() => served?,
         reason = robot.closed() => bail!("{reason}"), // a service manager starts it again
         _ = ctrl_c() => {}
         _ = terminated.recv() => {}

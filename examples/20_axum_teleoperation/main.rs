@@ -26,7 +26,7 @@ use axum::routing::get;
 use clap::Parser;
 use franka_async::Robot;
 use franka_async::connection::CancellationToken;
-use franka_examples::{Serving, serve_until_told};
+use franka_examples::{Serving, admit, seconds, serve_until_told};
 use tokio::sync::Semaphore;
 use tokio::time::{MissedTickBehavior, interval, timeout};
 
@@ -39,8 +39,8 @@ struct Arguments {
     serving: Serving,
     /// Silence of the socket that has the lease after which the arm brakes and the lease ends,
     /// `[s]`.
-    #[arg(long, default_value_t = 0.3)]
-    silence: f64,
+    #[arg(long, default_value = "0.3", value_parser = seconds, allow_negative_numbers = true)]
+    silence: Duration,
 }
 
 #[derive(Clone)]
@@ -60,7 +60,7 @@ async fn main() -> anyhow::Result<()> {
     let service = Service {
         robot: robot.clone(),
         free: Arc::new(Semaphore::new(1)),
-        silence: Duration::from_secs_f64(silence),
+        silence,
         closing: closing.clone(),
     };
     let connect = async |service: State<Service>, upgrade: WebSocketUpgrade| -> Response {
@@ -69,8 +69,9 @@ async fn main() -> anyhow::Result<()> {
     let app = Router::new()
         .route("/teleoperation", get(connect))
         .with_state(service);
-    let listener = serving.listen().await?;
-    serve_until_told(&robot, closing, serving.deadline(), |quit| {
+    let (listener, admission) = serving.listen().await?;
+    let app = admit(app, &admission);
+    serve_until_told(&robot, closing, serving.deadline, |quit| {
         let serving = axum::serve(listener, app).with_graceful_shutdown(quit);
         serving.into_future()
     })

@@ -10,12 +10,15 @@ use std::time::Duration;
 use clap::Parser;
 use franka_async::Robot;
 use franka_async::connection::CancellationToken;
+use franka_async::connection::admission::Refused;
 use franka_async::goal::{Lead, OnTimeout};
 use franka_examples::{Serving, serve_until_told};
 use tokio::sync::{mpsc, watch};
 use tokio_stream::wrappers::{ReceiverStream, TcpListenerStream};
 use tokio_stream::{Stream, StreamExt};
+use tonic::codegen::http;
 use tonic::transport::Server;
+use tonic::transport::server::TcpConnectInfo;
 use tonic::{Request, Response, Status, Streaming};
 
 mod messages;
@@ -48,17 +51,30 @@ async fn main() -> anyhow::Result<()> {
         robot: robot.clone(),
         closing: closing.clone(),
     };
-    let listener = TcpListenerStream::new(arguments.listen().await?);
-    serve_until_told(&robot, closing, arguments.deadline(), |quit| {
+    let (listener, admission) = arguments.listen().await?;
+    let listener = TcpListenerStream::new(listener);
+    let peer = |of: &http::Extensions| of.get::<TcpConnectInfo>()?.remote_addr();
+    serve_until_told(&robot, closing, arguments.deadline, |quit| {
         // A client whose computer has gone says nothing: this notices, and ends its calls.
         let server = Server::builder().http2_keepalive_interval(Some(Duration::from_secs(1)));
-        let mut server = server.http2_keepalive_timeout(Some(Duration::from_secs(2)));
+        let server = server.http2_keepalive_timeout(Some(Duration::from_secs(2)));
+        let mut server = server.layer(admission.layer(peer, refuse));
         let service = ArmServer::new(service);
         server
             .add_service(service)
             .serve_with_incoming_shutdown(listener, quit)
     })
     .await
+}
+
+/// Answers a request that is not admitted.
+fn refuse(refused: Refused) -> http::Response<tonic::body::Body> {
+    let text = refused.to_string();
+    let status = match refused {
+        Refused::Token => Status::unauthenticated(text),
+        _ => Status::permission_denied(text),
+    };
+    status.into_http()
 }
 
 #[tonic::async_trait]

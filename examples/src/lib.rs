@@ -11,8 +11,10 @@ mod service;
 pub use ease::Ease;
 #[cfg(feature = "http")]
 pub use job::{Job, Progress, Stage};
+#[cfg(feature = "http")]
+pub use service::admit;
 #[cfg(any(feature = "grpc", feature = "http"))]
-pub use service::{Serving, serve_until_told};
+pub use service::{Serving, seconds, serve_until_told};
 
 use std::fmt;
 use std::io::{BufRead, Write};

@@ -1,12 +1,25 @@
 //! What services have in common: their options, and how one that has a robot ends.
 
+#[cfg(feature = "http")]
+use std::net::SocketAddr;
+use std::path::PathBuf;
 use std::pin::pin;
 use std::time::Duration;
 
 use anyhow::{Context, anyhow, bail};
+#[cfg(feature = "http")]
+use axum::{
+    Router,
+    extract::{ConnectInfo, connect_info::IntoMakeServiceWithConnectInfo},
+    http::Extensions,
+    response::IntoResponse,
+};
 use clap::Parser;
 use franka_async::Robot;
 use franka_async::connection::CancellationToken;
+#[cfg(feature = "http")]
+use franka_async::connection::admission::Refused;
+use franka_async::connection::admission::{Admission, Token};
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::time::{Instant, timeout_at};
@@ -21,30 +34,75 @@ pub struct Serving {
     /// Which robot.
     #[command(flatten)]
     pub connection: Connection,
-    /// Where to listen. Whoever gets there can move the arm: keep it off open networks.
+    /// Where to listen. Addresses that other computers reach need a token.
     #[arg(long, default_value = "127.0.0.1:8080")]
     listen: String,
+    /// Require the token in this file from each client; without it, the token in the variable
+    /// FRANKA_ACCESS_TOKEN, if it is set.
+    #[arg(long, conflicts_with = "new_token")]
+    token_file: Option<PathBuf>,
+    /// Require a new random token from each client, and print it.
+    #[arg(long)]
+    new_token: bool,
     /// Time to end in, `[s]`.
-    #[arg(long, default_value_t = 5.0)]
-    deadline: f64,
+    #[arg(long, default_value = "5", value_parser = seconds, allow_negative_numbers = true)]
+    pub deadline: Duration,
 }
 
 impl Serving {
-    /// Listens, and says where.
+    /// Listens, prints where, and returns the rules for the requests.
     ///
     /// # Errors
-    /// If the address cannot be had.
-    pub async fn listen(&self) -> anyhow::Result<TcpListener> {
+    /// If the address is not available, or other computers reach it and there is no token.
+    pub async fn listen(&self) -> anyhow::Result<(TcpListener, Admission)> {
+        let token = match self.new_token {
+            true => Some(Token::generate()?),
+            false => Token::configured(self.token_file.as_deref())?,
+        };
         let listener = TcpListener::bind(&self.listen).await;
         let listener = listener.with_context(|| format!("listening on {}", self.listen))?;
-        println!("listening on {}", listener.local_addr()?);
-        Ok(listener)
+        let address = listener.local_addr()?;
+        let admission = match &token {
+            Some(token) => Admission::default().token(token.clone()),
+            None => Admission::default(),
+        };
+        let checked = admission.check_listener(address);
+        checked.context("no token: see FRANKA_ACCESS_TOKEN, --token-file and --new-token")?;
+        println!("listening on {address}");
+        if let Some(token) = token.filter(|_| self.new_token) {
+            println!("token {}", token.reveal());
+        }
+        Ok((listener, admission))
     }
+}
 
-    /// Time to end in.
-    pub fn deadline(&self) -> Duration {
-        Duration::from_secs_f64(self.deadline)
+/// Reads a duration from an argument, `[s]`.
+///
+/// # Errors
+/// If it is no number, negative, not finite, or too large.
+pub fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds: f64 = text
+        .parse()
+        .map_err(|_| format!("got {text:?}, expected seconds"))?;
+    match (0.0..=SECONDS_MAX).contains(&seconds) {
+        true => Ok(Duration::from_secs_f64(seconds)),
+        false => Err(format!("got {seconds} s, expected 0 to {SECONDS_MAX} s")),
     }
+}
+
+/// A day: longer times are mistakes, and the sum of a time and a very long one panics.
+const SECONDS_MAX: f64 = 86_400.0;
+
+/// Checks all requests to a web service before it sees them.
+#[cfg(feature = "http")]
+pub fn admit(
+    app: Router,
+    admission: &Admission,
+) -> IntoMakeServiceWithConnectInfo<Router, SocketAddr> {
+    let peer = |of: &Extensions| of.get::<ConnectInfo<SocketAddr>>().map(|peer| peer.0);
+    let refuse = |refused: Refused| (refused.status(), refused.to_string()).into_response();
+    let app = app.layer(admission.layer(peer, refuse));
+    app.into_make_service_with_connect_info()
 }
 
 /// Serves until SIGTERM, Ctrl-C or the end of the connection to the robot, and then ends within

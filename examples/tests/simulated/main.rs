@@ -3,6 +3,7 @@
 
 mod arm;
 mod control;
+mod doors;
 mod first_programs;
 mod jobs;
 mod program;

@@ -219,7 +219,8 @@ fn unpack(archive: &Path, directory: &Path) -> anyhow::Result<()> {
 fn manifest<'a>(packages: impl Iterator<Item = &'a str>, version: &str) -> String {
     let mut text = format!(
         "[package]\nname = \"service\"\nedition = \"2024\"\n\n\
-         [dependencies]\nanyhow = \"1\"\naxum = \"0.8\"\nfranka-async = \"{version}\"\n\
+         [dependencies]\nanyhow = \"1\"\naxum = \"0.8\"\n\
+         franka-async = {{ version = \"{version}\", features = [\"admission\"] }}\n\
          tokio = {{ version = \"1\", features = [\"full\"] }}\n\n\
          [dev-dependencies]\nfranka-sim = \"{version}\"\n\n[patch.crates-io]\n"
     );
@@ -272,7 +273,7 @@ mod tests {
         let manifest: toml_edit::DocumentMut = text.parse().unwrap();
         let path = manifest["patch"]["crates-io"]["franka-rt"]["path"].as_str();
         assert_eq!(path, Some("../crates/franka-rt-0.1.0"));
-        let version = manifest["dependencies"]["franka-async"].as_str();
+        let version = manifest["dependencies"]["franka-async"]["version"].as_str();
         assert_eq!(version, Some("0.1.0"));
     }
 }
