@@ -34,8 +34,8 @@ export class Connection extends EventTarget {
     try {
       socket = new WebSocket(this.url, protocols);
     } catch {
-      // The fragment has characters that no token has.
-      this.#refuse();
+      // The fragment has characters that no token has. Listeners come after the constructor.
+      queueMicrotask(() => this.#closed());
       return;
     }
     socket.binaryType = "arraybuffer";

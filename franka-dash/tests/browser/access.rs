@@ -21,7 +21,9 @@ pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
     ] {
         page.go("about:blank")?;
         page.go(&format!("http://{address}/{fragment}"))?;
-        wait("why there is no access", || page.shows("events", why))?;
+        wait(&format!("{why:?} at {fragment:?}"), || {
+            page.shows("events", why)
+        })?;
         ensure!(page.shows("mode", "no access")?, "{fragment}: another mode");
         let lines = page.run("return document.querySelectorAll('#events li').length")?;
         ensure!(lines == 1, "{fragment}: {lines} lines");
