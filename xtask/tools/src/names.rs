@@ -268,9 +268,13 @@ impl Names {
         }
         for (index, &(module, name, path)) in items.iter().enumerate() {
             for &(other, namesake, elsewhere) in &items[index + 1..] {
-                let is_same = path == elsewhere
-                    || elsewhere.starts_with(&format!("{path}::")) && path.contains("::")
-                    || path.starts_with(&format!("{elsewhere}::")) && elsewhere.contains("::");
+                // The names in a module of a module begin with its own.
+                let is_in = |inner: &str, outer: &str| {
+                    inner.starts_with(&format!("{outer}::"))
+                        && outer.contains("::")
+                        && !self.modules.contains_key(outer)
+                };
+                let is_same = path == elsewhere || is_in(elsewhere, path) || is_in(path, elsewhere);
                 if is_same {
                     faults.push(format!(
                         "{path} is in two places: {} and {}",
@@ -371,6 +375,8 @@ mod tests {
         assert_eq!(found, ["a::B is in two places: B and m::C"]);
         let found = faults("pub mod m { pub use x::a::B; } pub mod n { pub use x::a; }");
         assert_eq!(found, ["x::a::B is in two places: m::B and n::a"]);
+        let found = faults("pub mod m { pub mod n { pub struct B; } }");
+        assert_eq!(found, Vec::<String>::new());
         let found = faults("pub mod m { pub struct B; } pub mod n { pub use x::y::B; }");
         assert_eq!(found, ["one name, two things: m::B, n::B"]);
     }
