@@ -98,7 +98,10 @@ async fn a_hundred_motions_at_once_all_resolve() {
     }
     let target = last.expect("one arrives");
     let off = (robot.pose().translation.vector - target.translation.vector).norm();
-    assert!(off < 0.0005, "{off} m from the target of the motion that arrived last");
+    assert!(
+        off < 0.0005,
+        "{off} m from the target of the motion that arrived last"
+    );
     robot.shutdown().await;
 }
 

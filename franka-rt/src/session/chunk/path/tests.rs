@@ -15,6 +15,7 @@ use crate::session::chunk::curve_state::CurveState;
 use crate::session::kinematics::Drift;
 use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
+use crate::session::tests::sample;
 use crate::session::{Budget, GoalId, OnArrival};
 
 const STEP: f64 = 1e-4;
@@ -110,7 +111,7 @@ fn steps<M: CurveState>(curve: &Curve<M>) -> impl Iterator<Item = (M, M)> {
 fn joints_keep_their_limits_and_the_size_of_corners_on_random_paths() {
     let mut random = SmallRng::seed_from_u64(17);
     let model = Model::fr3();
-    for case in 0..sample(40, 10) {
+    for case in 0..sample(40, 7) {
         let goal = goal(model, random.random_range(0.3..2.0));
         let mut places = random_joints(&mut random, 0.3, 0.0);
         let waypoints = over_joints(&places);
@@ -146,7 +147,7 @@ fn joints_keep_their_limits_and_the_size_of_corners_on_random_paths() {
 fn poses_keep_the_limits_of_the_norms_and_the_size_of_corners_on_random_paths() {
     let mut random = SmallRng::seed_from_u64(18);
     let model = Model::fr3();
-    for case in 0..sample(40, 10) {
+    for case in 0..sample(40, 7) {
         let goal = goal(model, random.random_range(0.3..2.0));
         let places = random_poses(&mut random, 0.0);
         let waypoints = over_poses(&places);
@@ -251,20 +252,12 @@ fn least_duration<M: CurveState, const W: usize, const G: usize>(
     oracle::least_duration(&rates, step, &limits.of_groups)
 }
 
-/// The size of a sample: the first with `FRANKA_THOROUGH=1`, as in the nightly run.
-fn sample(thorough: usize, otherwise: usize) -> usize {
-    match std::env::var_os("FRANKA_THOROUGH") {
-        Some(_) => thorough,
-        None => otherwise,
-    }
-}
-
 /// Ratios of random paths, with the jerks of the budget times a factor.
 fn ratios(over_the_joints: bool, jerk: f64) -> Ratios {
     let mut random = SmallRng::seed_from_u64(5);
     let model = Model::fr3();
     let mut ratios = Vec::new();
-    while ratios.len() < sample(50, 8) {
+    while ratios.len() < sample(50, 5) {
         let mut goal = goal(model, random.random_range(0.5..2.0));
         let limits = goal.budget.joints.iter_mut();
         for limits in limits.chain([&mut goal.budget.translation, &mut goal.budget.rotation]) {
@@ -381,7 +374,7 @@ fn ways_are_accepted_where_the_control_cycle_gets_along_them() {
         let limits = model.joint_limits();
         let ee = EndEffector::default();
         let (mut accepted, mut refused, mut farthest) = (0, 0, 0.0_f64);
-        while accepted + refused < sample(60, 8) {
+        while accepted + refused < sample(60, 4) {
             let mut posture = |spread: f64| {
                 JointVector::from_fn(|i, _| {
                     let middle = 0.5 * (limits.upper[i] + limits.lower[i]);

@@ -1,5 +1,6 @@
 use super::*;
 use crate::session::reference::Reference;
+use crate::session::tests::sample;
 use franka_model::collision::Body;
 use franka_model::{Model, READY};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, UnitVector3, Vector3};
@@ -82,7 +83,8 @@ fn the_verdict_is_that_of_all_distances_wherever_the_arm_goes() {
     let budget = Budget::of(limits);
     let mut seen = [0; 3];
     let mut known = 0;
-    for _ in 0..400 {
+    let ways = sample(400, 100);
+    for _ in 0..ways {
         let keep_out = random_regions(&mut random);
         let mut clearance = of(keep_out);
         let mut reference = Reference::at_rest(JointVector::from_fn(|i, _| {
@@ -111,8 +113,8 @@ fn the_verdict_is_that_of_all_distances_wherever_the_arm_goes() {
             reference = next;
         }
     }
-    assert!(seen.iter().all(|&count| count > 1500), "{seen:?}");
-    assert!(known > 10_000, "{known}");
+    assert!(seen.iter().all(|&count| count > 3 * ways), "{seen:?}");
+    assert!(known > 25 * ways, "{known}");
 }
 
 /// The arm bent forwards at joint 2 until its distance to itself has this margin.
