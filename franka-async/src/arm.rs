@@ -363,30 +363,27 @@ impl Arm {
         Follow::new(self.robot().clone(), Some(self.session.clone()), targets)
     }
 
-    /// Changes how the goal under way and those to come are pursued. Gains, force cap and leash
-    /// fade over 0.3 s: neither the reference nor the torques step.
+    /// Changes how the goal under way and those to come are pursued, and leaves what is `None` as
+    /// it is. Options of a motion come before it. Gains, force cap and leash fade over 0.3 s:
+    /// neither the reference nor the torques step.
     ///
     /// # Errors
     /// [`MotionError::Goal`] for values out of their bounds, which change nothing; what ended the
     /// session.
     ///
     /// # Cancel safety
-    /// Once polled it is done all the same for the goal under way.
+    /// Once polled it is done all the same.
     pub async fn tune(&self, tuning: Tuning) -> Result<(), MotionError> {
-        let id = self.session.id();
-        let change = Box::new(tuning);
+        let (id, kept) = (self.session.id(), self.session.tuning().clone());
+        let tuning = Box::new(tuning);
         self.session
             .ask(|taken| Input::Tune {
                 id,
-                tuning: change,
+                tuning,
+                kept,
                 taken,
             })
-            .await?;
-        let mut kept = self.session.tuning();
-        kept.gains = tuning.gains.or(kept.gains);
-        kept.budget = tuning.budget.or(kept.budget);
-        kept.force_cap = tuning.force_cap.or(kept.force_cap);
-        Ok(())
+            .await
     }
 
     /// Brakes, lets the arm go and ends the session; resolves when it has ended. A goal under way
@@ -450,7 +447,7 @@ impl Arm {
         let robot = self.robot();
         let limits = robot.model().joint_limits();
         let goal = Goal::new(robot.next_goal(), target, OnArrival::Hold, limits);
-        self.session.tuning().apply(goal)
+        self.session.tuning().get().apply(goal)
     }
 
     fn beginning(&self, goal: Goal, destination: Destination) -> Beginning {

@@ -75,10 +75,9 @@ pub(crate) fn watched<T: Into<Target> + Clone + Send + Sync + 'static>(
 
 impl Follow {
     pub(crate) fn new(robot: Robot, session: Option<Arc<Session>>, targets: Targets) -> Self {
-        let tuning = session.as_deref().map(|session| *session.tuning());
         Self {
             robot,
-            options: GoalOptions::of_session(tuning.unwrap_or_default()),
+            options: GoalOptions::default(),
             session,
             lead: None,
             watchdog: None,
@@ -140,6 +139,7 @@ impl Follow {
         let (id, model) = (robot.next_goal(), robot.model());
         let towards = |target| {
             let goal = Goal::new(id, target, OnArrival::Hold, model.joint_limits());
+            let options = options.within(session.as_deref());
             let goal = options.apply(goal, model)?;
             Ok::<_, MotionError>(Goal {
                 lead,

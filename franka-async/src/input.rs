@@ -8,6 +8,7 @@ use tokio::sync::{mpsc, oneshot, watch};
 
 use crate::destination::Destination;
 use crate::publish::Subscriptions;
+use crate::session::KeptTuning;
 
 /// What handles and motions ask of the bridge.
 #[derive(Debug)]
@@ -42,6 +43,8 @@ pub(crate) enum Input {
     Tune {
         id: GoalId,
         tuning: Box<Tuning>,
+        /// Where it is kept for goals to come, once it is accepted.
+        kept: KeptTuning,
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
     Disengage {

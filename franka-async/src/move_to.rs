@@ -113,7 +113,6 @@ impl Motion {
         Self {
             session: Some(session.clone()),
             on_arrival: OnArrival::ReportAndHold,
-            options: GoalOptions::of_session(*session.tuning()),
             ..Self::of_robot(session.robot(), destination)
         }
     }
@@ -198,7 +197,7 @@ impl Motion {
             self.on_arrival,
             model.joint_limits(),
         );
-        let mut goal = self.options.apply(goal, model)?;
+        let mut goal = self.pursued().apply(goal, model)?;
         let one = [Waypoint::new(target)];
         let path = self.path.as_deref().unwrap_or(&one);
         let q = reference.unwrap_or(state.q);
@@ -210,12 +209,17 @@ impl Motion {
         Ok(Preview::of(path, &q, &goal, model, &state)?)
     }
 
+    /// Its options and those of its session.
+    fn pursued(&self) -> GoalOptions {
+        self.options.within(self.session.as_deref())
+    }
+
     fn begin(&mut self) -> Result<Beginning, GoalError> {
         let (id, model) = (self.canceller.id(), self.canceller.robot().model());
         let kind = self.destination.kind();
         let goal = Goal::new(id, kind, self.on_arrival, model.joint_limits());
         let motion = NewMotion::Goal {
-            goal: Box::new(self.options.apply(goal, model)?),
+            goal: Box::new(self.pursued().apply(goal, model)?),
             path: None,
             ticket: self.ticket.take(),
             session: self.session.as_deref().map(Session::id),

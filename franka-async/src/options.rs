@@ -6,6 +6,8 @@ use franka_rt::session::{Budget, Goal, GoalError, Reaction, Settling, Tolerance}
 use franka_rt::team::Round;
 use nalgebra::Isometry3;
 
+use crate::session::Session;
+
 /// Options of one goal or of many. What is `None` is left to the goal, whose kind decides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct GoalOptions {
@@ -22,11 +24,12 @@ pub(crate) struct GoalOptions {
 }
 
 impl GoalOptions {
-    /// Begins with the tuning of a session.
-    pub(crate) fn of_session(tuning: Tuning) -> Self {
+    /// These options, and the tuning of a session where there are none.
+    pub(crate) fn within(self, session: Option<&Session>) -> Self {
+        let kept = session.map(|session| session.tuning().get());
         Self {
-            tuning,
-            ..Self::default()
+            tuning: self.tuning.or(kept.unwrap_or_default()),
+            ..self
         }
     }
 
@@ -227,11 +230,14 @@ mod tests {
         let joints = Target::Joints(franka_model::READY.into());
         let plain = Goal::new(GoalId(7), joints, OnArrival::Hold, limits);
         assert_eq!(GoalOptions::default().apply(plain, model), Ok(plain));
-        let mut options = GoalOptions::of_session(Tuning {
-            gains: Some(Gains::droid()),
-            force_cap: Some(ForceCap::Newtons(0.5 * ForceCap::DEFAULT_NEWTONS)),
-            ..Tuning::default()
-        });
+        let mut options = GoalOptions {
+            tuning: Tuning {
+                gains: Some(Gains::droid()),
+                force_cap: Some(ForceCap::Newtons(0.5 * ForceCap::DEFAULT_NEWTONS)),
+                ..Tuning::default()
+            },
+            ..GoalOptions::default()
+        };
         let tuned = options.apply(plain, model).unwrap();
         assert_eq!(tuned.gains, Gains::droid());
         assert_eq!(
@@ -252,10 +258,11 @@ mod tests {
         let budget = Budget::of(limits).scaled(0.5);
         let options = GoalOptions {
             speed: Some(0.4),
-            ..GoalOptions::of_session(Tuning {
+            tuning: Tuning {
                 budget: Some(budget),
                 ..Tuning::default()
-            })
+            },
+            ..GoalOptions::default()
         };
         let goal = Goal::new(GoalId(7), Target::Rest, OnArrival::Hold, limits);
         let goal = options.apply(goal, model).unwrap();

@@ -1,7 +1,7 @@
 //! What all handles of a session share.
 
 use std::future::Future;
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use franka_rt::lifecycle::{MotionError, Outcome, Tuning};
 use franka_rt::session::{GoalId, Lapse, Pulse};
@@ -16,7 +16,7 @@ use crate::robot::Robot;
 pub(crate) struct Session {
     robot: Robot,
     id: GoalId,
-    tuning: Mutex<Tuning>,
+    tuning: KeptTuning,
     /// Where it began, `[rad]`: the posture that goals without one keep.
     posture: OnceLock<[f64; 7]>,
     /// Of the deadman that it is bound to.
@@ -38,7 +38,7 @@ impl Session {
         Self {
             robot,
             id,
-            tuning: Mutex::new(tuning),
+            tuning: KeptTuning::new(tuning),
             posture: OnceLock::new(),
             pulse,
             waiting: Waiting::default(),
@@ -59,10 +59,9 @@ impl Session {
         self.id
     }
 
-    /// Gains, limits and force cap of the goals to come.
-    pub(crate) fn tuning(&self) -> MutexGuard<'_, Tuning> {
-        // Nothing can panic while it is held.
-        self.tuning.lock().unwrap_or_else(PoisonError::into_inner)
+    /// How goals to come are pursued.
+    pub(crate) fn tuning(&self) -> &KeptTuning {
+        &self.tuning
     }
 
     /// Notes where it has begun, if that is known.
@@ -134,6 +133,27 @@ impl Session {
             }
             (_, error) => error,
         }
+    }
+}
+
+/// How the goals to come of a session are pursued. Clones are the same.
+#[derive(Clone, Debug)]
+pub(crate) struct KeptTuning(Arc<Mutex<Tuning>>);
+
+impl KeptTuning {
+    fn new(tuning: Tuning) -> Self {
+        Self(Arc::new(Mutex::new(tuning)))
+    }
+
+    pub(crate) fn get(&self) -> Tuning {
+        // Nothing can panic while it is held.
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Changes what these changes name, and keeps the rest.
+    pub(crate) fn change(&self, changes: Tuning) {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        *kept = changes.or(*kept);
     }
 }
 

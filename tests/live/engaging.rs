@@ -4,9 +4,11 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use franka_async::error::{GoalError, Lapse, PoseError};
-use franka_async::goal::{Chunk, Deadman, Free, OnTimeout, Tuning};
+use franka_async::goal::{Chunk, Deadman, Deviation, Free, Leash, OnTimeout, Tuning};
 use franka_async::record::{Activity, Record};
+use franka_async::settings::CollisionBehavior;
 use franka_async::{Engage, MotionError, Pose};
+use franka_model::Wrench;
 use franka_sim::{Sim, Tool};
 use tokio::sync::watch;
 
@@ -61,6 +63,54 @@ async fn goals_of_every_kind_are_reached_within_one_session() {
     arm.disengage().await.unwrap();
     assert_eq!(other.set(start).await, Err(MotionError::Disengaged));
     robot.move_to(start).await.unwrap();
+    robot.shutdown().await;
+}
+
+/// A push that the springs bear at the usual length of the leash moves the arm on a short one.
+#[tokio::test(flavor = "multi_thread")]
+async fn tuning_is_kept_field_by_field_for_goals_to_come() {
+    let _alone = alone();
+    let (robot, sim) = simulated().await;
+    let tolerant = CollisionBehavior::insensitive();
+    robot.set_collision_behavior(tolerant).await.unwrap();
+    let start = robot.pose();
+    let arm = robot.engage(Engage::default()).await.unwrap();
+    let made_before = arm.move_to(start);
+    let short = Tuning {
+        leash: Some(Leash::LEAST),
+        ..Tuning::default()
+    };
+    tokio::select! {
+        biased;
+        tuned = arm.tune(short) => tuned.unwrap(),
+        // Polled once and dropped.
+        () = std::future::ready(()) => {}
+    }
+    let narrow = Tuning {
+        deviation: Some(Deviation {
+            translation: 0.1,
+            ..Deviation::default()
+        }),
+        ..Tuning::default()
+    };
+    arm.tune(narrow).await.unwrap();
+    let mut motion = made_before;
+    for _ in 0..2 {
+        let start = robot.pose();
+        sim.with(|robot| {
+            let push = Wrench::new(0.0, 15.0, 0.0, 0.0, 0.0, 0.0);
+            robot.push_end_effector(push, 3000);
+        })
+        .await
+        .unwrap();
+        let pushed = motion.await;
+        let away = PoseError::between(&robot.pose(), &start).translation;
+        let displaced = Err(MotionError::Braked(Lapse::Displaced));
+        assert_eq!(pushed, displaced, "{away} m");
+        assert!(away < 0.2, "{away} m");
+        robot_time(&robot, 4000).await;
+        motion = arm.move_to(robot.pose());
+    }
     robot.shutdown().await;
 }
 

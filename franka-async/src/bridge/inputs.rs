@@ -69,10 +69,16 @@ impl Bridge {
                 self.note_refusal(number, &sent);
                 let _ = taken.send(sent);
             }
-            Input::Tune { id, tuning, taken } => {
+            Input::Tune {
+                id,
+                tuning,
+                kept,
+                taken,
+            } => {
                 let state = &self.publisher.state();
                 let tuned = self.lifecycle.tune(id, *tuning, state);
                 if tuned.is_ok() {
+                    kept.change(*tuning);
                     self.warn_of_margin(id, tuning.gains, state);
                     self.warn_of_thresholds(id, tuning.force_cap);
                 }

@@ -72,6 +72,27 @@ pub struct Tuning {
 }
 
 impl Tuning {
+    /// These changes, and those of `before` where there are none.
+    #[must_use]
+    pub fn or(self, before: Self) -> Self {
+        let Self {
+            gains,
+            budget,
+            force_cap,
+            leash,
+            deviation,
+            posture,
+        } = self;
+        Self {
+            gains: gains.or(before.gains),
+            budget: budget.or(before.budget),
+            force_cap: force_cap.or(before.force_cap),
+            leash: leash.or(before.leash),
+            deviation: deviation.or(before.deviation),
+            posture: posture.or(before.posture),
+        }
+    }
+
     /// The goal with these changes. One that guides keeps its gains: the axes that are free are
     /// free of springs.
     #[must_use]
