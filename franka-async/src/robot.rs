@@ -205,16 +205,22 @@ impl Robot {
         self.link().granted.clone()
     }
 
-    /// Brakes whatever moves and resolves when the arm rests and the motion has ended; at once if
-    /// nothing moves. The motion itself resolves as [`MotionError::Stopped`] as soon as the stop is
-    /// taken, while the arm still brakes.
+    /// Brakes whatever moves. Resolves when the motion has ended and a state shows the arm at rest
+    /// and no motion of the robot; at once if that is so already. The motion itself resolves as
+    /// [`MotionError::Stopped`] as soon as the stop is taken, while the arm still brakes.
+    ///
+    /// Stops of several callers share one brake and its outcome. If a motion was given up and the
+    /// robot still shows it, each call tells the robot to stop once more. A stop does not hold: a
+    /// motion that another task begins after it moves the arm again, and the stop then resolves as
+    /// [`MotionError::Superseded`] unless the arm was seen to rest before.
     ///
     /// # Errors
     /// [`MotionError`] if the motion ended otherwise, for instance by a reflex;
-    /// [`MotionError::Superseded`] by a goal that came after the stop, say of another task;
-    /// [`MotionError::LinkLost`] if the robot has been silent for the link timeout, and
-    /// [`MotionError::ConnectionClosed`] if there is no connection: it is unknown whether the arm
-    /// rests.
+    /// [`MotionError::Protocol`] if the robot still shows a motion after two seconds,
+    /// [`MotionError::NotAtRest`] if it shows none and the arm moves, by a hand that guides it;
+    /// [`MotionError::Superseded`], see above; [`MotionError::LinkLost`] if the robot has been
+    /// silent for the link timeout, and [`MotionError::ConnectionClosed`] if there is no
+    /// connection: it is unknown whether the arm rests.
     ///
     /// # Cancel safety
     /// Once polled, the arm is braked even if the future is dropped.
@@ -227,7 +233,7 @@ impl Robot {
         match outcome.await {
             Ok(outcome) => outcome.map(|_| ()),
             Err(_) if link.has_ended() => Err(link.closed()),
-            // This program moves nothing.
+            // It rests by the newest state.
             Err(_) => match link.silence() {
                 Some(silence) => Err(MotionError::LinkLost { silence }),
                 None => Ok(()),

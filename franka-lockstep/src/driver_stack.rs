@@ -221,6 +221,7 @@ impl DriverStack {
         }
         let silence = self.now.saturating_sub(self.heard);
         let unseen = Lifecycle::unseen(silence, true);
+        self.lifecycle.on_state(&self.state, self.now);
         self.lifecycle.on_time(self.now, unseen);
         self.carry_out()
     }
@@ -300,7 +301,7 @@ impl DriverStack {
     /// Brakes and returns the id of the stop; `None` if nothing moves.
     pub fn stop(&mut self) -> Option<GoalId> {
         let id = self.next_goal();
-        let stopping = self.lifecycle.stop(id, self.now);
+        let stopping = self.lifecycle.stop(id, &self.state, self.now);
         self.carry_out();
         stopping.then_some(id)
     }

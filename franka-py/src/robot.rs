@@ -184,11 +184,11 @@ impl Robot {
         Ok(pose_array(py, &self.connected()?.pose_at(q)))
     }
 
-    /// Brakes whatever moves, and waits until the arm rests and the motion has ended; that one
-    /// raises `MotionError` of the kind `stopped` at once, while the arm still brakes. A motion
-    /// that another task asks for meanwhile takes over: `stop` then raises `MotionError` of the
-    /// kind `superseded`. It raises others if it is unknown whether the arm rests: `link_lost`,
-    /// `connection_closed`. Once it has begun, it goes on even if it is cancelled.
+    /// Brakes whatever moves, and waits until the motion has ended and a state shows the arm at
+    /// rest; that motion raises `MotionError` of the kind `stopped` at once, while the arm still
+    /// brakes. A motion that another task asks for meanwhile takes over: `stop` then raises
+    /// `MotionError` of the kind `superseded`. It raises others if the arm was not seen to rest:
+    /// `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. Once it has begun, it goes on even if it is cancelled.
     fn stop(&self) -> PyResult<Operation> {
         let robot = self.connected()?;
         Ok(Operation::new(

@@ -39,6 +39,34 @@ fn a_stop_brakes_and_resolves_itself_and_the_goal() {
     });
 }
 
+/// Of two callers, under goals and under a control function.
+#[test]
+fn stops_at_the_same_time_resolve_with_the_same_rest() {
+    for_each_robot(|ready| {
+        for (after, function) in [(0, false), (3, false), (120, false), (0, true)] {
+            let mut lockstep = if function {
+                let mut lockstep = ready();
+                let version = lockstep.client.version();
+                let idle = Callback::torques(version, |_, _| Torques([0.0; 7]));
+                lockstep.control_function(idle).expect("nothing else moves");
+                lockstep.run(500);
+                lockstep
+            } else {
+                moving(ready).0
+            };
+            let first = lockstep.stop().expect("something moves");
+            lockstep.run(after);
+            let second = lockstep.stop().expect("it has not ended");
+            for stop in [first, second] {
+                let stopped = lockstep.until_resolved(stop, 3000);
+                assert!(stopped.is_ok(), "after {after} ms: {stopped:?}");
+                assert!(lockstep.robot.dq().amax() < 0.01);
+                assert_eq!(lockstep.robot.state().robot_mode, RobotMode::Idle);
+            }
+        }
+    });
+}
+
 #[test]
 fn a_cancelled_goal_brakes_at_any_moment_of_its_life() {
     for_each_robot(|ready| {

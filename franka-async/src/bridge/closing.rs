@@ -28,7 +28,8 @@ const ENDING_TIMEOUT: Duration = Duration::from_secs(2);
 impl Bridge {
     /// Brakes what moves. Returns when to give up on it.
     pub(super) fn begin_closing(&mut self) -> Instant {
-        self.lifecycle.stop(CLOSING, self.now());
+        let now = self.now();
+        self.lifecycle.stop(CLOSING, &self.publisher.state(), now);
         Instant::now() + CLOSING_TIMEOUT
     }
 

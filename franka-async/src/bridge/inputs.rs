@@ -95,13 +95,14 @@ impl Bridge {
                 self.lifecycle.cancel(goal, now);
             }
             Input::Stop { goal, ended } => {
-                if self.lifecycle.stop(goal, now) {
+                let stops = self.lifecycle.stop(goal, &self.publisher.state(), now);
+                if stops {
                     let ended = EndReply::One(ended);
                     let span = tracing::info_span!("stop", goal = goal.0);
                     self.replies
                         .insert(goal, (Replies { began: None, ended }, span));
                 }
-                // Otherwise nothing moves, and dropping `ended` says so.
+                // Otherwise the arm rests already, and dropping `ended` says so.
             }
             Input::Lose { reason } => self.lose(reason),
             Input::Shutdown { .. } => unreachable!("taken where the loop decides to close"),

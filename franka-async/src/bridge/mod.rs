@@ -246,6 +246,8 @@ impl Bridge {
 
     /// Carries out what the lifecycle has decided, in its order.
     fn carry_out(&mut self) {
+        let now = self.now();
+        self.lifecycle.on_state(&self.publisher.state(), now);
         self.course.head_for(self.lifecycle.heading());
         while let Some(output) = self.lifecycle.poll() {
             match output {

@@ -231,6 +231,8 @@ impl Lifecycle {
     }
 
     pub(super) fn resolve(&mut self, goal: GoalId, result: Outcome) {
-        self.outputs.push_back(Output::Resolve { goal, result });
+        if let Some(result) = self.share_with_stops(goal, result) {
+            self.outputs.push_back(Output::Resolve { goal, result });
+        }
     }
 }

@@ -8,7 +8,7 @@ use franka_proto::RobotState;
 use super::current_motion::Work;
 use super::goal_progress::Goals;
 use super::{Lifecycle, LifecyclePhase, MotionError, NewMotion};
-use crate::session::{Backend, Chunk, Goal, GoalError, GoalId, OnArrival, Target};
+use crate::session::{Backend, Chunk, Goal, GoalError, GoalId, Target};
 
 impl Lifecycle {
     /// Moves the target of a goal under way, for a goal that follows a stream. Returns whether the
@@ -88,33 +88,6 @@ impl Lifecycle {
         {
             goals.cancelled = true;
         }
-    }
-
-    /// Brakes whatever moves, as a goal of its own named `id`, which resolves once the arm rests
-    /// and the motion has ended. The goals before it resolve as [`MotionError::Stopped`]. Returns
-    /// false, and does nothing, if there is no motion.
-    pub fn stop(&mut self, id: GoalId, now: Duration) -> bool {
-        if self.stop_program(id, now) {
-            // A session that waits for the program's end.
-            self.resolve_next(MotionError::Stopped);
-            return true;
-        }
-        let on_arrival = OnArrival::ReportAndFinish;
-        let goal = match (&self.phase, self.goals()) {
-            (_, Some(goals)) => Goal {
-                id,
-                ..goals.current.at_rest(on_arrival)
-            },
-            (
-                LifecyclePhase::Abandoned {
-                    deadline: Ok(_), ..
-                },
-                None,
-            ) => Goal::new(id, Target::Rest, on_arrival, self.model.joint_limits()),
-            _ => return false,
-        };
-        self.replace(goal, None, MotionError::Stopped);
-        true
     }
 
     /// What target control heads for, and the name of that goal: what was taken last, whether or

@@ -17,7 +17,8 @@
 //! for it gets a motion of its own. A program of the user's has the motion for itself. A motion
 //! that is given up, because a reply cannot be read or a deadline has passed, resolves at once; the
 //! next one waits until the thread has seen the robot leave it. The phases `Stalled` and `Closed`
-//! can follow on any other.
+//! can follow on any other. A stop outlives the motion that it brakes: it waits until a state shows
+//! an arm at rest.
 //!
 //! Inputs are [`Lifecycle::begin`], `update`, `close`, `cancel`, `stop`, `chunk`, `tune` and
 //! `disengage` (from users), the `on_*` methods (from the command connection, the thread and the
@@ -35,6 +36,7 @@ mod new_motion;
 mod outcome;
 mod programs;
 mod reports;
+mod stops;
 #[cfg(test)]
 mod tests;
 mod unready;
@@ -53,6 +55,7 @@ use crate::law::compensation::Learned;
 use crate::session::{Backend, Goal, GoalId, KeepOut, Margin};
 
 use current_motion::CurrentMotion;
+use stops::Stop;
 
 pub use close_reason::CloseReason;
 pub use engagement::{Engagement, Tuning};
@@ -103,6 +106,8 @@ pub struct Lifecycle {
     next: Option<NewMotion>,
     /// The last session that goes from goal to goal, if it did not end as asked, and how it ended.
     ended: Option<(GoalId, MotionError)>,
+    /// Stops that have not resolved.
+    stops: Vec<Stop>,
     motions: u64,
     /// Cycles that the log of a motion holds.
     log_size: usize,
@@ -159,6 +164,7 @@ impl Lifecycle {
             phase: LifecyclePhase::Idle,
             next: None,
             ended: None,
+            stops: Vec::new(),
             motions: 0,
             log_size: ControlLog::DEFAULT_CAPACITY,
             link_timeout: LINK_TIMEOUT,
@@ -215,9 +221,12 @@ impl Lifecycle {
         self.keep_out = regions;
     }
 
-    /// Returns whether no motion is under way and none waits. The arm may still brake after the end
-    /// of the connection: see [`Self::is_braking`].
+    /// Returns whether no motion is under way, and no motion or stop waits. The arm may still brake
+    /// after the end of the connection: see [`Self::is_braking`].
     pub fn is_idle(&self) -> bool {
+        if !self.stops.is_empty() {
+            return false;
+        }
         match &self.phase {
             LifecyclePhase::Idle
             | LifecyclePhase::Stalled { .. }

@@ -209,6 +209,17 @@ pub enum MotionError {
     /// Caller: if a torque limit of its gains is what kept it, [`Shortfall::limited`].
     #[error("the arm came to rest {0}")]
     TargetNotReached(Shortfall),
+    /// Robot or surroundings: no motion runs, and the arm was not seen to rest after a stop. A hand
+    /// guides it, or its joints still move.
+    #[error(
+        "no motion runs, and the arm does not rest: joint {} moves at {velocity:.3} rad/s", .joint + 1
+    )]
+    NotAtRest {
+        /// A joint that moves, from 0.
+        joint: usize,
+        /// Its velocity, `[rad/s]`.
+        velocity: f64,
+    },
     /// The condition of the motion was true, and the arm did not come to where it was to go then,
     /// for `error`: [`Self::Held`], [`Self::Braked`] or [`Self::TargetNotReached`]. The party that
     /// can act on it is that of the error.
@@ -313,6 +324,7 @@ impl MotionError {
             Self::Control(error) => error.entry(),
             Self::NotReady { why, .. } => why.entry(),
             Self::TargetNotReached(_) => "motion-target-not-reached",
+            Self::NotAtRest { .. } => "motion-not-at-rest",
             Self::AfterReaction { error, .. } => error.entry(),
             Self::LinkLost { .. } => "motion-link-lost",
             Self::ConnectionClosed { reason } => reason.entry(),
@@ -342,7 +354,10 @@ impl MotionError {
             | Self::Stalled { .. }
             | Self::Hung { .. } => Party::Caller,
             Self::TargetNotReached(short) if short.limited.is_some() => Party::Caller,
-            Self::Rejected(_) | Self::Control(_) | Self::TargetNotReached(_) => Party::Robot,
+            Self::Rejected(_)
+            | Self::Control(_)
+            | Self::TargetNotReached(_)
+            | Self::NotAtRest { .. } => Party::Robot,
             Self::AfterReaction { error, .. } => error.party(),
             Self::LinkLost { .. } => Party::Link,
             Self::NotReady { why, .. } => why.party(),

@@ -170,7 +170,8 @@ impl Lifecycle {
         if let LifecyclePhase::Closed { braking, .. } = &mut self.phase {
             *braking = unfinished;
         }
-        self.resolve_next(error);
+        self.resolve_next(error.clone());
+        self.fail_stops(&error);
     }
 
     /// Takes note that a thread that has borrowed the cycle has not run it for `silence`, or that
@@ -205,6 +206,11 @@ impl Lifecycle {
 
     /// When [`Self::on_time`] has to be called, if nothing else happens before.
     pub fn deadline(&self) -> Option<Duration> {
+        let deadlines = [self.phase_deadline(), self.deadline_of_stops()];
+        deadlines.into_iter().flatten().min()
+    }
+
+    fn phase_deadline(&self) -> Option<Duration> {
         match &self.phase {
             LifecyclePhase::UnderWay(current) => current.deadline,
             LifecyclePhase::Abandoned { deadline, .. } => deadline.as_ref().ok().copied(),
@@ -224,8 +230,13 @@ impl Lifecycle {
         })
     }
 
-    /// Moves the deadline of the motion under way, or of the one that was given up.
-    fn postpone(&mut self, until: Duration) {
+    /// Moves the deadlines that are over by `now`: of the motion under way or the one that was given
+    /// up, and of stops.
+    fn postpone(&mut self, now: Duration, until: Duration) {
+        self.postpone_stops(now, until);
+        if self.phase_deadline().is_none_or(|deadline| now < deadline) {
+            return;
+        }
         match &mut self.phase {
             LifecyclePhase::UnderWay(current) => current.deadline = Some(until),
             LifecyclePhase::Abandoned { deadline, .. } => *deadline = Ok(until),
@@ -245,7 +256,11 @@ impl Lifecycle {
         if let Some(MotionError::LinkLost { silence }) = unseen
             && silence < self.link_timeout
         {
-            return self.postpone(now + self.link_timeout - silence);
+            return self.postpone(now, now + self.link_timeout - silence);
+        }
+        self.give_up_stops(now, unseen.as_ref());
+        if self.phase_deadline().is_none_or(|deadline| now < deadline) {
+            return;
         }
         let current = match (&mut self.phase, unseen) {
             (LifecyclePhase::UnderWay(_), Some(unseen)) => return self.give_up(unseen, now),

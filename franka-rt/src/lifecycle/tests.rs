@@ -1,7 +1,9 @@
 //! The lifecycle beside a driver whose states a test makes up.
 
+mod stops;
+
 use franka_model::READY;
-use franka_proto::{CommandId, MoveStatus, RobotMode, RobotState, Violation};
+use franka_proto::{CommandId, MotionGeneratorMode, MoveStatus, RobotMode, RobotState, Violation};
 
 use super::ending::STILL_SHOWN;
 use super::*;
@@ -41,6 +43,7 @@ impl LifecycleAndDriver {
     /// until there are none.
     fn settle(&mut self) {
         loop {
+            self.lifecycle.on_state(&self.state, NOW);
             while let Some(output) = self.lifecycle.poll() {
                 match output {
                     Output::Order(order) => self.driver.on_order(order),

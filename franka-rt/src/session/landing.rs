@@ -8,7 +8,7 @@ use nalgebra::Isometry3;
 use crate::session::{LimitedTorque, Settlement, Tolerance};
 
 /// Joint velocity below which the arm counts as resting, `[rad/s]`.
-pub(super) const REST_VELOCITY: f64 = 0.01;
+pub(crate) const REST_VELOCITY: f64 = 0.01;
 
 /// How an arm has to settle at its target once its reference has arrived there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -79,6 +79,7 @@ pub use guard::torque_clamp::LimitedTorque;
 pub use guard::velocity_barrier::ONSET as VELOCITY_BARRIER_ONSET;
 pub use guard::watchdog::{OnTimeout, Watchdog};
 pub use guard::{Bindings, Guard};
+pub(crate) use landing::REST_VELOCITY;
 pub use landing::{PoseError, RELEASE_TIMEOUT, Settling, Shortfall};
 pub use margin::Margin;
 pub use reaction::{Reacted, Reaction};

@@ -1,0 +1,224 @@
+//! Stops: what moves is braked, and then the states have to show that the arm rests.
+
+use core::mem;
+use core::time::Duration;
+
+use franka_proto::{MotionGeneratorMode, Request, RobotMode, RobotState};
+
+use super::ending::STILL_SHOWN;
+use super::outcome::Counted;
+use super::{
+    END_TIMEOUT, Lifecycle, LifecyclePhase, MotionError, MotionId, MotionReport, Outcome, Output,
+};
+use crate::session::{Goal, GoalId, OnArrival, REST_VELOCITY};
+
+/// A stop that has not resolved.
+#[derive(Debug)]
+pub(super) struct Stop {
+    id: GoalId,
+    stage: StopStage,
+}
+
+#[derive(Debug)]
+enum StopStage {
+    /// The motion under way brakes. The outcome of this goal decides, which several stops may
+    /// share.
+    Braking(GoalId),
+    /// Nothing of this program moves. The states have to show it.
+    Showing {
+        /// Of the motion that was stopped.
+        report: Box<MotionReport>,
+        /// How long the states have for that. `None` until the first of them.
+        until: Option<Duration>,
+        /// Error that the newest state amounts to.
+        why: MotionError,
+    },
+}
+
+impl StopStage {
+    fn showing(report: MotionReport) -> Self {
+        Self::Showing {
+            report: Box::new(report),
+            until: None,
+            why: STILL_SHOWN,
+        }
+    }
+}
+
+impl Lifecycle {
+    /// Brakes whatever moves. Goals before the stop resolve as [`MotionError::Stopped`]. The stop
+    /// resolves under the name `id` when the motion has ended and a state shows an arm at rest and
+    /// a robot without a motion. Returns false, and does nothing, if that is so already, and after
+    /// the end of the connection.
+    ///
+    /// If a motion was given up and the robot may still run it, `StopMove` is sent again. Stops
+    /// that are asked for at the same time share one brake and its outcome.
+    pub fn stop(&mut self, id: GoalId, state: &RobotState, now: Duration) -> bool {
+        match &self.phase {
+            LifecyclePhase::Closed { .. } => return false,
+            LifecyclePhase::Idle if unrest(state).is_none() => return false,
+            LifecyclePhase::UnderWay(_) => {
+                self.brake(id, now);
+                return true;
+            }
+            LifecyclePhase::Idle
+            | LifecyclePhase::Abandoned { .. }
+            | LifecyclePhase::Stalled { .. } => {}
+        }
+        self.resolve_next(MotionError::Stopped);
+        self.send(MotionId(self.motions), Request::StopMove);
+        let report = MotionReport::new(&Counted::default(), 0, None);
+        let stage = StopStage::showing(report);
+        self.stops.push(Stop { id, stage });
+        true
+    }
+
+    fn brake(&mut self, id: GoalId, now: Duration) {
+        if self.stop_program(id, now) {
+            // A session that waits for the program's end.
+            self.resolve_next(MotionError::Stopped);
+            return self.await_brake(id, id);
+        }
+        if let Some(goal) = self.brake_of_a_stop() {
+            if self.next.as_ref().is_some_and(|next| next.id() != goal) {
+                self.resolve_next(MotionError::Stopped);
+            }
+            return self.await_brake(id, goal);
+        }
+        if let Some(goals) = self.goals() {
+            let goal = Goal {
+                id,
+                ..goals.current.at_rest(OnArrival::ReportAndFinish)
+            };
+            self.await_brake(id, id);
+            self.replace(goal, None, MotionError::Stopped);
+        }
+    }
+
+    fn await_brake(&mut self, id: GoalId, goal: GoalId) {
+        let stage = StopStage::Braking(goal);
+        self.stops.push(Stop { id, stage });
+    }
+
+    /// The newest goal, if it is the brake of a stop.
+    fn brake_of_a_stop(&self) -> Option<GoalId> {
+        let (newest, _) = self.heading()?;
+        let brakes = |stop: &Stop| matches!(stop.stage, StopStage::Braking(goal) if goal == newest);
+        self.stops.iter().any(brakes).then_some(newest)
+    }
+
+    /// Takes the newest state, for stops that wait until it shows an arm at rest. Without effect
+    /// while there are none.
+    pub fn on_state(&mut self, state: &RobotState, now: Duration) {
+        if self.stops.is_empty() {
+            return;
+        }
+        let unrest = match &self.phase {
+            LifecyclePhase::Idle => unrest(state),
+            // Another motion has begun, or a goal that goes on within the one that was stopped.
+            LifecyclePhase::UnderWay(_) => return self.fail_stops(&MotionError::Superseded),
+            // The thread has not seen the end of the motion.
+            _ => Some(STILL_SHOWN),
+        };
+        for stop in mem::take(&mut self.stops) {
+            let Stop { id, stage } = stop;
+            let stage = match (stage, &unrest) {
+                (StopStage::Showing { report, .. }, None) => {
+                    self.tell_of_stop(id, Ok(*report));
+                    continue;
+                }
+                (StopStage::Showing { report, until, .. }, Some(why)) => StopStage::Showing {
+                    report,
+                    until: until.or(Some(now + END_TIMEOUT)),
+                    why: why.clone(),
+                },
+                (braking, _) => braking,
+            };
+            self.stops.push(Stop { id, stage });
+        }
+    }
+
+    /// Takes note of the end of a goal, for the stops that brake by it. Returns the outcome if
+    /// there are none.
+    pub(super) fn share_with_stops(&mut self, goal: GoalId, result: Outcome) -> Option<Outcome> {
+        let brakes = |stop: &Stop| matches!(stop.stage, StopStage::Braking(of) if of == goal);
+        if !self.stops.iter().any(brakes) {
+            return Some(result);
+        }
+        for stop in mem::take(&mut self.stops) {
+            match &result {
+                _ if !brakes(&stop) => self.stops.push(stop),
+                Ok(report) => {
+                    let stage = StopStage::showing(*report);
+                    self.stops.push(Stop { stage, ..stop });
+                }
+                Err(error) => self.tell_of_stop(stop.id, Err(error.clone())),
+            }
+        }
+        None
+    }
+
+    /// Resolves stops whose time is over: with `unseen` if no state came, otherwise with the reason
+    /// that the newest state gives.
+    pub(super) fn give_up_stops(&mut self, now: Duration, unseen: Option<&MotionError>) {
+        for stop in mem::take(&mut self.stops) {
+            match &stop.stage {
+                StopStage::Showing { until, why, .. } if until.is_some_and(|it| it <= now) => {
+                    let error = unseen.unwrap_or(why).clone();
+                    self.tell_of_stop(stop.id, Err(error));
+                }
+                _ => self.stops.push(stop),
+            }
+        }
+    }
+
+    /// Resolves the stops that wait for a state with `error`.
+    pub(super) fn fail_stops(&mut self, error: &MotionError) {
+        for stop in mem::take(&mut self.stops) {
+            match stop.stage {
+                StopStage::Showing { .. } => self.tell_of_stop(stop.id, Err(error.clone())),
+                StopStage::Braking(_) => self.stops.push(stop),
+            }
+        }
+    }
+
+    /// When the first of the stops is given up.
+    pub(super) fn deadline_of_stops(&self) -> Option<Duration> {
+        let until = |stop: &Stop| match stop.stage {
+            StopStage::Showing { until, .. } => until,
+            StopStage::Braking(_) => None,
+        };
+        self.stops.iter().filter_map(until).min()
+    }
+
+    /// Moves the deadlines of stops that are over by `now`.
+    pub(super) fn postpone_stops(&mut self, now: Duration, later: Duration) {
+        for stop in &mut self.stops {
+            if let StopStage::Showing {
+                until: Some(until), ..
+            } = &mut stop.stage
+                && *until <= now
+            {
+                *until = later;
+            }
+        }
+    }
+
+    fn tell_of_stop(&mut self, goal: GoalId, result: Outcome) {
+        self.outputs.push_back(Output::Resolve { goal, result });
+    }
+}
+
+/// Why `state` does not show an arm at rest and a robot without a motion; `None` if it does.
+fn unrest(state: &RobotState) -> Option<MotionError> {
+    // The modes of a motion show before the robot's mode does.
+    let begins = state.robot_mode == RobotMode::Idle
+        && state.motion_generator_mode != MotionGeneratorMode::Idle;
+    if begins || state.robot_mode == RobotMode::Move {
+        return Some(STILL_SHOWN);
+    }
+    let rests = |dq: &f64| dq.abs() < REST_VELOCITY;
+    let joint = state.dq.iter().position(|dq| !rests(dq))?;
+    let velocity = state.dq[joint];
+    Some(MotionError::NotAtRest { joint, velocity })
+}

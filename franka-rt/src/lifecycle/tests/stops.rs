@@ -1,0 +1,164 @@
+//! Stops, beside states that show a motion for longer than they should.
+
+use super::*;
+
+/// Outcome of a stop, with which nothing but the success counts.
+fn ended(pair: &LifecycleAndDriver, id: u64) -> Option<Result<(), MotionError>> {
+    let mut of_id = pair.resolved.iter().filter(|(goal, _)| *goal == GoalId(id));
+    let outcome = of_id.next().map(|(_, result)| result.clone().map(drop));
+    assert!(of_id.next().is_none(), "it resolves once");
+    outcome
+}
+
+impl LifecycleAndDriver {
+    fn stop(&mut self, id: u64) -> bool {
+        let stops = self.lifecycle.stop(GoalId(id), &self.state, NOW);
+        self.settle();
+        stops
+    }
+
+    fn stop_requests(&self) -> usize {
+        let sent = self.sent.iter();
+        sent.filter(|sent| **sent == Request::StopMove).count()
+    }
+
+    /// Lets the present deadline pass.
+    fn time_passes(&mut self, unseen: Option<MotionError>) {
+        let deadline = self.lifecycle.deadline().expect("it does not wait forever");
+        self.lifecycle.on_time(deadline, unseen);
+        self.settle();
+    }
+
+    /// The robot shows no motion, and joint 1 at this velocity.
+    fn comes_to(&mut self, dq: f64) {
+        self.state.motion_generator_mode = MotionGeneratorMode::Idle;
+        self.state.dq[0] = dq;
+        self.cycle(RobotMode::Idle);
+    }
+}
+
+/// The robot was told to stop, and shows the motion beyond the deadline.
+fn given_up() -> LifecycleAndDriver {
+    let (mut pair, motion, _) = LifecycleAndDriver::moving();
+    let violation = Violation::SecondMotionStarted { id: CommandId(1) };
+    pair.lifecycle.on_move_violation(motion, violation, NOW);
+    pair.settle();
+    pair.time_passes(None);
+    assert!(pair.lifecycle.is_idle());
+    pair
+}
+
+#[test]
+fn stop_of_a_motion_given_up_fails_while_the_robot_shows_it() {
+    let mut pair = given_up();
+    for (id, requests) in [(10, 2), (11, 3)] {
+        assert!(pair.stop(id), "the robot may still run it");
+        assert_eq!(pair.stop_requests(), requests, "told once more");
+        assert!(!pair.lifecycle.is_idle());
+        pair.cycle(RobotMode::Move);
+        assert_eq!(ended(&pair, id), None);
+        pair.time_passes(None);
+        assert_eq!(ended(&pair, id), Some(Err(STILL_SHOWN)));
+        assert!(pair.lifecycle.is_idle());
+    }
+}
+
+#[test]
+fn stop_of_a_motion_given_up_resolves_when_a_state_shows_the_arm_at_rest() {
+    let mut pair = given_up();
+    assert!(pair.stop(10) && pair.stop(11));
+    pair.comes_to(0.2);
+    assert_eq!((ended(&pair, 10), ended(&pair, 11)), (None, None));
+    pair.comes_to(0.002);
+    assert_eq!(
+        (ended(&pair, 10), ended(&pair, 11)),
+        (Some(Ok(())), Some(Ok(())))
+    );
+    assert!(!pair.stop(12), "the arm rests already");
+}
+
+#[test]
+fn stop_while_the_cycle_is_lent_and_not_run_waits_for_a_state() {
+    let silence = Duration::from_millis(100);
+    let (mut pair, _, _) = LifecycleAndDriver::moving();
+    pair.lifecycle.on_stall(Some(silence), NOW);
+    pair.settle();
+    assert!(pair.stop(10));
+    assert_eq!(pair.stop_requests(), 2);
+    let hung = MotionError::Hung { silence };
+    pair.time_passes(Some(hung.clone()));
+    assert_eq!(ended(&pair, 10), Some(Err(hung)));
+    assert!(pair.stop(11));
+    pair.lifecycle.on_stall(None, NOW);
+    pair.cycle(RobotMode::Move);
+    assert_eq!(ended(&pair, 11), None);
+    pair.comes_to(0.0);
+    assert_eq!(ended(&pair, 11), Some(Ok(())));
+}
+
+#[test]
+fn stop_without_a_motion_of_this_program_waits_for_an_arm_that_moves() {
+    let mut pair = LifecycleAndDriver::new();
+    assert!(!pair.stop(10), "it rests");
+    pair.cycle(RobotMode::Move);
+    assert!(pair.stop(11));
+    assert_eq!(pair.sent, [Request::StopMove]);
+    pair.comes_to(0.2);
+    pair.time_passes(None);
+    let moves = MotionError::NotAtRest {
+        joint: 0,
+        velocity: 0.2,
+    };
+    assert_eq!(ended(&pair, 11), Some(Err(moves)));
+    // A state that is not finite shows nothing.
+    pair.comes_to(f64::NAN);
+    assert!(pair.stop(12));
+    pair.comes_to(0.0);
+    assert_eq!(ended(&pair, 12), Some(Ok(())));
+}
+
+#[test]
+fn stop_that_waits_for_a_state_is_superseded_by_a_motion_that_begins() {
+    let mut pair = LifecycleAndDriver::new();
+    pair.comes_to(0.2);
+    assert!(pair.stop(10));
+    let limits = Model::fr3().joint_limits();
+    let goal = Goal::new(GoalId(1), Target::Rest, OnArrival::Hold, limits);
+    let begun = pair.lifecycle.begin(NewMotion::to(goal), &pair.state, NOW);
+    pair.settle();
+    assert_eq!(begun, Ok(()));
+    assert_eq!(ended(&pair, 10), Some(Err(MotionError::Superseded)));
+}
+
+#[test]
+fn stop_that_waits_for_a_state_ends_with_the_connection() {
+    let mut pair = given_up();
+    assert!(pair.stop(10));
+    pair.lifecycle
+        .on_connection_closed(CloseReason::ClosedByPeer);
+    pair.settle();
+    let reason = CloseReason::ClosedByPeer;
+    let closed = Some(Err(MotionError::ConnectionClosed { reason }));
+    assert_eq!(ended(&pair, 10), closed);
+    assert!(!pair.stop(11));
+}
+
+#[test]
+fn stops_at_the_same_time_share_one_brake() {
+    let (mut pair, motion, goal) = LifecycleAndDriver::moving();
+    assert!(pair.stop(10) && pair.stop(11));
+    assert_eq!(pair.resolved, [(goal, Err(MotionError::Stopped))]);
+    for _ in 0..2000 {
+        pair.cycle(RobotMode::Move);
+    }
+    pair.lifecycle
+        .on_move_reply(motion, MoveStatus::Success, NOW);
+    pair.settle();
+    pair.comes_to(0.2);
+    assert_eq!((ended(&pair, 10), ended(&pair, 11)), (None, None));
+    pair.comes_to(0.0);
+    assert_eq!(
+        (ended(&pair, 10), ended(&pair, 11)),
+        (Some(Ok(())), Some(Ok(())))
+    );
+}
