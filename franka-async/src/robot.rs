@@ -226,10 +226,8 @@ impl Robot {
     /// Once polled, the arm is braked even if the future is dropped.
     pub async fn stop(&self) -> Result<(), MotionError> {
         let (ended, outcome) = oneshot::channel();
-        let (goal, link) = (self.next_goal(), self.link());
-        self.shared
-            .supervisor
-            .pass(Input::Stop { goal, ended }, &link);
+        let goal = self.next_goal();
+        let link = self.send(Input::Stop { goal, ended });
         match outcome.await {
             Ok(outcome) => outcome.map(|_| ()),
             Err(_) if link.has_ended() => Err(link.closed()),
@@ -316,13 +314,13 @@ impl Robot {
         drop(before);
     }
 
-    /// The newest connection. Whoever needs several things of the same one, asks once.
     /// What happened so far, counted.
     #[cfg(feature = "metrics")]
     pub(crate) fn tally(&self) -> crate::tally::Tally {
         self.shared.supervisor.tally()
     }
 
+    /// The newest connection. Whoever needs several things of the same one, asks once.
     pub(crate) fn link(&self) -> Arc<Link> {
         let link = self.shared.link.read();
         // Nothing can panic while it is held.
@@ -358,9 +356,10 @@ impl Robot {
         });
     }
 
-    /// Sends to the bridge of the newest connection, or to the motion that waits for one.
-    pub(crate) fn send(&self, input: Input) {
-        self.shared.supervisor.pass(input, &self.link());
+    /// Sends to the bridge of the newest connection, or to the motion that waits for one. Returns
+    /// that connection.
+    pub(crate) fn send(&self, input: Input) -> Arc<Link> {
+        self.shared.supervisor.pass(input, || self.link())
     }
 }
 

@@ -117,8 +117,7 @@ impl Session {
         input: impl FnOnce(oneshot::Sender<Result<(), MotionError>>) -> Input,
     ) -> Result<(), MotionError> {
         let (taken, reply) = oneshot::channel();
-        let link = self.robot.link();
-        self.robot.send(input(taken));
+        let link = self.robot.send(input(taken));
         let reply = reply.await.unwrap_or_else(|_| Err(link.closed()));
         reply.map_err(|error| self.explain(error))
     }

@@ -247,9 +247,14 @@ impl Supervisor {
     }
 
     /// Passes an input on to the bridge of the newest connection, or keeps it back with the motion
-    /// that waits.
-    pub(crate) fn pass(&self, input: Input, link: &Link) {
-        self.with(|inner, now| inner.pass(input, link, now));
+    /// that waits. Returns that connection, which `newest` looks up under the lock: a motion that
+    /// waits begins under it, too, so a cancel or a stop never goes to a connection before that.
+    pub(crate) fn pass(&self, input: Input, newest: impl FnOnce() -> Arc<Link>) -> Arc<Link> {
+        self.with(|inner, now| {
+            let link = newest();
+            inner.pass(input, &link, now);
+            link
+        })
     }
 
     /// Does something to a robot as its newest state shows it, and then what follows from it.
@@ -467,6 +472,40 @@ impl Inner {
         if let Some(reason) = reason {
             closing.note(reason);
             self.events = None;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
+    use super::*;
+
+    /// A connection may be replaced between the look and the lock.
+    #[test]
+    fn connection_of_an_input_is_looked_up_under_the_lock() {
+        let supervisor = Supervisor::new(None);
+        let (ended, _outcome) = tokio::sync::oneshot::channel();
+        let stop = Input::Stop {
+            goal: GoalId(1),
+            ended,
+        };
+        let cancel = Input::Cancel {
+            goal: GoalId(2),
+            refused: None,
+        };
+        for input in [stop, cancel] {
+            let mut is_locked = false;
+            let passed = catch_unwind(AssertUnwindSafe(|| {
+                supervisor.pass(input, || {
+                    is_locked = supervisor.inner.try_lock().is_err();
+                    // In the place of a connection.
+                    std::panic::resume_unwind(Box::new(()))
+                })
+            }));
+            assert!(passed.is_err() && is_locked);
+            supervisor.inner.clear_poison();
         }
     }
 }
