@@ -16,9 +16,19 @@ use crate::statistics::Statistics;
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Reply {
     /// A request that had no effect, and why.
-    Refused { why: String },
+    Refused {
+        why: String,
+        /// As in `Status`, when the request was refused.
+        begun: u64,
+    },
     /// Who may command, and what is going on.
-    Status(Status),
+    Status {
+        #[serde(flatten)]
+        status: Status,
+        /// Requests of this viewer to begin a hold that had been handled by then. A page tells by it
+        /// whether a message is about its newest hold or about an earlier one.
+        begun: u64,
+    },
     /// Something that happened.
     Event(News),
     /// Events that this viewer was too slow for.

@@ -23,7 +23,7 @@ use crate::fingers::Fingers;
 use crate::frame;
 use crate::hub::Hub;
 use crate::plan::{Question, in_background};
-use crate::reply::Reply;
+use crate::reply::{Reply, Status};
 use crate::request::Request;
 use crate::statistics::{Counts, Statistics};
 
@@ -50,6 +50,8 @@ struct Link {
     sent: AtomicU64,
     /// Whether it has been acknowledged, or none was sent.
     in_flight: AtomicBool,
+    /// Requests to begin a hold that have been handled.
+    begun: AtomicU64,
     round_trip: Mutex<Option<(Instant, Duration)>>,
 }
 
@@ -73,6 +75,15 @@ impl Link {
             false => 0,
         };
         (at.elapsed() < FRESH).then(|| took.max(Duration::from_millis(waiting)))
+    }
+
+    fn begun(&self) -> u64 {
+        self.begun.load(Ordering::Relaxed)
+    }
+
+    fn status(&self, status: Status) -> Reply {
+        let begun = self.begun();
+        Reply::Status { status, begun }
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Option<(Instant, Duration)>> {
@@ -108,7 +119,10 @@ async fn read(
                 }
                 Ok(request) => {
                     let round_trip = link.round_trip(hub.now_ms());
+                    let begins = matches!(request, Request::Begin { .. });
                     let handled = hub.handle(viewer, round_trip, request);
+                    // Nothing is sent between the two: this task writes, too.
+                    link.begun.fetch_add(u64::from(begins), Ordering::Relaxed);
                     match handled {
                         Ok(None) => None,
                         Ok(question) => {
@@ -124,10 +138,11 @@ async fn read(
             Message::Ping(_) | Message::Pong(_) => None,
             Message::Close(_) => return,
         };
-        if let Some(why) = why
-            && replies.try_send(Reply::Refused { why }).is_err()
-        {
-            return;
+        if let Some(why) = why {
+            let begun = link.begun();
+            if replies.try_send(Reply::Refused { why, begun }).is_err() {
+                return;
+            }
         }
     }
 }
@@ -167,7 +182,7 @@ async fn write(
     let mut contact = hub.contact.subscribe();
     send(&mut sink, text(&Hello::new(hub, viewer))).await?;
     let first = status.borrow_and_update().clone();
-    send(&mut sink, text(&Reply::Status(first))).await?;
+    send(&mut sink, text(&link.status(first))).await?;
     let way = heading.borrow_and_update().clone();
     send(&mut sink, text(&Reply::heading(way))).await?;
     let mut frames = interval(FRAME);
@@ -182,7 +197,7 @@ async fn write(
             changed = status.changed() => {
                 changed.ok()?;
                 let status = status.borrow_and_update().clone();
-                text(&Reply::Status(status))
+                text(&link.status(status))
             }
             changed = heading.changed() => {
                 changed.ok()?;

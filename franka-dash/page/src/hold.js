@@ -9,6 +9,8 @@ export class Hold {
   #seq = 0;
   #button = null;
   #pointer = null;
+  /** Holds that were begun on this connection. */
+  #begun = 0;
 
   constructor(connection) {
     this.#connection = connection;
@@ -18,12 +20,13 @@ export class Hold {
     document.addEventListener("visibilitychange", () => this.end());
     visualViewport?.addEventListener("resize", () => this.end());
     connection.addEventListener("closed", () => this.end());
-    connection.addEventListener("refused", () => this.end());
-    let held = false;
+    connection.addEventListener("hello", () => { this.#begun = 0; });
+    // What the server said before it had handled the newest begin is about an earlier press.
+    const isNewest = (detail) => detail.begun === this.#begun;
+    connection.addEventListener("refused", ({ detail }) => { if (isNewest(detail)) this.end(); });
     connection.addEventListener("status", ({ detail }) => {
       // The server has ended it: arrived, stopped, or too late.
-      if (held && !detail.holding) this.end();
-      held = detail.holding;
+      if (isNewest(detail) && !detail.holding) this.end();
     });
   }
 
@@ -59,6 +62,7 @@ export class Hold {
   #begin(button, { motion, speed }) {
     this.end();
     if (!this.#connection.send({ type: "begin", motion, speed })) return;
+    this.#begun += 1;
     this.#seq = 0;
     this.#button = button;
     button.classList.add("held");

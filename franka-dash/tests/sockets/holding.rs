@@ -79,6 +79,24 @@ fn a_second_viewer_sees_stops_and_does_not_command() {
 }
 
 #[test]
+fn status_and_refusals_tell_how_many_holds_were_asked_for_before() {
+    let served = Served::movable();
+    let mut viewer = Viewer::connect(served.address);
+    viewer.take();
+    viewer.send(json!({"type": "hold", "seq": 1}));
+    assert_eq!(viewer.wait_for("refused")["begun"], 0);
+    for begun in 1..=2 {
+        viewer.send(json!({"type": "begin", "motion": {"kind": "stay"}, "speed": 0.1}));
+        viewer.send(json!({"type": "end"}));
+        viewer.wait_until("status", |it| {
+            it["holding"] == false && it["begun"] == begun
+        });
+        viewer.send(json!({"type": "hold", "seq": 1}));
+        assert_eq!(viewer.wait_for("refused")["begun"], begun);
+    }
+}
+
+#[test]
 fn what_is_no_request_is_refused_and_ends_nothing() {
     let served = Served::movable();
     let mut commander = Viewer::connect(served.address);

@@ -21,12 +21,19 @@ pub(crate) fn assets(workspace: &Workspace) -> anyhow::Result<()> {
     make(workspace, &page(workspace).join("dist"))
 }
 
-/// Fails if the files in `franka-dash/page/dist` are not those that [`assets`] makes.
+/// Runs the tests of the page's modules in Node, and fails if the files in `franka-dash/page/dist`
+/// are not those that [`assets`] makes.
 pub(crate) fn check_assets(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let page = page(workspace);
     if !has_npm() {
         return Outcome::without("no npm".to_owned());
     }
+    let mut node = workspace.program("node");
+    let tests = fs::read_dir(page.join("test"))?.map(|entry| entry.map(|entry| entry.path()));
+    let tests: Vec<_> = tests.collect::<Result<_, _>>()?;
+    let is_test = |path: &&PathBuf| path.to_string_lossy().ends_with(".test.js");
+    node.arg("--test").args(tests.iter().filter(is_test));
+    workspace.run(&mut node)?;
     let made = work(workspace).join("dist");
     make(workspace, &made)?;
     for name in MADE {
