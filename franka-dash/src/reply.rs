@@ -29,6 +29,8 @@ pub(crate) enum Reply {
         /// whether a message is about its newest hold or about an earlier one.
         begun: u64,
     },
+    /// A stop of this viewer has been received.
+    Stopping {},
     /// Something that happened.
     Event(News),
     /// Events that this viewer was too slow for.

@@ -120,9 +120,13 @@ async fn read(
                 Ok(request) => {
                     let round_trip = link.round_trip(hub.now_ms());
                     let begins = matches!(request, Request::Begin { .. });
+                    let is_stop = matches!(request, Request::Stop {});
                     let handled = hub.handle(viewer, round_trip, request);
                     // Nothing is sent between the two: this task writes, too.
                     link.begun.fetch_add(u64::from(begins), Ordering::Relaxed);
+                    if is_stop && replies.try_send(Reply::Stopping {}).is_err() {
+                        return;
+                    }
                     match handled {
                         Ok(None) => None,
                         Ok(question) => {

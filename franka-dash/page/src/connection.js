@@ -75,6 +75,9 @@ export class Connection extends EventTarget {
     this.dispatchEvent(new CustomEvent("frame", { detail: frame }));
   }
 
+  /** Closes the connection, so that another one is made. */
+  renew() { this.#socket?.close(); }
+
   /** Sends a request; false if there is no connection, or it is congested. */
   send(request) {
     const socket = this.#socket;

@@ -3,9 +3,17 @@
 import { ask, Connection } from "./connection.js";
 import { endEffector, MODES, MODE_CLASSES } from "./frame.js";
 import { Scene } from "./scene.js";
+import { Stop, stopControls } from "./stop.js";
 import { tabs } from "./tabs.js";
 
 const BEHIND = 120;
+
+/** Shows a line above the robots. */
+export function tell(text) {
+  const notice = document.getElementById("notice");
+  notice.textContent = text;
+  notice.hidden = false;
+}
 
 class Card {
   #frames = 0;
@@ -29,9 +37,10 @@ class Card {
     this.commander = this.element.querySelector(".fact b");
     this.#scene = new Scene(canvas);
     this.connection = new Connection(`${name}/`);
+    this.stop = new Stop(this.connection, name);
     const stop = this.element.querySelector(".stop");
     stop.setAttribute("aria-label", `stop ${name}`);
-    stop.addEventListener("click", () => this.stop());
+    stop.addEventListener("click", () => this.stop.press());
     this.connection.addEventListener("hello", ({ detail }) => {
       link.textContent = `${name}: ${detail.robot}${detail.simulated ? ", simulated" : ""}`;
       this.#scene.describe(detail);
@@ -41,6 +50,10 @@ class Card {
     });
     this.connection.addEventListener("heading", ({ detail }) => this.#scene.heading(detail.way));
     this.connection.addEventListener("contact", ({ detail }) => this.#scene.showContact(detail.contact));
+    // The log is on the page of the robot; that a stop failed is said here, too.
+    this.connection.addEventListener("event", ({ detail }) => {
+      if (detail.level === "error") tell(`${name}: ${detail.text}`);
+    });
     this.connection.addEventListener("closed", () => this.#show("no connection", ""));
     this.connection.addEventListener("denied", ({ detail }) => {
       this.#show("no access", "");
@@ -48,8 +61,6 @@ class Card {
     });
     this.connection.addEventListener("frame", ({ detail }) => this.#take(detail));
   }
-
-  stop() { this.connection.send({ type: "stop" }); }
 
   #take(frame) {
     this.#frames += 1;
@@ -86,12 +97,6 @@ export async function overview() {
   const names = await answer.json();
   tabs(names, "", "");
   const cards = names.map((name) => new Card(name));
-  const stop = () => { for (const card of cards) card.stop(); };
-  document.getElementById("stop").addEventListener("click", stop);
-  addEventListener("keydown", (event) => {
-    if (event.key !== "Escape" && event.key !== " ") return;
-    event.preventDefault();
-    stop();
-  }, { capture: true });
+  stopControls(cards.map((card) => card.stop));
   window.__state = () => ({ ready: cards.every((card) => card.frame), cards: cards.map((card) => card.state()) });
 }

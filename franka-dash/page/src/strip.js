@@ -2,6 +2,7 @@
 // the server is; and the stop.
 
 import { LAWS, MODES, MODE_CLASSES } from "./frame.js";
+import { Stop, stopControls } from "./stop.js";
 
 const ALIVE_MS = 1000;
 
@@ -16,17 +17,9 @@ export class Strip {
   #hello = null;
 
   constructor(connection) {
-    this.connection = connection;
     const byId = (id) => document.getElementById(id);
     this.mode = byId("mode");
-    byId("stop").addEventListener("click", () => this.stop());
-    addEventListener("keydown", (event) => {
-      if (event.key === "Escape" || event.key === " ") {
-        // Also on a focused button, which a space would press.
-        event.preventDefault();
-        this.stop();
-      }
-    }, { capture: true });
+    stopControls([new Stop(connection)]);
     byId("lease").addEventListener("click", () => {
       const request = this.commands ? { type: "release" } : { type: "take", name: `viewer ${this.#hello?.viewer}` };
       connection.send(request);
@@ -44,8 +37,6 @@ export class Strip {
     this.mode.className = "badge";
     this.setStatus({ commander: null, name: null, holding: false });
   }
-
-  stop() { this.connection.send({ type: "stop" }); }
 
   describe(hello) {
     this.#hello = hello;

@@ -97,6 +97,14 @@ fn status_and_refusals_tell_how_many_holds_were_asked_for_before() {
 }
 
 #[test]
+fn a_stop_is_answered_to_who_asked_for_it() {
+    let served = Served::new(|_| franka_dash::Options::default());
+    let mut viewer = Viewer::connect(served.address);
+    viewer.send(json!({"type": "stop"}));
+    viewer.wait_for("stopping");
+}
+
+#[test]
 fn what_is_no_request_is_refused_and_ends_nothing() {
     let served = Served::movable();
     let mut commander = Viewer::connect(served.address);

@@ -1,0 +1,110 @@
+import assert from "node:assert/strict";
+import { beforeEach, mock, test } from "node:test";
+
+import { Stop, stopControls } from "../src/stop.js";
+import { Connection, element, event, newPage } from "./page.js";
+
+beforeEach(() => {
+  newPage();
+  mock.timers.reset();
+  mock.timers.enable({ apis: ["setTimeout", "setInterval"] });
+});
+
+const notice = () => document.getElementById("stop-notice");
+
+test("stop without a connection waits for the next one and says so", () => {
+  const connection = new Connection();
+  stopControls([new Stop(connection)]);
+  connection.close();
+  document.getElementById("stop").dispatchEvent(event("click"));
+  assert.equal(connection.count("stop"), 0);
+  assert.equal(notice().hidden, false);
+  assert.match(notice().textContent, /not sent.*user stop/);
+  connection.tell("hello");
+  assert.equal(connection.count("stop"), 1);
+  connection.tell("stopping");
+  assert.match(notice().textContent, /received/);
+  mock.timers.tick(10_000);
+  assert.equal(connection.count("stop"), 1);
+  assert.equal(notice().hidden, true);
+});
+
+test("stop on a congested connection is sent once there is room", () => {
+  const connection = new Connection();
+  const stop = new Stop(connection);
+  stopControls([stop]);
+  connection.isOpen = false;
+  stop.press();
+  mock.timers.tick(1000);
+  connection.isOpen = true;
+  mock.timers.tick(1000);
+  assert.equal(connection.count("stop"), 1);
+});
+
+test("stop without an answer is shown, and sent by a new connection", () => {
+  const connection = new Connection();
+  const stop = new Stop(connection);
+  stopControls([stop]);
+  stop.press();
+  assert.equal(notice().hidden, true);
+  mock.timers.tick(500);
+  // A key that repeats does not put the notice off.
+  stop.press();
+  mock.timers.tick(500);
+  assert.match(notice().textContent, /not confirmed.*user stop/);
+  assert.equal(connection.renewed, 1);
+  const before = connection.count("stop");
+  connection.close();
+  connection.tell("hello");
+  assert.equal(connection.count("stop"), before + 1);
+  connection.tell("stopping");
+  assert.match(notice().textContent, /received/);
+});
+
+test("stop with an answer shows nothing", () => {
+  const connection = new Connection();
+  const stop = new Stop(connection);
+  stopControls([stop]);
+  stop.press();
+  connection.tell("stopping");
+  mock.timers.tick(10_000);
+  assert.equal(connection.count("stop"), 1);
+  assert.equal(connection.renewed, 0);
+  assert.equal(notice().hidden, true);
+});
+
+test("stop all names the robots that it has not reached", () => {
+  const [left, right] = [new Connection(), new Connection()];
+  stopControls([new Stop(left, "left"), new Stop(right, "right")]);
+  right.close();
+  dispatchEvent(event("keydown", { key: "Escape" }));
+  assert.equal(left.count("stop"), 1);
+  left.tell("stopping");
+  assert.match(notice().textContent, /right/);
+  assert.doesNotMatch(notice().textContent, /left/);
+  right.tell("hello");
+  assert.equal(right.count("stop"), 1);
+});
+
+/** What has the focus: of these kinds, and reached by Tab or not. */
+const focused = (selectors) => Object.assign(element(), { matches: (all) => all.split(",").some((it) => selectors.includes(it.trim())) });
+
+test("space bar stops except in a checkbox reached by the keyboard", () => {
+  for (const [target, key, stops] of [
+    [focused(["button"]), " ", true],
+    [focused(["input[type=range]"]), " ", true],
+    [focused(["input[type=checkbox]"]), " ", true],
+    [focused(["input[type=checkbox]", "input[type=checkbox]:focus-visible"]), " ", false],
+    [focused(["input[type=checkbox]", "input[type=checkbox]:focus-visible"]), "Escape", true],
+    [focused(["button"]), "Enter", false],
+  ]) {
+    newPage();
+    const connection = new Connection();
+    stopControls([new Stop(connection)]);
+    const pressed = event("keydown", { key });
+    Object.defineProperty(pressed, "target", { value: target });
+    dispatchEvent(pressed);
+    assert.equal(connection.count("stop"), stops ? 1 : 0, key);
+    assert.equal(pressed.defaultPrevented, stops, key);
+  }
+});
