@@ -18,6 +18,8 @@ use crate::simulated::Simulated;
 pub(crate) struct Hello {
     frame_version: u8,
     viewer: ViewerId,
+    /// When the server began, `[ms]` since 1970. Its frames have times that count from then.
+    server: u64,
     robot: &'static str,
     /// Whether it is simulated, and may be disturbed.
     simulated: bool,
@@ -109,6 +111,7 @@ impl Hello {
         Self {
             frame_version: frame::VERSION,
             viewer,
+            server: hub.began_ms,
             robot: match model.kind() {
                 RobotKind::Fer => "Franka Emika Robot",
                 _ => "Franka Research 3",

@@ -51,6 +51,7 @@ export function dashboard() {
   plots(history);
 
   connection.addEventListener("hello", ({ detail }) => {
+    history.serve(detail.server);
     scene.describe(detail);
     guards.describe(detail);
     joints.describe(detail);

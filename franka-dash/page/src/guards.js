@@ -12,6 +12,7 @@ export class Guards {
   describe({ guards }) {
     this.#names = guards;
     this.#chips.clear();
+    this.#since.clear();
     document.getElementById("guards-list").replaceChildren();
     for (const name of ALWAYS.filter((it) => guards.includes(it))) this.#chip(name);
   }

@@ -12,6 +12,17 @@ export class History extends EventTarget {
   /** How punctual control was: one line for each time it was told. */
   control = [];
   #chosen = null;
+  #server = null;
+
+  /** What comes next is of this server: frames of another one have times of another clock. */
+  serve(server) {
+    if (server === this.#server) return;
+    this.#server = server;
+    this.frames = [];
+    this.control = [];
+    this.#chosen = null;
+    this.dispatchEvent(new Event("cleared"));
+  }
 
   add(frame) {
     this.frames.push(frame);

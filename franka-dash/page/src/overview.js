@@ -42,6 +42,7 @@ class Card {
     stop.setAttribute("aria-label", `stop ${name}`);
     stop.addEventListener("click", () => this.stop.press());
     this.connection.addEventListener("hello", ({ detail }) => {
+      this.#behind = [];
       link.textContent = `${name}: ${detail.robot}${detail.simulated ? ", simulated" : ""}`;
       this.#scene.describe(detail);
     });

@@ -13,6 +13,10 @@ export function timeline(history) {
     label.textContent = seconds > 0 ? `-${seconds.toFixed(1)} s` : "live";
     pause.textContent = history.live ? "Pause" : "Live";
   };
+  history.addEventListener("cleared", () => {
+    scrub.value = 0;
+    choose(0);
+  });
   scrub.addEventListener("input", () => choose(-Number(scrub.value)));
   pause.addEventListener("click", () => {
     const step = Number(scrub.step);

@@ -5,7 +5,7 @@ mod watching;
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use franka_async::model::collision::Obstacle;
 use tokio::sync::{Semaphore, broadcast, watch};
@@ -45,6 +45,8 @@ pub(crate) struct Hub {
     stopping: AtomicBool,
     viewers: AtomicU64,
     start: Instant,
+    /// Time of the start, `[ms]` since 1970.
+    pub(crate) began_ms: u64,
 }
 
 struct Command {
@@ -97,6 +99,12 @@ impl Hub {
             stopping: AtomicBool::new(false),
             viewers: AtomicU64::new(0),
             start: Instant::now(),
+            began_ms: {
+                let since = SystemTime::now()
+                    .duration_since(UNIX_EPOCH)
+                    .unwrap_or_default();
+                u64::try_from(since.as_millis()).unwrap_or(u64::MAX)
+            },
             source,
         });
         watching::begin(&hub);
