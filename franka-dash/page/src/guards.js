@@ -37,7 +37,12 @@ export class Guards {
 
   show(lit) {
     for (const name of lit) this.#chip(name);
-    for (const [name, chip] of this.#chips) chip.classList.toggle("lit", lit.has(name));
+    for (const [name, chip] of this.#chips) {
+      const binds = lit.has(name);
+      if (chip.classList.contains("lit") === binds) continue;
+      chip.classList.toggle("lit", binds);
+      chip.setAttribute("aria-label", binds ? `${name}: binds` : name);
+    }
     const text = lit.size ? [...lit].join(", ") : "none";
     const place = document.getElementById("guards");
     // A live region speaks when it is written to.

@@ -3,7 +3,10 @@
 import "uplot/dist/uPlot.min.css";
 import "./style.css";
 import { dashboard } from "./dashboard.js";
-import { overview } from "./overview.js";
+import { overview, tell } from "./overview.js";
 
-if (document.body.id === "overview") overview();
-else dashboard();
+if (document.body.id === "overview") {
+  overview().catch((error) => tell(`The robots cannot be shown: ${error.message}. Reload the page.`));
+} else {
+  dashboard();
+}

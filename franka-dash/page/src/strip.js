@@ -3,6 +3,7 @@
 
 import { LAWS, MODES, MODE_CLASSES } from "./frame.js";
 import { Stop, stopControls } from "./stop.js";
+import { here } from "./tabs.js";
 
 const ALIVE_MS = 1000;
 
@@ -40,7 +41,10 @@ export class Strip {
 
   describe(hello) {
     this.#hello = hello;
-    document.getElementById("robot").textContent = hello.robot + (hello.simulated ? ", simulated" : "");
+    const robot = hello.robot + (hello.simulated ? ", simulated" : "");
+    document.getElementById("robot").textContent = robot;
+    const name = hello.siblings.length ? `${here()}: ` : "";
+    document.title = `${name}${robot} – Franka dashboard`;
     this.setStatus(this.status);
   }
 

@@ -16,7 +16,7 @@ type Check = fn(&Browser, &Served) -> anyhow::Result<()>;
 
 /// All checks, one after the other.
 pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    let checks: [(&str, Check); 19] = [
+    let checks: [(&str, Check); 20] = [
         ("load", load),
         ("shows the robot", shows_the_robot),
         ("looks", looks),
@@ -30,6 +30,7 @@ pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
         ("sliders", targets::sliders),
         ("lose the hold", lose_the_hold),
         ("keyboard", keyboard),
+        ("checkbox", checkbox),
         ("push", push),
         ("bend", bend),
         ("tune", panels::tune),
@@ -269,6 +270,33 @@ fn lose_the_hold(page: &Browser, served: &Served) -> anyhow::Result<()> {
     page.pointer(&[move_to((5.0, 300.0))])?;
     served.check_rest().context("the pointer left")?;
     page.pointer(&[up()])
+}
+
+/// Tab and the space bar switch the compensation, and nothing is stopped by that; after a click the
+/// space bar stops.
+fn checkbox(page: &Browser, _: &Served) -> anyhow::Result<()> {
+    take(page)?;
+    let compensates = || Ok(page.state()?["status"]["tuning"]["compensation"] == true);
+    let press = |key: &str| page.key("keyDown", key).and(page.key("keyUp", key));
+    let tab = "\u{e004}";
+    let sliders = "const it = [...document.querySelectorAll('#tuning input[type=range]')].at(-1);";
+    page.run(&format!("{sliders} it.focus()"))?;
+    press(tab)?;
+    for on in [false, true] {
+        ensure!(compensates()? != on, "it is switched already");
+        press(" ")?;
+        wait("the compensation", || Ok(compensates()? == on))?;
+    }
+    let stops = || {
+        page.run("return [...document.querySelectorAll('#events li')].filter((it) => it.textContent.includes('Stopped by a viewer')).length")
+    };
+    let before = stops()?;
+    page.click("#tuning input[type=checkbox]")?;
+    wait("the compensation", || Ok(!compensates()?))?;
+    press(" ")?;
+    wait("a stop", || Ok(stops()? != before))?;
+    ensure!(!compensates()?, "the space bar of a stop has switched it");
+    page.click("[data-tuning='default']")
 }
 
 /// Enter holds a button that has the focus; the space bar stops.

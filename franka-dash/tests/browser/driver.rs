@@ -141,6 +141,11 @@ impl Browser {
         Ok(std::fs::write(path, self.shot()?)?)
     }
 
+    /// Takes away what the page has logged so far.
+    pub(crate) fn forget_console(&self) -> anyhow::Result<()> {
+        self.post("se/log", &json!({"type": "browser"})).map(drop)
+    }
+
     /// Fails if the page has logged an error.
     pub(crate) fn check_console(&self) -> anyhow::Result<()> {
         let lines = self.post("se/log", &json!({"type": "browser"}))?;

@@ -9,6 +9,7 @@ mod film;
 mod panels;
 mod pictures;
 mod playground;
+mod restart;
 mod served;
 mod several;
 mod targets;
@@ -51,6 +52,7 @@ fn the_page_shows_and_moves_simulated_robots() -> anyhow::Result<()> {
     let page = open((1440, 900))?;
     pictures::run(&page, &fr3, "fr3", &folder)?;
     pictures::resize(&page, 1180, 820)?;
+    restart::run(&page, &fr3)?;
     several::run(&page, [&fr3, &fer], &folder.join("several.png"))?;
     page.check_console()?;
     // Its console has what the server refused.

@@ -63,6 +63,20 @@ impl Served {
         })
     }
 
+    /// Serves the page of this robot at another address, until the runtime is dropped.
+    pub(crate) fn again(&self, address: SocketAddr) -> anyhow::Result<(SocketAddr, Runtime)> {
+        let (runtime, robot) = (Runtime::new()?, self.robot.clone());
+        let options = Options::default().simulated(&self.running);
+        let address = runtime.block_on(async {
+            let listener = franka_dash::bind(address, &options).await?;
+            let address = listener.local_addr()?;
+            let router = franka_dash::router(robot, options);
+            tokio::spawn(async move { axum::serve(listener, router).await });
+            anyhow::Ok(address)
+        })?;
+        Ok((address, runtime))
+    }
+
     /// Serves the page of this robot and of another one together.
     pub(crate) fn beside(&self, other: &Self) -> anyhow::Result<SocketAddr> {
         self.runtime.block_on(async {

@@ -33,6 +33,8 @@ pub(crate) fn run(
         Ok((0..2).all(|i| cards[i]["meshes"] == true))
     })?;
     page.picture(picture)?;
+    let title = page.run("return document.title")?;
+    ensure!(title == "All robots – Franka dashboard", "{title}");
     let motion = left.turn();
     wait("a motion", || {
         Ok(left.robot.state().motion_running() || motion.is_finished())
@@ -45,6 +47,11 @@ pub(crate) fn run(
     wait("the page of the left robot", || {
         Ok(page.state()?["endEffector"].is_array())
     })?;
+    let title = page.run("return document.title")?;
+    ensure!(
+        title.as_str().is_some_and(|it| it.starts_with("left: ")),
+        "{title}"
+    );
     // This server was started without permission to move an arm.
     wait("why the page takes no command", || {
         page.shows("lease", "View only")

@@ -1,0 +1,45 @@
+//! A server that ends under an open page, and another one in its place.
+
+use anyhow::{Context as _, ensure};
+use franka_async::MotionError;
+
+use crate::driver::Browser;
+use crate::served::{Served, wait};
+
+/// A stop that is pressed meanwhile is shown as not sent and stops the arm as soon as the page is
+/// connected again, whose buffer then begins anew.
+pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    let (address, server) = served.again("127.0.0.1:0".parse()?)?;
+    page.go(&format!("http://{address}/"))?;
+    let frames = || page.state()?["frames"].as_u64().context("frames");
+    wait("frames", || {
+        Ok(page.state()?["ready"] == true && frames()? > 60)
+    })?;
+    let titled = page.run("return document.title")?;
+    ensure!(
+        titled == "Franka Research 3, simulated – Franka dashboard",
+        "{titled}"
+    );
+    let before = frames()?;
+    drop(server);
+    wait("the end of the connection", || {
+        page.shows("mode", "no connection")
+    })?;
+    let motion = served.turn();
+    wait("a motion", || {
+        Ok(served.robot.state().motion_running() || motion.is_finished())
+    })?;
+    page.click("#stop")?;
+    wait("the notice", || page.shows("stop-notice", "not sent"))?;
+    ensure!(frames()? >= before, "the buffer is gone already");
+    let (_, server) = served.again(address)?;
+    let outcome = served.outcome(motion)?;
+    ensure!(matches!(outcome, Err(MotionError::Stopped)), "{outcome:?}");
+    wait("the answer", || page.shows("stop-notice", "received"))?;
+    let shown = frames()?;
+    ensure!(shown < before, "{shown} frames, {before} before");
+    page.go("about:blank")?;
+    drop(server);
+    // The errors of the connections that nothing answered.
+    page.forget_console()
+}
