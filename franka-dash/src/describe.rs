@@ -1,5 +1,6 @@
 //! What does not change while a page is open: sent once, first.
 
+use franka_async::goal::target_range;
 use franka_async::model::collision::{Body, Obstacle, Shape};
 use franka_async::model::{EndEffector, Frame, JointVector, Model, RobotKind};
 use franka_async::record::Guard;
@@ -36,6 +37,9 @@ pub(crate) struct Hello {
     speed_max: f64,
     joint_lower: [f64; 7],
     joint_upper: [f64; 7],
+    /// Joint targets that the driver accepts, `[rad]`.
+    target_lower: [f64; 7],
+    target_upper: [f64; 7],
     joint_velocity: [f64; 7],
     joint_torque: [f64; 7],
     ready: [f64; 7],
@@ -104,6 +108,7 @@ impl Hello {
         let (source, permissions) = (&hub.source, hub.permissions);
         let model = source.model();
         let limits = model.joint_limits();
+        let targets = target_range(limits);
         let has_tool = {
             let tool = frame::end_effector(&source.newest().state).f_t_ee;
             tool[(2, 3)] > 0.01
@@ -130,6 +135,8 @@ impl Hello {
             speed_max: SPEED_MAX,
             joint_lower: limits.lower.into(),
             joint_upper: limits.upper.into(),
+            target_lower: targets.map(|(lower, _)| lower),
+            target_upper: targets.map(|(_, upper)| upper),
             joint_velocity: limits.velocity.into(),
             joint_torque: limits.torque.into(),
             ready: READY.into(),

@@ -1,7 +1,6 @@
 //! Where a motion goes, how fast and how stiff.
 
-use franka_async::goal::{Budget, Gains, Target};
-use franka_async::model::JointVector;
+use franka_async::goal::{Budget, Gains, Target, target_range};
 use franka_async::{Pose, READY, Robot, pose};
 
 use crate::pace;
@@ -20,21 +19,17 @@ pub(crate) enum Way {
 
 impl Way {
     pub(crate) fn of(robot: &Robot, motion: &Motion) -> Self {
-        let limits = robot.model().joint_limits();
-        let (lower, upper) = (limits.lower, limits.upper);
-        let inside = |q: JointVector| -> [f64; 7] {
-            core::array::from_fn(|i| q[i].clamp(lower[i] + MARGIN, upper[i] - MARGIN))
-        };
+        let range = target_range(robot.model().joint_limits());
         let state = robot.state();
         let target = match motion {
             Motion::Joint { joint, up } => {
                 // The others stay where they are, wherever that is.
                 let mut q = state.q_d;
-                let end = if *up { upper } else { lower };
-                q[*joint] = inside(end)[*joint];
+                let (lower, upper) = range[*joint];
+                q[*joint] = if *up { upper } else { lower };
                 q
             }
-            Motion::Joints { q } => inside(JointVector::from(*q)),
+            Motion::Joints { q } => core::array::from_fn(|i| q[i].clamp(range[i].0, range[i].1)),
             Motion::Ready {} => READY.into(),
             Motion::Pose {
                 position,
@@ -92,7 +87,3 @@ impl Way {
         }
     }
 }
-
-/// Distance from the end of a joint's range that a target keeps, `[rad]`. The driver refuses
-/// targets in the last 0.05 rad of the ranges of system 5.9, where its velocity envelope ends.
-const MARGIN: f64 = 0.06;

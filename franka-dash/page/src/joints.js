@@ -50,8 +50,8 @@ export class Joints {
   describe(hello) {
     this.#hello = hello;
     this.#rows.forEach(({ target }, i) => {
-      target.min = hello.joint_lower[i] + 0.02;
-      target.max = hello.joint_upper[i] - 0.02;
+      target.min = hello.target_lower[i];
+      target.max = hello.target_upper[i];
     });
   }
 

@@ -1,6 +1,7 @@
 //! What a motion would do is said before it does it, and then it does that.
 
 use franka_async::Pose;
+use franka_async::goal::target_range;
 use franka_async::model::collision::Obstacle;
 use franka_async::nalgebra::{UnitQuaternion, Vector3};
 use franka_async::pose;
@@ -54,6 +55,26 @@ fn a_target_is_previewed_and_then_gone_to() {
     viewer.send(json!({"type": "end"}));
     served.wait_for_rest();
     while !other.wait_for("heading")["way"].is_null() {}
+}
+
+#[test]
+fn targets_of_joints_reach_the_ends_that_the_driver_accepts() {
+    let served = Served::movable();
+    let mut viewer = Viewer::connect(served.address);
+    viewer.take();
+    let ends = target_range(served.robot.model().joint_limits());
+    for (number, q1, end) in [(1, 9.0, ends[0].1), (2, -9.0, ends[0].0)] {
+        let mut q = served.robot.state().q;
+        q[0] = q1;
+        let answer = preview(&mut viewer, number, &json!({"kind": "joints", "q": q}));
+        let got = answer["way"]["q"][0].as_f64().expect("a way");
+        assert!((got - end).abs() < 1e-6, "{got} and {end}");
+    }
+    for (end, bound) in [("target_lower", 0), ("target_upper", 1)] {
+        let told: Vec<f64> = serde_json::from_value(viewer.hello[end].clone()).expect("numbers");
+        let ends = ends.map(|(lower, upper)| [lower, upper][bound]);
+        assert_eq!(told, ends);
+    }
 }
 
 #[test]

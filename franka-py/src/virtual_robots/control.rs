@@ -1,5 +1,6 @@
 //! What an action makes of each cycle: commands that keep the robot's limits.
 
+use franka_async::goal::target_range_of;
 use franka_async::nalgebra::{Matrix4, Vector3};
 use franka_model::differential_ik::{DifferentialIk, JointBox};
 use franka_model::limits::JointLimits;
@@ -50,6 +51,14 @@ impl Settings {
         share.inf(&(envelope.deceleration * DECELERATION))
     }
 
+    /// Least and greatest positions that motions go to, `[rad]`.
+    fn range(&self) -> (JointVector, JointVector) {
+        let limits = self.model().joint_limits();
+        let range = target_range_of(limits, &self.acceleration().data.0[0]);
+        let (lower, upper) = (range.map(|it| it.0), range.map(|it| it.1));
+        (lower.into(), upper.into())
+    }
+
     /// Greatest action of each axis that means anything in a step of `dt` seconds.
     pub(super) fn action_bound(&self, dt: f64) -> Vec<f64> {
         let model = self.model();
@@ -82,6 +91,7 @@ impl Control {
         match settings.control {
             Kind::JointVelocity => Self::Velocity(Box::new(Velocity {
                 limits: model.joint_limits(),
+                range: settings.range(),
                 bound: model.joint_limits().velocity * settings.speed,
                 acceleration: settings.acceleration(),
                 wanted: JointVector::zeros(),
@@ -132,6 +142,8 @@ impl Control {
 /// before the ends of the ranges.
 pub(super) struct Velocity {
     limits: &'static JointLimits,
+    /// `[rad]`
+    range: (JointVector, JointVector),
     /// `[rad/s]`
     bound: JointVector,
     /// `[rad/s²]`
@@ -150,8 +162,8 @@ impl Velocity {
                 let braking = (2.0 * BRAKING * most * distance.max(0.0)).sqrt();
                 braking.min(APPROACH * distance)
             };
-            let up = towards(self.limits.upper[i] - MARGIN - self.q[i]);
-            let down = towards(self.q[i] - self.limits.lower[i] - MARGIN);
+            let up = towards(self.range.1[i] - self.q[i]);
+            let down = towards(self.q[i] - self.range.0[i]);
             let wanted = self.wanted[i].min(up).max(-down);
             let jerk = JERK * self.limits.jerk[i] * CYCLE;
             let change = ((wanted - self.dq[i]) * RESPONSE).clamp(-most, most) - self.ddq[i];
@@ -168,6 +180,8 @@ pub(super) struct Position {
     model: &'static Model,
     ee: EndEffector,
     is_cartesian: bool,
+    /// `[rad]`
+    range: (JointVector, JointVector),
     generator: Generator<7>,
     /// `[rad]`
     target: JointVector,
@@ -191,6 +205,7 @@ impl Position {
                 f_t_ee: settings.tool.f_t_ne,
                 ee_t_k: Matrix4::identity(),
             },
+            range: settings.range(),
             is_cartesian: settings.control == Kind::CartesianDelta,
             generator: generator.with_synchronisation(Synchronisation::Time),
             target: *q,
@@ -202,11 +217,11 @@ impl Position {
             true => self.moved(&Twist::from_column_slice(action)),
             false => self.target + JointVector::from_column_slice(action),
         };
-        let (limits, at) = (self.model.joint_limits(), self.generator.state().position);
+        let ((lower, upper), at) = (&self.range, self.generator.state().position);
         self.target = JointVector::from_fn(|i, _| {
             // The target stays near: actions that the arm cannot follow do not add up.
             let near = wanted[i].clamp(at[i] - LEASH, at[i] + LEASH);
-            near.clamp(limits.lower[i] + MARGIN, limits.upper[i] - MARGIN)
+            near.clamp(lower[i], upper[i])
         });
         let target = self.target.data.0[0];
         let planned = self.generator.set_target(&target);
@@ -222,7 +237,7 @@ impl Position {
         let [x, y, z, a, b, c] = delta.data.0[0];
         let position = from.translation.vector + Vector3::new(x, y, z);
         let orientation = rotation::exp(&Vector3::new(a, b, c)) * from.rotation;
-        let limits = self.model.joint_limits();
+        let (lower, upper) = &self.range;
         let mut q = self.target;
         for _ in 0..IK_STEPS {
             let Some(pose) = self.pose(&q) else {
@@ -232,8 +247,8 @@ impl Position {
             let turn = rotation::error(&orientation, &pose.rotation);
             let error = Twist::new(away.x, away.y, away.z, turn.x, turn.y, turn.z);
             let bounds = JointBox::new(
-                &(limits.lower.add_scalar(MARGIN) - q).sup(&JointVector::repeat(-IK_STEP)),
-                &(limits.upper.add_scalar(-MARGIN) - q).inf(&JointVector::repeat(IK_STEP)),
+                &(lower - q).sup(&JointVector::repeat(-IK_STEP)),
+                &(upper - q).inf(&JointVector::repeat(IK_STEP)),
             );
             let jacobian = self.model.zero_jacobian(Frame::EndEffector, &q, &self.ee);
             let posture = JointVector::zeros();
@@ -272,12 +287,9 @@ impl Torque {
 const ACCELERATION: f64 = 0.4;
 const JERK: f64 = 0.5;
 
-/// And of the deceleration of the velocity envelope. What is left, and [`MARGIN`], outweigh the
-/// speed that the envelope takes off.
+/// And of the deceleration of the velocity envelope. What is left, and the distance of targets from
+/// the ends of the ranges, outweigh the speed that the envelope takes off.
 const DECELERATION: f64 = 0.6;
-
-/// What positions keep off the ends of the ranges, `[rad]`.
-const MARGIN: f64 = 0.03;
 
 /// How fast a velocity approaches a wanted one, `[1/s]`.
 const RESPONSE: f64 = 100.0;

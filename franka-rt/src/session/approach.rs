@@ -50,13 +50,29 @@ pub(super) fn limits(
     }
 }
 
-/// The range of targets, `[rad]`, that plans can approach: the joint's own, less some milliradians
-/// where its envelope allows no speed. If nothing is left, the middle; never crossed.
+/// Joint targets that sessions accept: least and greatest position of each joint, `[rad]`. They are
+/// the joint's own range, less some milliradians where its velocity envelope allows no speed.
+pub fn target_range(robot: &JointLimits) -> [(f64, f64); 7] {
+    core::array::from_fn(|i| range(i, robot))
+}
+
+/// As [`target_range`], for plans that brake with these accelerations, `[rad/s^2]`, and not more
+/// gently near the end of a range.
+pub fn target_range_of(robot: &JointLimits, acceleration: &[f64; 7]) -> [(f64, f64); 7] {
+    core::array::from_fn(|i| range_of(i, robot, acceleration[i]))
+}
+
+/// The range of targets, `[rad]`, that plans can approach. If nothing is left, the middle; never
+/// crossed.
 pub(super) fn range(i: usize, robot: &JointLimits) -> (f64, f64) {
+    range_of(i, robot, GENTLEST)
+}
+
+fn range_of(i: usize, robot: &JointLimits, acceleration: f64) -> (f64, f64) {
     let room = robot.envelope.as_ref().map_or(0.0, |envelope| {
         let offset = envelope.offset[i] + MARGIN;
-        // A deceleration of no more than the gentlest leaves nothing.
-        0.5 * offset * offset / (envelope.deceleration[i] - GENTLEST).max(f64::MIN_POSITIVE)
+        // A deceleration of no more than the plan's leaves nothing.
+        0.5 * offset * offset / (envelope.deceleration[i] - acceleration).max(f64::MIN_POSITIVE)
     });
     let lower = robot.lower[i].max(robot.hard_lower[i] + room);
     let upper = robot.upper[i].min(robot.hard_upper[i] - room);
@@ -124,6 +140,30 @@ mod tests {
             }
         }
         assert!(gentler > 20, "{gentler} plans were too fast");
+    }
+
+    #[test]
+    fn range_of_plans_leaves_them_inside_the_envelope() {
+        let robot = Model::fr3().joint_limits();
+        let envelope = robot.envelope.as_ref().expect("one");
+        for share in [0.1, 0.6, 0.9] {
+            let acceleration = (envelope.deceleration * share).data.0[0];
+            for (i, (_, upper)) in target_range_of(robot, &acceleration)
+                .into_iter()
+                .enumerate()
+            {
+                let plan = AxisLimits {
+                    velocity: robot.velocity[i],
+                    acceleration: acceleration[i],
+                    jerk: 1000.0,
+                };
+                assert!(clearance(i, upper, &plan) > -1e-9, "joint {}", i + 1);
+                if share < 0.9 && upper < robot.upper[i] - 1e-9 {
+                    // None is lost without need.
+                    assert!(clearance(i, upper + 1e-3, &plan) < 0.0, "joint {}", i + 1);
+                }
+            }
+        }
     }
 
     #[test]

@@ -61,6 +61,7 @@ use crate::slot::{Read, SlotReader};
 use crate::team::{Member, MemberFault};
 use crate::together::{Gate, StartFault};
 
+pub use approach::{target_range, target_range_of};
 pub use backend::{Backend, Controller, Setpoints};
 pub use budget::Budget;
 pub use chunk::{
