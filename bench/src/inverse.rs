@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use franka_model::analytic_ik::{self, Redundancy};
 use franka_model::differential_ik::{DifferentialIk, JointBox, Side, Solution};
+use franka_model::geometry::Lengths;
 use franka_model::{
     CYCLE, EndEffector, Frame, Jacobian, JointVector, Model, Twist, elbow, transform,
 };
@@ -33,7 +34,7 @@ pub fn subjects() -> Vec<Subject> {
         solve("model.ik_all_ns", |q| Redundancy::Joint7(q[6])),
         solve("model.ik_joint_4_ns", |q| Redundancy::Joint4(q[3])),
         solve("model.ik_swivel_ns", |q| {
-            Redundancy::Swivel(elbow::swivel(q).unwrap_or(0.0))
+            Redundancy::Swivel(elbow::swivel(&Lengths::DESCRIBED, q).unwrap_or(0.0))
         }),
         Subject::new(
             "model.box_ik_ns",

@@ -49,7 +49,7 @@ impl Watch {
             true => TorqueError::IN_MOTION,
             false => TorqueError::AT_REST,
         };
-        let shape = Shape::covering(model.kind());
+        let shape = Shape::covering(model.kind()).with_lengths(*model.lengths());
         let shape = match state.m_ee > 0.0 {
             true => shape.with_hand(),
             false => shape,

@@ -157,7 +157,7 @@ impl Hello {
 
 /// The capsules that the guards keep out of obstacles, on their links.
 fn capsules(model: &Model, with_hand: bool) -> Vec<Capsule> {
-    let shape = Shape::covering(model.kind());
+    let shape = Shape::covering(model.kind()).with_lengths(*model.lengths());
     let shape = if with_hand { shape.with_hand() } else { shape };
     let q = JointVector::zeros();
     let on_link = |(body, capsule): (Body, franka_async::model::collision::Capsule)| {

@@ -38,7 +38,7 @@
 //! the determinant `L1 L2 sin(q4 − flip) · sin(q2) · f(q4) cos(q5)` of the other six joints
 //! vanishes, and each is answered in its own way:
 //!
-//! - **Stretched elbow** (joint 4 at [`FLIP_ANGLE`]) and **wrist** (joint 5
+//! - **Stretched elbow** (joint 4 at its [flip angle](Lengths::flip_angle)) and **wrist** (joint 5
 //!   a quarter turn off): two solutions approach each other, like the roots of `x² = ε`, and meet
 //!   in one. It is listed twice there, and a pose beyond by less than 1e-12 in the cosine counts
 //!   as on it. Both solutions are continuous up to that place; beyond there is none.
@@ -59,8 +59,8 @@ use core::f64::consts::PI;
 
 use nalgebra::Isometry3;
 
-use crate::elbow::FLIP_ANGLE;
 use crate::frame::EndEffector;
+use crate::geometry::Lengths;
 use crate::inverse_kinematics::IkError;
 use crate::model::Model;
 use crate::transform;
@@ -115,23 +115,30 @@ pub fn solve(
     }
     let limits = model.joint_limits();
     let (lower, upper) = (&limits.lower, &limits.upper);
-    Ok(find(&flange, given, [lower[3], upper[3]]).within(lower, upper))
+    let found = find(model.lengths(), &flange, given, [lower[3], upper[3]]);
+    Ok(found.within(lower, upper))
 }
 
 /// All solutions for a pose of the flange in the base frame, whatever the limits.
 ///
-/// Angles are in `(−π, π]`, given ones as given. The same for both kinds of robot. Empty if a
-/// number is non-finite.
-pub fn all(flange: &Isometry3<f64>, given: Redundancy) -> Solutions {
-    find(flange, given, [FLIP_ANGLE - PI, FLIP_ANGLE + PI])
+/// Angles are in `(−π, π]`, given ones as given. The same for both kinds of robot with the same
+/// lengths. Empty if a number is non-finite.
+pub fn all(lengths: &Lengths, flange: &Isometry3<f64>, given: Redundancy) -> Solutions {
+    let flip = lengths.flip_angle();
+    find(lengths, flange, given, [flip - PI, flip + PI])
 }
 
 /// Solutions of which those with joint 4 outside `q4_range` may be left out.
-fn find(flange: &Isometry3<f64>, given: Redundancy, q4_range: [f64; 2]) -> Solutions {
+fn find(
+    lengths: &Lengths,
+    flange: &Isometry3<f64>,
+    given: Redundancy,
+    q4_range: [f64; 2],
+) -> Solutions {
     match given {
-        Redundancy::Joint7(q7) => joint_7::all(flange, q7),
-        Redundancy::Joint4(q4) => joint_4::all(flange, q4),
-        Redundancy::Swivel(angle) => swivel::all(flange, angle, q4_range),
+        Redundancy::Joint7(q7) => joint_7::all(lengths, flange, q7),
+        Redundancy::Joint4(q4) => joint_4::all(lengths, flange, q4),
+        Redundancy::Swivel(angle) => swivel::all(lengths, flange, angle, q4_range),
     }
 }
 
@@ -155,7 +162,7 @@ fn sweep(model: &Model, flange: &Isometry3<f64>, steps: u32) -> impl Iterator<It
         lower[6] + (upper[6] - lower[6]) * share
     };
     (0..=steps).flat_map(move |step| {
-        let found = joint_7::all(flange, angle(step)).within(lower, upper);
+        let found = joint_7::all(model.lengths(), flange, angle(step)).within(lower, upper);
         (0..found.len()).map(move |index| found[index])
     })
 }

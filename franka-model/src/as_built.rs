@@ -1,11 +1,10 @@
 //! An arm as it was built: not exactly as its model says.
 
-use nalgebra::{Isometry3, Matrix3, Matrix4, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix4, Vector3};
 
 use crate::chain::Chain;
 use crate::dynamics;
 use crate::frame::{EndEffector, Frame};
-use crate::geometry::JOINT_ORIGINS;
 use crate::inertia::RigidBody;
 use crate::jacobian::{self, Placement};
 use crate::load::Load;
@@ -19,8 +18,6 @@ use crate::{Jacobian, JointVector, MassMatrix};
 #[derive(Debug, Clone, PartialEq)]
 pub struct AsBuilt {
     model: Model,
-    /// Absent if they are the model's, whose chain takes less time.
-    origins: Option<[Isometry3<f64>; 7]>,
 }
 
 impl AsBuilt {
@@ -28,7 +25,6 @@ impl AsBuilt {
     pub fn exactly(model: &Model) -> Self {
         Self {
             model: model.clone(),
-            origins: None,
         }
     }
 
@@ -39,14 +35,10 @@ impl AsBuilt {
         self
     }
 
-    /// With joint frames that are off the model's by `deviations`: entry `i` is the pose of the
-    /// true frame of joint `i + 1`, at joint position zero, in the frame that the model has there.
-    /// The errors of a joint move all that follows.
+    /// As [`Model::with_deviations`].
     #[must_use]
     pub fn with_deviations(mut self, deviations: &[Isometry3<f64>; 7]) -> Self {
-        let is_exact = deviations.iter().all(|d| *d == Isometry3::identity());
-        self.origins =
-            (!is_exact).then(|| core::array::from_fn(|i| nominal_origins()[i] * deviations[i]));
+        self.model = self.model.with_deviations(deviations);
         self
     }
 
@@ -57,7 +49,7 @@ impl AsBuilt {
 
     /// Pose of each joint's frame, with the joint at zero, in the frame of the link before.
     pub fn joint_origins(&self) -> [Isometry3<f64>; 7] {
-        self.origins.unwrap_or_else(nominal_origins)
+        self.model.joint_origins()
     }
 
     /// Pose of `frame` in the base frame.
@@ -115,25 +107,8 @@ impl AsBuilt {
     }
 
     fn chain(&self, q: &JointVector) -> Chain {
-        match &self.origins {
-            None => Chain::at(q),
-            Some(origins) => {
-                let origins = origins.map(|o| (matrix(&o.rotation), o.translation.vector));
-                Chain::through(&origins, q)
-            }
-        }
+        self.model.chain(q)
     }
-}
-
-fn matrix(rotation: &UnitQuaternion<f64>) -> Matrix3<f64> {
-    rotation.to_rotation_matrix().into_inner()
-}
-
-fn nominal_origins() -> [Isometry3<f64>; 7] {
-    JOINT_ORIGINS.map(|origin| {
-        let roll = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), origin.roll);
-        Isometry3::from_parts(origin.translation.into(), roll)
-    })
 }
 
 #[cfg(test)]
@@ -141,6 +116,7 @@ mod tests {
     use super::*;
     use crate::random::Random;
     use crate::{GRAVITY_EARTH, RobotKind};
+    use nalgebra::UnitQuaternion;
 
     fn deviations() -> [Isometry3<f64>; 7] {
         core::array::from_fn(|i| {
@@ -156,10 +132,12 @@ mod tests {
         for kind in RobotKind::ALL {
             let model = Model::physically_consistent(kind);
             let exact = AsBuilt::exactly(model);
-            let chained = AsBuilt {
-                origins: Some(nominal_origins()),
-                ..exact.clone()
-            };
+            let origins = model.joint_origins().map(|origin| {
+                let turn = origin.rotation.to_rotation_matrix().into_inner();
+                (turn, origin.translation.vector)
+            });
+            let mut chained = exact.clone();
+            chained.model.origins = Some(origins);
             for _ in 0..50 {
                 let q = random.posture(model);
                 let ee = EndEffector::default();

@@ -1,14 +1,14 @@
 //! The joints in base axes: where every frame is and along what every axis points.
 //!
-//! The [geometry](crate::geometry) is that of the FER and the FR3 alike: an alternating chain in
-//! which every joint frame is rolled by 0 or ±90° against the one before, so a joint costs one
-//! plane rotation and a permutation of columns. Positions are relative to the shoulder S, where
-//! axes 1, 2 and 3 meet: those axes then have no moment about the reference point.
+//! The FER and the FR3 have the same [geometry](crate::geometry) except for two lengths: an
+//! alternating chain in which every joint frame is rolled by 0 or ±90° against the one before, so a
+//! joint costs one plane rotation and a permutation of columns. Positions are relative to the
+//! shoulder S, where axes 1, 2 and 3 meet: those axes then have no moment about the reference point.
 
 use nalgebra::{Matrix3, Vector3};
 
 use crate::JointVector;
-use crate::geometry::{ELBOW, FLANGE, FOREARM, SHOULDER, UPPER_ARM, WRIST};
+use crate::geometry::{ELBOW, FLANGE, Lengths, SHOULDER, WRIST};
 use crate::inertia::cross;
 use crate::scalar::sin_cos;
 
@@ -67,7 +67,7 @@ impl Axes {
 impl Chain {
     /// All frames at the positions `q`.
     #[inline(always)]
-    pub(crate) fn at(q: &JointVector) -> Self {
+    pub(crate) fn at(lengths: &Lengths, q: &JointVector) -> Self {
         let [t1, t2, t3, t4, t5, t6, t7] = q.data.0[0].map(sin_cos);
         let zero = Vector3::zeros();
 
@@ -83,9 +83,9 @@ impl Chain {
         let f6 = f5.roll_up(t6);
         let f7 = f6.roll_up(t7);
 
-        let p3 = f3.z * UPPER_ARM;
+        let p3 = f3.z * lengths.upper_arm;
         let p4 = p3 + f3.x * ELBOW;
-        let p5 = p4 + f4.y * FOREARM - f4.x * ELBOW;
+        let p5 = p4 + f4.y * lengths.forearm - f4.x * ELBOW;
         let p7 = p5 + f6.x * WRIST;
 
         Self {

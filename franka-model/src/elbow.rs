@@ -2,13 +2,16 @@
 
 use crate::JointVector;
 use crate::chain::Chain;
+use crate::geometry::Lengths;
 use crate::inertia::dot;
 use crate::scalar::{atan2, sqrt};
 
 /// Angle of joint 4, `[rad]`, at which the arm is stretched and the elbow flips over.
 ///
 /// `atan2(-a (d3 + d5), d3 d5 - a²)` with the elbow offset `a` and the lengths `d3`, `d5` of upper
-/// arm and forearm; libfranka 0.21 documents it in `robot_state.h`.
+/// arm and forearm; libfranka 0.21 documents it in `robot_state.h`. An arm with other
+/// [lengths](crate::geometry::Lengths::flip_angle) is stretched elsewhere by less than a
+/// milliradian.
 pub const FLIP_ANGLE: f64 = -0.467002423653011;
 
 /// `[angle of joint 3 [rad], side of joint 4]`, as in the state's `elbow`: the side is +1 above
@@ -30,8 +33,8 @@ pub fn elbow(q: &JointVector) -> [f64; 2] {
 /// shoulder to the wrist, in `(−π, π]`: zero with the elbow on top (Kreutz-Delgado, Long and
 /// Seraji, 1992, with the base's z axis for reference). `None` where the wrist is on the axis of
 /// joint 1 or the elbow on the line, to the last digits.
-pub fn swivel(q: &JointVector) -> Option<f64> {
-    let chain = Chain::at(q);
+pub fn swivel(lengths: &Lengths, q: &JointVector) -> Option<f64> {
+    let chain = Chain::at(lengths, q);
     let (e, w) = (&chain.origin[3], &chain.origin[4]);
     let squared = dot(w, w);
     let turned = e.x * w.y - e.y * w.x;
@@ -59,6 +62,9 @@ mod tests {
             UPPER_ARM * FOREARM - ELBOW * ELBOW,
         );
         assert!((FLIP_ANGLE - stretched).abs() < 1e-14);
+        assert_eq!(Lengths::DESCRIBED.flip_angle(), stretched);
+        let recorded = Lengths::RECORDED_FR3.flip_angle();
+        assert!((FLIP_ANGLE - recorded).abs() < 1e-3);
     }
 
     #[test]
@@ -74,15 +80,15 @@ mod tests {
 
     #[test]
     fn the_swivel_is_zero_with_the_elbow_on_top_and_the_turn_from_there_elsewhere() {
-        assert_eq!(swivel(&READY), Some(0.0));
+        assert_eq!(swivel(&Lengths::DESCRIBED, &READY), Some(0.0));
         let mut random = Random::new(11);
         for _ in 0..1000 {
             let q = random.posture(Model::fr3());
-            let chain = Chain::at(&q);
+            let chain = Chain::at(&Lengths::DESCRIBED, &q);
             let (elbow, wrist) = (&chain.origin[3], &chain.origin[4]);
             let line = Unit::new_normalize(*wrist);
             let across = |v: &Vector3<f64>| (v - line.scale(line.dot(v))).normalize();
-            let angle = swivel(&q).expect("defined");
+            let angle = swivel(&Lengths::DESCRIBED, &q).expect("defined");
             let turned = Rotation3::from_axis_angle(&line, angle) * across(&Vector3::z());
             assert!((turned - across(elbow)).norm() < 1e-9);
         }
@@ -90,9 +96,9 @@ mod tests {
 
     #[test]
     fn the_swivel_is_undefined_above_the_shoulder_and_with_a_stretched_elbow() {
-        assert_eq!(swivel(&JointVector::zeros()), None);
+        assert_eq!(swivel(&Lengths::DESCRIBED, &JointVector::zeros()), None);
         let mut q = READY;
         q[3] = FLIP_ANGLE;
-        assert_eq!(swivel(&q), None);
+        assert_eq!(swivel(&Lengths::DESCRIBED, &q), None);
     }
 }

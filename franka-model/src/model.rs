@@ -2,11 +2,12 @@
 
 use core::fmt;
 
-use nalgebra::{Matrix4, Vector3};
+use nalgebra::{Isometry3, Matrix3, Matrix4, UnitQuaternion, Vector3};
 
 use crate::chain::Chain;
 use crate::dynamics::{self, Dynamics};
 use crate::frame::{EndEffector, Frame};
+use crate::geometry::Lengths;
 use crate::inertia::RigidBody;
 use crate::jacobian::{self, Placement};
 use crate::kind::RobotKind;
@@ -32,6 +33,10 @@ pub struct Model {
     pub(crate) links: [RigidBody; 7],
     pub(crate) merge: Merge,
     pub(crate) joints: JointLimits,
+    pub(crate) lengths: Lengths,
+    /// Joint frames that these lengths do not have, for simulation: rotation and translation in the
+    /// frame of the link before.
+    pub(crate) origins: Option<[(Matrix3<f64>, Vector3<f64>); 7]>,
 }
 
 /// The kind alone: errors hold a model, and its numbers would bury their text.
@@ -72,15 +77,72 @@ impl Model {
         }
     }
 
+    /// Lengths of upper arm and forearm.
+    pub fn lengths(&self) -> &Lengths {
+        &self.lengths
+    }
+
+    /// The same robot with an upper arm and a forearm of these lengths, and with the joint frames
+    /// that belong to them.
+    #[must_use]
+    pub fn with_lengths(self, lengths: Lengths) -> Self {
+        Self {
+            lengths,
+            origins: None,
+            ..self
+        }
+    }
+
+    /// The same robot with joint frames that are off by `deviations`: entry `i` is the pose of the
+    /// new frame of joint `i + 1`, at joint position zero, in the frame that the joint has now. The
+    /// errors of a joint move all that follows.
+    ///
+    /// For simulation: kinematics and dynamics follow, [analytic IK](crate::analytic_ik) and
+    /// [capsules](crate::collision) keep the frames of the [`lengths`](Self::lengths).
+    #[must_use]
+    pub fn with_deviations(mut self, deviations: &[Isometry3<f64>; 7]) -> Self {
+        if deviations.iter().any(|d| *d != Isometry3::identity()) {
+            let origins = self.joint_origins();
+            self.origins = Some(core::array::from_fn(|i| {
+                let origin = origins[i] * deviations[i];
+                let turn = origin.rotation.to_rotation_matrix().into_inner();
+                (turn, origin.translation.vector)
+            }));
+        }
+        self
+    }
+
+    /// Pose of each joint's frame, with the joint at zero, in the frame of the link before.
+    pub fn joint_origins(&self) -> [Isometry3<f64>; 7] {
+        match &self.origins {
+            None => self.lengths.joint_origins().map(|origin| {
+                let roll = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), origin.roll);
+                Isometry3::from_parts(origin.translation.into(), roll)
+            }),
+            Some(origins) => origins.map(|(turn, shift)| {
+                let turn = UnitQuaternion::from_matrix(&turn);
+                Isometry3::from_parts(shift.into(), turn)
+            }),
+        }
+    }
+
+    #[inline]
+    pub(crate) fn chain(&self, q: &JointVector) -> Chain {
+        match &self.origins {
+            None => Chain::at(&self.lengths, q),
+            Some(origins) => Chain::through(origins, q),
+        }
+    }
+
     /// Pose of `frame` in the base frame.
     pub fn pose(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Matrix4<f64> {
-        Placement::of(&Chain::at(q), frame, ee).pose()
+        Placement::of(&self.chain(q), frame, ee).pose()
     }
 
     /// Velocity of the frame's origin and angular velocity of the frame per joint velocity, both
     /// in base axes. Columns of joints beyond the frame are zero.
     pub fn zero_jacobian(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Jacobian {
-        let chain = Chain::at(q);
+        let chain = self.chain(q);
         let placement = Placement::of(&chain, frame, ee);
         jacobian::zero_jacobian(&chain, frame.joints(), &placement.origin)
     }
@@ -93,7 +155,7 @@ impl Model {
         q: &JointVector,
         ee: &EndEffector,
     ) -> (Matrix4<f64>, Jacobian) {
-        let chain = Chain::at(q);
+        let chain = self.chain(q);
         let placement = Placement::of(&chain, frame, ee);
         let jacobian = jacobian::zero_jacobian(&chain, frame.joints(), &placement.origin);
         (placement.pose(), jacobian)
@@ -102,12 +164,12 @@ impl Model {
     /// Speed of the fastest of the centres of the joints, the flange and the end effector, `[m/s]`:
     /// the origins of the first nine frames of [`Frame::ALL`].
     pub fn fastest_point(&self, q: &JointVector, dq: &JointVector, ee: &EndEffector) -> f64 {
-        jacobian::fastest_point(&Chain::at(q), dq, ee)
+        jacobian::fastest_point(&self.chain(q), dq, ee)
     }
 
     /// [`zero_jacobian`](Self::zero_jacobian) in the frame's own axes.
     pub fn body_jacobian(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Jacobian {
-        let chain = Chain::at(q);
+        let chain = self.chain(q);
         let placement = Placement::of(&chain, frame, ee);
         let zero = jacobian::zero_jacobian(&chain, frame.joints(), &placement.origin);
         jacobian::body_jacobian(&zero, &placement.rotation)
@@ -115,12 +177,12 @@ impl Model {
 
     /// Joint-space inertia, without rotors, `[kg·m²]`.
     pub fn mass(&self, q: &JointVector, load: &Load) -> MassMatrix {
-        dynamics::mass(&Chain::at(q), &self.links_with(load))
+        dynamics::mass(&self.chain(q), &self.links_with(load))
     }
 
     /// Torques of Coriolis and centrifugal forces, `C(q, dq) dq`.
     pub fn coriolis(&self, q: &JointVector, dq: &JointVector, load: &Load) -> JointVector {
-        dynamics::coriolis(&Chain::at(q), &self.links_with(load), dq)
+        dynamics::coriolis(&self.chain(q), &self.links_with(load), dq)
     }
 
     /// Torques that hold the arm still against gravity.
@@ -130,7 +192,7 @@ impl Model {
         load: &Load,
         gravity_earth: &Vector3<f64>,
     ) -> JointVector {
-        dynamics::gravity(&Chain::at(q), &self.links_with(load), gravity_earth)
+        dynamics::gravity(&self.chain(q), &self.links_with(load), gravity_earth)
     }
 
     /// Torques for the acceleration `ddq`: `M ddq + C dq + g`, by recursive Newton-Euler.
@@ -143,7 +205,7 @@ impl Model {
         gravity_earth: &Vector3<f64>,
     ) -> JointVector {
         dynamics::inverse_dynamics(
-            &Chain::at(q),
+            &self.chain(q),
             &self.links_with(load),
             dq,
             ddq,
@@ -167,7 +229,7 @@ impl Model {
         armature: &JointVector,
     ) -> Option<JointVector> {
         dynamics::forward_dynamics(
-            &Chain::at(q),
+            &self.chain(q),
             &self.links_with(load),
             dq,
             tau,
@@ -185,7 +247,13 @@ impl Model {
         load: &Load,
         gravity_earth: &Vector3<f64>,
     ) -> Dynamics {
-        Dynamics::of(&Chain::at(q), &self.links_with(load), dq, ee, gravity_earth)
+        Dynamics::of(
+            &self.chain(q),
+            &self.links_with(load),
+            dq,
+            ee,
+            gravity_earth,
+        )
     }
 
     #[inline]

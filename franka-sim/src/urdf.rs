@@ -13,7 +13,7 @@
 
 use core::fmt::Write;
 
-use franka_model::geometry::{FLANGE, JOINT_ORIGINS};
+use franka_model::geometry::FLANGE;
 use franka_model::{Model, RigidBody};
 
 /// The URDF text that describes `model` as a robot called `name`.
@@ -64,7 +64,7 @@ fn write_link(text: &mut String, i: usize, body: &RigidBody) -> core::fmt::Resul
 }
 
 fn write_joint(text: &mut String, i: usize, model: &Model) -> core::fmt::Result {
-    let (origin, limits) = (&JOINT_ORIGINS[i], model.joint_limits());
+    let (origin, limits) = (&model.lengths().joint_origins()[i], model.joint_limits());
     let (at, roll) = (&origin.translation, origin.roll);
     let (parent, child) = (i, i + 1);
     writeln!(

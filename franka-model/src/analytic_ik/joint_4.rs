@@ -5,7 +5,7 @@ use nalgebra::Isometry3;
 use super::joint_7::{Elbow, Flange, Hand, cosine, push_all};
 use super::solutions::Solutions;
 use super::wrapped;
-use crate::geometry::WRIST;
+use crate::geometry::{Lengths, WRIST};
 use crate::inertia::dot;
 use crate::scalar::{acos, atan2, sqrt};
 
@@ -13,10 +13,10 @@ use crate::scalar::{acos, atan2, sqrt};
 ///
 /// The wrist is on a circle about axis 7; joint 4 tells its distance from the shoulder, and a
 /// circle has two points at a distance.
-pub(super) fn all(flange: &Isometry3<f64>, q4: f64) -> Solutions {
+pub(super) fn all(lengths: &Lengths, flange: &Isometry3<f64>, q4: f64) -> Solutions {
     let mut found = Solutions::NONE;
     let flange = Flange::of(flange);
-    if let Some(elbow) = Elbow::at(q4) {
+    if let Some(elbow) = Elbow::at(lengths, q4) {
         for q7 in circle(&flange, elbow.squared_distance())
             .into_iter()
             .flatten()

@@ -3,19 +3,16 @@
 use nalgebra::{Isometry3, Vector3};
 
 use super::solutions::{Branch, Solution, Solutions};
-use crate::elbow::FLIP_ANGLE;
-use crate::geometry::{ELBOW, FLANGE, FOREARM, SHOULDER, UPPER_ARM, WRIST};
+use crate::geometry::{ELBOW, FLANGE, Lengths, SHOULDER, WRIST};
 use crate::inertia::{cross, dot};
 use crate::scalar::{atan2, sin_cos, sqrt};
 
 /// All solutions with joint 7 at `q7`: none, four or eight.
-pub(super) fn all(flange: &Isometry3<f64>, q7: f64) -> Solutions {
+pub(super) fn all(lengths: &Lengths, flange: &Isometry3<f64>, q7: f64) -> Solutions {
     let mut found = Solutions::NONE;
     let hand = Hand::of(&Flange::of(flange), q7);
-    for elbow in Elbow::both(hand.to_shoulder.norm_squared())
-        .into_iter()
-        .flatten()
-    {
+    let squared = hand.to_shoulder.norm_squared();
+    for elbow in Elbow::both(lengths, squared).into_iter().flatten() {
         push_all(&mut found, &hand, &elbow, elbow.q4());
     }
     found
@@ -107,18 +104,18 @@ pub(super) struct Elbow {
     pub(super) h: f64,
 }
 
-/// Square of the distance from the shoulder to axis 4, `[m²]`.
-const SIDE_3: f64 = UPPER_ARM * UPPER_ARM + ELBOW * ELBOW;
-/// Square of the distance from axis 4 to the wrist, `[m²]`.
-const SIDE_5: f64 = FOREARM * FOREARM + ELBOW * ELBOW;
+/// Squares of the distances from the shoulder to axis 4 and from there to the wrist, `[m²]`.
+fn squared_sides(lengths: &Lengths) -> [f64; 2] {
+    [lengths.upper_arm, lengths.forearm].map(|length| length * length + ELBOW * ELBOW)
+}
 
 impl Elbow {
     /// From the squared distance between shoulder and wrist: both answers, or none.
-    fn both(squared_distance: f64) -> [Option<Self>; 2] {
-        match cosine(Self::from_flip(squared_distance)) {
+    fn both(lengths: &Lengths, squared_distance: f64) -> [Option<Self>; 2] {
+        match cosine(Self::from_flip(lengths, squared_distance)) {
             // With the shoulder on the axis of joint 5, far outside the limits, f vanishes.
             Some(cos) => [false, true].map(|above| {
-                let elbow = Self::turned(above, cos);
+                let elbow = Self::turned(lengths, above, cos);
                 (elbow.f != 0.0).then_some(elbow)
             }),
             None => [None, None],
@@ -126,42 +123,46 @@ impl Elbow {
     }
 
     /// The answer on one side, for a distance that the arm has up to rounding.
-    pub(super) fn on_side(above: bool, squared_distance: f64) -> Self {
-        Self::turned(above, Self::from_flip(squared_distance).clamp(-1.0, 1.0))
+    pub(super) fn on_side(lengths: &Lengths, above: bool, squared_distance: f64) -> Self {
+        let cos = Self::from_flip(lengths, squared_distance).clamp(-1.0, 1.0);
+        Self::turned(lengths, above, cos)
     }
 
     /// With joint 4 as given.
-    pub(super) fn at(q4: f64) -> Option<Self> {
-        let above = sin_cos(q4 - FLIP_ANGLE).0 > 0.0;
-        let elbow = Self::of(above, sin_cos(q4));
+    pub(super) fn at(lengths: &Lengths, q4: f64) -> Option<Self> {
+        let above = sin_cos(q4 - lengths.flip_angle()).0 > 0.0;
+        let elbow = Self::of(lengths, above, sin_cos(q4));
         (elbow.f != 0.0).then_some(elbow)
     }
 
     /// Cosine of the angle of joint 4 from the flip angle.
-    fn from_flip(squared_distance: f64) -> f64 {
-        (squared_distance - SIDE_3 - SIDE_5) / (2.0 * sqrt(SIDE_3 * SIDE_5))
+    fn from_flip(lengths: &Lengths, squared_distance: f64) -> f64 {
+        let [upper, fore] = squared_sides(lengths);
+        (squared_distance - upper - fore) / (2.0 * sqrt(upper * fore))
     }
 
-    fn turned(above: bool, cos: f64) -> Self {
-        let product = sqrt(SIDE_3 * SIDE_5);
-        let flip_cos = (UPPER_ARM * FOREARM - ELBOW * ELBOW) / product;
-        let flip_sin = -ELBOW * (UPPER_ARM + FOREARM) / product;
+    fn turned(lengths: &Lengths, above: bool, cos: f64) -> Self {
+        let [squared_upper, squared_fore] = squared_sides(lengths);
+        let product = sqrt(squared_upper * squared_fore);
+        let (upper, fore) = (lengths.upper_arm, lengths.forearm);
+        let flip_cos = (upper * fore - ELBOW * ELBOW) / product;
+        let flip_sin = -ELBOW * (upper + fore) / product;
         let sin = sqrt(1.0 - cos * cos);
         let sin = if above { sin } else { -sin };
         let angle = (
             flip_sin * cos + flip_cos * sin,
             flip_cos * cos - flip_sin * sin,
         );
-        Self::of(above, angle)
+        Self::of(lengths, above, angle)
     }
 
-    fn of(above: bool, (sin, cos): (f64, f64)) -> Self {
+    fn of(lengths: &Lengths, above: bool, (sin, cos): (f64, f64)) -> Self {
         Self {
             above,
             sin,
             cos,
-            f: ELBOW * (1.0 - cos) - UPPER_ARM * sin,
-            h: ELBOW * sin - UPPER_ARM * cos - FOREARM,
+            f: ELBOW * (1.0 - cos) - lengths.upper_arm * sin,
+            h: ELBOW * sin - lengths.upper_arm * cos - lengths.forearm,
         }
     }
 

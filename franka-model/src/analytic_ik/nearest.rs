@@ -6,7 +6,6 @@ use super::{Solution, flange_of, joint_7, sweep};
 use crate::JointVector;
 use crate::frame::EndEffector;
 use crate::inverse_kinematics::{self, IkError};
-use crate::limits::JointLimits;
 use crate::model::Model;
 
 /// The posture within the limits, whatever its redundancy parameter, that brings the end effector
@@ -33,7 +32,7 @@ pub fn nearest(
     let mut least = [None; 8];
     let near = inverse_kinematics::from_seed(model, &flange, q).unwrap_or(*q)[6];
     let places = [q[6], near].into_iter();
-    let places = places.flat_map(|q7| at(&flange, limits, q7));
+    let places = places.flat_map(|q7| at(model, &flange, q7));
     for solution in sweep(model, &flange, STEPS).chain(places) {
         let solution = solution.slid_towards(q);
         let place: &mut Option<Solution> = &mut least[solution.branch.index()];
@@ -46,7 +45,7 @@ pub fn nearest(
             let (centre, branch) = (found.q[6], found.branch);
             let around = [centre - step, centre + step].into_iter();
             let around = around
-                .flat_map(|q7| at(&flange, limits, q7))
+                .flat_map(|q7| at(model, &flange, q7))
                 .filter(|solution| solution.branch == branch)
                 .map(|solution| solution.slid_towards(q));
             match best(around, q) {
@@ -58,12 +57,9 @@ pub fn nearest(
     Ok(best(least.into_iter().flatten(), q))
 }
 
-fn at(
-    flange: &Isometry3<f64>,
-    limits: &JointLimits,
-    q7: f64,
-) -> impl Iterator<Item = Solution> + use<> {
-    let found = joint_7::all(flange, q7).within(&limits.lower, &limits.upper);
+fn at(model: &Model, flange: &Isometry3<f64>, q7: f64) -> impl Iterator<Item = Solution> + use<> {
+    let limits = model.joint_limits();
+    let found = joint_7::all(model.lengths(), flange, q7).within(&limits.lower, &limits.upper);
     (0..found.len()).map(move |index| found[index])
 }
 

@@ -94,7 +94,8 @@ impl PoseSearch<'_> {
     fn reaches(&mut self, flange: &Isometry3<f64>, limits: &JointLimits) -> bool {
         // Joint 7 where it last was, before all of its range.
         if let Some(q) = self.seed {
-            let found = joint_7::all(flange, q[6]).within(&limits.lower, &limits.upper);
+            let found = joint_7::all(self.model.lengths(), flange, q[6])
+                .within(&limits.lower, &limits.upper);
             if !found.is_empty() {
                 return true;
             }

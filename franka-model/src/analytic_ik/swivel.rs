@@ -21,23 +21,28 @@ use nalgebra::{Isometry3, Vector3};
 use super::bracket;
 use super::joint_7::{Elbow, Flange, Forearm, Hand, push_both};
 use super::solutions::Solutions;
-use crate::elbow::FLIP_ANGLE;
-use crate::geometry::WRIST;
+use crate::geometry::{Lengths, WRIST};
 use crate::inertia::dot;
 use crate::scalar::{acos, atan2, sin_cos, sqrt};
 
 /// All solutions with the elbow at `angle` and joint 4 within `q4_range`, a part of the turn about
 /// the flip angle.
-pub(super) fn all(flange: &Isometry3<f64>, angle: f64, q4_range: [f64; 2]) -> Solutions {
+pub(super) fn all(
+    lengths: &Lengths,
+    flange: &Isometry3<f64>,
+    angle: f64,
+    q4_range: [f64; 2],
+) -> Solutions {
     let mut found = Solutions::NONE;
     let flange = Flange::of(flange);
     let (sin, cos) = sin_cos(angle);
     let [lower, upper] = q4_range;
     for (above, far) in [(false, lower), (true, upper)] {
-        if above == (far < FLIP_ANGLE) {
+        if above == (far < lengths.flip_angle()) {
             continue; // nothing of the range on this side
         }
         let side = Side {
+            lengths,
             flange: &flange,
             above,
             sin,
@@ -52,6 +57,7 @@ pub(super) fn all(flange: &Isometry3<f64>, angle: f64, q4_range: [f64; 2]) -> So
 
 /// The equation for one side of the elbow.
 struct Side<'a> {
+    lengths: &'a Lengths,
     flange: &'a Flange,
     above: bool,
     /// Of the swivel angle.
@@ -74,7 +80,7 @@ impl Side<'_> {
         let hand = Hand::of(self.flange, q7);
         let w = -hand.to_shoulder;
         let squared = dot(&w, &w);
-        let elbow = Elbow::on_side(self.above, squared);
+        let elbow = Elbow::on_side(self.lengths, self.above, squared);
         let (length, offset) = (sqrt(squared), sqrt(w.x * w.x + w.y * w.y));
         // Unit vector at right angles to w, towards the elbow: up, and turned about w.
         let (up, turned) = (self.cos / (length * offset), self.sin / offset);
@@ -124,14 +130,20 @@ impl Side<'_> {
         let (p, q) = (dot(d, &self.flange.x), dot(d, &self.flange.y));
         let radius = sqrt(p * p + q * q);
         let squared = dot(d, d) + WRIST * WRIST;
-        let reach = |q4| Elbow::at(q4).map_or(0.0, |elbow| elbow.squared_distance());
+        let reach = |q4| {
+            let elbow = Elbow::at(self.lengths, q4);
+            elbow.map_or(0.0, |elbow| elbow.squared_distance())
+        };
         // The wrist's squared distance is `squared − 2 WRIST radius cos(off)`.
         let off = |squared_distance: f64| {
             let cos = (squared - squared_distance) / (2.0 * WRIST * radius.max(f64::MIN_POSITIVE));
             acos(cos.clamp(-1.0, 1.0))
         };
         let slack = 1e-12;
-        let (least, most) = (off(reach(far) - slack), off(reach(FLIP_ANGLE) + slack));
+        let (least, most) = (
+            off(reach(far) - slack),
+            off(reach(self.lengths.flip_angle()) + slack),
+        );
         if least >= most {
             return [None, None]; // also for NaN
         }

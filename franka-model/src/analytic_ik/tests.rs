@@ -36,7 +36,7 @@ type Parameter = (Redundancy, fn(&JointVector) -> f64);
 
 /// The parameter of every kind that a posture has.
 fn parameters(q: &JointVector) -> [Parameter; 3] {
-    let swivel = |q: &JointVector| elbow::swivel(q).expect("defined");
+    let swivel = |q: &JointVector| elbow::swivel(&Lengths::DESCRIBED, q).expect("defined");
     [
         (Redundancy::Joint7(q[6]), |q| q[6]),
         (Redundancy::Joint4(q[3]), |q| q[3]),
@@ -91,7 +91,11 @@ fn joint_7_gives_none_four_or_eight_solutions_with_the_seed_among_them() {
     let mut random = Random::new(82);
     for _ in 0..2_000 {
         let target = flange(&random.posture(Model::fr3()));
-        let real = all(&target, Redundancy::Joint7(random.uniform(-PI, PI)));
+        let real = all(
+            &Lengths::DESCRIBED,
+            &target,
+            Redundancy::Joint7(random.uniform(-PI, PI)),
+        );
         assert!([0, 4, 8].contains(&real.len()), "{} solutions", real.len());
         assert!(
             real.iter()
@@ -108,9 +112,9 @@ fn count_by_scanning(target: &Isometry3<f64>, angle: f64, steps: u32) -> usize {
     for step in 0..=steps {
         let q7 = -PI + TAU * f64::from(step) / f64::from(steps);
         let mut now = [None; 8];
-        for solution in all(target, Redundancy::Joint7(q7)).iter() {
+        for solution in all(&Lengths::DESCRIBED, target, Redundancy::Joint7(q7)).iter() {
             let index = solution.branch.index();
-            let off = elbow::swivel(&solution.q).map(|found| found - angle);
+            let off = elbow::swivel(&Lengths::DESCRIBED, &solution.q).map(|found| found - angle);
             now[index] = off.map(|off| off - TAU * (off / TAU).round());
         }
         for (before, after) in last.iter().zip(&now) {
@@ -131,7 +135,7 @@ fn the_solutions_for_a_swivel_angle_are_those_that_a_scan_of_joint_7_finds() {
     for _ in 0..60 {
         let target = flange(&random.posture(Model::fr3()));
         let angle = random.uniform(-PI, PI);
-        let found = all(&target, Redundancy::Swivel(angle)).len();
+        let found = all(&Lengths::DESCRIBED, &target, Redundancy::Swivel(angle)).len();
         let scanned = count_by_scanning(&target, angle, 20_000);
         // A scan misses what lies between its last step and the end of a branch.
         assert!(scanned <= found, "{scanned} scanned, {found} found");
@@ -144,7 +148,7 @@ fn the_solutions_for_a_swivel_angle_are_those_that_a_scan_of_joint_7_finds() {
 #[test]
 fn the_ready_pose_has_eight_solutions_and_one_within_the_limits() {
     let (target, given) = (flange(&READY), Redundancy::Joint7(READY[6]));
-    assert_eq!(all(&target, given).len(), 8);
+    assert_eq!(all(&Lengths::DESCRIBED, &target, given).len(), 8);
     for kind in RobotKind::ALL {
         let model = Model::of(kind);
         let found = solve(model, &target, &EndEffector::default(), given);
@@ -192,7 +196,7 @@ fn with_joint_2_at_zero_joints_1_and_3_share_the_turn_and_slide() {
     let limits = Model::fr3().joint_limits();
     let target = flange(&q);
     for (given, _) in &parameters(&q)[..2] {
-        let found = all(&target, *given).within(&limits.lower, &limits.upper);
+        let found = all(&Lengths::DESCRIBED, &target, *given).within(&limits.lower, &limits.upper);
         // Rounding leaves a sine of about 1e-16, or none.
         let half = found.iter().find(|s| (s.q[0] - 0.4).abs() < 1e-12);
         let half = half.expect("a solution");
@@ -221,7 +225,8 @@ fn a_turn_that_joints_1_and_3_cannot_share_evenly_is_shared_as_the_limits_let() 
     let mut q = READY;
     (q[0], q[1], q[2]) = (limits.upper[0] - 0.01, 0.0, limits.upper[2] - 0.01);
     let target = flange(&q);
-    let found = all(&target, Redundancy::Joint7(q[6])).within(&limits.lower, &limits.upper);
+    let found = all(&Lengths::DESCRIBED, &target, Redundancy::Joint7(q[6]))
+        .within(&limits.lower, &limits.upper);
     let nearest = found.nearest(&q).expect("the posture itself");
     assert!((nearest.q - q).amax() < 1e-12);
     assert!(found.iter().all(|solution| limits.contains(&solution.q)));
@@ -240,7 +245,7 @@ fn a_path_straight_through_the_shoulder_singularity_is_followed_without_a_jump()
     for step in -100..=100 {
         let q = at(step);
         let target = flange(&q);
-        let found = all(&target, Redundancy::Joint7(q[6]));
+        let found = all(&Lengths::DESCRIBED, &target, Redundancy::Joint7(q[6]));
         let nearest = found.nearest(&last).expect("a solution");
         assert!(miss(&nearest.q, &target) < 1e-12);
         assert!((nearest.q - last).amax() < 3e-4, "step {step}");
@@ -258,7 +263,7 @@ fn near_joint_2_at_zero_poses_are_met_all_the_same() {
             q[1] = 10f64.powi(-exponent);
             let target = flange(&q);
             for (given, _) in parameters(&q) {
-                for solution in all(&target, given).iter() {
+                for solution in all(&Lengths::DESCRIBED, &target, given).iter() {
                     assert!(miss(&solution.q, &target) < 1e-12, "{exponent} {given:?}");
                 }
             }
@@ -275,7 +280,7 @@ fn two_solutions_meet_like_square_roots_at_a_stretched_elbow_and_a_turned_wrist(
             let mut q = READY;
             q[index] = place - gap;
             let target = flange(&q);
-            let found = all(&target, Redundancy::Joint7(q[6]));
+            let found = all(&Lengths::DESCRIBED, &target, Redundancy::Joint7(q[6]));
             // The posture and its mirror image beyond the fold.
             let near = found.iter().filter(|s| (s.q - q).amax() < 8.0 * gap);
             assert_eq!(near.clone().count(), 2, "joint {index}, {gap:e}");
@@ -287,7 +292,7 @@ fn two_solutions_meet_like_square_roots_at_a_stretched_elbow_and_a_turned_wrist(
         let mut q = READY;
         q[index] = place;
         let target = flange(&q);
-        let found = all(&target, Redundancy::Joint7(q[6]));
+        let found = all(&Lengths::DESCRIBED, &target, Redundancy::Joint7(q[6]));
         let near = found.iter().filter(|s| (s.q - q).amax() < 3e-6);
         assert!(near.clone().all(|s| miss(&s.q, &target) < 2e-12));
         assert_eq!(near.count(), 2, "on the fold of joint {index}");
@@ -302,8 +307,8 @@ fn with_the_shoulder_on_axis_7_joint_4_leaves_joint_7_at_zero() {
     let down = rotation::exp(&(Vector3::x() * PI));
     let pose = Isometry3::from_parts(Translation3::new(0.0, 0.0, 0.333 + 0.6), down);
     // The wrist is then the same distance off for every angle of joint 7.
-    let posture = all(&pose, Redundancy::Joint7(1.0))[0].q;
-    let found = all(&pose, Redundancy::Joint4(posture[3]));
+    let posture = all(&Lengths::DESCRIBED, &pose, Redundancy::Joint7(1.0))[0].q;
+    let found = all(&Lengths::DESCRIBED, &pose, Redundancy::Joint4(posture[3]));
     assert!(!found.is_empty());
     for solution in found.iter() {
         assert_eq!(solution.q[6], 0.0);
@@ -343,7 +348,7 @@ fn out_of_reach_there_is_none() {
     let mut target = flange(&READY);
     target.translation.vector.x += 1.0;
     for (given, _) in parameters(&READY) {
-        assert!(all(&target, given).is_empty());
+        assert!(all(&Lengths::DESCRIBED, &target, given).is_empty());
     }
 }
 
@@ -360,11 +365,41 @@ fn input_that_means_nothing_is_refused() {
     for kind in [Redundancy::Joint7, Redundancy::Joint4, Redundancy::Swivel] {
         assert_eq!(error(&target, &ee, kind(f64::NAN)), IkError::NotFinite);
         assert_eq!(error(&nowhere, &ee, kind(0.5)), IkError::NotFinite);
-        assert!(all(&nowhere, kind(-0.5)).is_empty());
-        assert!(all(&target, kind(f64::INFINITY)).is_empty());
+        assert!(all(&Lengths::DESCRIBED, &nowhere, kind(-0.5)).is_empty());
+        assert!(all(&Lengths::DESCRIBED, &target, kind(f64::INFINITY)).is_empty());
         assert_eq!(
             error(&target, &flat, kind(0.0)),
             IkError::EndEffectorNotRigid
         );
+    }
+}
+
+#[test]
+fn an_arm_with_other_lengths_gets_solutions_that_meet_its_own_poses() {
+    let model = Model::fr3().clone().with_lengths(Lengths::RECORDED_FR3);
+    let limits = model.joint_limits();
+    let mut random = Random::new(83);
+    for _ in 0..200 {
+        let q = random.posture(&model);
+        let at = |q: &JointVector| {
+            let pose = model.pose(Frame::Flange, q, &EndEffector::default());
+            transform::isometry(&pose).expect("a rigid frame")
+        };
+        let target = at(&q);
+        let swivel = elbow::swivel(model.lengths(), &q).expect("defined");
+        for given in [
+            Redundancy::Joint7(q[6]),
+            Redundancy::Joint4(q[3]),
+            Redundancy::Swivel(swivel),
+        ] {
+            let found = solve(&model, &target, &EndEffector::default(), given).expect("finite");
+            let near = |solution: &Solution| (solution.q - q).amax() < 1e-6;
+            assert!(found.iter().any(near), "{given:?} at {q}");
+            for solution in found.iter() {
+                assert!(limits.contains(&solution.q));
+                let off = at(&solution.q).translation.vector - target.translation.vector;
+                assert!(off.norm() < 2e-9, "{given:?}: {off}");
+            }
+        }
     }
 }

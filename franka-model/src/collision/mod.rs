@@ -131,7 +131,7 @@ pub(crate) const CAPACITY: usize = capsules::ARM_MAX + shape::TOOL_MAX;
 impl<'a> Shape<'a> {
     /// The shape at the joint positions `q`, `[rad]`.
     pub fn at(&self, q: &JointVector) -> Placed<'a> {
-        let chain = Chain::at(q);
+        let chain = Chain::at(&self.lengths, q);
         let mut segments = [Segment::EMPTY; CAPACITY];
         for (segment, LinkCapsule { link, capsule, .. }) in segments.iter_mut().zip(self.arm) {
             *segment = match link {

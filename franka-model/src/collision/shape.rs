@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::capsules::{
     COVERING_HAND, COVERING_PAIRS, FER, FR3, LinkCapsule, VENDOR, VENDOR_HAND, VENDOR_PAIRS,
 };
+use crate::geometry::Lengths;
 use crate::kind::RobotKind;
 
 /// All points within `radius` of a segment. With both ends alike: a ball.
@@ -50,6 +51,7 @@ pub struct Shape<'a> {
     pub(super) tool: &'a [Capsule],
     /// The Hand in the manner of `arm`, in the flange frame.
     hand: &'static [Capsule],
+    pub(super) lengths: Lengths,
 }
 
 impl Shape<'static> {
@@ -68,6 +70,7 @@ impl Shape<'static> {
             pairs: &VENDOR_PAIRS,
             tool: &[],
             hand: &VENDOR_HAND,
+            lengths: Lengths::DESCRIBED,
         }
     }
 
@@ -91,7 +94,14 @@ impl Shape<'static> {
             pairs: &COVERING_PAIRS,
             tool: &[],
             hand: &COVERING_HAND,
+            lengths: Lengths::DESCRIBED,
         }
+    }
+
+    /// On an arm with these lengths: [`Model::lengths`](crate::Model::lengths). Without this it has
+    /// [`Lengths::DESCRIBED`].
+    pub const fn with_lengths(self, lengths: Lengths) -> Self {
+        Self { lengths, ..self }
     }
 
     /// With the Franka Hand on the flange, mounted as the vendor does: turned by -45° about its
@@ -128,6 +138,7 @@ impl Shape<'_> {
             pairs: self.pairs,
             tool: capsules,
             hand: self.hand,
+            lengths: self.lengths,
         })
     }
 

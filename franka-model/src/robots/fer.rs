@@ -5,6 +5,7 @@
 //! simulation.
 
 use super::Description;
+use crate::geometry::Lengths;
 use crate::inertia::RigidBody;
 use crate::kind::RobotKind;
 use crate::limits::{CartesianLimits, JointLimits, MotionLimits};
@@ -142,6 +143,8 @@ static CLIENT: Model = Model {
     ],
     merge: Merge::WithoutOwnLever(LINK_7_INSIDE),
     joints: JOINTS,
+    lengths: Lengths::DESCRIBED,
+    origins: None,
 };
 
 /// Link 7 as the vendor's library has it inside, in link axes; nothing but its merging with
@@ -244,6 +247,8 @@ static PHYSICALLY_CONSISTENT: Model = Model {
     ],
     merge: Merge::Rigid,
     joints: JOINTS,
+    lengths: Lengths::DESCRIBED,
+    origins: None,
 };
 
 /// `franka_description` 1.0.1, `robots/fer/inertials.yaml`.

@@ -1,6 +1,7 @@
 //! The Franka Research 3.
 
 use super::Description;
+use crate::geometry::Lengths;
 use crate::inertia::RigidBody;
 use crate::joint_vector;
 use crate::kind::RobotKind;
@@ -112,6 +113,8 @@ static MODEL: Model = Model {
     ],
     merge: Merge::Rigid,
     joints: JOINTS,
+    lengths: Lengths::DESCRIBED,
+    origins: None,
 };
 
 /// `lower` and `upper`: limits table of the FCI documentation (`franka_description` 1.0.1,

@@ -10,11 +10,12 @@
 //! |---|---|
 //! | `inertial` of the links | [`Model::links`]; everything fixed to a link is part of it, as for libfranka |
 //! | `limit`, `position_based_velocity_limits` | position, velocity, torque and envelope of [`Model::joint_limits`] |
-//! | `origin`, `axis` of the joints, `link8` | checked against the [geometry](crate::geometry) |
+//! | `origin`, `axis` of the joints, `link8` | [`Model::lengths`]; checked against the [geometry](crate::geometry) |
 //!
-//! The geometry is that of the crate: inverse kinematics and capsules are made for it. A text with
-//! another one is refused rather than computed with half of it. Up to 1 µm and 10 µrad, which is
-//! what rounded numbers may be off, the crate's numbers replace those of the text.
+//! The geometry is that of the crate, with one of the sets of lengths that robots are
+//! [known](crate::geometry::Lengths::KNOWN) to have: inverse kinematics and capsules are made for
+//! it. A text with another one is refused rather than computed with half of it. Up to 1 µm and
+//! 10 µrad, which is what rounded numbers may be off, the crate's numbers replace those of the text.
 //!
 //! The text has no limits of acceleration, jerk and torque rate, and none for the end effector:
 //! those of the FR3 are taken. Nor has it the positions to command
@@ -111,6 +112,8 @@ impl Model {
             links,
             merge: Merge::Rigid,
             joints,
+            lengths: tree.lengths,
+            origins: None,
         })
     }
 }

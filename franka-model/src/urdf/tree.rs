@@ -9,7 +9,7 @@ use std::{format, vec};
 
 use super::element::{self, Element};
 use super::{ROTATION_OFF, TRANSLATION_OFF, UrdfError};
-use crate::geometry::{FLANGE, JOINT_ORIGINS};
+use crate::geometry::{FLANGE, JointOrigin, Lengths};
 
 /// What the robot is made of, checked against the arm that the crate knows.
 pub(super) struct Tree<'a, 'n> {
@@ -17,6 +17,8 @@ pub(super) struct Tree<'a, 'n> {
     pub(super) joints: [Joint<'a, 'n>; 7],
     /// In the order of the text.
     pub(super) links: Vec<Link<'a, 'n>>,
+    /// The known set that its frames have.
+    pub(super) lengths: Lengths,
 }
 
 pub(super) struct Joint<'a, 'n> {
@@ -60,7 +62,7 @@ impl<'a, 'n> Tree<'a, 'n> {
             .map(|(name, node)| Joint::read(name, node, &names));
         let joints = joints.collect::<Result<Vec<_>, _>>()?;
         let numbers = arm(&joints)?;
-        let places = places(&names, &joints, &numbers)?;
+        let (places, lengths) = known_places(&names, &joints, &numbers)?;
         check_flange(&names, &places)?;
         let links = links.into_iter().zip(places);
         let links = links.map(|((name, node), place)| Link { node, name, place });
@@ -75,6 +77,7 @@ impl<'a, 'n> Tree<'a, 'n> {
         Ok(Self {
             joints: joints.unwrap_or_else(|_| unreachable!("each of seven numbers was given once")),
             links: links.collect(),
+            lengths,
         })
     }
 
@@ -188,11 +191,32 @@ fn arm(joints: &[Joint<'_, '_>]) -> Result<Vec<Option<usize>>, UrdfError> {
     Ok(numbers)
 }
 
+/// The places of the links, with the known lengths that put every frame there.
+fn known_places(
+    links: &[&str],
+    joints: &[Joint<'_, '_>],
+    numbers: &[Option<usize>],
+) -> Result<(Vec<Place>, Lengths), UrdfError> {
+    let [described, others @ ..] = Lengths::KNOWN;
+    let with = |lengths: Lengths| {
+        let places = places(links, joints, numbers, &lengths.joint_origins());
+        places.map(|places| (places, lengths))
+    };
+    with(described).or_else(|error| match error {
+        UrdfError::Origin { .. } => others
+            .into_iter()
+            .find_map(|lengths| with(lengths).ok())
+            .ok_or(error),
+        error => Err(error),
+    })
+}
+
 /// Walks from the root outwards.
 fn places(
     links: &[&str],
     joints: &[Joint<'_, '_>],
     numbers: &[Option<usize>],
+    origins: &[JointOrigin; 7],
 ) -> Result<Vec<Place>, UrdfError> {
     let root = root(links, joints)?;
     let mut places = vec![None; links.len()];
@@ -206,10 +230,8 @@ fn places(
         places[link] = Some(place);
         for (joint, number) in joints.iter().zip(numbers) {
             if joint.parent == link {
-                open.push((
-                    joint.child,
-                    joint.place_beyond(*number, links[link], &place)?,
-                ));
+                let beyond = joint.place_beyond(*number, links[link], &place, origins)?;
+                open.push((joint.child, beyond));
             }
         }
     }
@@ -229,6 +251,7 @@ impl Joint<'_, '_> {
         number: Option<usize>,
         parent: &str,
         place: &Place,
+        origins: &[JointOrigin; 7],
     ) -> Result<Place, UrdfError> {
         let pose = place.pose * self.origin;
         let Some(number) = number else {
@@ -246,7 +269,7 @@ impl Joint<'_, '_> {
                 expected: number - 1,
             });
         }
-        let origin = &JOINT_ORIGINS[number - 1];
+        let origin = &origins[number - 1];
         let roll = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), origin.roll);
         let expected = Isometry3::from_parts(origin.translation.into(), roll);
         check_pose(&self.owner, &pose, &expected)?;

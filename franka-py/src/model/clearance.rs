@@ -40,8 +40,10 @@ impl Model {
         shape: &str,
     ) -> PyResult<Clearance> {
         let arm = match shape {
-            "vendor" => Shape::vendor(),
-            "covering" => Shape::covering(self.numbers.kind()),
+            "vendor" => Shape::vendor().with_lengths(*self.numbers.lengths()),
+            "covering" => {
+                Shape::covering(self.numbers.kind()).with_lengths(*self.numbers.lengths())
+            }
             other => {
                 let text = format!("shape is {other:?}, expected 'vendor' or 'covering'");
                 return Err(PyValueError::new_err(text));

@@ -73,7 +73,7 @@ impl Placed {
 
 /// The arm as the estimate takes it to be.
 pub(super) fn shape(model: &Model, has_hand: bool) -> Shape<'static> {
-    let shape = Shape::covering(model.kind());
+    let shape = Shape::covering(model.kind()).with_lengths(*model.lengths());
     if has_hand { shape.with_hand() } else { shape }
 }
 

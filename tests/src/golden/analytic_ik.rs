@@ -3,6 +3,7 @@
 
 use anyhow::Context as _;
 use franka_model::analytic_ik::{self, Branch, Redundancy, Solution, Solutions};
+use franka_model::geometry::Lengths;
 use franka_model::{EndEffector, Frame, JointVector, Model, RobotKind, joint_vector, transform};
 use nalgebra::Matrix4;
 use serde::Deserialize;
@@ -64,13 +65,14 @@ pub(super) fn all(text: &[u8]) -> anyhow::Result<Report> {
             (RobotKind::Fer, of(&vector.in_limits_fer)?),
         ];
         report.case(format!("vectors[{index}]"), |case| {
-            let found = analytic_ik::all(&flange, Redundancy::Joint7(vector.q7));
+            let found =
+                analytic_ik::all(&Lengths::DESCRIBED, &flange, Redundancy::Joint7(vector.q7));
             check_set(case, &found, &vector.solutions, &pose);
             for (kind, branches) in &within {
                 check_limits(case, &found, *kind, branches);
             }
             if let Some(WithJoint4 { q4, solutions }) = &vector.q4_free {
-                let found = analytic_ik::all(&flange, Redundancy::Joint4(*q4));
+                let found = analytic_ik::all(&Lengths::DESCRIBED, &flange, Redundancy::Joint4(*q4));
                 check_postures(case, &found, solutions, &pose);
             }
         });

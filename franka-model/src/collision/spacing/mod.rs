@@ -29,6 +29,7 @@ use super::segment::Segment;
 use super::{CAPACITY, Obstacle, Shape, capsules, shape};
 use crate::JointVector;
 use crate::chain::Chain;
+use crate::geometry::Lengths;
 use crate::inertia::dot;
 use crate::scalar::sqrt;
 
@@ -47,6 +48,7 @@ const AMPLE: f64 = 0.15;
 /// its minimum, `[m]`; negative below it.
 #[derive(Debug, Clone)]
 pub struct Spacing {
+    lengths: Lengths,
     /// The capsules of the pairs.
     arm: LinkCapsules,
     pairs: [CapsulePair; PAIRS_MAX],
@@ -145,6 +147,7 @@ impl Spacing {
     /// the chain may touch.
     pub fn within(arm: &Shape<'_>, distance: f64, links: u8) -> Self {
         let mut this = Self {
+            lengths: arm.lengths,
             arm: LinkCapsules::of(arm),
             pairs: [CapsulePair {
                 inner: 0,
@@ -167,7 +170,7 @@ impl Spacing {
                     inner,
                     outer,
                     reach: a.reach + a.radius + b.reach + b.radius,
-                    group: this.groups.join(a.number, b),
+                    group: this.groups.join(&arm.lengths, a.number, b),
                 };
                 this.pair_count += 1;
             }
@@ -176,7 +179,7 @@ impl Spacing {
     }
 
     /// This spacing with the minimum `distance`, `[m]`, of everything in `cover` that moves to each
-    /// of `regions`.
+    /// of `regions`. The arm keeps its lengths.
     #[must_use]
     pub fn out_of(
         mut self,
@@ -196,7 +199,7 @@ impl Spacing {
             self.cover = LinkCapsules::from(all.each().iter().copied().filter(|m| m.number > 0));
         }
         for i in 0..self.cover.count {
-            self.cover.all[i].group = self.groups.join(0, &self.cover.all[i]);
+            self.cover.all[i].group = self.groups.join(&self.lengths, 0, &self.cover.all[i]);
         }
         self
     }
@@ -218,7 +221,7 @@ impl Spacing {
 
     /// The capsules at the joint positions `q`, `[rad]`.
     pub fn at(&self, q: &JointVector) -> Arrangement<'_> {
-        let chain = Chain::at(q);
+        let chain = Chain::at(&self.lengths, q);
         Arrangement {
             spacing: self,
             q: *q,

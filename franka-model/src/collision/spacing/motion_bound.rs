@@ -6,6 +6,7 @@
 
 use super::mounted::Mounted;
 use crate::JointVector;
+use crate::geometry::Lengths;
 
 /// A bound on the margins around a posture: as long as the joints have turned by less than this
 /// allows, every margin is above the limit for which it was made.
@@ -93,7 +94,7 @@ impl Groups {
 
     /// The group of the distances from `outer` to the body with the number `inner`; adds it if it
     /// is new, and widens its levers.
-    pub(super) fn join(&mut self, inner: u8, outer: &Mounted) -> usize {
+    pub(super) fn join(&mut self, lengths: &Lengths, inner: u8, outer: &Mounted) -> usize {
         let numbers = (inner, outer.number);
         let known = self.numbers[..self.count].iter();
         let group = known.clone().position(|known| *known == numbers);
@@ -104,7 +105,7 @@ impl Groups {
         });
         for joint in usize::from(inner) + 1..=outer.joints() {
             let lever = &mut self.levers[joint - 1][group];
-            *lever = lever.max(outer.lever(joint));
+            *lever = lever.max(outer.lever(lengths, joint));
         }
         group
     }

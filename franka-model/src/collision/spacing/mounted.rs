@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::chain::Chain;
 use crate::collision::{Body, Capsule};
-use crate::geometry::{ELBOW, FLANGE, FOREARM, SHOULDER, UPPER_ARM, WRIST};
+use crate::geometry::{ELBOW, FLANGE, Lengths, SHOULDER, WRIST};
 use crate::inertia::dot;
 use crate::scalar::sqrt;
 
@@ -101,9 +101,9 @@ impl Mounted {
 
     /// How far any point of the axis moves, `[m/rad]`, when joint number `joint` turns; the most
     /// over all postures.
-    pub(super) fn lever(&self, joint: usize) -> f64 {
+    pub(super) fn lever(&self, lengths: &Lengths, joint: usize) -> f64 {
         let ends = [self.middle - self.half, self.middle + self.half];
-        let levers = ends.map(|end| lever(self.joints(), &end, joint));
+        let levers = ends.map(|end| lever(lengths, self.joints(), &end, joint));
         levers[0].max(levers[1])
     }
 }
@@ -114,28 +114,29 @@ impl Mounted {
 /// Turning a joint keeps the distance of a point from every point of that joint's axis. So the
 /// distance to an earlier axis is at most the distance to the axis named here plus the distances
 /// between the points in which the axes meet.
-fn lever(link: usize, point: &Vector3<f64>, joint: usize) -> f64 {
+fn lever(lengths: &Lengths, link: usize, point: &Vector3<f64>, joint: usize) -> f64 {
+    let (upper_arm, forearm) = (lengths.upper_arm, lengths.forearm);
     let aside = length(point.x, point.y);
     let (away, axis) = match (link, joint) {
         _ if link == joint => return aside,
-        (3, _) => (length(aside, point.z + UPPER_ARM), 3),
+        (3, _) => (length(aside, point.z + upper_arm), 3),
         // Each of these axes is at right angles with the one before, and with the line between
         // them.
         (4, 3) => return length(ELBOW + aside, point.z),
-        (4, _) => (length(length(UPPER_ARM, ELBOW) + aside, point.z), 3),
-        (5, _) => (length(ELBOW + aside, FOREARM + point.z), 4),
+        (4, _) => (length(length(upper_arm, ELBOW) + aside, point.z), 3),
+        (5, _) => (length(ELBOW + aside, forearm + point.z), 4),
         (7, _) => (length(WRIST + aside, point.z), 6),
         _ => (length(aside, point.z), link),
     };
-    away + (joint..axis).map(step).sum::<f64>()
+    away + (joint..axis).map(|joint| step(lengths, joint)).sum::<f64>()
 }
 
 /// The distance from the reference point of the axis of joint number `joint` to that of the next:
 /// the shoulder for the first three, the elbow for the fourth, the wrist for the fifth and sixth.
-fn step(joint: usize) -> f64 {
+fn step(lengths: &Lengths, joint: usize) -> f64 {
     match joint {
-        3 => length(UPPER_ARM, ELBOW),
-        4 => length(FOREARM, ELBOW),
+        3 => length(lengths.upper_arm, ELBOW),
+        4 => length(lengths.forearm, ELBOW),
         _ => 0.0,
     }
 }

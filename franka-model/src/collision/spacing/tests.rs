@@ -4,6 +4,7 @@ use nalgebra::{Isometry3, UnitVector3, Vector3};
 
 use super::*;
 use crate::collision::Body;
+use crate::geometry::Lengths;
 use crate::random::Random;
 use crate::{Model, RobotKind, rotation};
 
@@ -151,7 +152,7 @@ fn small_margins_and_nan_postures_stay_candidates() {
 
 /// The ends of the axes, from the shoulder.
 fn ends(capsules: &LinkCapsules, q: &JointVector) -> Vec<[Vector3<f64>; 2]> {
-    let locations = capsules.at(&Chain::at(q));
+    let locations = capsules.at(&Chain::at(&Lengths::DESCRIBED, q));
     let locations = locations.iter().take(capsules.count);
     locations
         .map(|s| [s.middle - s.half, s.middle + s.half])
@@ -180,7 +181,7 @@ fn no_joint_moves_a_capsule_with_more_than_its_lever() {
         }
         for (mounted, most) in capsules.each().iter().zip(most) {
             for joint in 1..=mounted.joints() {
-                let (lever, most) = (mounted.lever(joint), most[joint - 1]);
+                let (lever, most) = (mounted.lever(&Lengths::DESCRIBED, joint), most[joint - 1]);
                 let case = (mounted.number, joint, lever, most);
                 assert!(most < lever + 1e-6, "{case:?}");
                 assert!(most >= 0.5 * lever, "{case:?}");

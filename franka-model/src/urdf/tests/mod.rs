@@ -1,7 +1,7 @@
 mod faults;
 
 use super::*;
-use crate::geometry::{FLANGE, JOINT_ORIGINS};
+use crate::geometry::{FLANGE, JOINT_ORIGINS, Lengths};
 use crate::{Load, READY};
 use std::fmt::Write;
 use std::format;
@@ -102,6 +102,21 @@ fn refused(text: &str) -> UrdfError {
 #[test]
 fn the_vendors_numbers_give_the_constant_model_to_the_last_bit() {
     assert_eq!(&Model::from_urdf(&text()).expect("a model"), Model::fr3());
+}
+
+#[test]
+fn an_arm_with_recorded_lengths_is_a_model_with_these_lengths_and_a_mixture_is_refused() {
+    let lengths = Lengths::RECORDED_FR3;
+    let upper = with("0 -0.316 0", "0 -0.3162 0");
+    let both = upper.replace("-0.0825 0.384 0", "-0.0825 0.3842 0");
+    assert_eq!(
+        Model::from_urdf(&both).expect("a model"),
+        Model::fr3().clone().with_lengths(lengths)
+    );
+    let UrdfError::Origin { owner, .. } = refused(&upper) else {
+        panic!("half of a set passed");
+    };
+    assert_eq!(owner, "joint: joint3");
 }
 
 #[test]

@@ -15,7 +15,7 @@
 use franka_model::collision::{
     Arrangement, CandidateMask, Item, MotionBound, Obstacle, REGIONS_MAX, Shape, Spacing,
 };
-use franka_model::{JointVector, RobotKind};
+use franka_model::{JointVector, Model};
 
 /// Distance, `[m]`, that two links keep that have two others between them: what the robot's
 /// self-collision avoidance asks for is put at 0.05, and the arm is a spring that swings past its
@@ -72,9 +72,10 @@ pub(crate) enum Ahead {
 }
 
 impl Clearance {
-    /// For a robot of this kind, with the vendor's Hand on its flange or nothing.
-    pub(crate) fn new(kind: RobotKind, hand: bool, keep_out: KeepOut) -> Self {
-        let (arm, cover) = (Shape::vendor(), Shape::covering(kind));
+    /// For an arm with this model, with the vendor's Hand on its flange or nothing.
+    pub(crate) fn new(model: &Model, hand: bool, keep_out: KeepOut) -> Self {
+        let shapes = [Shape::vendor(), Shape::covering(model.kind())];
+        let [arm, cover] = shapes.map(|shape| shape.with_lengths(*model.lengths()));
         let (arm, cover) = if hand {
             (arm.with_hand(), cover.with_hand())
         } else {

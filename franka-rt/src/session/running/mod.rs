@@ -185,7 +185,7 @@ impl RunningSession {
             halted: false,
             // The state shows that a tool is mounted, but not which one: the Hand is assumed.
             route: Route::new(
-                Clearance::new(model.kind(), state.m_ee > 0.0, keep_out),
+                Clearance::new(model, state.m_ee > 0.0, keep_out),
                 goal.budget,
             ),
             displacement: Displacement::at(q),

@@ -67,7 +67,7 @@ impl Preview {
         keep_out: &[Obstacle],
     ) -> Result<Option<Blocked>, GoalError> {
         let regions = check_keep_out(keep_out)?;
-        let clearance = Clearance::new(model.kind(), state.m_ee > 0.0, regions);
+        let clearance = Clearance::new(model, state.m_ee > 0.0, regions);
         let mut ways = self.postures.windows(2);
         Ok(ways.find_map(|ends| {
             let [(_, now), (time, next)] = [ends[0], ends[1]];

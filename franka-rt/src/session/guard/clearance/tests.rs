@@ -2,7 +2,7 @@ use super::*;
 use crate::session::reference::Reference;
 use crate::session::tests::sample;
 use franka_model::collision::Body;
-use franka_model::{Model, READY};
+use franka_model::{Model, READY, RobotKind};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, UnitVector3, Vector3};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -17,7 +17,7 @@ fn is_clear(clearance: &Clearance, q: &JointVector, turns: &JointVector) -> bool
 }
 
 fn of(keep_out: KeepOut) -> Clearance {
-    Clearance::new(RobotKind::Fr3, true, keep_out)
+    Clearance::new(Model::fr3(), true, keep_out)
 }
 
 /// What is left at a posture of every distance that is to be kept.
