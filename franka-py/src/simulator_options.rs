@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use franka_async::model::limits::JointLimits;
 use franka_async::model::{JointVector, Load, RobotKind};
-use franka_sim::arm::{Arm, Family, SystemLimits};
+use franka_sim::arm::{Arm, Family, StateGeometry, SystemLimits};
 use franka_sim::network::{Conditions, Loss, Network, Stalls};
 use franka_sim::{Fingers, Suction, Tool};
 use pyo3::exceptions::{PyAttributeError, PyOverflowError, PyTypeError, PyValueError};
@@ -31,9 +31,12 @@ pub(crate) fn configured(
         arm.limits = self::limits(kind, &limits)?;
     }
     let limits = arm.limits.joints(kind);
-    sim = sim.arm(arm);
     let seed = keywords.take("seed")?;
     let seed = seed.map(|seed| self::seed("seed", &seed)).transpose()?;
+    if let Some(name) = keywords.value::<String>("state_geometry")? {
+        arm.body.state_geometry = state_geometry(&name, seed.unwrap_or_default())?;
+    }
+    sim = sim.arm(arm);
     let q = keywords.take("q")?;
     let q = q.map(|q| positions(limits, &q)).transpose()?;
     let load = keywords
@@ -157,6 +160,20 @@ fn limits(kind: RobotKind, name: &str) -> PyResult<SystemLimits> {
         _ => {
             let expected = "'5.9' or 'before-5.9', of an FR3";
             let text = format!("limits is {name:?}, expected {expected}");
+            Err(PyValueError::new_err(text))
+        }
+    }
+}
+
+/// Reads the geometry of the robot's own poses; `random` is drawn by `seed`.
+fn state_geometry(name: &str, seed: u64) -> PyResult<StateGeometry> {
+    match name {
+        "described" => Ok(StateGeometry::DESCRIBED),
+        "recorded" => Ok(StateGeometry::RECORDED_FR3),
+        "random" => Ok(StateGeometry::random(seed)),
+        _ => {
+            let expected = "'described', 'recorded' or 'random'";
+            let text = format!("state_geometry is {name:?}, expected {expected}");
             Err(PyValueError::new_err(text))
         }
     }

@@ -67,6 +67,12 @@ def test_the_limits_are_those_of_the_system() -> None:
         assert robot.model().joint_limits.upper[0] == 2.7437
 
 
+def test_a_robot_may_compute_its_poses_with_other_lengths() -> None:
+    with Sim.fr3(virtual_time=True, ideal=True, state_geometry="recorded") as sim, sync.Robot(sim.address, realtime="ignore") as robot:
+        state = robot.state()
+        np.testing.assert_allclose(robot.model().pose("ee", state.q, state.F_T_EE), state.O_T_EE, atol=2e-6)
+
+
 def test_options_that_make_no_sense_are_refused() -> None:
     for options, kind, text in [
         ({"arm": "new"}, ValueError, "arm is .new."),
@@ -79,6 +85,7 @@ def test_options_that_make_no_sense_are_refused() -> None:
         ({"virtual": True}, TypeError, "unexpected keyword argument 'virtual'"),
         ({"load": (-1.0, [0.0, 0.0, 0.0])}, ValueError, "-1"),
         ({"q": [0.0, 0.0, 9.0, -2.0, 0.0, 2.0, 0.0]}, ValueError, "joint 3 of q is 9 rad, expected -2.9"),
+        ({"state_geometry": "other"}, ValueError, "state_geometry is .other., expected 'described'"),
         ({"limits": "5.8"}, ValueError, "limits is .5.8., expected '5.9' or 'before-5.9'"),
         ({"limits": "before-5.9", "q": [2.9, -0.7, 0.0, -2.0, 0.0, 2.0, 0.0]}, ValueError, "expected -2.7501 to 2.7501"),
         ({"seed": -1}, ValueError, "seed is -1, expected an integer from 0"),

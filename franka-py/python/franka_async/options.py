@@ -130,6 +130,7 @@ class SimOptions(TypedDict, total=False):
     arm_seed: int | None
     ideal: bool
     limits: Literal["5.9", "before-5.9"]
+    state_geometry: Literal["described", "recorded", "random"]
     seed: int
     q: ArrayLike | None
     tool: Literal["hand"] | tuple[ArrayLike, float, ArrayLike] | None

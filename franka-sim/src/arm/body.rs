@@ -1,12 +1,13 @@
 //! Links, axes, load and mounting as they are.
 
-use franka_model::{AsBuilt, JointVector, Load, Model, RobotKind, joint_vector};
+use franka_model::{AsBuilt, JointVector, Load, RobotKind, joint_vector};
 use nalgebra::{Isometry3, Vector3};
 
-use super::SystemLimits;
+use super::{StateGeometry, SystemLimits};
 
-/// How the arm's body differs from the controllers' model. The robot's controllers, its state and
-/// its clients compute with the model; the physics and what touches the arm do not.
+/// How the arm's body differs from the controllers' model, and that model from the clients'. The
+/// robot's controllers and its state compute with [`state_geometry`](Self::state_geometry); the
+/// physics and what touches the arm have the errors on top.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
     /// Error of each link's mass as a part of it; its inertia is off by the same part. Source: a
@@ -15,8 +16,10 @@ pub struct Body {
     pub mass_error: [f64; 7],
     /// Error of each link's centre of mass in the link's axes, `[m]`. Source: as there.
     pub com_error: [Vector3<f64>; 7],
-    /// Pose of each joint's true frame in the frame that the model has there. `O_T_EE` does not
-    /// show it. Source: MUKCa (TU Delft), five Pandas: 1 to 5 mrad, 0.2 to 1 mm.
+    /// Geometry of `O_T_EE`, of the controllers and of the served description.
+    pub state_geometry: StateGeometry,
+    /// Pose of each joint's true frame in the frame that `state_geometry` has there. `O_T_EE` does
+    /// not show it. Source: MUKCa (TU Delft), five Pandas: 1 to 5 mrad, 0.2 to 1 mm.
     pub kinematic_error: [Isometry3<f64>; 7],
     /// What the flange carries besides tool and payload, undeclared, `[kg]`; at the centre of mass
     /// of the tool. Source: the sag at a session's start excludes 0.2 kg on two FERs.
@@ -39,6 +42,7 @@ impl Body {
         Self {
             mass_error: [0.0; 7],
             com_error: [Vector3::zeros(); 7],
+            state_geometry: StateGeometry::DESCRIBED,
             kinematic_error: [Isometry3::identity(); 7],
             undeclared_mass: 0.0,
             load_com_error: Vector3::zeros(),
@@ -58,7 +62,7 @@ impl Body {
 
     /// The arm with these links and axes.
     pub fn as_built(&self, kind: RobotKind) -> AsBuilt {
-        let exact = AsBuilt::exactly(Model::physically_consistent(kind));
+        let exact = AsBuilt::exactly(&self.state_geometry.model(kind));
         let mut links = *exact.links();
         for ((link, error), shift) in links.iter_mut().zip(self.mass_error).zip(self.com_error) {
             *link = link.scaled(1.0 + error);

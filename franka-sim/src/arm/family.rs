@@ -1,5 +1,6 @@
 //! Families of arms: a distribution of every parameter.
 
+use franka_model::geometry::Lengths;
 use franka_model::{JointVector, RobotKind};
 use nalgebra::{Isometry3, Vector3};
 
@@ -8,7 +9,9 @@ mod distribution;
 
 pub use distribution::{Distribution, Values};
 
-use super::{Arm, Body, Bristle, Drive, Elasticity, Friction, Ripple, Sensors, SystemLimits};
+use super::{
+    Arm, Body, Bristle, Drive, Elasticity, Friction, Ripple, Sensors, StateGeometry, SystemLimits,
+};
 use crate::network::Stalls;
 use crate::noise::Random;
 
@@ -94,6 +97,16 @@ pub struct Family {
     pub axis_error: Distribution,
     /// Of each coordinate of the position of a joint's frame, `[m]`.
     pub length_error: Distribution,
+    /// Length of upper arm and forearm above the vendor's description, in the states of a Franka
+    /// Research 3 and in the description that it serves, `[m]`, drawn once. A Franka Emika Robot
+    /// has the described lengths.
+    pub state_length_excess: Distribution,
+    /// Error of each coordinate of a joint frame's rotation vector in the states, `[rad]`, in the
+    /// described frame.
+    pub state_axis_error: Distribution,
+    /// Error of each coordinate of a joint frame's position in the states, `[m]`, in the described
+    /// frame.
+    pub state_length_error: Distribution,
     /// `[kg]`, drawn once.
     pub undeclared_mass: Distribution,
     /// Of each coordinate of the tool's centre of mass, `[m]`.
@@ -183,6 +196,11 @@ impl Family {
             ("load_com_error", &self.load_com_error, Any),
             ("base_tilt", &self.base_tilt, Any),
             (
+                "state_length_excess",
+                &self.state_length_excess,
+                Between(-0.05, 0.05),
+            ),
+            (
                 "stalls_per_second",
                 &self.stalls_per_second,
                 Between(0.0, 100.0),
@@ -227,6 +245,8 @@ impl Family {
             ("axis_error", &self.axis_error, Any),
             ("length_error", &self.length_error, Any),
             ("motor_offset", &self.motor_offset, Any),
+            ("state_axis_error", &self.state_axis_error, Any),
+            ("state_length_error", &self.state_length_error, Any),
         ];
         for (field, distribution, bounds) in once {
             distribution.check_single(field)?;
@@ -309,6 +329,10 @@ impl Family {
         if kind == RobotKind::Fr3 {
             sensors.motor_offset = motor_offset;
         }
+        let body = Body {
+            state_geometry: self.state_geometry(kind, &mut draw),
+            ..body
+        };
         Arm {
             friction,
             drive,
@@ -316,6 +340,28 @@ impl Family {
             body,
             limits: self.limits,
             stalls,
+        }
+    }
+}
+
+impl Family {
+    fn state_geometry(&self, kind: RobotKind, draw: &mut Draw) -> StateGeometry {
+        let excess = draw.once(&self.state_length_excess);
+        let described = Lengths::DESCRIBED;
+        let lengths = match kind {
+            RobotKind::Fr3 => Lengths {
+                upper_arm: described.upper_arm + excess,
+                forearm: described.forearm + excess,
+            },
+            _ => described,
+        };
+        let deviations = std::array::from_fn(|i| {
+            let shift = draw.vector(&self.state_length_error, i);
+            Isometry3::new(shift, draw.vector(&self.state_axis_error, i))
+        });
+        StateGeometry {
+            lengths,
+            deviations,
         }
     }
 }

@@ -11,6 +11,7 @@
 //! | `sensors` | [`Sensors`]: offset, noise and quanta |
 //! | `body` | [`Body`]: errors of links, axes and load, base tilt, end stops |
 //! | `limits` | [`SystemLimits`]: joint limits by the robot's system |
+//! | `state_geometry` | [`StateGeometry`]: what the robot computes its own poses with |
 //! | `family` | [`Family`]: distributions of all of these, read from JSON |
 //!
 //! The sources of the figures are named with the fields and in the book (`docs/src/real-arm.md`).
@@ -21,6 +22,7 @@ mod family;
 mod friction;
 mod limits;
 mod sensors;
+mod state_geometry;
 
 pub use body::{Body, EndStops};
 pub use drive::{Drive, Elasticity, Ripple};
@@ -28,6 +30,7 @@ pub use family::{Distribution, Elastic, Family, FamilyError, Values};
 pub use friction::{Bristle, Friction};
 pub use limits::SystemLimits;
 pub use sensors::Sensors;
+pub use state_geometry::StateGeometry;
 
 use franka_model::{Model, RobotKind};
 
@@ -82,12 +85,12 @@ impl Arm {
         Self::central(kind, &Family::bad())
     }
 
-    /// The controllers' model of this arm: that of its kind, with the limits of its system.
+    /// The controllers' model of this arm: that of its kind, with the geometry of its states and the
+    /// limits of its system.
     pub(crate) fn model(&self, kind: RobotKind) -> Model {
         let limits = *self.limits.joints(kind);
-        Model::physically_consistent(kind)
-            .clone()
-            .with_joint_limits(limits)
+        let model = self.body.state_geometry.model(kind);
+        model.with_joint_limits(limits)
     }
 
     /// The arm with every parameter in the middle of its distribution.

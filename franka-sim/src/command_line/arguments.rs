@@ -80,6 +80,11 @@ pub struct Arguments {
     #[arg(long, value_enum)]
     pub limits: Option<LimitsKind>,
 
+    /// Geometry of the reported poses and of the robot's inverse kinematics, in place of the arm's
+    /// own. The served description has its lengths. Errors of the links themselves come from --arm.
+    #[arg(long, value_enum)]
+    pub state_geometry: Option<GeometryKind>,
+
     /// Adds noise to the sensors, in place of the arm's own.
     #[arg(long)]
     pub noise: bool,
@@ -176,6 +181,17 @@ pub enum LimitsKind {
     /// Before 5.9
     #[value(name = "before-5.9")]
     Before5_9,
+}
+
+/// Geometries of the robot's own poses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum GeometryKind {
+    /// The vendor's description: upper arm 0.316 m, forearm 0.384 m
+    Described,
+    /// The recorded Franka Research 3: 0.3162 m and 0.3842 m
+    Recorded,
+    /// The vendor's description with 1 mm and 3 mrad of errors by --seed, which no client knows
+    Random,
 }
 
 /// The plants.

@@ -9,8 +9,8 @@ use franka_model::limits::JointLimits;
 use franka_model::{JointVector, Load, RobotKind};
 use nalgebra::{Matrix3, Vector3};
 
-use super::arguments::{Arguments, Kind, NetworkKind, PlantKind};
-use crate::arm::{Arm, Family, Sensors};
+use super::arguments::{Arguments, GeometryKind, Kind, NetworkKind, PlantKind};
+use crate::arm::{Arm, Family, Sensors, StateGeometry};
 use crate::network::{BurstLoss, Conditions, Loss};
 #[cfg(feature = "mujoco")]
 use crate::plant::{MujocoArm, Scene};
@@ -25,6 +25,13 @@ impl Arguments {
             (limits, _) => arm.limits = limits.map_or(arm.limits, Into::into),
         }
         let limits = arm.limits.joints(kind);
+        if let Some(geometry) = self.state_geometry {
+            arm.body.state_geometry = match geometry {
+                GeometryKind::Described => StateGeometry::DESCRIBED,
+                GeometryKind::Recorded => StateGeometry::RECORDED_FR3,
+                GeometryKind::Random => StateGeometry::random(self.seed),
+            };
+        }
         if self.noise {
             arm.sensors = Sensors {
                 torque_offset: arm.sensors.torque_offset,
@@ -240,6 +247,24 @@ mod tests {
         assert!(error.contains("-2.7501 to 2.7501"), "{error}");
         let error = parsed(&["--robot", "fer", "--limits", "5.9"]).config();
         assert!(error.expect_err("one table").contains("--robot fr3"));
+    }
+
+    #[test]
+    fn the_geometry_of_the_states_is_the_arms_or_the_chosen_one() {
+        let geometry = |arguments: &[&str]| {
+            let config = parsed(arguments).config().expect("an arm");
+            config.arm.expect("one").body.state_geometry
+        };
+        let described = StateGeometry::DESCRIBED;
+        assert_eq!(geometry(&[]), described);
+        for (name, expected) in [
+            ("described", described),
+            ("recorded", StateGeometry::RECORDED_FR3),
+            ("random", StateGeometry::random(3)),
+        ] {
+            let chosen = geometry(&["--state-geometry", name, "--seed", "3"]);
+            assert_eq!(chosen, expected, "{name}");
+        }
     }
 
     #[test]

@@ -78,12 +78,13 @@ impl Robot {
 
     /// Puts another arm in place of this one, at rest where this one stands and with its load, as
     /// [`place`](Self::place) does. Tool, settings, client and errors stay, and so do the joint
-    /// limits, which clients have read. The [stalls](Arm::stalls) of its network interface are not
-    /// its own here: see
+    /// limits and the geometry of the states, which clients have read. The [stalls](Arm::stalls) of
+    /// its network interface are not its own here: see
     /// [`Running::with_network`](crate::Running::with_network).
     pub fn fit(&mut self, arm: Arm) {
         let limits = self.arm.limits;
-        let arm = Arm { limits, ..arm };
+        let mut arm = Arm { limits, ..arm };
+        arm.body.state_geometry = self.arm.body.state_geometry;
         let q = *self.plant.q();
         self.plant.fit(self.config.kind, &arm);
         self.as_built = arm.body.as_built(self.config.kind);

@@ -49,7 +49,7 @@ use std::time::Duration;
 use franka_model::RobotKind;
 use tokio::sync::watch;
 
-use crate::arm::{Arm, SystemLimits};
+use crate::arm::{Arm, StateGeometry, SystemLimits};
 use crate::config::{Config, Tool};
 use crate::end_effector::{Fingers, Hand, Suction, VacuumGripper};
 use crate::network::Network;
@@ -194,6 +194,15 @@ impl Sim {
     pub fn limits(mut self, limits: SystemLimits) -> Self {
         let mut arm = self.config.chosen_arm();
         arm.limits = limits;
+        self.config.arm = Some(arm);
+        self
+    }
+
+    /// Computes the reported poses, the inverse kinematics and the served description with this
+    /// geometry, in place of the arm's own.
+    pub fn state_geometry(mut self, geometry: StateGeometry) -> Self {
+        let mut arm = self.config.chosen_arm();
+        arm.body.state_geometry = geometry;
         self.config.arm = Some(arm);
         self
     }

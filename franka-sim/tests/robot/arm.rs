@@ -135,6 +135,48 @@ fn the_state_has_the_models_pose_and_the_robot_the_true_one() {
 }
 
 #[test]
+fn what_the_state_reports_is_apart_from_where_the_links_are() {
+    use franka_model::{EndEffector, Frame, Model};
+    use franka_sim::arm::StateGeometry;
+
+    let random = StateGeometry::random(3);
+    for geometry in [StateGeometry::RECORDED_FR3, random] {
+        for error in [0.0, 0.004] {
+            let mut pair = pair(|arm| {
+                arm.body.state_geometry = geometry;
+                arm.body.kinematic_error[3].translation.vector.y = error;
+            });
+            pair.idle(100);
+            let shown = Vector3::from(pair.position());
+            let q = JointVector::from(pair.state.q);
+            let place = |model: &Model| {
+                let pose = model.pose(Frame::EndEffector, &q, &EndEffector::default());
+                Vector3::new(pose.m14, pose.m24, pose.m34)
+            };
+            let own = Model::fr3()
+                .clone()
+                .with_lengths(geometry.lengths)
+                .with_deviations(&geometry.deviations);
+            assert!((shown - place(&own)).norm() < 2e-6, "{geometry:?}");
+            let off = (shown - place(Model::fr3())).norm();
+            assert!((1e-4..4e-3).contains(&off), "{off}");
+            let truth = pair.robot.true_pose().translation.vector;
+            let apart = (shown - truth).norm();
+            let is_expected = if error == 0.0 {
+                apart < 1e-5
+            } else {
+                apart > 2e-3
+            };
+            assert!(is_expected, "{apart} m apart with an error of {error} m");
+            // The description has the lengths.
+            let text = pair.robot.description().expect("an FR3 serves one");
+            let expected = format!("xyz=\"0 -{} 0\"", geometry.lengths.upper_arm);
+            assert!(text.contains(&expected), "{expected}");
+        }
+    }
+}
+
+#[test]
 fn torques_come_in_quanta_and_noise_is_as_large_as_the_arm_says() {
     let mut pair = pair(|arm| {
         arm.sensors.torque_quantum = JointVector::repeat(0.025);

@@ -1,0 +1,62 @@
+//! Geometry that the robot computes its own poses with.
+
+use franka_model::geometry::Lengths;
+use franka_model::{Model, RobotKind};
+use nalgebra::{Isometry3, Vector3};
+
+use crate::noise::Random;
+
+/// Kinematics of the robot's controllers: of `O_T_EE` and all other poses in its states, and of its
+/// inverse kinematics. The served description has the lengths, not the deviations. The model of a
+/// client may differ from it, and so may the links: their
+/// [`kinematic_error`](super::Body::kinematic_error) comes on top.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StateGeometry {
+    /// Upper arm and forearm.
+    pub lengths: Lengths,
+    /// Pose of each joint's frame in the frame that an arm with these lengths has there.
+    pub deviations: [Isometry3<f64>; 7],
+}
+
+impl StateGeometry {
+    /// Geometry of the vendor's description.
+    pub const DESCRIBED: Self = Self::with(Lengths::DESCRIBED);
+
+    /// Geometry of the Franka Research 3 whose states were recorded: [`Lengths::RECORDED_FR3`].
+    pub const RECORDED_FR3: Self = Self::with(Lengths::RECORDED_FR3);
+
+    /// Joint frames that are off the described ones by 1 mm and 3 mrad altogether (root of the sum
+    /// of squares), equally for each joint, in directions drawn from `seed`. No client knows them.
+    pub fn random(seed: u64) -> Self {
+        let mut random = Random::new(seed);
+        let mut along = |size: f64| {
+            let direction = Vector3::from_fn(|_, _| random.normal());
+            direction.normalize() * (size / 7.0_f64.sqrt())
+        };
+        Self {
+            deviations: std::array::from_fn(|_| Isometry3::new(along(1e-3), along(3e-3))),
+            ..Self::DESCRIBED
+        }
+    }
+
+    const fn with(lengths: Lengths) -> Self {
+        const NONE: Isometry3<f64> = Isometry3 {
+            rotation: nalgebra::Unit::new_unchecked(nalgebra::Quaternion::new(1.0, 0.0, 0.0, 0.0)),
+            translation: nalgebra::Translation {
+                vector: Vector3::new(0.0, 0.0, 0.0),
+            },
+        };
+        Self {
+            lengths,
+            deviations: [NONE; 7],
+        }
+    }
+
+    /// The controllers' model of a robot with this geometry.
+    pub fn model(&self, kind: RobotKind) -> Model {
+        Model::physically_consistent(kind)
+            .clone()
+            .with_lengths(self.lengths)
+            .with_deviations(&self.deviations)
+    }
+}
