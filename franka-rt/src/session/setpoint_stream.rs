@@ -7,7 +7,7 @@ mod tests;
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, JointVector, Model, Twist, rotation, transform};
 use franka_proto::{RobotState, Version};
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use crate::control::{
     CartesianPose, CartesianVelocities, JointPositions, JointVelocities, MotionCommand, Shaper,
@@ -42,6 +42,39 @@ pub(super) struct SetpointStream {
     from: JointVector,
     /// What velocities make up for.
     drift: Drift,
+    /// Offset of the robot's poses from the model's.
+    offset: PoseOffset,
+}
+
+/// Offset of the robot's commanded pose from the pose of the model at the same joint positions.
+///
+/// The robot computes its poses with lengths of its own. Cartesian setpoints are poses of the model
+/// with this offset, so that they continue what the robot commands. It is fixed until the reference
+/// is taken from the robot again: an offset that followed the robot would hide a drift.
+#[derive(Clone, Copy, Debug)]
+struct PoseOffset {
+    /// Base axes, `[m]`.
+    translation: Vector3<f64>,
+    /// In the axes of the end effector: base axes would turn motions, too.
+    rotation: UnitQuaternion<f64>,
+}
+
+impl PoseOffset {
+    /// The offset of `robots` from `models`.
+    fn between(models: &Isometry3<f64>, robots: &Isometry3<f64>) -> Self {
+        Self {
+            translation: robots.translation.vector - models.translation.vector,
+            rotation: models.rotation.inverse() * robots.rotation,
+        }
+    }
+
+    /// Returns the robot's pose where the model has `pose`.
+    fn apply(&self, pose: &Isometry3<f64>) -> Isometry3<f64> {
+        Isometry3::from_parts(
+            (pose.translation.vector + self.translation).into(),
+            pose.rotation * self.rotation,
+        )
+    }
 }
 
 /// How far the robot's integrated position is from the reference, as far as that matters.
@@ -71,6 +104,10 @@ impl SetpointStream {
             last: None,
             from: JointVector::zeros(),
             drift: Drift::None,
+            offset: PoseOffset {
+                translation: Vector3::zeros(),
+                rotation: UnitQuaternion::identity(),
+            },
         }
     }
 
@@ -99,8 +136,8 @@ impl SetpointStream {
                 self.drift = Drift::Joints(joint_drift(&drift));
             }
             Setpoints::CartesianVelocities if !differs => {
-                let robots = transform::isometry_from_array(&state.O_T_EE_c);
-                let pose = pose_at(model, ee, &reference.q);
+                let pose = self.pose_at(model, ee, &reference.q);
+                let robots = commanded_pose(state);
                 let drift = robots.map_or(Twist::zeros(), |robots| twist(&pose, &robots));
                 differs = drift.amax() > is_off::POSE;
                 self.drift = Drift::Pose(pose_drift(&drift));
@@ -110,6 +147,9 @@ impl SetpointStream {
         let [q, dq, ddq] = [state.q_d, state.dq_d, state.ddq_d].map(JointVector::from);
         if differs {
             (self.from, self.drift) = (q, Drift::None);
+            if let Some(robots) = commanded_pose(state) {
+                self.offset = PoseOffset::between(&pose_of(model, ee, &q), &robots);
+            }
         }
         // The robot's velocity is the mean of its last cycle, the reference's that at the end of
         // it.
@@ -135,7 +175,7 @@ impl SetpointStream {
             (self.from, self.drift) = (reference.q, Drift::None);
         }
         let from = match self.setpoints {
-            Setpoints::CartesianVelocities => pose_at(model, ee, &self.from),
+            Setpoints::CartesianVelocities => self.pose_at(model, ee, &self.from),
             _ => Isometry3::identity(),
         };
         let wish = |q: &JointVector| self.setpoint(model, ee, &from, q);
@@ -149,8 +189,9 @@ impl SetpointStream {
             (Setpoints::CartesianPoses, MotionCommand::CartesianPose(pose))
                 if self.last.is_none() =>
             {
+                let start = commanded_pose(state);
                 let start = CartesianPose {
-                    O_T_EE: state.O_T_EE_c,
+                    O_T_EE: start.map_or(pose.O_T_EE, |start| transform::array(&start)),
                     ..*pose
                 };
                 (shape(&start.into()), false)
@@ -160,7 +201,7 @@ impl SetpointStream {
                 (shaped, !unchanged(&shaped, &wished))
             }
             (Setpoints::CartesianPoses | Setpoints::CartesianVelocities, _) => {
-                eased(wish, shape, reference, state)
+                eased(wish, shape, reference, &self.from, state)
             }
         };
         self.last = Some(wished);
@@ -185,7 +226,7 @@ impl SetpointStream {
                 JointVelocities(((q - self.from) / CYCLE + back).into()).into()
             }
             Setpoints::CartesianPoses => CartesianPose {
-                O_T_EE: transform::array(&pose_at(model, ee, q)),
+                O_T_EE: transform::array(&self.pose_at(model, ee, q)),
                 elbow: Some(elbow(q)),
             }
             .into(),
@@ -194,7 +235,7 @@ impl SetpointStream {
                     Drift::Pose(drift) => drift * RETURN,
                     Drift::Joints(_) | Drift::None => Twist::zeros(),
                 };
-                let velocity = twist(&pose_at(model, ee, q), from) / CYCLE + back;
+                let velocity = twist(&self.pose_at(model, ee, q), from) / CYCLE + back;
                 CartesianVelocities {
                     O_dP_EE: velocity.into(),
                     elbow: Some(elbow(q)),
@@ -203,17 +244,23 @@ impl SetpointStream {
             }
         }
     }
+
+    /// The robot's pose at these joint positions of the reference.
+    fn pose_at(&self, model: &Model, ee: &EndEffector, q: &JointVector) -> Isometry3<f64> {
+        self.offset.apply(&pose_of(model, ee, q))
+    }
 }
 
 /// The setpoint of `reference` within the limits of pose and elbow, and whether that took a change.
 ///
 /// A pose changed by the limiter would make the robot find other joints, with no limits applied. So
-/// the joints are held back instead, towards where they get without a jerk, by as much as the
-/// limiter held back their pose.
+/// the joints are held back instead, towards where they get from the last reference `from` without
+/// a jerk, by as much as the limiter held back their pose.
 fn eased(
     wish: impl Fn(&JointVector) -> MotionCommand,
     shape: impl Fn(&MotionCommand) -> MotionCommand,
     reference: &Reference,
+    from: &JointVector,
     state: &RobotState,
 ) -> (MotionCommand, bool) {
     let mut asked = wish(&reference.q);
@@ -221,8 +268,8 @@ fn eased(
     if unchanged(&shaped, &asked) {
         return (shaped, false);
     }
-    let [q, dq, ddq] = [state.q_d, state.dq_d, state.ddq_d].map(JointVector::from);
-    let coasting = q + (dq + ddq * CYCLE) * CYCLE;
+    let [dq, ddq] = [state.dq_d, state.ddq_d].map(JointVector::from);
+    let coasting = from + (dq + ddq * CYCLE) * CYCLE;
     let base = wish(&coasting);
     let mut share = 1.0;
     for _ in 0..EASINGS {
@@ -237,9 +284,16 @@ fn eased(
     (shaped, true)
 }
 
-/// The pose at these joint positions.
-fn pose_at(model: &Model, ee: &EndEffector, q: &JointVector) -> Isometry3<f64> {
+/// The model's pose at these joint positions.
+fn pose_of(model: &Model, ee: &EndEffector, q: &JointVector) -> Isometry3<f64> {
     rigid(&model.pose(Frame::EndEffector, q, ee))
+}
+
+/// Returns the robot's own commanded pose: `O_T_EE_c`, or `O_T_EE_d` or `O_T_EE` if a robot leaves
+/// the former at zero. `None` if none of them is a rigid transform.
+fn commanded_pose(state: &RobotState) -> Option<Isometry3<f64>> {
+    let poses = [&state.O_T_EE_c, &state.O_T_EE_d, &state.O_T_EE];
+    poses.into_iter().find_map(transform::isometry_from_array)
 }
 
 /// Displacement and rotation vector from one pose to another, base axes, `[m, rad]`.

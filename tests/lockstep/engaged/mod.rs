@@ -1,5 +1,6 @@
 //! Sessions that go from goal to goal.
 //!
+//! * `geometry`: robots that compute their poses with another geometry.
 //! * `lapses`: timeouts of streams and deadmen.
 //! * `options`: gains, force cap and regions.
 //! * `backends`: the robot's own controller, and observers.
@@ -13,6 +14,7 @@ mod backends;
 mod chunks;
 mod controllers;
 mod corners;
+mod geometry;
 mod lapses;
 mod options;
 mod speed_cap;

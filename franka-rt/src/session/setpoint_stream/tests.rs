@@ -22,7 +22,7 @@ fn resting() -> RobotState {
         ..RobotState::default()
     };
     let tool = crate::session::end_effector_of(&state).expect("a rigid one");
-    state.O_T_EE_c = transform::array(&pose_at(Model::fr3(), &tool, &READY));
+    state.O_T_EE_c = transform::array(&pose_of(Model::fr3(), &tool, &READY));
     state
 }
 
