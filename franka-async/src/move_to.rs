@@ -338,7 +338,7 @@ pub struct Moving {
 #[derive(Debug)]
 enum Stage {
     /// Or options that are not accepted.
-    Ready(Result<Beginning, GoalError>),
+    Ready(Result<Box<Beginning>, GoalError>),
     Begun(oneshot::Receiver<Outcome>),
     Over,
 }
@@ -355,7 +355,7 @@ impl Moving {
         Self {
             canceller,
             session,
-            stage: Stage::Ready(motion),
+            stage: Stage::Ready(motion.map(Box::new)),
         }
     }
 
@@ -372,7 +372,7 @@ impl Future for Moving {
             Stage::Ready(Err(error)) => return Poll::Ready(Err(error.into())),
             Stage::Ready(Ok(mut motion)) => {
                 plan_line(&mut motion, self.canceller.robot(), self.session.as_deref());
-                match self.canceller.begin(motion) {
+                match self.canceller.begin(*motion) {
                     Some(outcome) => outcome,
                     None => return Poll::Ready(Err(MotionError::Stopped)),
                 }

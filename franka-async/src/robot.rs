@@ -250,7 +250,7 @@ impl Robot {
         match &self.shared.shutdowns {
             // Fails if the task has ended.
             Some(shutdowns) => drop(shutdowns.send(reply)),
-            None => self.send(Input::Shutdown { ended: reply }),
+            None => drop(self.send(Input::Shutdown { ended: reply })),
         }
         // An error means that the bridge has ended already.
         let _ = ended.await;

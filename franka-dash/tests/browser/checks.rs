@@ -276,7 +276,7 @@ fn lose_the_hold(page: &Browser, served: &Served) -> anyhow::Result<()> {
 /// space bar stops.
 fn checkbox(page: &Browser, _: &Served) -> anyhow::Result<()> {
     take(page)?;
-    let compensates = || Ok(page.state()?["status"]["tuning"]["compensation"] == true);
+    let compensates = || anyhow::Ok(page.state()?["status"]["tuning"]["compensation"] == true);
     let press = |key: &str| page.key("keyDown", key).and(page.key("keyUp", key));
     let tab = "\u{e004}";
     let sliders = "const it = [...document.querySelectorAll('#tuning input[type=range]')].at(-1);";

@@ -145,7 +145,7 @@ impl<'a> Line<'a> {
             budget,
             model,
             ee,
-            clearance: Clearance::new(model.kind(), hand, KeepOut::default()),
+            clearance: Clearance::new(model, hand, KeepOut::default()),
         })
     }
 
