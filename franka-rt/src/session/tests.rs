@@ -7,7 +7,7 @@ use franka_model::{JointVector, READY, transform};
 use nalgebra::Isometry3;
 
 /// The size of a sample: the first with `FRANKA_THOROUGH=1`, as in the nightly run.
-pub fn sample(thorough: usize, otherwise: usize) -> usize {
+pub(crate) fn sample(thorough: usize, otherwise: usize) -> usize {
     match std::env::var("FRANKA_THOROUGH") {
         Ok(value) if value == "1" => thorough,
         _ => otherwise,
