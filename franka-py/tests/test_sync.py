@@ -156,3 +156,10 @@ def test_tools_and_a_team(sim_fr3: Sim, sim_fer: Sim, tmp_path: Path, monkeypatc
             assert right.pose()[2, 3] < height - 0.02
             with pytest.raises(TypeError, match="got 1 motions, expected 2: one for each arm"):
                 team.run([lambda arm: arm.hold()])
+
+
+def test_keyword_arguments_are_taken_as_positional_ones_are(sim: Sim, tmp_path: Path) -> None:
+    with sync.Robot(sim.address, **PATIENT) as robot, sync.Recorder.to_file(tmp_path / "run.mcap") as recorder:
+        recorder.attach(robot=robot)
+        with pytest.raises(FrankaError, match="not connected"):
+            recorder.attach_gripper(gripper=sync.Gripper("127.0.0.1"))

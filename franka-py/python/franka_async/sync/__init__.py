@@ -56,6 +56,11 @@ def _awaiting(argument: Any) -> Any:
     return getattr(argument, "_awaiting", argument)
 
 
+def _unwrapped(arguments: Sequence[Any], keywords: dict[str, Any]) -> tuple[list[Any], dict[str, Any]]:
+    """The arguments of a call there for those of a call here."""
+    return [_awaiting(argument) for argument in arguments], {name: _awaiting(value) for name, value in keywords.items()}
+
+
 def _result(result: Any) -> Any:
     """What a method returns here for what it returns there."""
     if isinstance(result, _native.Operation):
@@ -75,7 +80,8 @@ def _class(of: type) -> Any:
     def method(name: str, there: Any) -> Any:
         @functools.wraps(there)
         def call(self: Any, *arguments: Any, **keywords: Any) -> Any:
-            result = _result(getattr(self._awaiting, name)(*map(_awaiting, arguments), **keywords))
+            arguments, keywords = _unwrapped(arguments, keywords)
+            result = _result(getattr(self._awaiting, name)(*arguments, **keywords))
             return self if result.__class__ is self.__class__ and result._awaiting is self._awaiting else result
 
         return call
@@ -83,7 +89,8 @@ def _class(of: type) -> Any:
     def function(there: Any) -> Any:
         @functools.wraps(there)
         def call(*arguments: Any, **keywords: Any) -> Any:
-            return _result(there(*map(_awaiting, arguments), **keywords))
+            arguments, keywords = _unwrapped(arguments, keywords)
+            return _result(there(*arguments, **keywords))
 
         return staticmethod(call)
 
@@ -91,6 +98,7 @@ def _class(of: type) -> Any:
         return property(lambda self: _result(getattr(self._awaiting, name)), doc=there.__doc__)
 
     def __init__(self: Any, *arguments: Any, **keywords: Any) -> None:
+        arguments, keywords = _unwrapped(arguments, keywords)
         self._awaiting = of(*arguments, **keywords)
 
     members: dict[str, Any] = {"__doc__": of.__doc__, "__module__": __name__, "__slots__": ()}
