@@ -131,3 +131,16 @@ def test_waiting_works_where_an_event_loop_runs() -> None:
             return str(robot.read_once().robot_mode.name)
 
     assert asyncio.run(cell()) == "Idle"
+
+
+@pytest.mark.parametrize("name", ["ActiveControlBase", "AsyncPositionControlHandler", "Duration", "GripperState", "Model", "RobotState"])
+def test_classes_of_pylibfranka_without_a_constructor_make_nothing(name: str) -> None:
+    for arguments in ((), (5,)):
+        with pytest.raises(TypeError, match="No constructor defined"):
+            getattr(pylibfranka_layer, name)(*arguments)
+
+
+def test_robot_of_pylibfranka_is_looked_for_before_the_real_time_kernel() -> None:
+    for realtime in pylibfranka_layer.RealtimeConfig:
+        with pytest.raises(pylibfranka_layer.NetworkException):
+            pylibfranka_layer.Robot("127.255.255.1", realtime)

@@ -10,7 +10,7 @@ from ... import _native, errors
 from .._waiting import wait
 from ._commands import number, numbers
 from ._robot import Robot
-from ._state import RobotState, _Number
+from ._state import NoConstructor, RobotState, _Number, made
 
 _ABORTED = "Control interface is in aborted state."
 
@@ -43,7 +43,7 @@ def _check(name: str, value: object, expected: type) -> None:
         raise TypeError(f"{name}: got {type(value).__name__}, expected {expected.__name__}")
 
 
-class AsyncPositionControlHandler:
+class AsyncPositionControlHandler(metaclass=NoConstructor):
     """A motion between sparse joint targets. Made by ``configure``."""
 
     class Configuration:
@@ -94,7 +94,7 @@ class AsyncPositionControlHandler:
             control = wait(begin(configuration.maximum_joint_velocities, configuration.goal_tolerance))
         except (errors.FrankaError, ValueError) as error:
             return result(None, str(error))
-        return result(AsyncPositionControlHandler(control), None)
+        return result(made(AsyncPositionControlHandler, control), None)
 
     def set_joint_position_target(self, target: JointPositionTarget, /) -> CommandResult:
         """Sends the robot to a target, wherever it was going before."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from ... import _native
 from .._gripper import VERSION, Fingers
 from ._exceptions import CommandException, NetworkException, translated
-from ._state import Duration
+from ._state import Duration, NoConstructor, made
 
 
-class GripperState:
+class GripperState(metaclass=NoConstructor):
     """What the Hand says of itself."""
 
     __slots__ = ("is_grasped", "max_width", "temperature", "time", "width")
@@ -18,7 +18,7 @@ class GripperState:
         self.max_width: float = state.max_width
         self.is_grasped: bool = state.is_grasped
         self.temperature: int = state.temperature
-        self.time = Duration(state.time)
+        self.time = made(Duration, state.time)
 
 
 class Gripper(Fingers):
@@ -39,7 +39,7 @@ class Gripper(Fingers):
         state = self._next()
         if state is None:
             raise NetworkException("libfranka gripper: UDP receive: Timeout")
-        return GripperState(state)
+        return made(GripperState, state)
 
     def server_version(self) -> int:
         """Returns the version that the Hand speaks."""

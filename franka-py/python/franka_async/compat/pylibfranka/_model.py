@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 
 from ... import _native
-from ._state import RobotState
+from ._state import NoConstructor, RobotState
 
 _FRAMES = ("joint1", "joint2", "joint3", "joint4", "joint5", "joint6", "joint7", "flange", "ee", "stiffness")
 
 
-class Model:
+class Model(metaclass=NoConstructor):
     """Dynamics and Jacobians for a state, as lists, column by column."""
 
     def __init__(self, model: _native.Model) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ... import _native
+from ... import _native, errors
 from .._waiting import changed, wait
 from ._commands import (
     CartesianPose,
@@ -28,7 +28,7 @@ from ._exceptions import (
     translated,
 )
 from ._model import Model
-from ._state import ControllerMode, Duration, RealtimeConfig, RobotState
+from ._state import ControllerMode, Duration, NoConstructor, RealtimeConfig, RobotState, made
 
 _CONTROLLERS = {
     ControllerMode.JointImpedance: "joint_impedance",
@@ -38,7 +38,7 @@ _AFTER = "writeOnce must not be called after the motion has finished."
 _WRONG = "Wrong writeOnce method called for currently active control!"
 
 
-class ActiveControlBase:
+class ActiveControlBase(metaclass=NoConstructor):
     """A motion whose states and commands the program reads and writes itself, one after the other, once a millisecond."""
 
     def __init__(self, control: _native.ActiveControl, command: type) -> None:
@@ -59,7 +59,7 @@ class ActiveControlBase:
             if self._is_preempted:
                 raise ControlException(PREEMPTED) from error
             raise
-        return RobotState(state), Duration(step)
+        return made(RobotState, state), made(Duration, step)
 
     def writeOnce(self, command: Any, /) -> None:
         """Sends the command that answers the newest state; with ``motion_finished`` it ends the motion."""
@@ -102,18 +102,26 @@ class Robot:
         self._robot = _native.Robot(robot_ip_address, realtime=realtime)
         self._active: weakref.ref[ActiveControlBase] | None = None
         with translated():
-            wait(self._robot.connect())
+            try:
+                wait(self._robot.connect())
+            except errors.ConnectError as error:
+                # The original looks for the robot first, and then at this computer.
+                if error.kind == "realtime":
+                    robot = _native.Robot(robot_ip_address, realtime="ignore")
+                    wait(robot.connect())
+                    wait(robot.shutdown())
+                raise
 
     def read_once(self) -> RobotState:
         """Waits for the next state; under active control, which reads them all, returns the newest."""
         active = self._active and self._active()
         with translated():
             if active and not active._is_over:
-                return RobotState(self._robot.state())
+                return made(RobotState, self._robot.state())
             state = changed(self._robot.state, lambda state: state.time_ms)
         if state is None:
             raise NetworkException(SILENT)
-        return RobotState(state)
+        return made(RobotState, state)
 
     def start_torque_control(self) -> ActiveControlBase:
         """Begins control by torques."""
@@ -141,7 +149,7 @@ class Robot:
                 raise TypeError(f"control_type: got {one!r}, expected ControllerMode")
         with translated():
             control = wait(begin(*(_CONTROLLERS[one] for one in mode)))
-        active = ActiveControlBase(control, command)
+        active = made(ActiveControlBase, control, command)
         self._active = weakref.ref(active)
         return active
 
@@ -211,7 +219,7 @@ class Robot:
     def load_model(self) -> Model:
         """Returns the model of this arm."""
         with translated():
-            return Model(self._robot.model())
+            return made(Model, self._robot.model())
 
     def stop(self) -> None:
         """Stops whatever moves; its ``readOnce`` raises ControlException."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import enum
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -53,7 +53,23 @@ class RobotMode(_Number):
     AutomaticErrorRecovery = 6
 
 
-class Duration:
+class NoConstructor(type):
+    """Classes whose objects come from the package only, as in the original."""
+
+    def __call__(cls, *_arguments: Any, **_keywords: Any) -> Any:
+        raise TypeError(f"pylibfranka.{cls.__qualname__}: No constructor defined!")
+
+
+_T = TypeVar("_T")
+
+
+def made(of: Callable[..., _T], *arguments: Any) -> _T:
+    """An object of a class without a constructor."""
+    instance: _T = type.__call__(of, *arguments)
+    return instance
+
+
+class Duration(metaclass=NoConstructor):
     """A time."""
 
     __slots__ = ("_seconds",)
@@ -131,7 +147,7 @@ class _Field:
         state._values[self.name] = self.take(value)
 
 
-class RobotState:
+class RobotState(metaclass=NoConstructor):
     """Everything that the robot says in one millisecond. Arrays are lists, poses 16 numbers column by column.
 
     A program may set its attributes; the robot does not see that.
@@ -173,7 +189,7 @@ def _fields() -> Iterable[_Field]:
             yield _Field(name, _listed, lambda values, n=name, c=length: numbers(f"RobotState.{n}", values, c))
     for name in ("m_ee", "m_load", "m_total", "control_command_success_rate"):
         yield _Field(name, float, lambda value, n=name: number(f"RobotState.{n}", value))
-    yield _Field("time", Duration, _taking("time", Duration))
+    yield _Field("time", lambda seconds: made(Duration, seconds), _taking("time", Duration))
     yield _Field("robot_mode", _MODES.__getitem__, _taking("robot_mode", RobotMode))
     for name in ("current_errors", "last_motion_errors"):
         yield _Field(name, Errors, _taking(name, Errors))
