@@ -13,6 +13,8 @@ use franka_proto::{Errors, RobotError};
 #[must_use = "a policy does nothing until a robot is supervised by it"]
 pub struct Policy {
     pub(super) recovery: Option<Recovery>,
+    /// A reflex with any other error is left alone.
+    pub(super) only: Option<Errors>,
     pub(super) agreement: bool,
     pub(super) reconnect: Option<Backoff>,
     pub(super) give_up_after: Option<Duration>,
@@ -26,8 +28,6 @@ pub struct Policy {
 pub(super) struct Recovery {
     pub(super) times: u32,
     pub(super) window: Duration,
-    /// A reflex with any other error is left alone.
-    pub(super) only: Option<Errors>,
 }
 
 /// How long to wait between two attempts: after the first one `first`, after each other one twice
@@ -58,6 +58,7 @@ impl Default for Policy {
     fn default() -> Self {
         Self {
             recovery: None,
+            only: None,
             agreement: false,
             reconnect: Some(Backoff::default()),
             give_up_after: None,
@@ -72,21 +73,14 @@ impl Policy {
     /// Recovers from reflexes by itself, `times` within any `window` at most, attempts that fail
     /// included. A reflex beyond that is left to a person.
     pub fn recover(mut self, times: u32, window: Duration) -> Self {
-        let only = self.recovery.and_then(|recovery| recovery.only);
-        self.recovery = Some(Recovery {
-            times,
-            window,
-            only,
-        });
+        self.recovery = Some(Recovery { times, window });
         self
     }
 
-    /// Of the reflexes that [`Self::recover`] is for, recovers from those only whose errors are all
-    /// among these. Without effect if it is not called before.
+    /// Limits [`Self::recover`] to reflexes all of whose errors are among these. A reflex whose
+    /// state names no error is left alone, too.
     pub fn only(mut self, errors: impl IntoIterator<Item = RobotError>) -> Self {
-        if let Some(recovery) = &mut self.recovery {
-            recovery.only = Some(errors.into_iter().collect());
-        }
+        self.only = Some(errors.into_iter().collect());
         self
     }
 

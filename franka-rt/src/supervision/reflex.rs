@@ -166,7 +166,7 @@ impl ReflexCase {
             && mode == RobotMode::Reflex
         {
             let may = recovery
-                .is_some_and(|Recovery { times, window, .. }| attempts.note(times, window, now));
+                .is_some_and(|Recovery { times, window }| attempts.note(times, window, now));
             if may {
                 self.enter(Stage::Requested { failed });
                 return Some(Step::Recover);
@@ -213,12 +213,9 @@ impl Stage {
         let Some((policy, recovery)) = policy.and_then(|it| Some((it, it.recovery?))) else {
             return Self::Left(NotRecovered::Never);
         };
-        let Recovery {
-            times,
-            window,
-            only,
-        } = recovery;
-        if only.is_some_and(|only| only.union(errors) != only) {
+        let Recovery { times, window } = recovery;
+        let among = |only: Errors| errors != Errors::NONE && only.union(errors) == only;
+        if policy.only.is_some_and(|only| !among(only)) {
             Self::Left(NotRecovered::OtherError)
         } else if !attempts.may(times, window, now) {
             Self::Left(NotRecovered::TooOften)
@@ -231,7 +228,7 @@ impl Stage {
 
     fn again(failed: u32, pauses: &mut Pauses, now: Duration) -> Self {
         Self::Due {
-            at: now + pauses.after(failed),
+            at: now.saturating_add(pauses.after(failed)),
             failed,
         }
     }

@@ -83,8 +83,11 @@ fn it_recovers_as_often_as_the_policy_allows_and_from_the_errors_that_it_names()
     assert_eq!(robot.recoveries(), [1, 2, 4], "the window has passed");
 
     let only = without_chance().recover(9, WINDOW).only([COLLISION]);
+    assert_eq!(without_chance().only([COLLISION]).recover(9, WINDOW), only);
     for (errors, left) in [
         (vec![COLLISION], None),
+        // A reflex whose state names no error may be any.
+        (vec![], Some(NotRecovered::OtherError)),
         (
             vec![COLLISION, RobotError::PowerLimitViolation],
             Some(NotRecovered::OtherError),
