@@ -2,7 +2,7 @@
 
 use franka_model::{JointVector, Load, Model};
 use franka_proto::RobotState;
-use nalgebra::{SMatrix, SVector, Vector4};
+use nalgebra::{SMatrix, SVector, Vector3, Vector4};
 
 use super::{Estimate, Identified, IdentifiedJoint, IdentifiedLoad, Plan, declared, load_gravity};
 use crate::driver::Record;
@@ -16,6 +16,8 @@ pub struct Fit {
     total: Load,
     /// What it was told of the load: mass and moment.
     declared: Vector4<f64>,
+    /// Acceleration of gravity in the base frame, `[m/s²]`.
+    gravity: Vector3<f64>,
     steady: Steady,
     windows: Vec<Window>,
 }
@@ -85,8 +87,8 @@ pub enum FitError {
 type Unknowns = SVector<f64, 18>;
 
 impl Fit {
-    /// Begins for an arm of this model that is in this state: end effector and declared load are to
-    /// stay as they are.
+    /// Begins for an arm of this model that is in this state: end effector, declared load and base
+    /// are to stay as they are.
     pub fn new(model: &Model, state: &RobotState) -> Self {
         let end_effector = Load::from_arrays(state.m_ee, &state.F_x_Cee, &state.I_ee);
         let load = Load::from_arrays(state.m_load, &state.F_x_Cload, &state.I_load);
@@ -94,6 +96,7 @@ impl Fit {
             model: model.clone(),
             total: end_effector.combine(&load),
             declared: declared(state),
+            gravity: state.O_ddP_O.into(),
             steady: Steady::default(),
             windows: Vec::new(),
         }
@@ -136,7 +139,7 @@ impl Fit {
             let window = Window {
                 signs,
                 takes: tau - self.model.coriolis(&q, &dq, &self.total),
-                gravity: load_gravity(&self.model, &q),
+                gravity: load_gravity(&self.model, &q, &self.gravity),
                 stroke: on.stroke,
             };
             let mut numbers = window.takes.iter().chain(&window.gravity);

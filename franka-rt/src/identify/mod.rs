@@ -9,14 +9,15 @@
 //! A `Plan` says what would move. While its motions run, a `Fit` takes the record of every
 //! cycle. In steady motion a joint takes `direction * friction + bias + G(q) load`: a bias that
 //! changes with the pose as the gravity of a load does is a load, the rest belongs to the joint.
-//! What the robot was told of a load counts as part of it. Nothing here is sent to a robot.
+//! What the robot was told of a load counts as part of it. Gravity points where the state has it,
+//! `O_ddP_O`. Nothing here is sent to a robot.
 
 mod fit;
 mod plan;
 
 use core::fmt;
 
-use franka_model::{GRAVITY_EARTH, JointVector, Load, Model, RobotKind};
+use franka_model::{JointVector, Load, Model, RobotKind};
 use franka_proto::RobotState;
 use nalgebra::{SMatrix, Vector3, Vector4};
 
@@ -168,7 +169,7 @@ impl Identified {
         let IdentifiedLoad { mass, moment } = self.load;
         let [x, y, z] = moment.map(|of| of.value);
         let load = Vector4::new(mass.value, x, y, z) - declared(state);
-        let gravity = load_gravity(model, &state.q.into());
+        let gravity = load_gravity(model, &state.q.into(), &state.O_ddP_O.into());
         let [x, y, z] = moment.map(|of| of.deviation);
         let unsure = Vector4::new(mass.deviation, x, y, z);
         Learned::known(core::array::from_fn(|i| {
@@ -198,18 +199,18 @@ impl fmt::Display for Identified {
 }
 
 /// Torques that hold a load per mass and per mass times centre of mass, flange frame, `[N m/kg]`
-/// and `[N m/(kg m)]`: they are linear in both.
-fn load_gravity(model: &Model, q: &JointVector) -> SMatrix<f64, 7, 4> {
+/// and `[N m/(kg m)]`: they are linear in both. `gravity` is in the base frame, `[m/s²]`.
+fn load_gravity(model: &Model, q: &JointVector, gravity: &Vector3<f64>) -> SMatrix<f64, 7, 4> {
     let at = |com: Vector3<f64>| {
         let load = Load {
             mass: 1.0,
             com,
             ..Load::NONE
         };
-        model.gravity(q, &load, &GRAVITY_EARTH)
+        model.gravity(q, &load, gravity)
     };
     let flange = at(Vector3::zeros());
-    let mass = flange - model.gravity(q, &Load::NONE, &GRAVITY_EARTH);
+    let mass = flange - model.gravity(q, &Load::NONE, gravity);
     let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| at(axis) - flange);
     SMatrix::from_columns(&[mass, x, y, z])
 }
@@ -228,6 +229,8 @@ const MASS_MAX: f64 = 20.0;
 
 #[cfg(test)]
 mod tests {
+    use franka_model::GRAVITY_EARTH;
+
     use super::*;
 
     fn found() -> Identified {
@@ -286,6 +289,7 @@ mod tests {
         let model = Model::fr3();
         let mut state = RobotState {
             q: franka_model::READY.into(),
+            O_ddP_O: GRAVITY_EARTH.into(),
             ..RobotState::default()
         };
         let joint = |state: &RobotState| {
@@ -298,6 +302,32 @@ mod tests {
         state.m_load = 0.5;
         state.F_x_Cload = [0.0, 0.02, 0.1];
         assert!((joint(&state) + 0.3).abs() < 1e-9);
+    }
+
+    /// The robot reports the acceleration of its base: gravity, in the axes of the base.
+    #[test]
+    fn a_load_pulls_where_the_base_is_mounted_to() {
+        let model = Model::fr3();
+        let bias = |gravity: Vector3<f64>| {
+            let state = RobotState {
+                q: franka_model::READY.into(),
+                O_ddP_O: gravity.into(),
+                ..RobotState::default()
+            };
+            found().learned(model, &state).of(3).1 + 0.3
+        };
+        let upright = bias(GRAVITY_EARTH);
+        assert!((2.0..3.0).contains(&upright));
+        assert!((bias(-GRAVITY_EARTH) + upright).abs() < 1e-9, "hanging");
+        let load = Load {
+            mass: 0.5,
+            com: Vector3::new(0.0, 0.02, 0.1),
+            ..Load::NONE
+        };
+        let sideways = Vector3::new(9.81, 0.0, 0.0);
+        let of = |load| model.gravity(&franka_model::READY, load, &sideways)[3];
+        let expected = of(&load) - of(&Load::NONE);
+        assert!((bias(sideways) - expected).abs() < 1e-9, "on a wall");
     }
 
     #[test]
