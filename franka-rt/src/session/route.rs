@@ -261,7 +261,7 @@ impl Route {
         self.hindered = self.hindered.saturating_sub(1);
         let guided = (arm, &aim.leash);
         if let Pace::Braked(since) = &mut self.pace {
-            *since += 1;
+            *since = since.saturating_add(1);
             if *since < RETRY || self.left_chunk || !self.course.is_done() {
                 self.hindered = HINDERED;
                 return self.course.step(model, ee, posture, reference, guided, now);

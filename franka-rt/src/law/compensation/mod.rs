@@ -207,7 +207,10 @@ impl Compensation {
             && towards < CREEP * e.abs();
         let slow = creeps || demand.dq[i].abs() < REST_VELOCITY;
         let rests = !held && v.abs() < MOVING && slow;
-        self.rested[i] = if rests { self.rested[i] + 1 } else { 0 };
+        self.rested[i] = match rests {
+            true => self.rested[i].saturating_add(1),
+            false => 0,
+        };
         let sticks = friction > 0.0;
         let rest = &mut self.rest[i];
         if held || v.abs() > MOVING {
@@ -383,6 +386,17 @@ mod tests {
         let at_once = run(&mut this, 1, 0.0, 5e-4, 0.05);
         assert_eq!(run(&mut this, RESTED[1] - 1, 0.0, 5e-4, 0.05), at_once);
         assert!(run(&mut this, 100, 0.0, 5e-4, 0.05) > at_once + 0.05);
+    }
+
+    /// Cycles are counted for longer than a counter of them holds: 49.7 days.
+    #[test]
+    fn an_arm_may_rest_for_months() {
+        let mut this = learned(0.8, 0.0);
+        run(&mut this, 5000, 0.0, 2e-4, 0.05);
+        this.rested = [u32::MAX; 7];
+        let before = run(&mut this, 1, 0.0, 2e-4, 0.05);
+        assert_eq!(run(&mut this, 100, 0.0, 2e-4, 0.05), before);
+        assert_eq!(this.rested, [u32::MAX; 7]);
     }
 
     #[test]
