@@ -340,6 +340,7 @@ fn bad_goals_are_named_and_change_nothing() {
         MotionError::Goal(GoalError::Budget {
             what: "joint velocity",
             got: 3.0,
+            least: 1e-6,
             most: 2.62
         })
     );

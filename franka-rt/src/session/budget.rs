@@ -66,6 +66,10 @@ impl Budget {
         }
     }
 
+    /// Least velocity, acceleration and jerk of every axis, in its units. The default budget at
+    /// [`Self::SPEED_MIN`] has more. A joint needs days with them for a third of a radian.
+    pub const LIMITS_MIN: [f64; 3] = [1e-6, 1e-9, 1e-12];
+
     /// Least factor that [`Self::at_speed`] takes.
     pub const SPEED_MIN: f64 = 1e-4;
 

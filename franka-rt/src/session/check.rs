@@ -277,23 +277,23 @@ fn check_reach(
 /// How far the length of a quaternion may be from 1: products of many drift.
 const LENGTH_ERROR: f64 = 1e-3;
 
-/// Least limit that is accepted: plans within smaller ones are too long to be made.
-const LIMIT_MIN: f64 = 1e-20;
-
 fn check_budget(budget: &Budget, model: &Model) -> Result<(), GoalError> {
     let joints = model.joint_limits();
     let cartesian = model.cartesian_limits();
-    let check = |what, got: f64, most: f64| {
-        if (LIMIT_MIN..=most).contains(&got) {
-            Ok(())
-        } else {
-            Err(GoalError::Budget { what, got, most })
-        }
-    };
     let axis = |what: [&'static str; 3], l: &AxisLimits, most: [f64; 3]| {
-        check(what[0], l.velocity, most[0])?;
-        check(what[1], l.acceleration, most[1])?;
-        check(what[2], l.jerk, most[2])
+        let limits = [l.velocity, l.acceleration, l.jerk];
+        for (i, got) in limits.into_iter().enumerate() {
+            let (what, least, most) = (what[i], Budget::LIMITS_MIN[i], most[i]);
+            if !(least..=most).contains(&got) {
+                return Err(GoalError::Budget {
+                    what,
+                    got,
+                    least,
+                    most,
+                });
+            }
+        }
+        Ok(())
     };
     for (i, l) in budget.joints.iter().enumerate() {
         let most = [joints.velocity[i], joints.acceleration[i], joints.jerk[i]];

@@ -68,14 +68,16 @@ pub enum GoalError {
         /// to keep out of are not considered. `None` if none were found.
         posture: Option<[f64; 7]>,
     },
-    /// A limit of the budget is not positive, or as good as zero, or exceeds the robot's.
-    #[error("{what} limit {got}, expected above 0 and at most {most}")]
+    /// A limit of the budget is less than [`Budget::LIMITS_MIN`], or exceeds the robot's.
+    #[error("{what} limit {got}, expected between {least} and {most}")]
     Budget {
         /// Which limit.
         what: &'static str,
         /// The value given.
         got: f64,
-        /// What the robot accepts.
+        /// The least value that is accepted.
+        least: f64,
+        /// The robot's own limit.
         most: f64,
     },
     /// A speed is not positive, or takes a limit beyond the robot's.

@@ -4,6 +4,7 @@ use super::condition::{elapsed, force_z};
 use super::*;
 use crate::slot::{SlotWriter, slot};
 use franka_model::{JointVector, READY, transform};
+use franka_otg::AxisLimits;
 use nalgebra::Isometry3;
 
 /// The size of a sample: the first with `FRANKA_THOROUGH=1`, as in the nightly run.
@@ -199,4 +200,79 @@ fn a_goal_that_waits_for_its_common_start_does_not_react_before_it() {
         }
     }
     panic!("no reaction");
+}
+
+/// A budget that a goal may not have, by a session that does not look at it.
+#[test]
+fn a_time_too_long_for_a_duration_does_not_panic() {
+    let mut arm = Arm::new();
+    let mut q: [f64; 7] = READY.into();
+    q[0] += 0.3;
+    let limits = Model::fr3().joint_limits();
+    let mut goal = Goal::new(GoalId(1), q.into(), OnArrival::ReportAndHold, limits);
+    for joint in &mut goal.budget.joints {
+        joint.velocity = 1e-20;
+    }
+    arm.goals.write(&goal);
+    arm.answer(Gate::Open);
+    arm.session.prepare();
+    let step = arm.answer(Gate::Open);
+    assert_eq!(step.trace.remaining, Duration::MAX);
+}
+
+#[test]
+fn a_budget_has_least_limits_with_which_a_plan_ends() {
+    let (model, state) = (Model::fr3(), Arm::new().state);
+    let mut q: [f64; 7] = READY.into();
+    q[0] += 0.3;
+    let limits = model.joint_limits();
+    let goal = Goal::new(GoalId(1), q.into(), OnArrival::ReportAndHold, limits);
+    let slowest = goal.budget.at_speed(Budget::SPEED_MIN, model).unwrap();
+    let slow = Goal {
+        budget: slowest,
+        ..goal
+    };
+    assert_eq!(slow.check(model, &state), Ok(()));
+    let [velocity, acceleration, jerk] = Budget::LIMITS_MIN;
+    let least = AxisLimits {
+        velocity,
+        acceleration,
+        jerk,
+    };
+    type Limit = fn(&mut AxisLimits) -> &mut f64;
+    let each: [Limit; 3] = [
+        |l| &mut l.velocity,
+        |l| &mut l.acceleration,
+        |l| &mut l.jerk,
+    ];
+    for axis in 0..9 {
+        let with = |limits: AxisLimits| {
+            let mut goal = goal;
+            *match axis {
+                0..7 => &mut goal.budget.joints[axis],
+                7 => &mut goal.budget.translation,
+                _ => &mut goal.budget.rotation,
+            } = limits;
+            goal.check(model, &state)
+        };
+        assert_eq!(with(least), Ok(()), "axis {axis}");
+        for limit in each {
+            let mut smaller = least;
+            *limit(&mut smaller) *= 0.9;
+            let error = with(smaller).unwrap_err();
+            assert!(matches!(error, GoalError::Budget { .. }), "{error}");
+        }
+    }
+    let mut arm = Arm::new();
+    arm.goals.write(&Goal {
+        budget: Budget {
+            joints: [least; 7],
+            ..goal.budget
+        },
+        ..goal
+    });
+    arm.answer(Gate::Open);
+    arm.session.prepare();
+    let days = arm.answer(Gate::Open).trace.remaining.as_secs() / 86_400;
+    assert!((1..30).contains(&days), "{days} days");
 }

@@ -443,7 +443,10 @@ impl RunningSession {
                 reference: self.reference,
                 target: Some(self.target_at(state.message_id)),
                 elapsed: Duration::from_millis(state.message_id - self.since),
-                remaining: Duration::from_secs_f64(self.route.course.remaining(state.message_id)),
+                remaining: Duration::try_from_secs_f64(
+                    self.route.course.remaining(state.message_id),
+                )
+                .unwrap_or(Duration::MAX),
                 compensation: match &self.drive {
                     Drive::Torques(effort) => effort.compensated(),
                     Drive::Setpoints(_) => JointVector::zeros(),
