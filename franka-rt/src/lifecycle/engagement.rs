@@ -170,7 +170,8 @@ impl Lifecycle {
         if by > Chunk::OFFSET_MAX {
             return Err(GoalError::Ahead { by }.into());
         }
-        if chunk.end_after(state.message_id).is_zero() {
+        // Times that count from the take-up cannot have passed.
+        if observed_at.is_some() && chunk.end_after(state.message_id).is_zero() {
             let by = chunk.late_by(state.message_id);
             return Err(GoalError::Late { by }.into());
         }

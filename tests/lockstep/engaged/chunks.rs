@@ -195,3 +195,22 @@ fn points_too_large_to_plan_are_refused() {
         assert_eq!(joints, Err(ChunkError::Number { point: 1, got: far }));
     }
 }
+
+/// The blend of a chunk whose only point is due at once takes the arm there.
+#[test]
+fn a_chunk_of_one_point_without_a_delay_is_followed() {
+    for_each_robot(|ready| {
+        let mut lockstep = ready();
+        let engaged = lockstep.engage();
+        let point = || Chunk::joints([(Duration::ZERO, turned_q(0.1))]).expect("one point");
+        lockstep.chunk(engaged, point()).expect("due when taken up");
+        lockstep.run(3000);
+        let off = lockstep.robot.q()[0] - turned_q(0.1)[0];
+        assert!(off.abs() < 2e-3, "{off} rad");
+        // Its time has passed by when it could be taken up.
+        let seen = lockstep.client.state.message_id;
+        let late = lockstep.chunk(engaged, point().observed_at(seen)).map(drop);
+        let is_late = matches!(late, Err(MotionError::Goal(GoalError::Late { .. })));
+        assert!(is_late, "{late:?}");
+    });
+}

@@ -6,7 +6,7 @@ use franka_lockstep::{Lockstep, turned};
 use franka_model::READY;
 use franka_rt::lifecycle::{Engagement, MotionError, NewMotion};
 use franka_rt::session::condition::elapsed;
-use franka_rt::session::{Goal, GoalId, Lapse, OnArrival, OnTimeout, Target, Watchdog};
+use franka_rt::session::{Goal, GoalId, Lapse, OnArrival, OnTimeout, Target, Watchdog, Waypoint};
 use franka_rt::team::{Member, MemberFault, Passage, Round, team};
 
 use super::{Pair, stopped_by};
@@ -112,6 +112,35 @@ fn an_arm_that_is_to_be_held_takes_part_in_a_round() {
     assert!((0.01..0.39).contains(&pair.moved(0)), "{}", pair.moved(0));
     assert!(pair.moved(1) > 0.098, "{}", pair.moved(1));
     assert_eq!(pair.stopped, None);
+}
+
+/// A motion has its name from when it is made, which may be long before it begins.
+#[test]
+fn a_path_made_before_the_goal_in_force_waits_for_the_others() {
+    let mut pair = Pair::new(false);
+    let path = pair.robots[0].goal(turned(0.0), OnArrival::ReportAndHold);
+    pair.submit(0, None, turned(0.0));
+    pair.run(50);
+    let round = Some(pair.coordinator.begin());
+    let motion = NewMotion::Goal {
+        goal: Box::new(Goal { round, ..path }),
+        path: None,
+        ticket: None,
+        session: Some(pair.sessions[0]),
+    };
+    let there_and_back = [0.2, 0.0].map(|by| Waypoint::new(turned(by)));
+    let begun = pair.robots[0].client.begin_along(&there_and_back, motion);
+    let first = begun.expect("within reach");
+    pair.run(100);
+    let second = pair.submit(1, round, turned(0.1));
+    let mut farthest = 0.0_f64;
+    for _ in 0..2000 {
+        pair.tick();
+        farthest = farthest.max(pair.moved(0));
+    }
+    let ended = pair.until_resolved([first, second], 10_000);
+    assert_eq!(ended, [Ok(()), Ok(())]);
+    assert!(farthest > 0.19, "{farthest} rad");
 }
 
 /// A session whose goal of a round has come before its first state, and what that waits for.

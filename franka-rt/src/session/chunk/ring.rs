@@ -39,11 +39,11 @@ pub enum Fate {
     Replaced,
     /// The arm followed it to its end.
     Ended,
-    /// A newer one came before it was taken up.
+    /// A newer one of its goal came before it was taken up.
     Superseded,
     /// All of its points had passed when it was to be taken up.
     Late,
-    /// It belongs to a goal that another one has taken the place of.
+    /// Its goal follows no chunk any more, or a chunk of another goal came before it was taken up.
     Obsolete,
 }
 
@@ -107,10 +107,10 @@ pub fn chunk_ring() -> (ChunkWriter, ChunkReader) {
 }
 
 impl ChunkWriter {
-    /// Sends `chunk` for `goal`. A newer chunk of a goal takes the place of those before it.
+    /// Sends `chunk` for `goal`. It takes the place of the chunk before it.
     ///
-    /// A chunk may be sent before its goal is seen, but not before it is written to the goals'
-    /// slot: chunks of older goals are returned as [`Fate::Obsolete`].
+    /// Send the first chunk of a goal before its goal is written to the goals' slot: it is kept
+    /// until that goal is in force, or another chunk comes.
     ///
     /// # Errors
     /// [`Full`] with the chunk if [`Chunk::UNDER_WAY_MAX`] of them have not been
@@ -157,16 +157,11 @@ impl ChunkReader {
     /// that one was to wait: a policy that predicts more often than its first point is ahead would
     /// never be followed.
     ///
-    /// What that makes superfluous goes back. Chunks of goals to come are kept.
+    /// What that makes superfluous goes back. A chunk of another goal is kept, which may be one to
+    /// come: names of goals have no order, as a goal may be named long before it is written.
     pub(in crate::session) fn poll(&mut self, goal: GoalId, now: u64, idle: bool) -> Option<Chunk> {
         self.receive();
-        let newest = self.newest.take_if(|newest| newest.goal <= goal)?;
-        let Sent { goal: of, chunk } = newest;
-        if of != goal {
-            self.due = None;
-            self.give_back(of, chunk, Fate::Obsolete);
-            return None;
-        }
+        let chunk = self.take_newest(goal)?;
         let t = chunk.since_origin(now);
         if t > chunk.end() {
             self.due = None;
@@ -191,11 +186,11 @@ impl ChunkReader {
         None
     }
 
-    /// Gives back what has come for `goal`, or for one before it: it takes up no chunk any more.
+    /// Gives back what has come for `goal`: it takes up no chunk any more.
     pub(in crate::session) fn discard(&mut self, goal: GoalId) {
         self.receive();
         self.due = None;
-        if let Some(Sent { goal, chunk }) = self.newest.take_if(|newest| newest.goal <= goal) {
+        if let Some(chunk) = self.take_newest(goal) {
             self.give_back(goal, chunk, Fate::Obsolete);
         }
     }
@@ -203,6 +198,10 @@ impl ChunkReader {
     /// Takes the chunk of `goal` out that has not been taken up, for a session that has ended.
     pub(in crate::session) fn take(&mut self, goal: GoalId) -> Option<Chunk> {
         self.receive();
+        self.take_newest(goal)
+    }
+
+    fn take_newest(&mut self, goal: GoalId) -> Option<Chunk> {
         let newest = self.newest.take_if(|newest| newest.goal == goal)?;
         Some(newest.chunk)
     }
@@ -211,8 +210,13 @@ impl ChunkReader {
         // At most as many as are under way: the writer cannot add to them without collecting.
         for _ in 0..Chunk::UNDER_WAY_MAX {
             let Some(sent) = self.chunks.pop() else { break };
+            let goal = sent.goal;
             if let Some(before) = self.newest.replace(sent) {
-                self.give_back(before.goal, before.chunk, Fate::Superseded);
+                let fate = match before.goal == goal {
+                    true => Fate::Superseded,
+                    false => Fate::Obsolete,
+                };
+                self.give_back(before.goal, before.chunk, fate);
             }
         }
     }
@@ -260,26 +264,34 @@ mod tests {
     }
 
     #[test]
-    fn a_chunk_whose_points_have_passed_is_late_and_one_whose_goal_has_is_stale() {
+    fn a_chunk_whose_points_have_passed_is_late_and_one_of_another_goal_is_obsolete() {
         let (mut writer, mut reader) = chunk_ring();
         writer.send(GOAL, chunk().observed_at(100)).unwrap();
         assert_eq!(reader.poll(GOAL, 161, true), None);
         writer.send(GoalId(4), chunk()).unwrap();
         assert_eq!(reader.poll(GOAL, 162, true), None);
-        assert_eq!(fates(&mut writer), [Fate::Late, Fate::Obsolete]);
         writer.send(GOAL, chunk().observed_at(100)).unwrap();
         assert!(
             reader.poll(GOAL, 160, true).is_some(),
             "the last millisecond"
         );
+        assert_eq!(fates(&mut writer), [Fate::Late, Fate::Obsolete]);
     }
 
     #[test]
     fn a_chunk_that_is_there_before_its_goal_is_kept_for_it() {
         let (mut writer, mut reader) = chunk_ring();
-        writer.send(GOAL, chunk()).unwrap();
-        assert_eq!(reader.poll(GoalId(4), 1, true), None);
-        assert_eq!(reader.poll(GOAL, 2, true), Some(chunk()));
+        // The name of a goal to come may be older than that of the goal in force.
+        for in_force in [GoalId(4), GoalId(6)] {
+            writer.send(GOAL, chunk()).unwrap();
+            assert_eq!(reader.poll(in_force, 1, true), None);
+            reader.discard(in_force);
+            assert_eq!(reader.poll(GOAL, 2, true), Some(chunk()), "{in_force:?}");
+            writer.send(GOAL, chunk()).unwrap();
+            assert_eq!(reader.poll(in_force, 3, true), None);
+            assert_eq!(reader.take(GOAL), Some(chunk()), "{in_force:?}");
+        }
+        assert_eq!(fates(&mut writer), []);
     }
 
     #[test]

@@ -460,6 +460,8 @@ fn another_goal_takes_over_from_a_chunk_whose_memory_goes_back() {
     assert_eq!(session.fates(), [Fate::Replaced]);
     session.chunks.send(GOAL, Session::way()).unwrap();
     session.run(3000);
-    assert_eq!(session.fates(), [Fate::Obsolete]);
     assert!((JointVector::from(session.state.q) - READY).amax() < 1e-6);
+    session.chunks.send(GoalId(2), Session::way()).unwrap();
+    session.run(2);
+    assert_eq!(session.fates(), [Fate::Obsolete]);
 }
