@@ -90,7 +90,8 @@ pub(crate) fn wait<T: Send + 'static>(
         // A task: what it drives goes on while this thread waits for the interpreter.
         let mut task = runtime.spawn(work);
         let outcome = runtime.block_on(async {
-            let deadline = timeout.map(|timeout| Instant::now() + timeout);
+            // A time that no clock can show does not come.
+            let deadline = timeout.and_then(|timeout| Instant::now().checked_add(timeout));
             loop {
                 let next = Instant::now() + SIGNALS_EVERY;
                 let until = deadline.map_or(next, |deadline| deadline.min(next));

@@ -229,9 +229,10 @@ impl Supervisor {
         self.with(|inner, now| inner.core.agree(reflex, agreed, now))
     }
 
-    /// When [`Self::on_time`] has to be called.
+    /// When [`Self::on_time`] has to be called; `None` also for what no clock can show.
     pub(crate) fn deadline(&self) -> Option<Instant> {
-        self.lock().core.deadline().map(|after| self.begun + after)
+        let after = self.lock().core.deadline()?;
+        self.begun.checked_add(after)
     }
 
     pub(crate) fn take_job(&self) -> Option<Job> {
@@ -507,5 +508,19 @@ mod tests {
             assert!(passed.is_err() && is_locked);
             supervisor.inner.clear_poison();
         }
+    }
+
+    #[test]
+    fn a_deadline_that_no_clock_shows_is_none() {
+        let silence = |silence| {
+            let supervisor = Supervisor::new(Some(Policy::default().silence(silence)));
+            supervisor.with(|inner, now| {
+                inner.core.on_connected(&RobotState::default(), &[], now);
+                inner.core.on_silence(Duration::from_secs(1), now);
+            });
+            supervisor.deadline()
+        };
+        assert!(silence(Duration::from_secs(3)).is_some());
+        assert_eq!(silence(Duration::MAX), None);
     }
 }

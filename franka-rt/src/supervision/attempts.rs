@@ -31,7 +31,9 @@ impl Pauses {
         let longest = first.saturating_mul(1 << doublings).min(most);
         let jitter = if jitter.is_nan() { 0.0 } else { jitter };
         let share = jitter.clamp(0.0, 1.0) * self.draw();
-        longest.mul_f64(1.0 - share)
+        // Times a share, the longest duration is rounded to more than there is.
+        let pause = longest.as_secs_f64() * (1.0 - share);
+        Duration::try_from_secs_f64(pause).unwrap_or(longest)
     }
 
     /// A number in [0, 1), by SplitMix64 (Steele, Lea, Flood: Fast splittable pseudorandom number
@@ -69,7 +71,8 @@ impl Attempts {
     }
 
     fn forget(&mut self, window: Duration, now: Duration) {
-        while self.0.front().is_some_and(|&made| made + window <= now) {
+        let is_past = |&made: &Duration| made.saturating_add(window) <= now;
+        while self.0.front().is_some_and(is_past) {
             self.0.pop_front();
         }
     }
@@ -125,5 +128,21 @@ mod tests {
         assert_eq!([note(0), note(60), note(99)], [true, true, false]);
         assert_eq!([note(100), note(159), note(160)], [true, false, true]);
         assert!(!Attempts::default().note(0, MS(100), MS(0)));
+    }
+
+    #[test]
+    fn windows_and_pauses_may_be_as_long_as_a_duration_can_be() {
+        let (mut attempts, ever) = (Attempts::default(), Duration::MAX);
+        let noted: Vec<bool> = (1..5)
+            .map(|day| attempts.note(3, ever, MS(86_400_000 * day)))
+            .collect();
+        assert_eq!(noted, [true, true, true, false]);
+        assert!(!attempts.may(3, ever, MS(u64::MAX)));
+        let backoff = Backoff {
+            first: ever,
+            most: ever,
+            jitter: 0.0,
+        };
+        assert_eq!(Pauses::new(backoff, 7).after(1), ever);
     }
 }

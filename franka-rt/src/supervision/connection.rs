@@ -91,7 +91,7 @@ impl Silent {
     /// When the connection is to be given up, if it is.
     pub(super) fn deadline(&self, policy: Option<&Policy>) -> Option<Duration> {
         let policy = policy.filter(|policy| policy.reconnect.is_some() && !self.is_given_up)?;
-        Some(self.since + policy.silence)
+        Some(self.since.saturating_add(policy.silence))
     }
 }
 

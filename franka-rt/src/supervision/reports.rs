@@ -184,7 +184,7 @@ impl Supervision {
                 _ if loss.is_final => self.close(loss.reason, now),
                 0 => self.connect(loss),
                 failed => {
-                    let at = now + self.pauses.after(failed);
+                    let at = now.saturating_add(self.pauses.after(failed));
                     self.connection = Connection::Pausing { loss, at };
                 }
             }
@@ -215,7 +215,7 @@ impl Supervision {
                 self.close(reason, now);
             }
             ConnectFailure::Other { .. } => {
-                let at = now + self.pauses.after(loss.failed);
+                let at = now.saturating_add(self.pauses.after(loss.failed));
                 self.connection = Connection::Pausing { loss, at };
             }
         }

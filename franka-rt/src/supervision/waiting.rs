@@ -53,7 +53,7 @@ impl Waiting {
             goal: motion.id(),
             gives_way: motion.is_superseded_by_goals(),
             since: now,
-            until: now + most,
+            until: now.saturating_add(most),
         });
         (Admission::Wait, before.map(|before| before.goal))
     }

@@ -249,8 +249,14 @@ impl Player {
             Step::Reply(_) | Step::State(_) | Step::RobotEnd => Some(self.due),
             Step::Request(_) | Step::ClientEnd => held(),
             Step::Command(_) if self.is_unfinished_motion(self.position) => held(),
-            Step::Command(_) => self.blocked.map(|since| since + self.options.patience),
+            Step::Command(_) => self.given_up_at(),
         }
+    }
+
+    /// When a command that is awaited is given up.
+    fn given_up_at(&self) -> Option<Duration> {
+        let since = self.blocked?;
+        Some(since.saturating_add(self.options.patience))
     }
 
     fn next_request(&self) -> Option<usize> {

@@ -18,8 +18,9 @@ impl Player {
         if self.options.pace == Pace::Recorded || self.silent || ahead {
             return Ok(Gate::Open);
         }
-        let since = *self.blocked.get_or_insert(now);
-        if self.options.pace == Pace::Lockstep || now < since + self.options.patience {
+        self.blocked.get_or_insert(now);
+        let waits = self.given_up_at().is_some_and(|at| now < at);
+        if self.options.pace == Pace::Lockstep || waits {
             return Ok(Gate::Wait);
         }
         match self.options.matching {

@@ -51,6 +51,33 @@ fn a_motion_that_waits_begins_when_the_robot_is_ready_and_not_after_its_time() {
     assert_eq!(robot.motions(), []);
 }
 
+/// A program that waits indefinitely says so with the longest duration.
+#[test]
+fn motions_and_silences_may_take_the_longest_duration() {
+    let ever = Duration::MAX;
+    let policy = Policy::default()
+        .reconnect(Backoff {
+            first: ever,
+            most: ever,
+            jitter: 0.0,
+        })
+        .silence(ever)
+        .give_up_after(ever)
+        .motions_wait(ever);
+    let mut robot = Supervised::ready(policy);
+    let now = MS(robot.now);
+    robot.after(|it| it.on_silence(MS(1000), now));
+    assert!(matches!(robot.submit(1), Admission::Wait));
+    robot.pass(86_400_000);
+    assert_eq!(robot.motions(), []);
+    robot.lose(CloseReason::ClosedByPeer);
+    robot.release();
+    robot.fails(refused("refused"));
+    robot.pass(86_400_000);
+    assert_eq!(robot.connects(), 1, "the pause is as long");
+    assert_eq!(robot.supervision.deadline(), Some(ever));
+}
+
 #[test]
 fn of_the_motions_that_wait_the_newest_counts_and_a_stop_takes_it_back() {
     let policy = without_chance().motions_wait(MS(500));
