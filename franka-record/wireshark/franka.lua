@@ -366,14 +366,12 @@ local SUCCESS_RATE_LOW = 0.9
 
 -- What follows is kept by connection, and reset for each capture.
 local sessions -- by client address and UDP port: list of { frame, protocol, ... }, in the order of the capture
-local streams -- by number of the TCP stream: { protocol, requests = { [id] = {...} } }
+local streams -- by addresses and TCP ports: list of { frame, protocol, requests = { [id] = {...} } }, in that order
 local notes -- by frame: list of { expert, text }, found in the first pass
 
 function franka.init()
   sessions, streams, notes = {}, {}, {}
 end
-
-local tcp_stream = Field.new("tcp.stream")
 
 -- Fields: one per name, whatever the version; numbers are shown as 64-bit floats.
 
@@ -520,6 +518,24 @@ end
 
 -- The stream -------------------------------------------------------------------------------------------------------------
 
+-- The stream of a message to or from the robot. Its number, `tcp.stream`, is not to be had in a pass that makes no tree.
+local function stream_of(pinfo, to_robot, begins)
+  local source = tostring(pinfo.src) .. " " .. pinfo.src_port
+  local destination = tostring(pinfo.dst) .. " " .. pinfo.dst_port
+  local key = to_robot and source .. " " .. destination or destination .. " " .. source
+  local list = streams[key] or {}
+  streams[key] = list
+  -- The ports of a connection may serve another one later.
+  if not pinfo.visited and (begins or #list == 0) then
+    list[#list + 1] = { frame = pinfo.number, requests = {} }
+  end
+  local found
+  for _, stream in ipairs(list) do
+    if stream.frame <= pinfo.number then found = stream end
+  end
+  return found or { requests = {} }
+end
+
 local function device_of(port)
   for _, protocol in ipairs(PROTOCOLS) do
     if protocol.port == port then return protocol end
@@ -585,13 +601,11 @@ end
 local function dissect_message(tvb, pinfo, root)
   local to_robot = device_of(pinfo.dst_port) ~= nil
   local port = to_robot and pinfo.dst_port or pinfo.src_port
-  local number = tcp_stream().value
-  streams[number] = streams[number] or { protocol = device_of(port), requests = {} }
-  local stream = streams[number]
-  local protocol = stream.protocol
-  local header = protocol.header
+  local header = device_of(port).header
   local wide = header == 12 and 4 or 2
   local code, id = tvb(0, wide):le_uint(), tvb(wide, 4):le_uint()
+  local stream = stream_of(pinfo, to_robot, to_robot and code == 0)
+  local protocol = stream.protocol or device_of(port)
 
   -- The version decides about numbers and layouts, and stands in the first request.
   if code == 0 and to_robot and tvb:len() >= header + 4 then
