@@ -30,6 +30,50 @@ fn shells_complete_arguments() {
     }
 }
 
+/// The arguments that fish offers; nothing is checked where it is not installed.
+#[test]
+fn fish_offers_files_only_where_they_are_taken() {
+    let home = Home::new();
+    let script = home.run(&["completions", "fish"]).done();
+    let (path, file) = (home.path("franka.fish"), "a_file.mcap");
+    std::fs::write(&path, script).expect("a writable folder");
+    std::fs::write(home.path(file), "").expect("a writable folder");
+    for (line, offered, files) in [
+        (
+            "completions ",
+            &["bash", "elvish", "fish", "powershell", "zsh"][..],
+            false,
+        ),
+        ("sim ", &[], false),
+        ("state ", &[], false),
+        ("tool set ", &[], false),
+        ("tool ", &["set"], false),
+        ("cassette info ", &[], true),
+        ("record --black-box ", &[], true),
+    ] {
+        let asked = format!("source {}; complete -C 'franka {line}'", path.display());
+        let mut fish = std::process::Command::new("fish");
+        let fish = fish.args(["--no-config", "-c", &asked]);
+        let output = fish.current_dir(home.path("")).output();
+        let output = match output {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                println!("skipped: fish is not installed");
+                return;
+            }
+            output => output.expect("fish runs"),
+        };
+        let text = String::from_utf8(output.stdout).expect("text");
+        let words: Vec<_> = text
+            .lines()
+            .filter_map(|line| line.split('\t').next())
+            .collect();
+        for word in offered {
+            assert!(words.contains(word), "{line}: {words:?}");
+        }
+        assert_eq!(words.contains(&file), files, "{line}: {words:?}");
+    }
+}
+
 #[test]
 fn output_that_nobody_reads_is_no_error() {
     let home = Home::new();
