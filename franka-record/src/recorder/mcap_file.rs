@@ -26,6 +26,8 @@ pub(super) struct McapFile {
     sequences: BTreeMap<u16, u32>,
     /// Time of the newest message; none is written with an earlier one.
     newest: HostTime,
+    /// When the recording began.
+    began: HostTime,
 }
 
 impl McapFile {
@@ -44,6 +46,7 @@ impl McapFile {
             channels: Vec::new(),
             sequences: BTreeMap::new(),
             newest: HostTime::default(),
+            began: session.began(),
         };
         file.describe(METADATA, session.metadata())?;
         for attachment in session.attachments() {
@@ -70,7 +73,7 @@ impl McapFile {
         self.describe(&format!("{ROBOT_METADATA}{}", robot.name), metadata)?;
         if let Some(urdf) = &robot.urdf {
             let name = format!("{label}.urdf");
-            let time = self.newest.as_nanos();
+            let time = self.newest.max(self.began).as_nanos();
             self.attach(time, &name, "application/xml", urdf.as_bytes())?;
         }
         let mut channels = [0; Topic::ALL.len()];

@@ -125,6 +125,13 @@ fn events_come_back_in_order_and_changes_are_found() {
         ("false", "1s")
     );
     assert_eq!(recording.attachments().unwrap(), ["notes.txt", "left.urdf"]);
+    let bytes = std::fs::read(&path).unwrap();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    for attachment in &summary.attachment_indexes {
+        let times = [attachment.log_time, attachment.create_time];
+        assert_eq!(times.map(|time| time > 0), [true; 2], "{}", attachment.name);
+    }
+    assert_eq!(summary.attachment_indexes.len(), 2);
     let notes = recording.attachment("notes.txt").unwrap();
     assert_eq!(notes.as_deref(), Some(&b"as agreed"[..]));
     let left = recording.robot("left").unwrap();
