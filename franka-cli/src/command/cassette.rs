@@ -99,7 +99,16 @@ impl Cassette {
                 } else {
                     let capture = std::fs::read(&from);
                     let capture = capture.with_context(|| format!("reading {}", from.display()))?;
-                    pcap::from_capture(&capture)?.to_bytes()?
+                    let tape = pcap::from_capture(&capture)?;
+                    if tape.truncated > 0 {
+                        say(&format!(
+                            "{} packets of {} were captured in part only, and what they carried is missing: capture \
+                             whole packets (tcpdump -s 0)",
+                            tape.truncated,
+                            from.display()
+                        ));
+                    }
+                    tape.to_bytes()?
                 };
                 let written = File::create_new(&to).and_then(|mut file| file.write_all(&bytes));
                 written.with_context(|| format!("writing {}", to.display()))?;

@@ -51,6 +51,9 @@ pub struct Cassette {
     pub connections: Vec<Connection>,
     /// How many events the recording thread could not keep up with and that are missing.
     pub dropped: u64,
+    /// How many packets of a capture were captured in part only, as with a snap length; what they
+    /// carried is missing. It is not written to files.
+    pub truncated: u64,
     /// Why the file ends before its end, if it does. What was read before stands in `connections`.
     pub damage: Option<String>,
 }

@@ -77,8 +77,7 @@ mod tests {
         Cassette {
             started: 1_700_000_000_000_000_000,
             connections: vec![robot, silent, hand, again],
-            dropped: 0,
-            damage: None,
+            ..Cassette::default()
         }
     }
 

@@ -168,6 +168,7 @@ impl Reading {
             started,
             connections,
             dropped: self.dropped.max(counted),
+            truncated: 0,
             damage,
         }
     }

@@ -27,10 +27,15 @@ pub enum CaptureError {
         what: String,
     },
     /// No connection of a client is in it.
-    #[error("none of {packets} packets belongs to a connection to TCP port 1337, 1338 or 1339")]
+    #[error(
+        "none of {packets} packets belongs to a connection to TCP port 1337, 1338 or 1339{}",
+        captured_in_part(*truncated)
+    )]
     NoConnection {
         /// How many packets the capture has.
         packets: usize,
+        /// How many of them were captured in part only.
+        truncated: u64,
     },
 }
 
@@ -39,7 +44,8 @@ pub enum CaptureError {
 ///
 /// Segments of TCP are put in order and repeated ones left out; fragments of IP, in which states of
 /// protocol 5 come, are put together. Segments that were not captured are counted in
-/// [`Connection::missing_stream`](super::Connection::missing_stream). Datagrams belong to the
+/// [`Connection::missing_stream`](super::Connection::missing_stream), packets that were captured in
+/// part, as with a snap length, in [`Cassette::truncated`]. Datagrams belong to the
 /// connection whose `Connect` announced their port, which therefore has to be in the capture. A
 /// file that was cut off is read as far as it goes: see [`Cassette::damage`].
 ///
@@ -54,11 +60,23 @@ pub fn from_capture(file: &[u8]) -> Result<Cassette, CaptureError> {
         sessions.on_packet(&packet);
     }
     let mut cassette = sessions.finish();
+    cassette.truncated = packets.truncated();
     if cassette.connections.is_empty() {
-        return Err(CaptureError::NoConnection { packets: count });
+        return Err(CaptureError::NoConnection {
+            packets: count,
+            truncated: cassette.truncated,
+        });
     }
     cassette.damage = packets.damage();
     Ok(cassette)
+}
+
+/// The end of a sentence about packets that were captured in part.
+fn captured_in_part(packets: u64) -> String {
+    match packets {
+        0 => String::new(),
+        packets => format!("; {packets} of them were captured in part only (a snap length)"),
+    }
 }
 
 #[cfg(test)]
@@ -103,8 +121,7 @@ mod tests {
         Cassette {
             started: 1_700_000_000_123_456_789,
             connections: vec![robot, hand],
-            dropped: 0,
-            damage: None,
+            ..Cassette::default()
         }
     }
 
@@ -146,8 +163,56 @@ mod tests {
             match from_capture(&capture[..length]) {
                 Ok(cassette) => assert!(!cassette.connections.is_empty()),
                 Err(CaptureError::Format { .. }) => assert!(length < 24, "{length}"),
-                Err(CaptureError::NoConnection { packets }) => assert!(packets < 4, "{length}"),
+                Err(CaptureError::NoConnection { packets, .. }) => assert!(packets < 4, "{length}"),
             }
+        }
+    }
+
+    /// The capture as `tcpdump -s` would have written it, with at most so many bytes of a packet.
+    fn with_a_snap_length(capture: &[u8], length: usize) -> Vec<u8> {
+        let (header, mut rest) = capture.split_at(24);
+        let mut cut = header.to_vec();
+        while let Some((record, behind)) = rest.split_at_checked(16) {
+            let size = u32::from_le_bytes(record[8..12].try_into().expect("four bytes")) as usize;
+            let kept = size.min(length);
+            cut.extend_from_slice(&record[..8]);
+            cut.extend_from_slice(&(kept as u32).to_le_bytes());
+            cut.extend_from_slice(&record[12..]);
+            cut.extend_from_slice(&behind[..kept]);
+            rest = &behind[size..];
+        }
+        cut
+    }
+
+    #[test]
+    fn packets_that_were_cut_by_a_snap_length_are_counted() {
+        let capture = to_capture(&sample());
+        assert_eq!(with_a_snap_length(&capture, 65_535), capture);
+        let cassette = from_capture(&with_a_snap_length(&capture, 200)).unwrap();
+        // The command, and the fragments of the state.
+        assert_eq!(cassette.truncated, 3);
+        assert_eq!(cassette.connections[0].missing_datagrams, 1);
+        assert_eq!(cassette.dropped, 1);
+        let read = Cassette::read(&cassette.to_bytes().unwrap()).unwrap();
+        assert_eq!(read.dropped, 1);
+        let error = from_capture(&with_a_snap_length(&capture, 30)).unwrap_err();
+        assert!(error.to_string().contains("captured in part"), "{error}");
+        for snapped in 0..200 {
+            // Either is fine; a panic is not.
+            let _ = from_capture(&with_a_snap_length(&capture, snapped));
+        }
+    }
+
+    #[test]
+    fn a_compressed_capture_is_named_as_such() {
+        for (begin, name) in [
+            (&[0x1f, 0x8b, 8, 0][..], "gzip"),
+            (&[0x28, 0xb5, 0x2f, 0xfd], "zstd"),
+            (&[0x04, 0x22, 0x4d, 0x18], "lz4"),
+        ] {
+            let file = [begin, &[0; 100]].concat();
+            let error = from_capture(&file).unwrap_err().to_string();
+            assert!(error.contains(name), "{error}");
         }
     }
 

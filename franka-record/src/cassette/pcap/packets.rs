@@ -4,7 +4,9 @@ use std::io::Cursor;
 use std::net::{IpAddr, SocketAddr};
 
 use etherparse::defrag::IpDefragPool;
-use etherparse::{IpNumber, NetSlice, SlicedPacket, TransportSlice, UdpSlice};
+use etherparse::{
+    IpNumber, LaxNetSlice, LaxSlicedPacket, NetSlice, SlicedPacket, TransportSlice, UdpSlice,
+};
 use pcap_parser::traits::{PcapNGPacketBlock as _, PcapReaderIterator};
 use pcap_parser::{Block, Linktype, PcapBlockOwned, PcapError, create_reader};
 
@@ -15,6 +17,7 @@ pub(super) struct Packets<'a> {
     reader: Box<dyn PcapReaderIterator + 'a>,
     interfaces: Vec<Interface>,
     fragments: IpDefragPool<(), ()>,
+    truncated: u64,
     damage: Option<String>,
 }
 
@@ -40,6 +43,11 @@ pub(super) enum Body {
         to: SocketAddr,
         payload: Vec<u8>,
     },
+    /// A datagram that was captured in part only, as with a snap length.
+    Cut {
+        from: SocketAddr,
+        to: SocketAddr,
+    },
     Other,
 }
 
@@ -58,14 +66,23 @@ impl<'a> Packets<'a> {
         let capacity = file.len().clamp(BUFFER_MIN, BUFFER_MAX);
         let reader = create_reader(capacity, Cursor::new(file));
         let reader = reader.map_err(|error| CaptureError::Format {
-            what: describe(&error),
+            what: match compression(file) {
+                Some(name) => format!("it is compressed by {name}, decompress it first"),
+                None => describe(&error),
+            },
         })?;
         Ok(Self {
             reader,
             interfaces: Vec::new(),
             fragments: IpDefragPool::new(),
+            truncated: 0,
             damage: None,
         })
+    }
+
+    /// How many packets so far carry less than their headers say.
+    pub(super) fn truncated(&self) -> u64 {
+        self.truncated
     }
 
     /// Why the file ends before its end, if it does.
@@ -80,8 +97,9 @@ impl<'a> Packets<'a> {
                 Ok((size, block)) => {
                     let packet = on_block(block, &mut self.interfaces, &mut self.fragments);
                     self.reader.consume(size);
-                    if packet.is_some() {
-                        return packet;
+                    if let Some((packet, truncated)) = packet {
+                        self.truncated += u64::from(truncated);
+                        return Some(packet);
                     }
                 }
                 Err(PcapError::Eof) => return None,
@@ -101,12 +119,13 @@ impl<'a> Packets<'a> {
     }
 }
 
+/// The packet of a block, and whether it was captured in part only.
 fn on_block(
     block: PcapBlockOwned<'_>,
     interfaces: &mut Vec<Interface>,
     fragments: &mut IpDefragPool<(), ()>,
-) -> Option<Packet> {
-    let (interface, ticks, data) = match &block {
+) -> Option<(Packet, bool)> {
+    let (interface, ticks, data, short) = match &block {
         PcapBlockOwned::LegacyHeader(header) => {
             let nanoseconds = header.is_nanosecond_precision();
             interfaces.push(Interface {
@@ -123,7 +142,9 @@ fn on_block(
         PcapBlockOwned::Legacy(block) => {
             let interface = *interfaces.first()?;
             let seconds = u64::from(block.ts_sec) * interface.resolution;
-            (interface, seconds + u64::from(block.ts_usec), block.data)
+            let short = block.caplen < block.origlen;
+            let ticks = seconds + u64::from(block.ts_usec);
+            (interface, ticks, block.data, short)
         }
         PcapBlockOwned::NG(Block::SectionHeader(_)) => {
             interfaces.clear();
@@ -140,17 +161,60 @@ fn on_block(
         PcapBlockOwned::NG(Block::EnhancedPacket(block)) => {
             let interface = *interfaces.get(usize::try_from(block.if_id).ok()?)?;
             let ticks = u64::from(block.ts_high) << 32 | u64::from(block.ts_low);
-            (interface, ticks, block.packet_data())
+            (interface, ticks, block.packet_data(), block.truncated())
         }
         // A simple packet has no time; nothing writes them for the network.
         PcapBlockOwned::NG(_) => return None,
     };
     let nanoseconds = i128::from(ticks) * 1_000_000_000 / i128::from(interface.resolution)
         + i128::from(interface.offset) * 1_000_000_000;
-    Some(Packet {
+    let whole = body(interface.link, data, fragments);
+    let truncated = short && whole.is_none();
+    let cut = || truncated.then(|| cut(interface.link, data)).flatten();
+    let packet = Packet {
         time: u64::try_from(nanoseconds).unwrap_or_default(),
-        body: body(interface.link, data, fragments).unwrap_or(Body::Other),
-    })
+        body: whole.or_else(cut).unwrap_or(Body::Other),
+    };
+    Some((packet, truncated))
+}
+
+/// The addresses of a datagram that was captured in part only.
+fn cut(link: Linktype, data: &[u8]) -> Option<Body> {
+    let sliced = match link {
+        Linktype::ETHERNET => LaxSlicedPacket::from_ethernet(data).ok()?,
+        Linktype::LINUX_SLL => LaxSlicedPacket::from_ip(data.get(16..)?).ok()?,
+        Linktype::LINUX_SLL2 => LaxSlicedPacket::from_ip(data.get(20..)?).ok()?,
+        Linktype::NULL | Linktype::LOOP => LaxSlicedPacket::from_ip(data.get(4..)?).ok()?,
+        _ => LaxSlicedPacket::from_ip(data).ok()?,
+    };
+    let (source, destination): (IpAddr, IpAddr) = match sliced.net.as_ref()? {
+        LaxNetSlice::Ipv4(ip) => (
+            ip.header().source_addr().into(),
+            ip.header().destination_addr().into(),
+        ),
+        LaxNetSlice::Ipv6(ip) => (
+            ip.header().source_addr().into(),
+            ip.header().destination_addr().into(),
+        ),
+        LaxNetSlice::Arp(_) => return None,
+    };
+    match &sliced.transport {
+        Some(TransportSlice::Udp(udp)) => Some(Body::Cut {
+            from: (source, udp.source_port()).into(),
+            to: (destination, udp.destination_port()).into(),
+        }),
+        _ => None,
+    }
+}
+
+/// The program that compressed a file, by how it begins: Wireshark reads and writes such captures.
+fn compression(file: &[u8]) -> Option<&'static str> {
+    match file {
+        [0x1f, 0x8b, ..] => Some("gzip"),
+        [0x28, 0xb5, 0x2f, 0xfd, ..] => Some("zstd"),
+        [0x04, 0x22, 0x4d, 0x18, ..] => Some("lz4"),
+        _ => None,
+    }
 }
 
 /// What a packet carries; `None` if that cannot be read.

@@ -46,6 +46,11 @@ impl Sessions {
         match &packet.body {
             Body::Tcp(segment) => self.on_segment(at, segment),
             Body::Udp { from, to, payload } => self.on_datagram(at, *from, *to, payload),
+            Body::Cut { from, to } => {
+                if let Some((index, _)) = self.connection_of(*from, *to) {
+                    self.sessions[index].connection.missing_datagrams += 1;
+                }
+            }
             Body::Other => {}
         }
     }
@@ -59,9 +64,12 @@ impl Sessions {
         let connections: Vec<_> = connections.collect();
         Cassette {
             started: self.started.unwrap_or_default(),
-            dropped: connections.iter().map(|one| one.missing_stream).sum(),
+            dropped: connections
+                .iter()
+                .map(|one| one.missing_stream + one.missing_datagrams)
+                .sum(),
             connections,
-            damage: None,
+            ..Cassette::default()
         }
     }
 
@@ -120,16 +128,23 @@ impl Sessions {
     }
 
     fn on_datagram(&mut self, at: Duration, from: SocketAddr, to: SocketAddr, payload: &[u8]) {
-        let to_client = self.announced.get(&(to, from.ip()));
-        let of_client = self.announced.get(&(from, to.ip()));
-        let (index, from) = match (to_client, of_client) {
-            (Some(&index), _) => (index, Side::Robot),
-            (None, Some(&index)) => (index, Side::Client),
-            (None, None) => return,
+        let Some((index, from)) = self.connection_of(from, to) else {
+            return;
         };
         let what = Payload::Datagram(payload.to_vec());
         let events = &mut self.sessions[index].connection.events;
         events.push(Event { at, from, what });
+    }
+
+    /// The connection of a datagram, and who sent it.
+    fn connection_of(&self, from: SocketAddr, to: SocketAddr) -> Option<(usize, Side)> {
+        let to_client = self.announced.get(&(to, from.ip()));
+        let of_client = self.announced.get(&(from, to.ip()));
+        match (to_client, of_client) {
+            (Some(&index), _) => Some((index, Side::Robot)),
+            (None, Some(&index)) => Some((index, Side::Client)),
+            (None, None) => None,
+        }
     }
 }
 
