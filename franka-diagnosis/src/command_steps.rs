@@ -150,14 +150,18 @@ fn cartesian_leap(
     Some((axis, quantity, size))
 }
 
-/// What of a command leaps: what is commanded itself if the acceleration is too large, the
-/// acceleration if the jerk is.
+/// What of a command leaps: what is commanded itself if the acceleration is too large as well, or
+/// only the acceleration. An acceleration that has grown to its limit within that of the jerk is no
+/// leap: the motion is too fast.
 fn leap_of(
     sample: &Sample<'_>,
     motion: &Derivatives<1>,
     acceleration_before: f64,
     limits: &MotionLimits,
 ) -> Option<(Quantity, f64)> {
+    if motion.jerk[0].abs() <= limits.jerk {
+        return None;
+    }
     let acceleration = motion.acceleration[0];
     let by_velocity = matches!(
         sample.before.motion_generator_mode,
@@ -170,8 +174,7 @@ fn leap_of(
             (Quantity::Position, acceleration * CYCLE * CYCLE)
         })
     } else {
-        let size = acceleration - acceleration_before;
-        (motion.jerk[0].abs() > limits.jerk).then_some((Quantity::Acceleration, size))
+        Some((Quantity::Acceleration, acceleration - acceleration_before))
     }
 }
 

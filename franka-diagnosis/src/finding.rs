@@ -188,6 +188,7 @@ impl Quantity {
             quantity: self,
             subject,
             value,
+            digits: DIGITS,
         }
     }
 
@@ -215,11 +216,24 @@ pub(super) struct Measure {
     quantity: Quantity,
     subject: Subject,
     value: f64,
+    digits: u8,
+}
+
+impl Measure {
+    /// The same with more digits, if it takes them to tell it from `other`.
+    fn told_from(self, other: f64) -> Self {
+        let same = |&digits: &u8| Digits(self.value).with(digits) == Digits(other).with(digits);
+        let digits = (DIGITS..=DIGITS_MAX).find(|digits| !same(digits));
+        Self {
+            digits: digits.unwrap_or(DIGITS),
+            ..self
+        }
+    }
 }
 
 impl fmt::Display for Measure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let number = Digits(self.value);
+        let number = Digits(self.value).with(self.digits);
         let length = self.subject.length();
         match self.quantity {
             Quantity::Position | Quantity::StartOffset => write!(f, "{number} {length}"),
@@ -240,20 +254,33 @@ impl fmt::Display for Measure {
 /// Four significant digits without an exponent, as far as six decimals show them.
 pub(super) struct Digits(pub(super) f64);
 
-impl fmt::Display for Digits {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+/// Significant digits of a number.
+const DIGITS: u8 = 4;
+
+/// The most, of a number that is next to another one.
+const DIGITS_MAX: u8 = 8;
+
+impl Digits {
+    /// With this number of significant digits.
+    fn with(&self, digits: u8) -> String {
         let value = self.0;
         if value == 0.0 || !value.is_finite() {
-            return write!(f, "{value}");
+            return value.to_string();
         }
-        let decimals = (3.0 - value.abs().log10().floor()).clamp(0.0, 6.0) as usize;
+        let digits = f64::from(digits) - 1.0;
+        let decimals = (digits - value.abs().log10().floor()).clamp(0.0, 6.0) as usize;
         let text = format!("{value:.decimals$}");
-        let short = if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.')
-        } else {
-            &text
-        };
-        f.write_str(short)
+        if text.contains('.') {
+            let short = text.trim_end_matches('0').trim_end_matches('.');
+            return short.to_owned();
+        }
+        text
+    }
+}
+
+impl fmt::Display for Digits {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.with(DIGITS))
     }
 }
 
@@ -306,6 +333,10 @@ impl fmt::Display for Finding {
             ..
         } = *self;
         let value = quantity.of(subject, self.value);
+        let value = match self.bound.limit() {
+            Some(limit) if self.excess() > Some(0.0) => value.told_from(limit),
+            _ => value,
+        };
         match quantity {
             // These name their origin.
             Quantity::LostCycles | Quantity::Reversals => {
@@ -380,6 +411,10 @@ mod tests {
             (
                 finding(Quantity::Velocity, 3.93, Bound::AtMost(2.62)),
                 "joint 4: measured velocity 3.93 rad/s, limit 2.62 rad/s (1.5 times as much)",
+            ),
+            (
+                finding(Quantity::Acceleration, 10.0013, Bound::AtMost(10.0)),
+                "joint 4: measured acceleration 10.001 rad/s^2, limit 10 rad/s^2 (0.0013 rad/s^2 beyond)",
             ),
             (
                 finding(Quantity::Jerk, 4900.0, Bound::AtMost(5000.0)),

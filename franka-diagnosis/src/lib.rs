@@ -202,7 +202,9 @@ impl Diagnosis {
             commander: evidence.commander,
             errors,
             error,
-            advice: error.map_or_else(Vec::new, |error| reasoning::advice(error, &causes)),
+            advice: error.map_or_else(Vec::new, |error| {
+                reasoning::advice(error, finding.as_ref(), &causes)
+            }),
             finding,
             causes,
             end: evidence.last().map(|state| state.message_id),

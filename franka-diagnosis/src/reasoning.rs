@@ -303,9 +303,9 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
     causes
 }
 
-/// What to change. Two at most: by the causes, and by the error itself if they say nothing, or if
-/// it is about what the arm does, whatever led up to that.
-pub(super) fn advice(error: E, causes: &[Cause]) -> Vec<Advice> {
+/// What to change. Two at most: by the causes, and by the error itself and its finding if they say
+/// nothing, or if it is about what the arm does, whatever led up to that.
+pub(super) fn advice(error: E, finding: Option<&Finding>, causes: &[Cause]) -> Vec<Advice> {
     let of_arm = category(error) == Category::Arm;
     // Commands that left too late did not reach the robot in time.
     let late = matches!(causes.first(), Some(Cause::LateCommands { .. }));
@@ -326,7 +326,13 @@ pub(super) fn advice(error: E, causes: &[Cause]) -> Vec<Advice> {
         Cause::Singularity { .. } => Advice::AvoidSingularity,
         Cause::Limit { .. } => Advice::StayInRange,
     });
-    let by_error = by_error(error);
+    let by_error = match finding.map(|finding| finding.quantity) {
+        // Commands that leap are among the causes.
+        Some(Quantity::Velocity | Quantity::Acceleration) if by_error(error) == Advice::Smooth => {
+            Advice::SlowDown
+        }
+        _ => by_error(error),
+    };
     let touched = |cause: &Cause| matches!(cause, Cause::Contact { .. });
     // The effort was that of the contact.
     let is_first = of_arm && !(by_error == Advice::LessEffort && causes.iter().any(touched));

@@ -65,6 +65,39 @@ fn differences_are_taken_from_what_the_robot_made_up_for_lost_cycles() {
     assert_eq!(diagnosis.advice, [Advice::Network, Advice::Smooth]);
 }
 
+/// A quintic from rest to rest, within the limit of the jerk all along.
+#[test]
+fn a_smooth_motion_that_is_too_fast_is_no_step() {
+    for (model, duration) in [
+        (Model::fr3(), 0.3),
+        (Model::fr3(), 0.5),
+        (Model::fer(), 0.4),
+    ] {
+        let mut story = Story::of(model, Generator::JointPosition);
+        let limit = model.joint_limits().acceleration[0];
+        let at = |step: u32| {
+            let s = f64::from(step) * 1e-3 / duration;
+            READY[0] + 0.5 * s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
+        };
+        let acceleration = |step: u32| (at(step + 1) - 2.0 * at(step) + at(step - 1)) * 1e6;
+        let mut step = 1;
+        while acceleration(step) <= limit {
+            story.go(|_, command| command.q_c[0] = at(step), |_| {});
+            step += 1;
+        }
+        story.go(|_, command| command.q_c[0] = at(step), |_| {});
+        let diagnosis = story.stop(
+            &[E::JointMotionGeneratorVelocityDiscontinuity],
+            |_, command| command.q_c[0] = at(step + 1),
+            |_| {},
+        );
+        let finding = finding(&diagnosis);
+        assert_eq!(finding.quantity, Quantity::Acceleration);
+        assert_eq!(diagnosis.causes, []);
+        assert_eq!(diagnosis.advice, [Advice::SlowDown]);
+    }
+}
+
 #[test]
 fn torques_of_a_first_command_are_compared_with_none() {
     let mut story = Story::unbegun(Model::fer(), Generator::JointVelocity);
