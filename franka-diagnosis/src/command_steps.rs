@@ -32,7 +32,7 @@ fn offset(sample: &Sample<'_>, error: RobotError) -> Option<(Subject, f64)> {
     match error {
         RobotError::CartesianPositionMotionGeneratorStartPoseInvalid => {
             let target = transform::isometry_from_array(&command.O_T_EE_c)?;
-            let from = transform::isometry_from_array(&before.O_T_EE_c)?;
+            let from = transform::isometry_from_array(before.commanded_pose())?;
             let shift = target.translation.vector - from.translation.vector;
             let turn = rotation::error(&target.rotation, &from.rotation);
             // A radian counts as half a metre: with which of the two the robot disagrees is not
@@ -46,7 +46,7 @@ fn offset(sample: &Sample<'_>, error: RobotError) -> Option<(Subject, f64)> {
         RobotError::CartesianMotionGeneratorStartElbowInvalid
         | RobotError::StartElbowSignInconsistent => {
             let [angle, _] = command.elbow_c?;
-            Some((Subject::Elbow, angle - before.elbow_c[0]))
+            Some((Subject::Elbow, angle - before.commanded_elbow()[0]))
         }
         _ => {
             let off = JointVector::from(command.q_c) - JointVector::from(before.q_d);

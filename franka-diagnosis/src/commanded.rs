@@ -70,7 +70,7 @@ pub(super) fn cartesian(sample: &Sample<'_>) -> Option<(Isometry3<f64>, Derivati
     let Sample {
         before, command, ..
     } = sample;
-    let from = transform::isometry_from_array(&before.O_T_EE_c)?;
+    let from = transform::isometry_from_array(before.commanded_pose())?;
     let (pose, twist) = match before.motion_generator_mode {
         Generator::CartesianPosition => {
             let pose = transform::isometry_from_array(&command.O_T_EE_c)?;
@@ -99,7 +99,7 @@ pub(super) fn cartesian(sample: &Sample<'_>) -> Option<(Isometry3<f64>, Derivati
 pub(super) fn elbow(sample: &Sample<'_>) -> Option<Derivatives<1>> {
     let [angle, _] = sample.command.elbow_c?;
     let before = sample.before;
-    let velocity = (angle - before.elbow_c[0]) / CYCLE;
+    let velocity = (angle - before.commanded_elbow()[0]) / CYCLE;
     let one = SVector::<f64, 1>::repeat;
     Some(Derivatives::of(
         one(velocity),
@@ -120,6 +120,14 @@ pub(super) fn resulting(
     let ee = end_effector(before);
     let from = JointVector::from(before.q_d);
     let mut q = from;
+    // The way that the command asks for, from the model's pose: the robot's may be off that.
+    let robots = transform::isometry_from_array(before.commanded_pose())?;
+    let models = transform::isometry(&model.pose(Frame::EndEffector, &q, &ee))?;
+    let way = pose.translation.vector - robots.translation.vector;
+    let pose = Isometry3::from_parts(
+        (models.translation.vector + way).into(),
+        pose.rotation * robots.rotation.inverse() * models.rotation,
+    );
     for _ in 0..ITERATIONS {
         let here = transform::isometry(&model.pose(Frame::EndEffector, &q, &ee))?;
         let error = difference(&pose, &here);

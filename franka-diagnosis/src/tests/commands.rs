@@ -1,8 +1,10 @@
+use franka_model::geometry::Lengths;
 use franka_model::{EndEffector, Frame, JointVector, Model, READY, elbow, layout};
 use franka_proto::MotionGeneratorMode as Generator;
 use franka_proto::RobotError as E;
 
 use super::*;
+use crate::commanded::{Which, resulting_readings};
 use crate::{Advice, Axis, Bound, Cause, Origin, Quantity, Subject};
 
 #[test]
@@ -324,5 +326,40 @@ fn a_start_pose_is_off_by_position_or_by_rotation() {
         );
         assert!((finding.value - 0.1).abs() < 1e-9);
         assert_eq!(diagnosis.advice, [Advice::StartWhereItIs]);
+    }
+}
+
+/// A robot whose poses have other lengths, moving on as it did, breaks no limit of its joints; with
+/// the commanded fields filled in or left at zero.
+#[test]
+fn joints_of_a_pose_are_found_from_where_the_robot_reports_it() {
+    let arm = Model::fr3().clone().with_lengths(Lengths::RECORDED_FR3);
+    let pose = arm.pose(Frame::EndEffector, &READY, &EndEffector::default());
+    for is_filled in [true, false] {
+        for generator in [Generator::CartesianPosition, Generator::CartesianVelocity] {
+            let mut story = Story::of(Model::fr3(), generator);
+            let state = &mut story.entries.last_mut().unwrap().state;
+            (state.O_T_EE, state.O_T_EE_d) = (layout::pose(&pose), layout::pose(&pose));
+            state.elbow_d = state.elbow_c;
+            (state.O_T_EE_c, state.elbow_c) = match is_filled {
+                true => (state.O_T_EE_d, state.elbow_d),
+                false => ([0.0; 16], [0.0; 2]),
+            };
+            let holding = layout::pose(&pose);
+            story.go(|_, command| command.O_T_EE_c = holding, |_| {});
+            let entries: Vec<_> = story.entries[1..].iter().collect();
+            let evidence = Evidence {
+                commander: story.commander,
+                entries,
+                model: story.model,
+                statistics: None,
+                rounded: false,
+            };
+            let readings = resulting_readings(&evidence, Which::Acceleration);
+            assert!(!readings.is_empty(), "{generator:?}");
+            for reading in readings {
+                assert!(reading.score < 0.1, "{generator:?}: {reading:?}");
+            }
+        }
     }
 }

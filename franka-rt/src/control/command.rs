@@ -69,7 +69,7 @@ impl MotionCommand {
             Self::JointPositions(_) => JointPositions(state.q_d).into(),
             Self::JointVelocities(_) => JointVelocities::ZERO.into(),
             Self::CartesianPose(_) => CartesianPose {
-                O_T_EE: state.O_T_EE_c,
+                O_T_EE: *state.commanded_pose(),
                 elbow: None,
             }
             .into(),

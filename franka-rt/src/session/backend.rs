@@ -102,7 +102,7 @@ impl Setpoints {
             Self::JointPositions => JointPositions(state.q_d).into(),
             Self::JointVelocities => JointVelocities::ZERO.into(),
             Self::CartesianPoses => CartesianPose {
-                O_T_EE: state.O_T_EE_c,
+                O_T_EE: *state.commanded_pose(),
                 elbow,
             }
             .into(),
@@ -286,10 +286,10 @@ impl Backend {
         let finite = |numbers: &[f64]| numbers.iter().all(|x| x.is_finite());
         let joints = [&state.q_d, &state.dq_d, &state.ddq_d].map(|joints| finite(joints));
         let pose = || {
-            finite(&state.O_T_EE_c)
+            finite(state.commanded_pose())
                 && finite(&state.O_dP_EE_c)
                 && finite(&state.O_ddP_EE_c)
-                && [&state.elbow_c, &state.delbow_c, &state.ddelbow_c]
+                && [&state.commanded_elbow(), &state.delbow_c, &state.ddelbow_c]
                     .into_iter()
                     .all(|elbow| finite(elbow))
         };

@@ -189,9 +189,8 @@ impl SetpointStream {
             (Setpoints::CartesianPoses, MotionCommand::CartesianPose(pose))
                 if self.last.is_none() =>
             {
-                let start = commanded_pose(state);
                 let start = CartesianPose {
-                    O_T_EE: start.map_or(pose.O_T_EE, |start| transform::array(&start)),
+                    O_T_EE: *state.commanded_pose(),
                     ..*pose
                 };
                 (shape(&start.into()), false)
@@ -289,11 +288,9 @@ fn pose_of(model: &Model, ee: &EndEffector, q: &JointVector) -> Isometry3<f64> {
     rigid(&model.pose(Frame::EndEffector, q, ee))
 }
 
-/// Returns the robot's own commanded pose: `O_T_EE_c`, or `O_T_EE_d` or `O_T_EE` if a robot leaves
-/// the former at zero. `None` if none of them is a rigid transform.
+/// Returns the robot's own commanded pose; `None` if it is no rigid transform.
 fn commanded_pose(state: &RobotState) -> Option<Isometry3<f64>> {
-    let poses = [&state.O_T_EE_c, &state.O_T_EE_d, &state.O_T_EE];
-    poses.into_iter().find_map(transform::isometry_from_array)
+    transform::isometry_from_array(state.commanded_pose())
 }
 
 /// Displacement and rotation vector from one pose to another, base axes, `[m, rad]`.

@@ -95,13 +95,15 @@ pub struct RobotState {
     pub O_dP_EE_d: [f64; 6],
     /// Acceleration of the base, gravity included; `[m/s^2]`.
     pub O_ddP_O: [f64; 3],
-    /// Last commanded elbow; angle of joint 3 `[rad]` and sign of joint 4.
+    /// Last commanded elbow; angle of joint 3 `[rad]` and sign of joint 4. Zeros under joint
+    /// setpoints: see [`commanded_elbow`](Self::commanded_elbow).
     pub elbow_c: [f64; 2],
     /// Velocity of the commanded elbow; of joint 3 `[rad/s]`, then 0.
     pub delbow_c: [f64; 2],
     /// Acceleration of the commanded elbow; of joint 3 `[rad/s^2]`, then 0.
     pub ddelbow_c: [f64; 2],
-    /// Last commanded pose of the end effector in the base frame; column-major, `[m]`.
+    /// Last commanded pose of the end effector in the base frame; column-major, `[m]`. Zeros under
+    /// joint setpoints: see [`commanded_pose`](Self::commanded_pose).
     pub O_T_EE_c: [f64; 16],
     /// Last commanded twist of the end effector in the base frame; linear then angular, `[m/s,
     /// rad/s]`.
@@ -157,6 +159,27 @@ impl RobotState {
     /// then untouched.
     pub fn encode(&self, version: Version, buffer: &mut [u8]) -> Result<usize, EncodeError> {
         (version.table().state_codec.encode)(self, buffer)
+    }
+
+    /// Pose of the end effector that was commanded last, column-major: `O_T_EE_c`, or else
+    /// `O_T_EE_d`, or else `O_T_EE`.
+    ///
+    /// Robots leave `O_T_EE_c` at zero while they move by joint setpoints (recorded on a Franka
+    /// Research 3), and zeros are no pose.
+    #[must_use]
+    pub fn commanded_pose(&self) -> &[f64; 16] {
+        let poses = [&self.O_T_EE_c, &self.O_T_EE_d];
+        let filled = poses.into_iter().find(|pose| pose[15] != 0.0);
+        filled.unwrap_or(&self.O_T_EE)
+    }
+
+    /// Elbow that was commanded last: `elbow_c`, or else `elbow_d`, or else `elbow`. Robots leave
+    /// `elbow_c` at zero where they leave `O_T_EE_c` at zero.
+    #[must_use]
+    pub fn commanded_elbow(&self) -> [f64; 2] {
+        let elbows = [self.elbow_c, self.elbow_d];
+        let filled = elbows.into_iter().find(|elbow| *elbow != [0.0, 0.0]);
+        filled.unwrap_or(self.elbow)
     }
 
     /// Whether the client has to feed a motion generator.

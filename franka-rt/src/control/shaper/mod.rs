@@ -210,8 +210,8 @@ impl Shaper {
         Ok(JointVelocities(dq))
     }
 
-    /// Shapes a pose against the last one, `O_T_EE_c` of the state and its derivatives, and its
-    /// elbow against `elbow_c`. `first` is whether no command of the motion came before.
+    /// Shapes a pose against the last one, [`RobotState::commanded_pose`] and its derivatives, and
+    /// its elbow against [`RobotState::commanded_elbow`]. `first` is whether no command of the motion came before.
     ///
     /// # Errors
     /// As of [`torques`](Self::torques); also if the pose is not a transformation, or the elbow has
@@ -226,7 +226,7 @@ impl Shaper {
         let last = if starts {
             &command.O_T_EE
         } else {
-            &state.O_T_EE_c
+            state.commanded_pose()
         };
         let pose = self.pose(&command.O_T_EE, last, state)?;
         check::pose(&pose)?;
@@ -241,7 +241,7 @@ impl Shaper {
     }
 
     /// Shapes a twist against the last one, `O_dP_EE_c` of the state and its derivative, and its
-    /// elbow against `elbow_c`.
+    /// elbow against [`RobotState::commanded_elbow`].
     ///
     /// # Errors
     /// As of [`torques`](Self::torques); also if the elbow has no sign.
@@ -308,7 +308,11 @@ impl Shaper {
         let Some(mut elbow) = command.filter(|elbow| *elbow != [0.0, 0.0]) else {
             return Ok(None);
         };
-        let last = if starts { elbow[0] } else { state.elbow_c[0] };
+        let last = if starts {
+            elbow[0]
+        } else {
+            state.commanded_elbow()[0]
+        };
         [elbow[0]] = self.filtered(&[elbow[0]], &[last])?;
         if self.limit_rate {
             let (velocity, acceleration) = (state.delbow_c[0], state.ddelbow_c[0]);

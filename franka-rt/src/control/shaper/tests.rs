@@ -5,6 +5,7 @@ use nalgebra::{Isometry3, Vector3};
 use proptest::prelude::*;
 
 use super::*;
+use crate::control::MotionCommand;
 use crate::shaping::{FilterFault, Signal, VelocityBounds};
 
 const OFF: f64 = MAX_CUTOFF_FREQUENCY;
@@ -98,6 +99,39 @@ fn the_first_position_or_pose_of_a_motion_counts_as_its_own_past_in_protocol_10(
     let shaped = v10.cartesian_velocities(&twist, &state).expect("finite");
     let elbow = shaped.elbow.expect("an elbow was given");
     assert!(0.1 < elbow[0] && elbow[0] < 0.100_01 && elbow[1] == -1.0);
+}
+
+/// As a robot has it that leaves the commanded fields at zero.
+fn unfilled(state: &RobotState) -> RobotState {
+    RobotState {
+        O_T_EE_d: state.O_T_EE_c,
+        elbow_d: state.elbow_c,
+        O_T_EE_c: [0.0; 16],
+        elbow_c: [0.0; 2],
+        ..*state
+    }
+}
+
+#[test]
+fn cartesian_commands_are_shaped_against_the_desired_pose_where_none_is_commanded() {
+    let state = at_rest();
+    let zeros = unfilled(&state);
+    for version in Version::ALL {
+        let shaper = Shaper::new(version, true, 100.0);
+        let pose = nudged(&state);
+        let shaped = shaper.cartesian_pose(&pose, &state, false);
+        assert!(shaped.is_ok_and(|shaped| shaped != pose), "it limits");
+        assert_eq!(shaper.cartesian_pose(&pose, &zeros, false), shaped);
+        let twist = CartesianVelocities {
+            O_dP_EE: [0.0; 6],
+            elbow: pose.elbow,
+        };
+        let shaped = shaper.cartesian_velocities(&twist, &state);
+        assert!(shaped.is_ok_and(|shaped| shaped != twist), "it limits");
+        assert_eq!(shaper.cartesian_velocities(&twist, &zeros), shaped);
+        let holding = MotionCommand::from(pose).holding(&zeros);
+        assert_eq!(holding, MotionCommand::from(pose).holding(&state));
+    }
 }
 
 #[test]

@@ -55,15 +55,15 @@ pub(super) fn differs(sent: &MotionCommand, state: &RobotState) -> bool {
         }
         MotionCommand::CartesianPose(pose) => {
             let robots = CartesianPose {
-                O_T_EE: state.O_T_EE_c,
-                elbow: Some(state.elbow_c),
+                O_T_EE: *state.commanded_pose(),
+                elbow: Some(state.commanded_elbow()),
             };
             apart(&(*pose).into(), &robots.into()).amax() > echo::POSE
         }
         MotionCommand::CartesianVelocities(CartesianVelocities { O_dP_EE, elbow }) => {
-            let [angle, _] = elbow.unwrap_or(state.elbow_c);
-            far(O_dP_EE, &state.O_dP_EE_c) > echo::TWIST
-                || (angle - state.elbow_c[0]).abs() > echo::POSE
+            let robots = state.commanded_elbow();
+            let [angle, _] = elbow.unwrap_or(robots);
+            far(O_dP_EE, &state.O_dP_EE_c) > echo::TWIST || (angle - robots[0]).abs() > echo::POSE
         }
     }
 }

@@ -144,3 +144,47 @@ fn velocities_go_on_from_those_of_the_robot() {
         }
     }
 }
+
+/// The robot's poses are off the model's, and it fills in the commanded fields or leaves them at
+/// zero.
+#[test]
+fn cartesian_setpoints_begin_and_go_on_where_the_robot_is() {
+    let model = Model::fr3();
+    let off = Isometry3::new(
+        Vector3::new(2e-4, -1e-4, 3e-4),
+        Vector3::new(0.0, 1e-3, 0.0),
+    );
+    for setpoints in [Setpoints::CartesianPoses, Setpoints::CartesianVelocities] {
+        for is_filled in [true, false] {
+            let mut state = resting();
+            let ee = crate::session::end_effector_of(&state).expect("a rigid one");
+            let robots = off * pose_of(model, &ee, &READY);
+            (state.O_T_EE, state.O_T_EE_d) = (transform::array(&robots), transform::array(&robots));
+            state.elbow_d = state.elbow_c;
+            (state.O_T_EE_c, state.elbow_c) = match is_filled {
+                true => (state.O_T_EE_d, state.elbow_d),
+                false => ([0.0; 16], [0.0; 2]),
+            };
+            let controller = Controller::JointImpedance;
+            let limits = model.joint_limits();
+            let mut stream = SetpointStream::new(controller, setpoints, Version::V10, limits);
+            let mut reference = Reference::at_rest(READY);
+            for cycle in 0..5 {
+                let anew = stream.echo(model, &ee, &reference, &state);
+                assert_eq!(anew.is_some(), cycle == 0, "{setpoints}, cycle {cycle}");
+                reference = anew.unwrap_or(reference);
+                match stream.command(model, &ee, &reference, false, &state).0 {
+                    MotionCommand::CartesianPose(pose) => {
+                        let pose = transform::isometry_from_array(&pose.O_T_EE).expect("rigid");
+                        assert!(twist(&pose, &robots).amax() < 1e-12, "cycle {cycle}");
+                    }
+                    MotionCommand::CartesianVelocities(velocities) => {
+                        let most = Twist::from(velocities.O_dP_EE).amax();
+                        assert!(most < 1e-9, "cycle {cycle}: {most}");
+                    }
+                    other => panic!("{other:?}"),
+                }
+            }
+        }
+    }
+}
