@@ -47,6 +47,10 @@ pub(crate) enum Input {
         kept: KeptTuning,
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
+    /// Is answered when all inputs before it are taken.
+    Await {
+        taken: oneshot::Sender<Result<(), MotionError>>,
+    },
     Disengage {
         id: GoalId,
     },

@@ -231,6 +231,7 @@ impl Journal {
             Input::Shutdown { .. } => Some(What::Remark("a shutdown is asked for".into())),
             Input::Update { .. }
             | Input::Tune { .. }
+            | Input::Await { .. }
             | Input::Close { .. }
             | Input::Lose { .. } => None,
         });

@@ -185,6 +185,10 @@ impl Motion {
     ///
     /// # Errors
     /// [`MotionError::Path`] and [`MotionError::Goal`].
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "in the caller's own thread, and no task of a connection calls it"
+    )]
     pub fn preview(&self) -> Result<Preview, MotionError> {
         let (robot, model) = (self.canceller.robot(), self.canceller.robot().model());
         let (state, course) = (robot.state(), &robot.link().course);

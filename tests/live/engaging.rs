@@ -10,9 +10,11 @@ use franka_async::settings::CollisionBehavior;
 use franka_async::{Engage, MotionError, Pose};
 use franka_model::Wrench;
 use franka_sim::{Sim, Tool};
+use franka_tests::PATIENCE;
+use tokio::runtime::{Builder, Runtime};
 use tokio::sync::watch;
 
-use crate::{SOON, alone, by_the_clock, robot_time, simulated, under_way};
+use crate::{SOON, alone, by_the_clock, connect, robot_time, simulated, under_way};
 
 #[tokio::test(flavor = "multi_thread")]
 async fn goals_of_every_kind_are_reached_within_one_session() {
@@ -112,6 +114,37 @@ async fn tuning_is_kept_field_by_field_for_goals_to_come() {
         motion = arm.move_to(robot.pose());
     }
     robot.shutdown().await;
+}
+
+/// The task that takes goals is held up for a second of the robot's time, with the thread that it
+/// shares with this test.
+#[test]
+fn at_rest_waits_for_a_goal_that_is_not_taken_yet() {
+    let _alone = alone();
+    let servers = Runtime::new().unwrap();
+    let sim = Sim::fr3().ideal().virtual_time(PATIENCE).start();
+    let sim = servers.block_on(sim).unwrap();
+    let clients = Builder::new_current_thread().enable_all().build().unwrap();
+    clients.block_on(async {
+        let robot = connect(&sim).await;
+        let arm = robot.engage(Engage::default()).await.unwrap();
+        robot_time(&robot, 500).await;
+        let aside = Pose::translation(0.0, 0.05, 0.0) * robot.pose();
+        let mut at_rest = std::pin::pin!(arm.at_rest());
+        arm.try_set(aside).unwrap();
+        tokio::select! {
+            biased;
+            rested = &mut at_rest => panic!("{rested:?}"),
+            () = std::future::ready(()) => {}
+        }
+        let held_up = robot.state().message_id + 1000;
+        while robot.state().message_id < held_up {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        at_rest.await.unwrap();
+        assert!(PoseError::between(&robot.pose(), &aside).translation < 1e-3);
+        robot.shutdown().await;
+    });
 }
 
 #[tokio::test(flavor = "multi_thread")]

@@ -26,6 +26,7 @@ mod misbehaving;
 mod mishaps;
 mod moving;
 mod peer;
+mod planning;
 mod raising;
 mod reacting;
 mod reading;

@@ -28,6 +28,7 @@ const ENDING_TIMEOUT: Duration = Duration::from_secs(2);
 impl Bridge {
     /// Brakes what moves. Returns when to give up on it.
     pub(super) fn begin_closing(&mut self) -> Instant {
+        self.drop_plan(MotionError::Stopped);
         let now = self.now();
         self.lifecycle.stop(CLOSING, &self.publisher.state(), now);
         Instant::now() + CLOSING_TIMEOUT
@@ -40,7 +41,8 @@ impl Bridge {
         let reason = self.channel.closing().note(reason);
         // Before the motions resolve: what comes next finds a connection that is lost.
         self.supervisor.on_lost(reason.clone());
-        self.lifecycle.on_connection_closed(reason);
+        self.lifecycle.on_connection_closed(reason.clone());
+        self.drop_plan(MotionError::ConnectionClosed { reason });
         self.lost = true;
     }
 
@@ -55,6 +57,8 @@ impl Bridge {
         inbox.close();
         self.supervisor.on_lost(reason.clone());
         self.lifecycle.on_connection_closed(reason.clone());
+        let closed = reason.clone();
+        self.drop_plan(MotionError::ConnectionClosed { reason: closed });
         self.carry_out();
         while let Some(input) = inbox.recv().await {
             match input {

@@ -3,6 +3,7 @@
 use franka_rt::lifecycle::{MotionError, NewMotion};
 use franka_rt::session::{Chunk, GoalId};
 
+use super::planning::PLANS;
 use super::{Bridge, log};
 use crate::destination::Now;
 use crate::input::{Beginning, EndReply, Input, Replies};
@@ -10,29 +11,19 @@ use crate::input::{Beginning, EndReply, Input, Replies};
 impl Bridge {
     pub(super) fn on_input(&mut self, input: Input) {
         let now = self.now();
-        // If no wake-up per state is requested, the state that was published last is old.
-        self.publisher.refresh();
-        self.observe();
-        // The caller may react to an event that is in the queue and not yet read by this task: the
-        // queue is read before the input is handled.
-        self.look_for_a_stall();
-        self.take_notices();
+        self.catch_up();
         match input {
-            Input::Begin { motion, replies } => {
-                let id = motion.motion.id();
-                let compliant = self.lifecycle.compliant_goal(&motion.motion);
-                let gains = compliant.map(|goal| goal.gains);
-                let force_cap = compliant.map(|goal| goal.force_cap);
-                match self.begin(motion) {
-                    Ok(()) => {
-                        self.warn_of_margin(id, gains, &self.publisher.state());
-                        self.warn_of_thresholds(id, force_cap);
-                        let span = tracing::info_span!("motion", goal = id.0);
-                        self.replies.insert(id, (replies, span));
-                    }
-                    Err(error) => self.refuse(id, replies, error),
+            Input::Begin {
+                mut motion,
+                replies,
+            } => match (self.check_turn_of_plan(&motion.motion), motion.path.take()) {
+                (Err(error), _) => self.refuse(motion.motion.id(), replies, error),
+                (Ok(()), Some(waypoints)) => {
+                    self.drop_plan(MotionError::Superseded);
+                    self.plan(motion, waypoints, replies, PLANS);
                 }
-            }
+                (Ok(()), None) => self.take_up(motion, None, replies),
+            },
             Input::Update {
                 goal,
                 target,
@@ -44,7 +35,7 @@ impl Bridge {
             }
             Input::Set { motion, taken } => {
                 let id = motion.motion.id();
-                let begun = self.begin(motion);
+                let begun = self.begin(motion, None);
                 self.course.head_for(self.lifecycle.heading());
                 self.note_refusal(id, &begun);
                 let _ = taken.send(begun);
@@ -54,7 +45,7 @@ impl Bridge {
                     return;
                 };
                 let id = motion.motion.id();
-                let begun = self.begin(motion);
+                let begun = self.begin(motion, None);
                 self.note_refusal(id, &begun);
             }
             Input::Chunk {
@@ -63,8 +54,11 @@ impl Bridge {
                 chunk,
                 taken,
             } => {
-                let (state, number) = (&self.publisher.state(), goal.id);
-                let sent = self.lifecycle.chunk(id, *goal, *chunk, state);
+                let (state, number) = (*self.publisher.state(), goal.id);
+                let sent = self.lifecycle.chunk(id, *goal, *chunk, &state);
+                if sent.is_ok() {
+                    self.supersede_plan(Some(id));
+                }
                 self.course.head_for(self.lifecycle.heading());
                 self.note_refusal(number, &sent);
                 let _ = taken.send(sent);
@@ -75,18 +69,28 @@ impl Bridge {
                 kept,
                 taken,
             } => {
-                let state = &self.publisher.state();
-                let tuned = self.lifecycle.tune(id, *tuning, state);
+                let state = *self.publisher.state();
+                let tuned = self.lifecycle.tune(id, *tuning, &state);
                 if tuned.is_ok() {
                     kept.change(*tuning);
-                    self.warn_of_margin(id, tuning.gains, state);
+                    self.tune_plan(id, &tuning);
+                    self.warn_of_margin(id, tuning.gains, &state);
                     self.warn_of_thresholds(id, tuning.force_cap);
                 }
                 let _ = taken.send(tuned);
             }
-            Input::Disengage { id } => self.lifecycle.disengage(id),
+            // The future that waits may have been dropped.
+            Input::Await { taken } => drop(taken.send(Ok(()))),
+            Input::Disengage { id } => {
+                self.end_plan_of(id);
+                self.lifecycle.disengage(id);
+            }
             Input::Close { goal } => self.lifecycle.close(goal),
-            Input::Pause { goal, paused } => self.lifecycle.pause(goal, paused),
+            Input::Pause { goal, paused } => {
+                self.pause_plan(goal, paused);
+                self.lifecycle.pause(goal, paused);
+            }
+            Input::Cancel { goal, .. } if self.cancel_plan(goal) => {}
             Input::Cancel { goal, refused } => {
                 if let Some(error) = refused {
                     tracing::info!(goal = goal.0, %error, "a target is refused: the motion stops");
@@ -95,6 +99,7 @@ impl Bridge {
                 self.lifecycle.cancel(goal, now);
             }
             Input::Stop { goal, ended } => {
+                self.drop_plan(MotionError::Stopped);
                 let stops = self.lifecycle.stop(goal, &self.publisher.state(), now);
                 if stops {
                     let ended = EndReply::One(ended);
@@ -109,36 +114,65 @@ impl Bridge {
         }
     }
 
+    /// Reads what the control thread has published. The caller may react to an event that is in the
+    /// queue and not yet read by this task, and without wake-ups per state the state that was
+    /// published last is old.
+    pub(super) fn catch_up(&mut self) {
+        self.publisher.refresh();
+        self.observe();
+        self.look_for_a_stall();
+        self.take_notices();
+    }
+
+    /// Begins a motion, along this path if it has one, or refuses it.
+    pub(super) fn take_up(&mut self, motion: Beginning, path: Option<Chunk>, replies: Replies) {
+        let id = motion.motion.id();
+        let compliant = self.lifecycle.compliant_goal(&motion.motion);
+        let gains = compliant.map(|goal| goal.gains);
+        let force_cap = compliant.map(|goal| goal.force_cap);
+        match self.begin(motion, path) {
+            Ok(()) => {
+                self.warn_of_margin(id, gains, &self.publisher.state());
+                self.warn_of_thresholds(id, force_cap);
+                let span = tracing::info_span!("motion", goal = id.0);
+                self.replies.insert(id, (replies, span));
+            }
+            Err(error) => self.refuse(id, replies, error),
+        }
+    }
+
     /// Completes a motion by where the robot is, and begins it.
-    fn begin(&mut self, beginning: Beginning) -> Result<(), MotionError> {
-        let (now, state) = (self.now(), &self.publisher.state());
+    fn begin(&mut self, beginning: Beginning, path: Option<Chunk>) -> Result<(), MotionError> {
+        let (now, state) = (self.now(), *self.publisher.state());
         let Beginning {
             mut motion,
             destination,
-            path,
+            path: _,
             refused,
         } = beginning;
         if let Some(error) = refused {
             return Err(error.into());
         }
         let NewMotion::Goal {
-            goal, path: chunk, ..
+            goal,
+            path: chunk,
+            session,
+            ..
         } = &mut motion
         else {
-            return self.lifecycle.begin(motion, state, now);
+            return self.lifecycle.begin(motion, &state, now);
         };
-        let reference = self.course.reference().map(|reference| reference.q);
         if let Some(destination) = destination {
+            let reference = self.course.reference().map(|reference| reference.q);
             let heading = self.lifecycle.heading().map(|(_, target)| target);
-            let now = Now::of(self.lifecycle.model(), state, heading, reference);
+            let now = Now::of(self.lifecycle.model(), &state, heading, reference);
             goal.target = destination.seen_from(&now);
         }
-        if let Some(path) = path {
-            let q = reference.unwrap_or(state.q);
-            let path = Chunk::through(&path, &q, goal, self.lifecycle.model(), state)?;
-            *chunk = Some(Box::new(path));
-        }
-        self.lifecycle.begin(motion, state, now)
+        *chunk = path.map(Box::new);
+        let session = *session;
+        self.lifecycle.begin(motion, &state, now)?;
+        self.supersede_plan(session);
+        Ok(())
     }
 
     /// Notes a goal that its session has not taken.

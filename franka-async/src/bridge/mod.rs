@@ -5,6 +5,7 @@
 
 mod closing;
 mod inputs;
+mod planning;
 mod wakeups;
 mod warnings;
 
@@ -35,6 +36,8 @@ use crate::supervisor::Supervisor;
 use crate::telemetry::Telemetry;
 use crate::thresholds::Thresholds;
 
+use planning::{Planning, planned};
+
 pub(crate) use wakeups::{attach, woken};
 
 pub(crate) struct Bridge {
@@ -59,6 +62,8 @@ pub(crate) struct Bridge {
     supervisor: Arc<Supervisor>,
     /// The goal that is taken back for a target that was refused.
     refused: Option<(GoalId, GoalError)>,
+    /// The motion whose path is being planned.
+    planning: Option<Planning>,
     /// What the supervisor was last shown.
     seen: Option<Seen>,
     /// `message_id` of the newest state when a silence was noticed, until one comes.
@@ -132,6 +137,7 @@ impl Bridge {
             stalled: false,
             supervisor,
             refused: None,
+            planning: None,
             seen: None,
             silent_since: None,
             awaited: None,
@@ -195,6 +201,10 @@ impl Bridge {
                     None => closing = Some(self.begin_closing()),
                 },
                 Some(report) = reports.recv() => self.on_report(report),
+                path = planned(&mut self.planning) => {
+                    self.catch_up();
+                    self.on_planned(path);
+                }
                 () = sleep_until(deadline) => {
                     if closing.is_some_and(|closing| closing <= Instant::now()) {
                         tracing::error!("the motion did not end; closing all the same");

@@ -191,7 +191,7 @@ impl Lifecycle {
     }
 
     /// The model of the robot.
-    pub fn model(&self) -> &Model {
+    pub fn model(&self) -> &Arc<Model> {
         &self.model
     }
 

@@ -1,0 +1,222 @@
+//! Paths, which are planned before they begin: on a thread for work that blocks, as it takes up to
+//! a hundred milliseconds, in which the bridge serves stops. One at most; a newer goal supersedes
+//! it.
+
+use std::panic::resume_unwind;
+use std::sync::Arc;
+
+use franka_model::Model;
+use franka_proto::RobotState;
+use franka_rt::lifecycle::{MotionError, NewMotion, Tuning};
+use franka_rt::session::{Chunk, Goal, GoalId, PathError, Waypoint};
+use tokio::task::JoinHandle;
+
+use super::Bridge;
+use crate::input::{Beginning, Replies};
+
+/// A motion whose path is being planned.
+pub(super) struct Planning {
+    motion: Beginning,
+    waypoints: Arc<[Waypoint]>,
+    replies: Replies,
+    /// Joint positions that the path starts from, `[rad]`.
+    start: [f64; 7],
+    /// Plans that may still be made if the arm has left the start meanwhile.
+    plans_left: u32,
+    task: JoinHandle<Result<Chunk, PathError>>,
+}
+
+/// Distance of a joint from the start of a path, `[rad]`, from which on it is planned anew. Where
+/// the arm moves, the path is entered in motion: a joint at half of its speed goes so far in a
+/// hundred milliseconds.
+const LEFT_START: f64 = 0.1;
+
+/// Plans of a path beyond the first until it is refused, because the arm moves on too fast.
+pub(super) const PLANS: u32 = 4;
+
+/// The path that is being planned, once it is. Without one, it waits forever.
+///
+/// # Cancel safety
+/// Nothing is lost if it is dropped.
+pub(super) async fn planned(planning: &mut Option<Planning>) -> Result<Chunk, PathError> {
+    let Some(planning) = planning else {
+        return std::future::pending().await;
+    };
+    match (&mut planning.task).await {
+        Ok(planned) => planned,
+        Err(failed) => match failed.try_into_panic() {
+            Ok(panic) => resume_unwind(panic),
+            // The runtime ends, and this task with it.
+            Err(_) => std::future::pending().await,
+        },
+    }
+}
+
+impl Planning {
+    fn id(&self) -> GoalId {
+        self.motion.motion.id()
+    }
+
+    fn session(&self) -> Option<GoalId> {
+        session_of(&self.motion.motion)
+    }
+}
+
+fn session_of(motion: &NewMotion) -> Option<GoalId> {
+    match motion {
+        NewMotion::Goal { session, .. } => *session,
+        _ => None,
+    }
+}
+
+impl Bridge {
+    /// Plans the path of a motion, which begins after that.
+    pub(super) fn plan(
+        &mut self,
+        motion: Beginning,
+        waypoints: Arc<[Waypoint]>,
+        replies: Replies,
+        plans_left: u32,
+    ) {
+        let NewMotion::Goal { goal, .. } = &motion.motion else {
+            unreachable!("only goals have paths");
+        };
+        let (goal, state) = (**goal, *self.publisher.state());
+        let (model, start) = (self.lifecycle.model().clone(), self.start_of_a_path());
+        let path = waypoints.clone();
+        let plan = move || plan_path(&path, &start, &goal, &model, &state);
+        self.planning = Some(Planning {
+            motion,
+            waypoints,
+            replies,
+            start,
+            plans_left,
+            task: tokio::task::spawn_blocking(plan),
+        });
+    }
+
+    /// Begins the motion whose path has been planned, or refuses it.
+    pub(super) fn on_planned(&mut self, planned: Result<Chunk, PathError>) {
+        let Some(planning) = self.planning.take() else {
+            return;
+        };
+        let Planning {
+            motion,
+            waypoints,
+            replies,
+            start,
+            plans_left,
+            task: _,
+        } = planning;
+        let id = motion.motion.id();
+        let path = match planned {
+            Ok(path) => path,
+            Err(error) => return self.refuse(id, replies, error.into()),
+        };
+        let now = self.start_of_a_path();
+        let has_left = start
+            .iter()
+            .zip(now)
+            .any(|(start, now)| (now - start).abs() > LEFT_START);
+        match plans_left.checked_sub(1) {
+            _ if !has_left => self.take_up(motion, Some(path), replies),
+            Some(plans_left) => self.plan(motion, waypoints, replies, plans_left),
+            None => self.refuse(id, replies, MotionError::Busy),
+        }
+    }
+
+    /// Where a path that begins now starts: joint positions, `[rad]`.
+    fn start_of_a_path(&self) -> [f64; 7] {
+        let reference = self.course.reference().map(|reference| reference.q);
+        reference.unwrap_or_else(|| self.publisher.state().q)
+    }
+
+    /// Checks that a path that is being planned gives way to `motion`, as it does when it has
+    /// begun.
+    pub(super) fn check_turn_of_plan(&self, motion: &NewMotion) -> Result<(), MotionError> {
+        let supersedes = matches!(motion, NewMotion::Goal { ticket: None, .. });
+        match &self.planning {
+            Some(_) if !supersedes => Err(MotionError::Busy),
+            _ => Ok(()),
+        }
+    }
+
+    /// Takes note that a goal of this session, or outside of one, was taken.
+    pub(super) fn supersede_plan(&mut self, session: Option<GoalId>) {
+        self.take_back_plan(MotionError::Superseded, |plan| plan.session() == session);
+    }
+
+    /// Takes back the path of this goal. Returns whether there is one.
+    pub(super) fn cancel_plan(&mut self, goal: GoalId) -> bool {
+        self.take_back_plan(MotionError::Stopped, |plan| plan.id() == goal)
+    }
+
+    /// Takes back the path that a session is to go along.
+    pub(super) fn end_plan_of(&mut self, session: GoalId) {
+        self.take_back_plan(MotionError::Stopped, |plan| plan.session() == Some(session));
+    }
+
+    /// Takes back whatever is being planned, for `reason`.
+    pub(super) fn drop_plan(&mut self, reason: MotionError) {
+        self.take_back_plan(reason, |_| true);
+    }
+
+    fn take_back_plan(&mut self, reason: MotionError, of: impl Fn(&Planning) -> bool) -> bool {
+        let Some(planning) = self.planning.take_if(|planning| of(planning)) else {
+            return false;
+        };
+        // What was asked of it is over, whatever the thread still computes.
+        planning.task.abort();
+        self.refuse(planning.motion.motion.id(), planning.replies, reason);
+        true
+    }
+
+    /// Pauses the path of this goal, which then begins paused, or lets it go on.
+    pub(super) fn pause_plan(&mut self, id: GoalId, paused: bool) {
+        if let Some(Planning { motion, .. }) = &mut self.planning
+            && let NewMotion::Goal { goal, .. } = &mut motion.motion
+            && goal.id == id
+        {
+            goal.paused = paused;
+        }
+    }
+
+    /// Changes how the path of a session will be pursued; plans it anew if its limits or posture
+    /// change.
+    pub(super) fn tune_plan(&mut self, session: GoalId, tuning: &Tuning) {
+        let of_session = |plan: &mut Planning| plan.session() == Some(session);
+        let Some(mut planning) = self.planning.take_if(of_session) else {
+            return;
+        };
+        if let NewMotion::Goal { goal, .. } = &mut planning.motion.motion {
+            **goal = tuning.apply(**goal);
+        }
+        if tuning.budget.is_none() && tuning.posture.is_none() {
+            self.planning = Some(planning);
+            return;
+        }
+        planning.task.abort();
+        let Planning {
+            motion,
+            waypoints,
+            replies,
+            plans_left,
+            ..
+        } = planning;
+        self.plan(motion, waypoints, replies, plans_left);
+    }
+}
+
+#[expect(
+    clippy::disallowed_methods,
+    reason = "on a thread for work that blocks"
+)]
+fn plan_path(
+    waypoints: &[Waypoint],
+    start: &[f64; 7],
+    goal: &Goal,
+    model: &Model,
+    state: &RobotState,
+) -> Result<Chunk, PathError> {
+    Chunk::through(waypoints, start, goal, model, state)
+}

@@ -1,0 +1,146 @@
+//! Paths are planned beside the task that serves stops. A plan is held up in here, as the only
+//! thread for work that blocks waits for the test.
+
+use std::future::IntoFuture;
+use std::sync::mpsc;
+use std::time::Duration;
+
+use franka_async::goal::{Budget, Deviation, Tuning};
+use franka_async::state::RobotMode;
+use franka_async::{Engage, MotionError, MotionReport, Pose, Robot};
+use franka_sim::Running;
+use tokio::runtime::{Builder, Runtime};
+use tokio::task::JoinHandle;
+
+use crate::{alone, robot_time, simulated};
+
+type Outcome = Result<MotionReport, MotionError>;
+
+/// A runtime whose only thread for work that blocks can be held.
+fn runtime() -> Runtime {
+    let mut builder = Builder::new_multi_thread();
+    let builder = builder.worker_threads(2).max_blocking_threads(1);
+    builder.enable_all().build().expect("a runtime starts")
+}
+
+/// Holds every plan until it is dropped.
+fn hold() -> mpsc::Sender<()> {
+    let (release, held) = mpsc::channel();
+    tokio::task::spawn_blocking(move || {
+        // Fails once it is dropped.
+        let _: Result<(), _> = held.recv();
+    });
+    release
+}
+
+struct Scene {
+    robot: Robot,
+    _sim: Running,
+    q: [f64; 7],
+    /// Two poses beside and above the arm.
+    way: [Pose; 2],
+}
+
+impl Scene {
+    async fn new() -> Self {
+        let (robot, sim) = simulated().await;
+        let (q, start) = (robot.state().q, robot.pose());
+        let way = [(0.03, 0.0), (0.03, 0.03)].map(|(y, z)| Pose::translation(0.0, y, z) * start);
+        let _sim = sim;
+        Self {
+            robot,
+            _sim,
+            q,
+            way,
+        }
+    }
+
+    /// A motion along the way whose plan is held.
+    async fn planned(&self) -> JoinHandle<Outcome> {
+        let moving = tokio::spawn(self.robot.move_through(self.way).into_future());
+        robot_time(&self.robot, 200).await;
+        assert!(!moving.is_finished());
+        self.assert_still();
+        moving
+    }
+
+    fn assert_still(&self) {
+        let state = self.robot.state();
+        assert_eq!(state.robot_mode, RobotMode::Idle);
+        assert_eq!(state.q, self.q);
+    }
+}
+
+#[test]
+fn stop_and_cancel_are_served_while_a_path_is_planned() {
+    let _alone = alone();
+    runtime().block_on(async {
+        let scene = Scene::new().await;
+        let robot = &scene.robot;
+        let release = hold();
+
+        let stopped = scene.planned().await;
+        robot.stop().await.expect("nothing moves");
+        assert_eq!(stopped.await.unwrap(), Err(MotionError::Stopped));
+
+        let motion = robot.move_through(scene.way);
+        let handle = motion.handle();
+        let cancelled = tokio::spawn(motion.into_future());
+        robot_time(robot, 50).await;
+        handle.cancel();
+        assert_eq!(cancelled.await.unwrap(), Err(MotionError::Stopped));
+
+        let dropped = scene.planned().await;
+        dropped.abort();
+        let superseded = scene.planned().await;
+        let moving = scene.planned().await;
+        assert_eq!(superseded.await.unwrap(), Err(MotionError::Superseded));
+        let engaged = robot.engage(Engage::default()).await.map(drop);
+        assert_eq!(engaged, Err(MotionError::Busy));
+
+        drop(release);
+        moving.await.unwrap().expect("it arrives");
+        let end = scene.way[1].translation.vector;
+        assert!((robot.pose().translation.vector - end).norm() < 1e-3);
+        robot.shutdown().await;
+    });
+}
+
+#[test]
+fn path_that_is_planned_gives_way_to_a_newer_goal_of_its_session() {
+    let _alone = alone();
+    runtime().block_on(async {
+        let scene = Scene::new().await;
+        let arm = scene.robot.engage(Engage::default()).await.unwrap();
+        let release = hold();
+        let begin = || tokio::spawn(arm.move_through(scene.way).into_future());
+
+        let superseded = begin();
+        robot_time(&scene.robot, 100).await;
+        arm.move_to(Pose::translation(0.0, 0.0, 0.01) * scene.robot.pose())
+            .await
+            .expect("it arrives meanwhile");
+        assert_eq!(superseded.await.unwrap(), Err(MotionError::Superseded));
+
+        // Tuned before it begins.
+        let slow = Tuning {
+            budget: Some(Budget::of(scene.robot.model().joint_limits()).scaled(0.2)),
+            deviation: Some(Deviation::default()),
+            ..Tuning::default()
+        };
+        let tuned = begin();
+        robot_time(&scene.robot, 100).await;
+        arm.tune(slow).await.unwrap();
+        drop(release);
+        let report = tuned.await.unwrap().expect("it arrives");
+        assert!(report.duration > Duration::from_secs(1), "{report:?}");
+
+        let release = hold();
+        let ended = begin();
+        robot_time(&scene.robot, 100).await;
+        arm.clone().disengage().await.expect("it rests");
+        assert_eq!(ended.await.unwrap(), Err(MotionError::Stopped));
+        drop(release);
+        scene.robot.shutdown().await;
+    });
+}
