@@ -106,16 +106,30 @@ impl Incident {
     }
 }
 
-/// Whether a file of this name is one of a black box: it begins with a time as above.
-pub(super) fn is_file_name(name: &str) -> bool {
-    let Some((time, rest)) = name.split_once('-') else {
-        return false;
-    };
+/// A file of a black box, by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NamedFile {
+    Whole,
+    /// Not complete yet.
+    Part,
+}
+
+/// The file of a black box that has this name, which begins with a time as above; none if it is
+/// another file.
+pub(super) fn file_of_name(name: &str) -> Option<NamedFile> {
+    let (time, rest) = name.split_once('-')?;
     let shape: String = time
         .chars()
         .map(|c| if c.is_ascii_digit() { '0' } else { c })
         .collect();
-    shape == "00000000T000000.000Z" && (rest.ends_with(".mcap") || rest.ends_with(".mcap.part"))
+    if shape != "00000000T000000.000Z" {
+        return None;
+    }
+    match rest.strip_suffix(".part") {
+        Some(rest) if rest.ends_with(".mcap") => Some(NamedFile::Part),
+        None if rest.ends_with(".mcap") => Some(NamedFile::Whole),
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -131,9 +145,11 @@ mod tests {
         };
         let name = incident.file_name();
         assert_eq!(name, "20240229T123456.123Z-left-guard-deviation.mcap");
-        assert!(is_file_name(&name) && is_file_name(&format!("{name}.part")));
+        assert_eq!(file_of_name(&name), Some(NamedFile::Whole));
+        let part = format!("{name}.part");
+        assert_eq!(file_of_name(&part), Some(NamedFile::Part));
         for other in ["run.mcap", "20240229-left-reflex.mcap", "notes-1.mcap", ""] {
-            assert!(!is_file_name(other), "{other}");
+            assert_eq!(file_of_name(other), None, "{other}");
         }
     }
 }

@@ -1,5 +1,7 @@
 //! The thread that waits for the disk, so that nothing else has to.
 
+use core::mem;
+use core::time::Duration;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -20,6 +22,8 @@ pub(super) struct DiskStatus {
     pub(super) written: u64,
     /// Cycles in what could not be written.
     pub(super) cycles_lost: u64,
+    /// Whether a file of the black box waits for the disk.
+    pub(super) black_box_waits: bool,
     /// The files of the recording, oldest first.
     pub(super) files: Vec<PathBuf>,
     /// The files of the black box.
@@ -39,8 +43,10 @@ pub(super) struct Disk {
 
 #[derive(Debug)]
 enum Job {
-    /// Ends the file that is open and begins this one.
-    Open(PathBuf, Option<File>),
+    /// Begins the first file of the recording.
+    Open(PathBuf, File),
+    /// Ends the file that is open and begins the next one of the recording whose first file is this.
+    Follow(PathBuf),
     /// Appends whole chunks with this many cycles.
     Append(Vec<u8>, u64),
     /// Writes a file of the black box at once and deletes the oldest beyond `keep`.
@@ -61,6 +67,7 @@ impl Disk {
             jobs: receiver,
             status: status.clone(),
             open: None,
+            number: 1,
             sync,
         };
         thread::Builder::new()
@@ -98,9 +105,14 @@ impl Disk {
         fail_black_box(&self.status, error);
     }
 
-    /// Begins a file, which may be open already.
-    pub(super) fn open(&self, path: PathBuf, file: Option<File>) {
+    /// Begins the first file.
+    pub(super) fn open(&self, path: PathBuf, file: File) {
         self.order(Job::Open(path, file), 0);
+    }
+
+    /// Begins the next file of the recording whose first file is this one.
+    pub(super) fn follow(&self, first: PathBuf) {
+        self.order(Job::Follow(first), 0);
     }
 
     /// Appends whole chunks, in which there are this many cycles.
@@ -114,8 +126,17 @@ impl Disk {
         lock(&self.status).cycles_lost += cycles;
     }
 
+    /// Writes a file of the black box. One that the disk has not taken yet is the only one that
+    /// waits.
     pub(super) fn black_box(&self, directory: PathBuf, dump: black_box::Dump, keep: usize) {
         let length = dump.bytes.len();
+        if mem::replace(&mut lock(&self.status).black_box_waits, true) {
+            let source = io::Error::other("the disk has not taken the one before");
+            return self.fail_black_box(RecordError::BlackBox {
+                path: directory.join(dump.name),
+                source: source.into(),
+            });
+        }
         let job = Job::BlackBox {
             directory,
             name: dump.name,
@@ -179,6 +200,8 @@ struct DiskThread {
     jobs: Receiver<Job>,
     status: Arc<Mutex<DiskStatus>>,
     open: Option<Open>,
+    /// Number of the newest file of the recording.
+    number: u32,
     sync: bool,
 }
 
@@ -213,19 +236,12 @@ impl DiskThread {
 
     fn work(&mut self, job: Job) {
         match job {
-            Job::Open(path, file) => {
+            Job::Open(path, file) => self.begin(path, file),
+            Job::Follow(first) => {
                 self.synchronise();
                 self.open = None;
-                match file.map_or_else(|| create(&path), Ok) {
-                    Ok(file) => {
-                        lock(&self.status).files.push(path.clone());
-                        self.open = Some(Open {
-                            path,
-                            file,
-                            length: 0,
-                            dirty: false,
-                        });
-                    }
+                match self.create_next(&first) {
+                    Ok((path, file)) => self.begin(path, file),
                     Err(error) => self.fail(error),
                 }
             }
@@ -253,7 +269,10 @@ impl DiskThread {
             } => {
                 let path = directory.join(&name);
                 let written = write_whole(&directory, &path, &bytes);
-                lock(&self.status).backlog -= bytes.len() as u64;
+                let mut status = lock(&self.status);
+                status.backlog -= bytes.len() as u64;
+                status.black_box_waits = false;
+                drop(status);
                 match written {
                     Ok(()) => lock(&self.status).black_boxes.push(path),
                     Err(source) => {
@@ -262,6 +281,28 @@ impl DiskThread {
                     }
                 }
                 delete_oldest(&directory, keep);
+            }
+        }
+    }
+
+    fn begin(&mut self, path: PathBuf, file: File) {
+        lock(&self.status).files.push(path.clone());
+        self.open = Some(Open {
+            path,
+            file,
+            length: 0,
+            dirty: false,
+        });
+    }
+
+    /// Makes the next file of a recording, by the first number that no file has.
+    fn create_next(&mut self, first: &Path) -> Result<(PathBuf, File), RecordError> {
+        loop {
+            self.number += 1;
+            let path = numbered(first, self.number);
+            match create(&path) {
+                Err(RecordError::Exists { .. }) if self.number < NUMBER_MAX => {}
+                made => return made.map(|file| (path, file)),
             }
         }
     }
@@ -311,6 +352,19 @@ impl Open {
     }
 }
 
+/// `run-0002.mcap` for the second file of `run.mcap`.
+fn numbered(first: &Path, number: u32) -> PathBuf {
+    let stem = first.file_stem().unwrap_or_default().to_string_lossy();
+    let name = match first.extension() {
+        Some(extension) => format!("{stem}-{number:04}.{}", extension.to_string_lossy()),
+        None => format!("{stem}-{number:04}"),
+    };
+    first.with_file_name(name)
+}
+
+/// Files of a recording, those of others of the same name included.
+const NUMBER_MAX: u32 = 1_000_000;
+
 /// Writes a file that has its name only once it is complete.
 fn write_whole(directory: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
     fs::create_dir_all(directory)?;
@@ -330,19 +384,75 @@ fn write_whole(directory: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
     written
 }
 
-/// Deletes the oldest files of black boxes, so that `keep` are left. A file that cannot be deleted
-/// stays.
+/// Deletes the oldest files of black boxes, so that `keep` are left, and what crashes have left of
+/// others. A file that cannot be deleted stays.
 fn delete_oldest(directory: &Path, keep: usize) {
     let Ok(entries) = fs::read_dir(directory) else {
         return;
     };
-    let mut names: Vec<_> = entries
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .filter(|name| black_box::is_file_name(name))
-        .collect();
-    names.sort_unstable();
-    let surplus = names.len().saturating_sub(keep);
-    for name in &names[..surplus] {
+    let (mut whole, mut parts) = (Vec::new(), Vec::new());
+    for entry in entries.filter_map(Result::ok) {
+        let name = entry.file_name();
+        match name.to_str().and_then(black_box::file_of_name) {
+            Some(black_box::NamedFile::Whole) => whole.push(name),
+            Some(black_box::NamedFile::Part) => parts.push(entry),
+            None => {}
+        }
+    }
+    // A younger one may be of another process that is writing it.
+    let is_left = |entry: &fs::DirEntry| {
+        let modified = entry.metadata().and_then(|it| it.modified());
+        modified.is_ok_and(|time| time.elapsed().is_ok_and(|age| age > PART_AGE))
+    };
+    for part in parts.iter().filter(|entry| is_left(entry)) {
+        let _ = fs::remove_file(part.path());
+    }
+    whole.sort_unstable();
+    let surplus = whole.len().saturating_sub(keep);
+    for name in &whole[..surplus] {
         let _ = fs::remove_file(directory.join(name));
+    }
+}
+
+/// Age of an incomplete file that no process writes any more.
+const PART_AGE: Duration = Duration::from_secs(3600);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_that_follow_are_numbered() {
+        for (first, second) in [
+            ("run.mcap", "run-0002.mcap"),
+            ("a.b/run.of.today.mcap", "a.b/run.of.today-0002.mcap"),
+            ("run", "run-0002"),
+        ] {
+            assert_eq!(numbered(Path::new(first), 2), Path::new(second));
+        }
+    }
+
+    #[test]
+    fn black_boxes_of_other_processes_are_left_until_they_are_old() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let names = [
+            "20260301T120000.123Z-left-reflex.mcap",
+            "20260301T130000.123Z-left-reflex.mcap",
+            "20260301T110000.123Z-left-reflex.mcap.part",
+            "20260301T100000.123Z-left-reflex.mcap.part",
+            "notes.part",
+        ];
+        for name in names {
+            fs::write(path(name), "x").unwrap();
+        }
+        for name in [names[3], names[4]] {
+            let old = std::time::SystemTime::now() - 2 * PART_AGE;
+            let file = File::options().write(true).open(path(name)).unwrap();
+            file.set_modified(old).unwrap();
+        }
+        delete_oldest(folder.path(), 1);
+        let left = names.map(|name| path(name).exists());
+        assert_eq!(left, [false, true, true, false, true]);
     }
 }

@@ -116,6 +116,7 @@ impl Drain {
             self.take_cycles();
             self.compare_clocks();
             self.files.tick(self.clock.now());
+            self.count_missing_events();
             if !go_on {
                 break;
             }
@@ -246,7 +247,15 @@ impl Drain {
         }
     }
 
+    fn count_missing_events(&mut self) {
+        let count = self.files.take_missing_events();
+        if count > 0 {
+            lock(&self.status).events_dropped += count;
+        }
+    }
+
     fn finish(mut self) {
+        self.files.begin_end();
         for (index, source) in self.sources.iter_mut().enumerate() {
             source.pass(HostTime::from_nanos(u64::MAX), &mut self.files);
             let now = self.clock.now();
@@ -263,6 +272,7 @@ impl Drain {
         for index in 0..self.sources.len() {
             lock(&self.status).dropped += self.files.take_missing_at_end(index);
         }
+        self.count_missing_events();
         lock(&self.status).ended = true;
     }
 }

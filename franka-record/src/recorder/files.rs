@@ -1,7 +1,7 @@
 //! Where messages go: the file of the recording, which is followed by others, and the last seconds.
 
 use core::mem;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use super::black_box::LastSeconds;
@@ -34,6 +34,8 @@ pub(super) struct Files {
     robots: Vec<RobotFiles>,
     /// Chunks of the recording so far.
     chunk: u64,
+    /// Events that were not written, since the last call of [`Files::take_missing_events`].
+    missing_events: u64,
 }
 
 /// What is kept per robot.
@@ -48,9 +50,8 @@ struct RobotFiles {
 /// The file that grows.
 struct Open {
     file: McapFile,
-    /// The path of the first file of the recording, and the number of this one.
+    /// The path of the first file of the recording.
     first: PathBuf,
-    number: u32,
     bytes: u64,
     /// Cycles since it was last flushed.
     cycles: u64,
@@ -59,8 +60,34 @@ struct Open {
     /// Time of the newest message when it was last flushed, and when that was.
     flushed: HostTime,
     flushed_at: Instant,
-    /// Whether the disk is too far behind.
-    full: bool,
+    room: Room,
+}
+
+/// Messages that there is room for, as the disk is behind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Room {
+    All,
+    /// Events only: they are few, and say what happened.
+    Events,
+    Nothing,
+}
+
+impl Room {
+    fn beside(backlog: u64) -> Self {
+        match backlog {
+            ..BACKLOG_MAX => Self::All,
+            ..EVENT_BACKLOG_MAX => Self::Events,
+            _ => Self::Nothing,
+        }
+    }
+
+    fn takes(self, topic: Topic) -> bool {
+        match self {
+            Self::All => true,
+            Self::Events => matches!(topic, Topic::Event | Topic::Log),
+            Self::Nothing => false,
+        }
+    }
 }
 
 impl Files {
@@ -72,7 +99,7 @@ impl Files {
     ) -> Result<Self, RecordError> {
         let session = Session::new(now, &options);
         let open = match path {
-            Some(path) => Some(Open::begin(path, 1, &session)?),
+            Some(path) => Some(Open::begin(path, &session)?),
             None => None,
         };
         Ok(Self {
@@ -87,6 +114,7 @@ impl Files {
             newest: HostTime::default(),
             robots: Vec::new(),
             chunk: 0,
+            missing_events: 0,
             options,
         })
     }
@@ -137,19 +165,16 @@ impl Files {
     }
 
     fn write(&mut self, message: &Message) {
-        let is_cycle = message.topic == Topic::Cycle;
+        let topic = message.topic;
         let written = match &mut self.open {
-            Some(open) if !(is_cycle && open.full) => {
+            Some(open) if open.room.takes(topic) => {
                 open.began.get_or_insert(message.time);
-                open.cycles += u64::from(is_cycle);
+                open.cycles += u64::from(topic == Topic::Cycle);
                 open.file.write(message)
             }
             _ => {
-                if let Some(robot) = self.robots.get_mut(message.robot)
-                    && self.wanted
-                    && is_cycle
-                {
-                    robot.missing += 1;
+                if self.wanted {
+                    self.count_missing(message);
                 }
                 Ok(())
             }
@@ -157,12 +182,24 @@ impl Files {
         self.check(written);
     }
 
+    fn count_missing(&mut self, message: &Message) {
+        match message.topic {
+            Topic::Cycle => {
+                if let Some(robot) = self.robots.get_mut(message.robot) {
+                    robot.missing += 1;
+                }
+            }
+            Topic::Event => self.missing_events += 1,
+            // Made of cycles and events, which are counted.
+            _ => {}
+        }
+    }
+
     /// Cycles of a robot that were not written since the last call.
     pub(super) fn take_missing(&mut self, robot: usize) -> u64 {
         let open = self.open.as_ref();
-        let full = open.is_some_and(|open| open.full);
-        // Told once there is room for more.
-        if full {
+        // Noted in the file once there is room for more.
+        if open.is_some_and(|open| open.room != Room::All) {
             return 0;
         }
         self.take_missing_at_end(robot)
@@ -172,6 +209,20 @@ impl Files {
     pub(super) fn take_missing_at_end(&mut self, robot: usize) -> u64 {
         let robot = self.robots.get_mut(robot);
         robot.map_or(0, |robot| mem::take(&mut robot.missing))
+    }
+
+    /// Events that were not written since the last call.
+    pub(super) fn take_missing_events(&mut self) -> u64 {
+        mem::take(&mut self.missing_events)
+    }
+
+    /// Makes room for the last events of the recording.
+    pub(super) fn begin_end(&mut self) {
+        if let Some(open) = &mut self.open
+            && open.room == Room::Nothing
+        {
+            open.room = Room::Events;
+        }
     }
 
     /// Ends the chunk if messages of `now` are too late for it.
@@ -235,10 +286,12 @@ impl Files {
         self.chunk += 1;
         self.check(flushed);
         let rotation = self.options.rotation;
+        // A file that gets nothing is followed by none.
         if let Some(open) = self.open.take_if(|open| {
             let span = open.began.map(|began| newest.since(began));
-            rotation.bytes.is_some_and(|bytes| open.bytes >= bytes)
-                || rotation.time.is_some_and(|time| span >= Some(time))
+            let is_due = rotation.bytes.is_some_and(|bytes| open.bytes >= bytes)
+                || rotation.time.is_some_and(|time| span >= Some(time));
+            is_due && open.room == Room::All
         }) {
             let next = open.follow(&self.session, &self.disk);
             match next {
@@ -282,17 +335,16 @@ impl Files {
 }
 
 impl Open {
-    fn begin(first: PathBuf, number: u32, session: &Session) -> Result<Self, RecordError> {
+    fn begin(first: PathBuf, session: &Session) -> Result<Self, RecordError> {
         Ok(Self {
             file: McapFile::begin(session)?,
             first,
-            number,
             bytes: 0,
             cycles: 0,
             began: None,
             flushed: HostTime::default(),
             flushed_at: Instant::now(),
-            full: false,
+            room: Room::All,
         })
     }
 
@@ -305,45 +357,20 @@ impl Open {
         if !bytes.is_empty() {
             disk.append(bytes, cycles);
         }
-        self.full = disk.backlog() >= BACKLOG_MAX;
+        self.room = Room::beside(disk.backlog());
         Ok(())
     }
 
     /// Ends this file and begins the next.
     fn follow(self, session: &Session, disk: &Disk) -> Result<Self, RecordError> {
         disk.append(self.file.finish()?, self.cycles);
-        let number = self.number + 1;
-        let next = Self::begin(self.first, number, session)?;
-        disk.open(numbered(&next.first, number), None);
-        Ok(next)
+        disk.follow(self.first.clone());
+        Self::begin(self.first, session)
     }
-}
-
-/// `run-0002.mcap` for the second file of `run.mcap`.
-fn numbered(first: &Path, number: u32) -> PathBuf {
-    let stem = first.file_stem().unwrap_or_default().to_string_lossy();
-    let name = match first.extension() {
-        Some(extension) => format!("{stem}-{number:04}.{}", extension.to_string_lossy()),
-        None => format!("{stem}-{number:04}"),
-    };
-    first.with_file_name(name)
 }
 
 /// Bytes that may wait for the disk: more than a minute of one robot.
 pub(super) const BACKLOG_MAX: u64 = 64 << 20;
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn files_that_follow_are_numbered() {
-        for (first, second) in [
-            ("run.mcap", "run-0002.mcap"),
-            ("a.b/run.of.today.mcap", "a.b/run.of.today-0002.mcap"),
-            ("run", "run-0002"),
-        ] {
-            assert_eq!(numbered(Path::new(first), 2), Path::new(second));
-        }
-    }
-}
+/// Bytes that may wait for the disk, events included.
+pub(super) const EVENT_BACKLOG_MAX: u64 = BACKLOG_MAX + (16 << 20);

@@ -7,8 +7,9 @@
 //! ```
 //!
 //! Both threads are ordinary ones. A slow disk delays the second one only: 64 MB wait for it, and
-//! then cycles are dropped, counted and the count written down. A disk that fails ends the
-//! recording and nothing else.
+//! then cycles and what is derived of them are dropped, counted and the count written down. Events
+//! have another 16 MB, and one file of the black box waits. A disk that fails ends the recording
+//! and nothing else.
 
 mod black_box;
 mod disk;
@@ -129,7 +130,7 @@ impl Recorder {
         let disk = Disk::start(options.sync, written)?;
         let disk_status = disk.status();
         let drained = Arc::<Mutex<DrainStatus>>::default();
-        if let Some(path) = path {
+        if let (Some(path), Some(file)) = (path, file) {
             disk.open(path.to_owned(), file);
         }
         let drain = Drain::new(

@@ -23,7 +23,8 @@ pub struct RecordOptions {
     /// Whether each write is forced to the disk, so that a power cut loses no more than a crash.
     /// On by default; it costs nothing to the robot, as a thread of its own waits for the disk.
     pub sync: bool,
-    /// When a new file is begun: `run.mcap` is followed by `run-0002.mcap` and so on.
+    /// When a new file is begun: `run.mcap` is followed by `run-0002.mcap` and so on, without
+    /// the numbers of files that exist.
     pub rotation: Rotation,
     /// What is known beforehand about the recording, for its metadata.
     pub metadata: BTreeMap<String, String>,

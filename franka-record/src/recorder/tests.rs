@@ -12,7 +12,8 @@ use franka_model::RobotKind;
 use rand::rngs::SmallRng;
 use rand::{Rng as _, SeedableRng as _};
 
-use super::{RecordError, Recorder, Robot, Rotation};
+use super::{BlackBox, RecordError, Recorder, Robot, Rotation};
+use crate::event::{Ending, Outcome};
 use crate::{Cycle, EventKind, HostTime, Recording};
 use feed::{Arm, Scratch, quick};
 
@@ -91,6 +92,49 @@ fn what_is_left_out_while_a_disk_hangs_is_counted_and_told_in_the_file() {
         assert_eq!(cycles.len() as u64, status.cycles - status.dropped);
         assert_eq!(dropped, status.dropped);
     }
+}
+
+/// Cycles, events and black boxes, without a disk that takes any.
+#[test]
+fn memory_is_bounded_while_a_disk_hangs() {
+    let (reader, writer) = std::io::pipe().unwrap();
+    let scratch = Scratch::new();
+    let mut options = quick();
+    options.black_box = Some(BlackBox {
+        before: Duration::from_secs(1),
+        after: Duration::ZERO,
+        ..BlackBox::new(scratch.path("boxes"))
+    });
+    let path = Some(Path::new("hanging.mcap"));
+    let file = Some(File::from(OwnedFd::from(writer)));
+    let recorder = Recorder::start_with(path, file, options, HostTime::now).unwrap();
+    let (mut arm, handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
+    arm.run(&recorder, 500);
+    let mut random = SmallRng::seed_from_u64(29);
+    let patience = Instant::now() + Duration::from_secs(60);
+    let mut noted = 0;
+    while recorder.status().events_dropped < 5 {
+        assert!(Instant::now() < patience, "{:?}", recorder.status());
+        let text = (0..4 << 20).map(|_| char::from(random.random_range(b' '..b'~')));
+        handle.note(text.collect::<String>());
+        noted += 1;
+        arm.run(&recorder, 1100);
+        let ending = Ending::Reflex;
+        handle.event(EventKind::Outcome(Outcome {
+            ending,
+            ..Outcome::default()
+        }));
+    }
+    // A chunk and a black box more than what may wait.
+    let most = super::files::EVENT_BACKLOG_MAX + (32 << 20);
+    let status = recorder.status();
+    assert!(status.waiting < most, "{noted} notes: {status:?}");
+    let error = status.black_box_error.expect("the disk hangs");
+    assert!(error.to_string().contains("the one before"), "{error}");
+    // Without a reader the pipe is broken, and the recording ends with what was written.
+    drop(reader);
+    let error = recorder.finish_within(Duration::from_secs(60)).unwrap_err();
+    assert!(matches!(error, RecordError::Write { .. }), "{error}");
 }
 
 fn read_all(mut reader: PipeReader) -> Vec<u8> {

@@ -145,6 +145,34 @@ fn a_recording_goes_on_in_the_next_file() {
     assert_eq!(cycles, arm.cycles());
 }
 
+/// They are of an earlier recording of the same name, whose first file was moved away.
+#[test]
+fn rotation_leaves_out_numbers_that_other_files_have() {
+    let scratch = Scratch::new();
+    for number in ["0002", "0003", "0005"] {
+        std::fs::write(scratch.path(&format!("run-{number}.mcap")), "of before").unwrap();
+    }
+    let options = RecordOptions {
+        rotation: Rotation {
+            bytes: Some(1_000_000),
+            time: None,
+        },
+        ..quick()
+    };
+    let recorder = Recorder::to_file(scratch.path("run.mcap"), options).unwrap();
+    let (mut arm, _handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fer));
+    arm.run(&recorder, 12_000);
+    let status = recorder.finish().unwrap();
+    assert!(status.files.len() >= 3, "{:?}", status.files);
+    let names = ["run.mcap", "run-0004.mcap", "run-0006.mcap"];
+    assert_eq!(status.files[..3], names.map(|name| scratch.path(name)));
+    assert_eq!((status.cycles, status.dropped), (arm.cycles(), 0));
+    for number in ["0002", "0003", "0005"] {
+        let text = std::fs::read_to_string(scratch.path(&format!("run-{number}.mcap")));
+        assert_eq!(text.unwrap(), "of before");
+    }
+}
+
 #[test]
 fn the_last_seconds_are_written_when_a_reflex_ends_a_motion() {
     let scratch = Scratch::new();
