@@ -3,12 +3,12 @@
 //!
 //! `cargo run --release --features export --example replay -- --to FOLDER [ADDRESS]`
 
-use std::fs::{self, File};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use franka_async::export::lerobot::{Dataset, DatasetOptions};
-use franka_async::export::{Columns, write_csv, write_parquet};
+use franka_async::export::{Columns, NewFile, write_csv, write_parquet};
 use franka_async::recording::{
     Episode, RecordOptions, Recorder, Recording, Sample, Samples, Track,
 };
@@ -76,12 +76,9 @@ fn export(folder: &Path) -> anyhow::Result<Vec<Sample>> {
     let recording = Recording::open(folder.join("run.mcap"))?;
     let robot = recording.robot("")?;
     let columns = Columns::named(["q", "q_ref", "tau_ext_hat_filtered", "robot_mode"])?;
-    write_csv(
-        robot.cycles(),
-        &columns,
-        true,
-        File::create(folder.join("run.csv"))?,
-    )?;
+    let mut csv = NewFile::create(folder.join("run.csv"))?;
+    write_csv(robot.cycles(), &columns, true, &mut csv)?;
+    csv.finish()?;
     let rows = write_parquet(robot.cycles(), &Columns::all(), folder.join("run.parquet"))?;
     println!("{rows} rows in run.csv and run.parquet");
 

@@ -257,6 +257,9 @@ impl Arm {
     /// that friction has been made up for. For goals that are [set](Self::set); a motion that is
     /// awaited rests when it resolves.
     ///
+    /// It has no time limit: an arm that is pushed, or that follows a stream, rests only when that
+    /// ends. Where that may take for ever, await it within `tokio::time::timeout`.
+    ///
     /// # Errors
     /// What ended the session.
     ///

@@ -87,8 +87,8 @@ impl Robot {
 }
 
 impl Arm {
-    /// Moves to the first target of a recorded motion as [`Arm::move_joints`] does, and then
-    /// follows the targets at their times, with all guards of the session and the limits of the
+    /// Moves to the first target of a recorded motion as [`Arm::move_joints`] does, slower by the
+    /// [speed of the plan](ReplayPlan::speed), and then follows the targets at their times, with all guards of the session and the limits of the
     /// [plan](ReplayPlan::budget). Resolves when the arm rests at the last one, with how far it was
     /// from where the recorded arm was.
     ///
@@ -107,7 +107,7 @@ impl Arm {
         let robot = self.robot();
         let model = robot.model();
         plan.check(model, &robot.state())?;
-        self.move_joints(plan.start()).await?;
+        self.move_joints(plan.start()).speed(plan.speed()).await?;
         let mut states = robot.state_stream();
         let mut course = ReplayCourse::new(robot.state().message_id);
         let mut braking = BrakeOnDrop::new(self);

@@ -59,7 +59,8 @@ impl<S: Copy + Send + Sync + 'static> States<S> {
 
     /// Waits for a state that satisfies `condition`, the newest of now included, and returns it.
     /// States that are replaced by a newer one before this task looks are not tested; for every
-    /// state, see [`Robot::read`](crate::Robot::read).
+    /// state, see [`Robot::read`](crate::Robot::read). It has no time limit but the end of the
+    /// connection, as only the caller knows when the state is to come.
     ///
     /// # Errors
     /// [`ReadError::ConnectionClosed`].

@@ -50,8 +50,20 @@ async fn a_replay_moves_to_the_begin_and_says_how_far_off_it_was() {
     let (robot, _sim) = simulated().await;
     let samples = recorded(&robot).await;
     let last = samples[samples.len() - 1].q;
+    let mut cycles = robot.cycles(20_000).unwrap();
     let report = robot.replay(&plan(&robot, &samples, 0.5)).await.unwrap();
     println!("{report:?}");
+    // The way to the begin is the recorded one back: it is as slow as what follows it.
+    let recorded = samples.windows(20).map(|it| it[19].q[0] - it[0].q[0]);
+    let recorded = recorded.fold(0.0, |most: f64, it| most.max(it.abs())) / 0.019;
+    let mut fastest = 0.0_f64;
+    while let Some(cycle) = cycles.pop() {
+        fastest = fastest.max(cycle.state.dq[0].abs());
+    }
+    assert!(
+        fastest > 0.3 * recorded && fastest < 0.65 * recorded,
+        "{fastest}, {recorded} rad/s"
+    );
     let took = Duration::from_millis(2 * samples.len() as u64);
     assert!(report.duration.abs_diff(took) < Duration::from_millis(50));
     // A task on a busy machine misses states.

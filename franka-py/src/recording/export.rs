@@ -1,10 +1,9 @@
 //! Recordings as tables and datasets of other programs.
 
-use std::fs::File;
 use std::path::PathBuf;
 
 use franka_async::export::lerobot::{Action, Dataset, DatasetOptions};
-use franka_async::export::{Columns, ExportError, write_csv, write_parquet};
+use franka_async::export::{Columns, ExportError, NewFile, write_csv, write_parquet};
 use franka_async::recording::event::EventKind;
 use franka_async::recording::{Episode, Sample, Samples};
 use pyo3::exceptions::PyValueError;
@@ -17,8 +16,8 @@ use crate::errors::{Raise, made, variant};
 impl RecordingFile {
     /// Writes a table as comma-separated text, a line for each cycle, and returns how many. First
     /// come `time`, ms of the robot's clock, and `host_time`; then these columns of
-    /// `recording_columns()`, or all. A file that is there is replaced. With `units` the first line
-    /// has the units. Raises `ExportError`, `ValueError`.
+    /// `recording_columns()`, or all. The file has its name once it is complete, and never replaces
+    /// another. With `units` the first line has the units. Raises `ExportError`, `ValueError`.
     #[pyo3(signature = (path, columns = None, *, units = true))]
     fn to_csv(
         &self,
@@ -30,15 +29,17 @@ impl RecordingFile {
         let columns = named(columns)?;
         let cycles = self.cycles(py)?;
         let written = py.detach(|| {
-            let file = File::create(&path).map_err(|source| ExportError::Io { path, source })?;
-            write_csv(cycles, &columns, units, file)
+            let mut file = NewFile::create(path)?;
+            let rows = write_csv(cycles, &columns, units, &mut file)?;
+            file.finish()?;
+            Ok(rows)
         });
-        written.map_err(|error| error.raise(py))
+        written.map_err(|error: ExportError| error.raise(py))
     }
 
     /// Writes a Parquet table, a row for each cycle, and returns how many; columns as of `to_csv`.
     /// The metadata of the file has the units, as JSON by the key `units`. The file has its name
-    /// once it is complete. Raises `ExportError`, `ValueError`.
+    /// once it is complete, and never replaces another. Raises `ExportError`, `ValueError`.
     #[pyo3(signature = (path, columns = None))]
     fn to_parquet(
         &self,
@@ -166,7 +167,7 @@ impl Raise for ExportError {
     fn raise(self, py: Python<'_>) -> PyErr {
         let party = match &self {
             Self::Option { .. } => return PyValueError::new_err(self.to_string()),
-            Self::Episode { .. } | Self::Dataset { .. } => "caller",
+            Self::Exists { .. } | Self::Episode { .. } | Self::Dataset { .. } => "caller",
             _ => "host",
         };
         made(py, "ExportError", &variant(&self), party, &self.to_string())

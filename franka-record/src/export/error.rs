@@ -2,14 +2,19 @@
 
 use std::error::Error;
 use std::io;
-#[cfg(feature = "export")]
-use std::path::Path;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why nothing, or not everything, was exported.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
+    /// There is a file of that name. An export never replaces one: choose another name, or delete
+    /// the file first.
+    #[error("{} exists, and an export never replaces a file; choose another name", path.display())]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
     /// A file or folder cannot be read or written.
     #[error("{}: {source}", path.display())]
     Io {
@@ -65,7 +70,6 @@ pub enum ExportError {
 
 impl ExportError {
     /// Makes a system's error one about `path`.
-    #[cfg(feature = "export")]
     pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::Io { path, source }

@@ -2,6 +2,7 @@
 //!
 //! * `cells`: which columns a table gets. Their names, units and shapes are those of
 //!   [`franka_rt::driver::Column`].
+//! * `new_file`: files that appear once they are complete, and replace none.
 //! * `csv`: text. `table`, `parquet`: Parquet files (feature `export`).
 //! * [`lerobot`]: episodes for training (feature `export`).
 
@@ -10,6 +11,7 @@ mod csv;
 mod error;
 #[cfg(feature = "export")]
 pub mod lerobot;
+mod new_file;
 #[cfg(feature = "export")]
 mod parquet;
 #[cfg(feature = "export")]
@@ -18,5 +20,6 @@ mod table;
 pub use cells::{Columns, UnknownColumn};
 pub use csv::write_csv;
 pub use error::ExportError;
+pub use new_file::NewFile;
 #[cfg(feature = "export")]
 pub use table::write_parquet;

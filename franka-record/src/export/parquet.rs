@@ -1,6 +1,5 @@
 //! Tables as Parquet files: numbers, texts, and lists of a fixed length, none of them missing.
 
-use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -14,6 +13,7 @@ use ::parquet::file::writer::SerializedFileWriter;
 use ::parquet::schema::types::{Type, TypePtr};
 
 use super::error::ExportError;
+use super::new_file::NewFile;
 
 /// A column of a table: its name, and how many values a row has in it.
 #[derive(Clone, Debug)]
@@ -96,28 +96,21 @@ impl Field {
     }
 }
 
-/// A table that is being written, beside its place: it gets its name once it is complete.
+/// A table that is being written. It gets its name once it is complete.
 pub(crate) struct TableWriter {
     path: PathBuf,
-    partial: PathBuf,
     fields: Vec<Field>,
-    /// `None` once it is complete.
-    writer: Option<SerializedFileWriter<File>>,
+    writer: SerializedFileWriter<NewFile>,
 }
 
 impl TableWriter {
-    /// Begins a table at `path`, with `notes` in its metadata.
-    ///
-    /// # Errors
-    /// If the file beside `path` that it is written to exists already: another export is under way,
-    /// or was interrupted.
-    pub(crate) fn create(
-        path: &Path,
+    /// Begins a table in `file`, with `notes` in its metadata.
+    pub(crate) fn new(
+        file: NewFile,
         fields: Vec<Field>,
         notes: &[(&str, String)],
     ) -> std::result::Result<Self, ExportError> {
-        let partial = partial(path);
-        let file = File::create_new(&partial).map_err(ExportError::at(&partial))?;
+        let path = file.path().to_owned();
         let begin = || {
             let notes = notes
                 .iter()
@@ -128,12 +121,11 @@ impl TableWriter {
                 .build();
             SerializedFileWriter::new(file, schema(&fields)?, Arc::new(properties))
         };
-        let writer = begin().map_err(at(path))?;
+        let writer = begin().map_err(at(&path))?;
         Ok(Self {
-            path: path.to_owned(),
-            partial,
+            path,
             fields,
-            writer: Some(writer),
+            writer,
         })
     }
 
@@ -141,7 +133,6 @@ impl TableWriter {
     pub(crate) fn write(&mut self, columns: &[Values]) -> std::result::Result<(), ExportError> {
         debug_assert_eq!(columns.len(), self.fields.len());
         let Self { fields, writer, .. } = self;
-        let writer = writer.as_mut().expect("it is not finished");
         let mut append = || {
             let mut rows = writer.next_row_group()?;
             for (field, values) in fields.iter().zip(columns) {
@@ -158,35 +149,14 @@ impl TableWriter {
 
     /// Bytes written so far.
     pub(crate) fn size(&self) -> usize {
-        self.writer
-            .as_ref()
-            .map_or(0, |writer| writer.bytes_written())
+        self.writer.bytes_written()
     }
 
     /// Completes the file and gives it its name.
-    pub(crate) fn finish(mut self) -> std::result::Result<(), ExportError> {
-        let writer = self.writer.take().expect("it is finished once");
-        let file = writer.into_inner().map_err(at(&self.path))?;
-        file.sync_all().map_err(ExportError::at(&self.partial))?;
-        fs::rename(&self.partial, &self.path).map_err(ExportError::at(&self.path))
+    pub(crate) fn finish(self) -> std::result::Result<(), ExportError> {
+        let file = self.writer.into_inner().map_err(at(&self.path))?;
+        file.finish()
     }
-}
-
-impl Drop for TableWriter {
-    /// What is not complete is removed.
-    fn drop(&mut self) {
-        if self.writer.take().is_some() {
-            // Nothing else can be done about a file that stays: the next export names it.
-            let _ = fs::remove_file(&self.partial);
-        }
-    }
-}
-
-/// Where a file is written until it is complete.
-pub(crate) fn partial(path: &Path) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(".partial");
-    name.into()
 }
 
 fn schema(fields: &[Field]) -> Result<TypePtr> {

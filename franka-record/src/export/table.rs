@@ -8,6 +8,7 @@ use serde_json::{Map, Value};
 
 use super::cells::{Columns, name_of};
 use super::error::ExportError;
+use super::new_file::NewFile;
 use super::parquet::{Field, Kind, TableWriter, Values};
 use crate::cycle::Cycle;
 
@@ -22,7 +23,7 @@ const ROWS: usize = 60_000;
 /// The file has its name once it is complete.
 ///
 /// # Errors
-/// [`ExportError`] of the file, and [`ExportError::Cycles`] with what `cycles` fails with.
+/// [`ExportError::Exists`] if there is a file of that name, others of the file, and [`ExportError::Cycles`] with what `cycles` fails with.
 pub fn write_parquet<E: Error + Send + Sync + 'static>(
     cycles: impl IntoIterator<Item = Result<Cycle, E>>,
     columns: &Columns,
@@ -46,7 +47,7 @@ pub fn write_parquet<E: Error + Send + Sync + 'static>(
     let times = times.map(|(name, _)| Field::new(name, Kind::Int));
     let fields: Vec<Field> = times.into_iter().chain(chosen).collect();
     let units = Value::from(units).to_string();
-    let mut table = TableWriter::create(path.as_ref(), fields, &[("units", units)])?;
+    let mut table = TableWriter::new(NewFile::create(path.as_ref())?, fields, &[("units", units)])?;
     let mut cycles = cycles.into_iter();
     let mut count = 0;
     loop {

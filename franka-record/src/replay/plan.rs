@@ -104,6 +104,7 @@ pub struct ReplayPlan {
     /// From the flange to the end effector that was recorded.
     pub(super) tool: Isometry3<f64>,
     budget: Budget,
+    speed: f64,
 }
 
 impl ReplayPlan {
@@ -146,6 +147,7 @@ impl ReplayPlan {
             points,
             tool,
             budget,
+            speed: options.speed,
         })
     }
 
@@ -163,6 +165,12 @@ impl ReplayPlan {
     /// How long the replay takes.
     pub fn duration(&self) -> Duration {
         PERIOD * (self.points.len() as u32 - 1)
+    }
+
+    /// The speed of the replay, as a share of the recorded one. The motion to the first target has
+    /// this share of the speed of other goals.
+    pub fn speed(&self) -> f64 {
+        self.speed
     }
 
     /// The limits that the arm is to follow with: what the motion needs and a quarter more, and

@@ -290,3 +290,107 @@ fn what_makes_no_episode_or_no_dataset_is_refused_with_what_was_expected() {
         "{error}"
     );
 }
+
+/// The process that a test starts adds episodes until it is killed.
+#[test]
+fn dataset_of_a_killed_export_takes_the_next_one() {
+    const TO: &str = "FRANKA_RECORD_TEST_DATASET";
+    if let Some(root) = std::env::var_os(TO) {
+        let root = Path::new(&root);
+        let mut dataset = match root.join("meta").exists() {
+            true => Dataset::open(root, options()).unwrap(),
+            false => Dataset::create(root, options()).unwrap(),
+        };
+        loop {
+            let samples = (0..500).map(sample);
+            dataset.add_episode("never", None, samples).unwrap();
+            fs::write(root.with_extension("under-way"), "").unwrap();
+        }
+    }
+    let root = folder("killed");
+    let marker = root.with_extension("under-way");
+    for episodes in [1, 2] {
+        let _ = fs::remove_file(&marker);
+        let mut child = std::process::Command::new(std::env::current_exe().unwrap())
+            .args([
+                "--exact",
+                "lerobot::dataset_of_a_killed_export_takes_the_next_one",
+            ])
+            .env(TO, &root)
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        while !marker.exists() {
+            assert!(child.try_wait().unwrap().is_none(), "it has ended");
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        let next = || match episodes {
+            1 => Dataset::create(&root, options()),
+            _ => Dataset::open(&root, options()),
+        };
+        let refused = next().unwrap_err().to_string();
+        assert!(refused.contains("under way"), "{refused}");
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let mut dataset = next().unwrap();
+        dataset
+            .add_episode("pick", None, (0..500).map(sample))
+            .unwrap();
+        dataset.finish().unwrap();
+        assert_eq!(json(&root, "meta/info.json")["total_episodes"], episodes);
+    }
+    assert_eq!(rows(&root, "meta/tasks.parquet").len(), 1);
+    let mut left: Vec<_> = fs::read_dir(&root)
+        .unwrap()
+        .map(|it| it.unwrap().file_name())
+        .collect();
+    left.sort();
+    assert_eq!(left, ["data", "meta"]);
+}
+
+/// A power cut between any two files of an export that was finished.
+#[test]
+fn dataset_is_completed_where_a_finished_export_was_cut() {
+    let root = folder("cut");
+    let add = || {
+        let mut dataset = match root.exists() {
+            true => Dataset::open(&root, options()).unwrap(),
+            false => Dataset::create(&root, options()).unwrap(),
+        };
+        let task = format!("task {}", dataset.episodes());
+        dataset
+            .add_episode(&task, None, (0..500).map(sample))
+            .unwrap();
+        dataset.finish().unwrap();
+    };
+    let files = [
+        "data/chunk-000/file-001.parquet",
+        "meta/episodes/chunk-000/file-001.parquet",
+        "meta/tasks.parquet",
+        "meta/stats.json",
+        "meta/info.json",
+    ];
+    add();
+    let before = files.map(|file| fs::read(root.join(file)).ok());
+    add();
+    let after = files.map(|file| fs::read(root.join(file)).unwrap());
+    for moved in 0..files.len() {
+        for (index, file) in files.iter().enumerate() {
+            let staged = root.join(".export.complete").join(file);
+            if index < moved {
+                fs::write(root.join(file), &after[index]).unwrap();
+                continue;
+            }
+            fs::create_dir_all(staged.parent().unwrap()).unwrap();
+            fs::write(staged, &after[index]).unwrap();
+            match &before[index] {
+                Some(bytes) => fs::write(root.join(file), bytes).unwrap(),
+                None => fs::remove_file(root.join(file)).unwrap(),
+            }
+        }
+        assert_eq!(Dataset::open(&root, options()).unwrap().episodes(), 2);
+        let now = files.map(|file| fs::read(root.join(file)).unwrap());
+        assert!(now == after, "{moved}");
+        assert!(!root.join(".export.complete").exists());
+    }
+}

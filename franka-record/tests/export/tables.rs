@@ -2,9 +2,10 @@
 
 use std::fs::{self, File};
 use std::io;
-use std::path::Path;
+use std::process::Command;
+use std::time::Duration;
 
-use franka_record::export::{Columns, write_csv, write_parquet};
+use franka_record::export::{Columns, ExportError, NewFile, write_csv, write_parquet};
 use franka_record::{Cycle, HostTime};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
@@ -49,9 +50,8 @@ fn text_has_names_units_and_a_line_for_each_cycle() {
 
 #[test]
 fn a_table_has_lists_texts_and_units() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
-    fs::create_dir_all(folder).unwrap();
-    let path = folder.join("cycles.parquet");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cycles.parquet");
     let cycles = || (0..1000).map(|k| Ok::<_, io::Error>(cycle(k)));
     assert_eq!(write_parquet(cycles(), &columns(), &path).unwrap(), 1000);
     let reader = SerializedFileReader::new(File::open(&path).unwrap()).unwrap();
@@ -71,16 +71,73 @@ fn a_table_has_lists_texts_and_units() {
     assert_eq!(row[2].1.to_string(), "[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]");
     assert_eq!(*row[3].1, Field::Long(4));
     assert_eq!(*row[4].1, Field::Str("watching".into()));
-    // What a recording fails with ends the export, and leaves the file as it was.
+}
+
+#[test]
+fn tables_replace_no_file_and_leave_none_when_they_fail() {
+    let folder = tempfile::tempdir().unwrap();
+    let names = || {
+        let entries = fs::read_dir(folder.path()).unwrap();
+        let mut names: Vec<_> = entries.map(|it| it.unwrap().file_name()).collect();
+        names.sort();
+        names
+    };
+    let path = folder.path().join("cycles.parquet");
+    let cycles = || (0..1000).map(|k| Ok::<_, io::Error>(cycle(k)));
     let broken = cycles().chain([Err(io::ErrorKind::UnexpectedEof.into())]);
-    assert!(write_parquet(broken, &Columns::all(), &path).is_err());
-    let size = fs::metadata(&path).unwrap().len();
-    let mut left = fs::read_dir(folder)
-        .unwrap()
-        .map(|it| it.unwrap().file_name());
-    assert!(!left.any(|name| name.to_string_lossy().ends_with(".partial")));
-    assert_eq!(write_parquet(cycles(), &columns(), &path).unwrap(), 1000);
-    assert_eq!(fs::metadata(&path).unwrap().len(), size);
+    assert!(write_parquet(broken, &columns(), &path).is_err());
+    assert_eq!(names(), [] as [&str; 0]);
+    fs::write(&path, "of somebody").unwrap();
+    let error = write_parquet(cycles(), &columns(), &path).unwrap_err();
+    assert!(matches!(error, ExportError::Exists { .. }), "{error}");
+    let error = NewFile::create(&path).unwrap_err();
+    assert!(matches!(error, ExportError::Exists { .. }), "{error}");
+    // Another program has been quicker.
+    let mut late = NewFile::create(folder.path().join("late.csv")).unwrap();
+    write_csv(cycles(), &columns(), true, &mut late).unwrap();
+    fs::write(folder.path().join("late.csv"), "of somebody").unwrap();
+    let error = late.finish().unwrap_err();
+    assert!(matches!(error, ExportError::Exists { .. }), "{error}");
+    assert_eq!(names(), ["cycles.parquet", "late.csv"]);
+    for name in names() {
+        let text = fs::read_to_string(folder.path().join(name)).unwrap();
+        assert_eq!(text, "of somebody");
+    }
+    let missing = NewFile::create(folder.path().join("none/run.csv")).unwrap_err();
+    let text = missing.to_string();
+    assert!(text.contains("none/run.csv: No such file"), "{text}");
+    assert!(!text.contains(".partial"), "{text}");
+}
+
+/// The process that a test starts writes to the file until it is killed.
+#[test]
+fn tables_that_were_interrupted_are_in_no_later_ones_way() {
+    const TO: &str = "FRANKA_RECORD_TEST_TABLE";
+    let endless = || (0..).map(|k| Ok::<_, io::Error>(cycle(k % 1000)));
+    if let Some(path) = std::env::var_os(TO) {
+        write_parquet(endless(), &columns(), path).unwrap();
+        unreachable!("it is endless");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("cycles.parquet");
+    let mut child = Command::new(std::env::current_exe().unwrap())
+        .args([
+            "--exact",
+            "tables::tables_that_were_interrupted_are_in_no_later_ones_way",
+        ])
+        .env(TO, &path)
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    while fs::read_dir(folder.path()).unwrap().next().is_none() {
+        assert!(child.try_wait().unwrap().is_none(), "it has ended");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(!path.exists());
+    let cycles = (0..10).map(|k| Ok::<_, io::Error>(cycle(k)));
+    assert_eq!(write_parquet(cycles, &columns(), &path).unwrap(), 10);
 }
 
 #[test]

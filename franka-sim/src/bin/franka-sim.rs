@@ -11,7 +11,7 @@ use franka_sim::command_line::Arguments;
 async fn main() -> ExitCode {
     tracing_subscriber::fmt()
         .with_writer(std::io::stderr)
-        .with_ansi(std::io::stderr().is_terminal())
+        .with_ansi(has_colours())
         .with_target(false)
         .init();
     let ready = async |_: &_, lines: &str| writeln!(std::io::stdout(), "{lines}");
@@ -22,4 +22,10 @@ async fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Whether the log has colours: on a terminal, unless NO_COLOR has a value.
+fn has_colours() -> bool {
+    let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    std::io::stderr().is_terminal() && !no_colour
 }

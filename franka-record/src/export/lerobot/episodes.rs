@@ -8,6 +8,7 @@ use super::meta::{self, FILES_IN_CHUNK};
 use super::stats::{NAMES, Stats};
 use super::{DatasetOptions, make_folder_of};
 use crate::export::error::ExportError;
+use crate::export::new_file::NewFile;
 use crate::export::parquet::{Field, Kind, TableWriter, Values};
 
 /// An episode that is added to a dataset.
@@ -83,14 +84,15 @@ fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(u64, PathBu
     Ok(found)
 }
 
-/// The table of these episodes, complete but for its name.
-pub(super) fn table(
+/// Writes the table of these episodes to `folder`, as the next one of the dataset in `root`.
+pub(super) fn write(
     root: &Path,
+    folder: &Path,
     episodes: &[Episode],
     options: &DatasetOptions,
-) -> Result<TableWriter, ExportError> {
+) -> Result<(), ExportError> {
     let (_, number) = files_in(&root.join("meta/episodes"))?;
-    let path = number.path(root, "meta/episodes");
+    let path = number.path(folder, "meta/episodes");
     make_folder_of(&path)?;
     let ints = |of: &dyn Fn(&Episode) -> u64| {
         Values::Int(episodes.iter().map(|episode| of(episode) as i64).collect())
@@ -121,7 +123,7 @@ pub(super) fn table(
     columns.push(one("meta/episodes/chunk_index", &|_| number.chunk()));
     columns.push(one("meta/episodes/file_index", &|_| number.in_chunk()));
     let (fields, values): (Vec<_>, Vec<_>) = columns.into_iter().unzip();
-    let mut table = TableWriter::create(&path, fields, &[])?;
+    let mut table = TableWriter::new(NewFile::create(path)?, fields, &[])?;
     table.write(&values)?;
-    Ok(table)
+    table.finish()
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use ::parquet::file::reader::{FileReader, SerializedFileReader};
@@ -12,7 +13,8 @@ use super::DatasetOptions;
 use super::frames::names;
 use super::stats::Stats;
 use crate::export::error::ExportError;
-use crate::export::parquet::{Field, Kind, TableWriter, Values, at, partial};
+use crate::export::new_file::NewFile;
+use crate::export::parquet::{Field, Kind, TableWriter, Values, at};
 
 /// The version of the layout.
 pub(super) const VERSION: &str = "v3.0";
@@ -165,7 +167,11 @@ fn write_tasks(path: &Path, tasks: &[String]) -> Result<(), ExportError> {
         Field::new("task_index", Kind::Int),
         Field::new("task", Kind::Text),
     ];
-    let mut table = TableWriter::create(path, fields, &[("pandas", pandas.to_string())])?;
+    let mut table = TableWriter::new(
+        NewFile::create(path)?,
+        fields,
+        &[("pandas", pandas.to_string())],
+    )?;
     let numbers = (0..tasks.len() as i64).collect();
     table.write(&[Values::Int(numbers), Values::Text(tasks.to_vec())])?;
     table.finish()
@@ -210,10 +216,11 @@ fn open(path: &Path) -> Result<SerializedFileReader<File>, ExportError> {
 }
 
 fn write_json(path: &Path, value: &Value) -> Result<(), ExportError> {
-    let partial = partial(path);
     let text = serde_json::to_string_pretty(value).expect("numbers, texts and lists");
-    fs::write(&partial, text).map_err(ExportError::at(&partial))?;
-    fs::rename(&partial, path).map_err(ExportError::at(path))
+    let mut file = NewFile::create(path)?;
+    file.write_all(text.as_bytes())
+        .map_err(ExportError::at(path))?;
+    file.finish()
 }
 
 fn read_json(path: &Path) -> Result<Value, ExportError> {

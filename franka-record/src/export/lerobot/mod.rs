@@ -10,24 +10,28 @@
 //! * `stats`: minimum to quantiles of each feature.
 //! * `meta`: the files in `meta/` of the whole dataset.
 //! * `episodes`: the table with a row per episode.
+//! * `staging`: an export as one step.
 //!
 //! Every export adds files of its own, so nothing that is there is rewritten but the three files of
-//! the whole. Each file has its name only once it is complete; `info.json` comes last.
+//! the whole.
 
 mod episodes;
 mod frames;
 mod meta;
+mod staging;
 mod stats;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::error::ExportError;
+use super::new_file::NewFile;
 use super::parquet::{Field, Kind, TableWriter, Values};
 use crate::sample::Sample;
 use episodes::{Episode, FileNumber};
 use frames::Frames;
 use meta::{BOOKKEEPING, Contents, FLAGS, VECTORS};
+use staging::Staging;
 use stats::Stats;
 
 /// What all episodes of a dataset have in common.
@@ -88,13 +92,15 @@ impl DatasetOptions {
 }
 
 /// A dataset to which episodes are added. What was added counts once it is
-/// [finished](Self::finish); dropped before, it leaves the dataset as it was.
+/// [finished](Self::finish); dropped before, it leaves the dataset as it was, and so does a process
+/// that is killed.
 ///
 /// Per frame it has `observation.state` and `action` (`joint_1.pos` to `joint_7.pos` in rad,
 /// `ee_x.pos` to `ee_z.pos` in metres, `ee_qx.pos` to `ee_qw.pos`, and `gripper.pos` in metres),
 /// `next.done` and `next.success`, and what every dataset has. It has no images.
 pub struct Dataset {
     root: PathBuf,
+    staging: Staging,
     options: DatasetOptions,
     contents: Contents,
     /// The number of the next data file.
@@ -116,8 +122,8 @@ impl Dataset {
         let root = root.into();
         checked(&options)?;
         fs::create_dir_all(&root).map_err(ExportError::at(&root))?;
-        let mut entries = fs::read_dir(&root).map_err(ExportError::at(&root))?;
-        if let Some(entry) = entries.next() {
+        let staging = Staging::begin(&root)?;
+        if let Some(entry) = fs::read_dir(&root).map_err(ExportError::at(&root))?.next() {
             let entry = entry.map_err(ExportError::at(&root))?;
             return Err(ExportError::Dataset {
                 why: format!(
@@ -129,6 +135,7 @@ impl Dataset {
         }
         Ok(Self::with(
             root,
+            staging,
             options,
             Contents::default(),
             FileNumber(0),
@@ -144,6 +151,7 @@ impl Dataset {
     pub fn open(root: impl Into<PathBuf>, options: DatasetOptions) -> Result<Self, ExportError> {
         let root = root.into();
         checked(&options)?;
+        let staging = Staging::begin(&root)?;
         let contents = meta::read(&root, &options)?;
         let files = [
             ("data", contents.frames),
@@ -155,23 +163,25 @@ impl Dataset {
             if rows != expected {
                 let why = format!(
                     "the files in {folder} have {rows} rows, but meta/info.json says {expected}: \
-                     an export was interrupted at its end, or is under way"
+                     another program was interrupted, or is writing to it"
                 );
                 return Err(ExportError::Dataset { path: root, why });
             }
             next_file = next_file.max(next);
         }
-        Ok(Self::with(root, options, contents, next_file))
+        Ok(Self::with(root, staging, options, contents, next_file))
     }
 
     fn with(
         root: PathBuf,
+        staging: Staging,
         options: DatasetOptions,
         contents: Contents,
         next_file: FileNumber,
     ) -> Self {
         Self {
             root,
+            staging,
             options,
             contents,
             next_file,
@@ -277,18 +287,19 @@ impl Dataset {
         if self.added.is_empty() {
             return Ok(());
         }
-        let table = episodes::table(&self.root, &self.added, &self.options)?;
         for file in self.full.drain(..).chain(self.data.take()) {
             file.finish()?;
         }
-        table.finish()?;
-        meta::write(&self.root, &self.options, &self.contents)
+        let folder = &self.staging.folder;
+        episodes::write(&self.root, folder, &self.added, &self.options)?;
+        meta::write(folder, &self.options, &self.contents)?;
+        self.staging.commit()
     }
 
     /// Begins a data file unless one is under way. Returns its number.
     fn begin_file(&mut self) -> Result<FileNumber, ExportError> {
         if self.data.is_none() {
-            let path = self.next_file.path(&self.root, "data");
+            let path = self.next_file.path(&self.staging.folder, "data");
             make_folder_of(&path)?;
             let width = frames::names(self.options.gripper).len();
             let vectors = VECTORS.map(|name| Field::list(name, Kind::Single, width));
@@ -298,23 +309,10 @@ impl Dataset {
                 _ => Field::new(name, Kind::Int),
             });
             let fields = vectors.into_iter().chain(flags).chain(rest).collect();
-            self.data = Some(TableWriter::create(&path, fields, &[])?);
+            self.data = Some(TableWriter::new(NewFile::create(path)?, fields, &[])?);
             self.next_file = self.next_file.next();
         }
         Ok(self.next_file.before())
-    }
-}
-
-impl Drop for Dataset {
-    /// Leaves no folder for a file that is not there.
-    fn drop(&mut self) {
-        self.full.clear();
-        self.data = None;
-        let file = self.next_file.before().path(&self.root, "data");
-        for folder in file.ancestors().skip(1).take(2) {
-            // Fails where there are files.
-            let _ = fs::remove_dir(folder);
-        }
     }
 }
 

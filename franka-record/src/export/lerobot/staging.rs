@@ -1,0 +1,121 @@
+//! An export as one step: its files become part of the dataset together, or not at all.
+//!
+//! ```text
+//! .export.partial/{data, meta}  --renamed: it counts-->  .export.complete/{data, meta}  --moved-->  {data, meta}
+//! ```
+//!
+//! An export that was interrupted before it counted is deleted by the next one; after that, the
+//! next one moves its remaining files.
+
+use std::fs::{self, File, TryLockError};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use crate::export::error::ExportError;
+use crate::export::new_file::sync_folder_of;
+
+/// An export under way to the dataset `root`. One at a time; dropped, it deletes its files.
+#[derive(Debug)]
+pub(super) struct Staging {
+    root: PathBuf,
+    /// Where its files are.
+    pub(super) folder: PathBuf,
+    /// Held until this is dropped. `None` where folders cannot be locked.
+    _lock: Option<File>,
+}
+
+impl Staging {
+    /// Completes or deletes what an interrupted export has left in the folder `root`, and begins
+    /// another one.
+    ///
+    /// # Errors
+    /// [`ExportError::Dataset`] if another export is under way, and [`ExportError::Io`].
+    pub(super) fn begin(root: &Path) -> Result<Self, ExportError> {
+        let lock = File::open(root).map_err(ExportError::at(root))?;
+        let lock = match lock.try_lock() {
+            Ok(()) => Some(lock),
+            Err(TryLockError::WouldBlock) => {
+                let why = "another export to it is under way".to_owned();
+                let path = root.to_owned();
+                return Err(ExportError::Dataset { path, why });
+            }
+            Err(TryLockError::Error(_)) => None,
+        };
+        publish(root)?;
+        let folder = root.join(PARTIAL);
+        match fs::remove_dir_all(&folder) {
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                return Err(ExportError::at(&folder)(error));
+            }
+            _ => {}
+        }
+        Ok(Self {
+            root: root.to_owned(),
+            folder,
+            _lock: lock,
+        })
+    }
+
+    /// Makes the files part of the dataset.
+    pub(super) fn commit(self) -> Result<(), ExportError> {
+        for file in files(&self.folder)? {
+            let to = self.root.join(&file);
+            if !REPLACED.iter().any(|it| file == Path::new(it)) && to.exists() {
+                return Err(ExportError::Exists { path: to });
+            }
+        }
+        let complete = self.root.join(COMPLETE);
+        fs::rename(&self.folder, &complete).map_err(ExportError::at(&self.folder))?;
+        sync_folder_of(&complete);
+        publish(&self.root)
+    }
+}
+
+impl Drop for Staging {
+    fn drop(&mut self) {
+        // Otherwise the next export deletes it.
+        let _ = fs::remove_dir_all(&self.folder);
+    }
+}
+
+/// Moves the files of an export that counts to their places in the dataset `root`; does nothing
+/// without such an export.
+fn publish(root: &Path) -> Result<(), ExportError> {
+    let complete = root.join(COMPLETE);
+    if !complete.exists() {
+        return Ok(());
+    }
+    let mut files = files(&complete)?;
+    // The totals come last: readers trust them.
+    files.sort_by_key(|file| file == Path::new(INFO));
+    for file in files {
+        let to = root.join(&file);
+        super::make_folder_of(&to)?;
+        fs::rename(complete.join(&file), &to).map_err(ExportError::at(&to))?;
+        sync_folder_of(&to);
+    }
+    fs::remove_dir_all(&complete).map_err(ExportError::at(&complete))
+}
+
+/// The files below a folder, relative to it.
+fn files(folder: &Path) -> Result<Vec<PathBuf>, ExportError> {
+    let (mut found, mut folders) = (Vec::new(), vec![folder.to_owned()]);
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(&next).map_err(ExportError::at(&next))? {
+            let path = entry.map_err(ExportError::at(&next))?.path();
+            match path.strip_prefix(folder) {
+                _ if path.is_dir() => folders.push(path),
+                Ok(relative) => found.push(relative.to_owned()),
+                Err(_) => unreachable!("it is below the folder"),
+            }
+        }
+    }
+    Ok(found)
+}
+
+const PARTIAL: &str = ".export.partial";
+const COMPLETE: &str = ".export.complete";
+const INFO: &str = "meta/info.json";
+
+/// Files of the whole dataset, which every export writes anew.
+const REPLACED: [&str; 3] = [INFO, "meta/stats.json", "meta/tasks.parquet"];
