@@ -1,5 +1,6 @@
 //! Who may see and do what.
 
+use std::future::Future;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -9,6 +10,7 @@ use franka_async::gripper::Gripper;
 use franka_async::model::collision::Obstacle;
 use franka_sim::Running;
 
+use crate::recording::Writing;
 use crate::simulated::Simulated;
 
 /// Who may see and do what. The default is view-only, for this computer.
@@ -20,6 +22,7 @@ pub struct Options {
     pub(crate) simulated: Option<Simulated>,
     pub(crate) gripper: Option<Gripper>,
     pub(crate) recordings: Option<PathBuf>,
+    pub(crate) writing: Writing,
     pub(crate) patience: Duration,
     pub(crate) keep_out: Vec<Obstacle>,
     /// The names of all robots of the server, if there are several.
@@ -61,10 +64,19 @@ impl Options {
     }
 
     /// Lets the viewer that has the lease record the robot, and its gripper, to new files in this
-    /// folder, which has to be there. They are named by the time; one ends when it is an hour long.
+    /// folder, which has to be there. They are named by the time; one ends when it is an hour long,
+    /// and with the connection to the robot. See [`Self::recordings_ended`].
     pub fn record_to(mut self, folder: impl Into<PathBuf>) -> Self {
         self.recordings = Some(folder.into());
         self
+    }
+
+    /// Resolves when no recording is being written that a viewer has begun by these options, or by
+    /// clones of them. Await it before the program ends, after
+    /// [`Robot::shutdown`](franka_async::Robot::shutdown): a recording has no index and not its last
+    /// second until then. The disk has 10 s for that.
+    pub fn recordings_ended(&self) -> impl Future<Output = ()> + Send + 'static {
+        self.writing.clone().none()
     }
 
     /// Keeps the arm out of these regions, base frame, in the motions of the page, which shows

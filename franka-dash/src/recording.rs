@@ -1,7 +1,7 @@
 //! Recordings that viewers begin and end, in a folder of the server.
 
 use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use franka_async::Robot;
@@ -15,6 +15,7 @@ use tokio::time::{MissedTickBehavior, interval};
 /// The recordings of a server, one at a time.
 pub(crate) struct Recordings {
     folder: PathBuf,
+    writing: Writing,
     end: Mutex<CancellationToken>,
     progress: watch::Sender<Option<Progress>>,
 }
@@ -30,9 +31,10 @@ pub(crate) struct Progress {
 }
 
 impl Recordings {
-    pub(crate) fn new(folder: PathBuf) -> Self {
+    pub(crate) fn new(folder: PathBuf, writing: Writing) -> Self {
         Self {
             folder,
+            writing,
             end: Mutex::default(),
             progress: watch::Sender::default(),
         }
@@ -49,7 +51,7 @@ impl Recordings {
     }
 
     /// Begins a recording, of the gripper as well if there is one, and resolves when it has ended:
-    /// by [`Self::end`], after [`LONGEST`], or as it fails. The result is a line about it. Without
+    /// by [`Self::end`], after [`LONGEST`], with the connection, or as it fails. The result is a line about it. Without
     /// effect, and `None`, while another goes on.
     pub(crate) async fn record(
         &self,
@@ -73,6 +75,7 @@ impl Recordings {
             self.progress.send_replace(Some(progress));
             newest.clone()
         };
+        let _one = self.writing.begin();
         let recorded = self.write(robot, gripper, &file, end).await;
         self.progress.send_replace(None);
         Some(recorded.map(|status| {
@@ -120,6 +123,7 @@ impl Recordings {
         };
         tokio::select! {
             () = end.cancelled() => {}
+            _ = robot.closed() => {}
             () = tokio::time::sleep(LONGEST) => {}
             () = watch => {}
         }
@@ -129,6 +133,30 @@ impl Recordings {
 
     fn lock(&self) -> MutexGuard<'_, CancellationToken> {
         self.end.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// How many recordings of several servers are being written.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Writing(Arc<watch::Sender<usize>>);
+
+impl Writing {
+    /// Counts one until the result is dropped.
+    fn begin(&self) -> impl Drop + use<> {
+        struct One(Writing);
+        impl Drop for One {
+            fn drop(&mut self) {
+                self.0.0.send_modify(|count| *count -= 1);
+            }
+        }
+        self.0.send_modify(|count| *count += 1);
+        One(self.clone())
+    }
+
+    /// Waits until there is none.
+    pub(crate) async fn none(self) {
+        // The sender lives as long as this.
+        let _ = self.0.subscribe().wait_for(|count| *count == 0).await;
     }
 }
 

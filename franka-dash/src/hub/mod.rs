@@ -64,6 +64,7 @@ impl Hub {
             simulated,
             gripper,
             recordings,
+            writing,
             patience,
             keep_out,
             siblings,
@@ -90,7 +91,7 @@ impl Hub {
             seats: Arc::new(Semaphore::new(VIEWERS_MAX)),
             simulated,
             fingers: gripper.map(Fingers::new),
-            recordings: recordings.map(Recordings::new),
+            recordings: recordings.map(|folder| Recordings::new(folder, writing)),
             command: Mutex::new(Command {
                 authority: Authority::new(permissions),
                 hold: None,

@@ -223,3 +223,18 @@ fn a_recording_is_made_in_the_folder_of_the_server() {
     let robot = recording.robot("").expect("the only one");
     assert!(robot.cycles().count() > 500 && robot.gripper_states().count() > 0);
 }
+
+#[test]
+fn recording_is_complete_when_the_connection_has_ended() {
+    let folder = Folder::new("ended");
+    let served = Served::equipped(&folder.0);
+    let mut viewer = Viewer::connect(served.address);
+    viewer.take();
+    viewer.send(json!({"type": "record", "on": true}));
+    viewer.wait_until("recording", |it| {
+        it["recording"]["cycles"].as_u64().is_some_and(|n| n > 500)
+    });
+    served.shut_down();
+    let recording = Recording::open(&folder.files()[0]).expect("a recording");
+    assert_eq!(recording.damage(), None);
+}

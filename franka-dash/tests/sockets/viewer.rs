@@ -21,6 +21,7 @@ pub(crate) struct Served {
     pub(crate) address: SocketAddr,
     pub(crate) robot: Robot,
     pub(crate) running: Arc<Running>,
+    options: Options,
     runtime: Runtime,
 }
 
@@ -59,7 +60,7 @@ impl Served {
         page: impl FnOnce(Router) -> Router,
     ) -> Self {
         let runtime = Runtime::new().expect("a runtime");
-        let (address, robot, running) = runtime.block_on(async {
+        let (address, robot, running, options) = runtime.block_on(async {
             let sim = sim.wait_for_commands(Duration::from_millis(500));
             let running = Arc::new(sim.start().await.expect("a simulated robot"));
             let builder = Robot::builder(running.addr()).realtime(Realtime::Ignore);
@@ -68,15 +69,16 @@ impl Served {
             let here = "127.0.0.1:0".parse().expect("an address");
             let listener = franka_dash::bind(here, &options).await.expect("a port");
             let address = listener.local_addr().expect("an address");
-            let router = page(franka_dash::router(robot.clone(), options));
+            let router = page(franka_dash::router(robot.clone(), options.clone()));
             let router = router.into_make_service_with_connect_info::<SocketAddr>();
             tokio::spawn(axum::serve(listener, router).into_future());
-            (address, robot, running)
+            (address, robot, running, options)
         });
         Self {
             address,
             robot,
             running,
+            options,
             runtime,
         }
     }
@@ -88,6 +90,12 @@ impl Served {
     ) -> R {
         let done = self.runtime.block_on(self.running.with(job));
         done.expect("it runs")
+    }
+
+    /// Ends the connection, and waits for what is written then.
+    pub(crate) fn shut_down(&self) {
+        self.runtime.block_on(self.robot.shutdown());
+        self.runtime.block_on(self.options.recordings_ended());
     }
 
     /// A server that may do all to a robot in virtual time.
