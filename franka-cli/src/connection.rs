@@ -239,7 +239,7 @@ impl Place {
                 Failure::new(Ending::NoRobot, message)
             }
         };
-        failure.entry(error.entry())
+        failure.of(error.party(), error.entry())
     }
 }
 

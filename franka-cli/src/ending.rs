@@ -7,6 +7,10 @@ use std::process::ExitCode;
 use anstyle::{AnsiColor, Style};
 use franka_async::error::{CommandError, ConnectError, Party};
 use franka_async::{Error, MotionError};
+use serde::Serialize;
+use serde_json::json;
+
+use crate::output::json_line;
 
 /// How a command ended. The numbers are the exit codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +34,8 @@ pub(crate) enum Ending {
     Person = 7,
     /// Ctrl-C, as shells have it.
     Interrupted = 130,
+    /// SIGTERM, as shells have it.
+    Terminated = 143,
 }
 
 /// The exit codes, for the help and the book.
@@ -43,19 +49,40 @@ Exit codes:
     5  not confirmed: declined, or no terminal to ask on and no --yes
     6  this computer does not give what it takes: real-time rights, a file, a port
     7  the robot needs a person: user stop, brakes, Desk
-  130  interrupted by Ctrl-C; an arm that moved was braked";
+  130  interrupted by Ctrl-C; an arm that moved was braked
+  143  ended by SIGTERM, in the same way";
 
 impl Ending {
     pub(crate) fn code(self) -> ExitCode {
         ExitCode::from(self as u8)
     }
 
-    /// Prints why a command failed, and returns how that ends the program.
-    pub(crate) fn report(error: &anyhow::Error) -> Self {
+    /// Its name in JSON.
+    fn kind(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Failed => "failed",
+            Self::Usage => "usage",
+            Self::NoRobot => "no_robot",
+            Self::Taken => "taken",
+            Self::NotConfirmed => "not_confirmed",
+            Self::Host => "host",
+            Self::Person => "person",
+            Self::Interrupted => "interrupted",
+            Self::Terminated => "terminated",
+        }
+    }
+
+    /// Prints why a command failed, with `json` as JSON, too, and returns how that ends the program.
+    pub(crate) fn report(error: &anyhow::Error, json: bool) -> Self {
         let ending = Self::of(error);
         // The reader has closed the pipe: an error text would reach no one.
         if is_broken_pipe(error) {
             return Self::Done;
+        }
+        if json {
+            // Its reader may be gone; the exit code says the rest.
+            let _ = json_line(&json!({ "error": Reported::of(error) }));
         }
         let style = Style::new().fg_color(Some(AnsiColor::Red.into())).bold();
         anstream::eprintln!("{style}error:{style:#} {error:#}");
@@ -63,11 +90,7 @@ impl Ending {
         if let Some(advice) = failure.and_then(|failure| failure.advice.as_ref()) {
             anstream::eprintln!("{advice}");
         }
-        let entry = match failure {
-            Some(failure) => failure.entry,
-            None => of_driver(error).map(|(_, entry)| entry),
-        };
-        if let Some(entry) = entry {
+        if let Some((_, entry)) = origin_of(error) {
             anstream::eprintln!("In the book: errors.md#{entry}");
         }
         ending
@@ -105,6 +128,58 @@ fn of_driver(error: &anyhow::Error) -> Option<(Party, &'static str)> {
     None
 }
 
+/// As [`of_driver`], also of errors that a command has put into its own words.
+fn origin_of(error: &anyhow::Error) -> Option<(Party, &'static str)> {
+    match error.downcast_ref::<Failure>() {
+        Some(failure) => failure.origin,
+        None => of_driver(error),
+    }
+}
+
+/// Why a command failed, for programs.
+#[derive(Debug, Serialize)]
+pub(crate) struct Reported {
+    /// The exit code, by its name.
+    kind: &'static str,
+    exit_code: u8,
+    /// Who can act on an error of the driver.
+    party: Option<String>,
+    /// Its row in the book's chapter of errors.
+    entry: Option<&'static str>,
+    text: String,
+    advice: Option<String>,
+}
+
+impl Reported {
+    fn of(error: &anyhow::Error) -> Self {
+        let ending = Ending::of(error);
+        let failure = error.downcast_ref::<Failure>();
+        let origin = origin_of(error);
+        Self {
+            kind: ending.kind(),
+            exit_code: ending as u8,
+            party: origin.map(|(party, _)| party.to_string()),
+            entry: origin.map(|(_, entry)| entry),
+            text: format!("{error:#}"),
+            advice: failure.and_then(|failure| failure.advice.clone()),
+        }
+    }
+
+    /// Prints that the arguments make no sense.
+    pub(crate) fn print_usage(text: &str) {
+        let reported = Self {
+            kind: Ending::Usage.kind(),
+            exit_code: Ending::Usage as u8,
+            party: None,
+            entry: None,
+            text: text.trim_end().to_owned(),
+            advice: None,
+        };
+        // As above.
+        let _ = json_line(&json!({ "error": reported }));
+    }
+}
+
 fn is_broken_pipe(error: &anyhow::Error) -> bool {
     let io = error.downcast_ref::<io::Error>();
     io.is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
@@ -116,8 +191,8 @@ pub(crate) struct Failure {
     ending: Ending,
     message: String,
     advice: Option<String>,
-    /// Row of the book's chapter of errors.
-    entry: Option<&'static str>,
+    /// Who can act on an error of the driver, and its row in the book's chapter of errors.
+    origin: Option<(Party, &'static str)>,
 }
 
 impl Failure {
@@ -126,7 +201,7 @@ impl Failure {
             ending,
             message: message.into(),
             advice: None,
-            entry: None,
+            origin: None,
         }
     }
 
@@ -150,8 +225,9 @@ impl Failure {
         self
     }
 
-    pub(crate) fn entry(mut self, entry: &'static str) -> Self {
-        self.entry = Some(entry);
+    /// The same failure, of an error of the driver.
+    pub(crate) fn of(mut self, party: Party, entry: &'static str) -> Self {
+        self.origin = Some((party, entry));
         self
     }
 }
@@ -181,6 +257,7 @@ mod tests {
             Host,
             Person,
             Interrupted,
+            Terminated,
         ];
         for ending in endings {
             let number = ending as u8;

@@ -1,17 +1,48 @@
-//! Ctrl-C.
+//! Ctrl-C and SIGTERM.
 
+use std::fmt;
 use std::future::Future;
 
 use tokio::signal::unix::{SignalKind, signal};
 
-/// Returns what resolves when the program is told to end from now on: Ctrl-C, or SIGTERM.
-pub(crate) fn interrupted() -> std::io::Result<impl Future<Output = ()>> {
+use crate::ending::{Ending, Failure};
+
+/// A signal that ends the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Interruption {
+    CtrlC,
+    /// SIGTERM, as of `kill` and of service managers.
+    Terminated,
+}
+
+impl Interruption {
+    /// How the program ends that did not do what was asked.
+    pub(crate) fn failure(self, message: &str) -> Failure {
+        let ending = match self {
+            Self::CtrlC => Ending::Interrupted,
+            Self::Terminated => Ending::Terminated,
+        };
+        Failure::new(ending, message)
+    }
+}
+
+impl fmt::Display for Interruption {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::CtrlC => "Ctrl-C",
+            Self::Terminated => "SIGTERM",
+        })
+    }
+}
+
+/// Returns what resolves when the program is told to end from now on.
+pub(crate) fn interrupted() -> std::io::Result<impl Future<Output = Interruption>> {
     let mut interrupt = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;
     Ok(async move {
         tokio::select! {
-            _ = interrupt.recv() => {}
-            _ = terminate.recv() => {}
+            _ = interrupt.recv() => Interruption::CtrlC,
+            _ = terminate.recv() => Interruption::Terminated,
         }
     })
 }

@@ -12,7 +12,7 @@
 //! | [`question`] | what will move, how far and how fast; asked before it does |
 //! | [`motion`] | a motion under way: progress, recording, braking |
 //! | [`fields`] | a state by the names of its fields |
-//! | [`interrupt`] | Ctrl-C |
+//! | [`interrupt`] | Ctrl-C and SIGTERM |
 //! | [`output`] | text and JSON |
 //! | [`values`] | checked values of arguments |
 //! | [`command`] | a file per command |
@@ -28,13 +28,12 @@ mod question;
 mod robots_file;
 mod values;
 
-use std::io::IsTerminal;
 use std::process::ExitCode;
 
 use clap::Parser;
 
 use command::Command;
-use ending::Ending;
+use ending::{Ending, Reported};
 
 /// Franka robots from the command line: state, motions, simulator, recordings.
 ///
@@ -53,18 +52,33 @@ struct Program {
 }
 
 fn main() -> ExitCode {
-    let program = Program::parse();
+    let json = std::env::args_os().any(|argument| argument == "--json");
+    let program = match Program::try_parse() {
+        Ok(program) => program,
+        Err(error) => {
+            if json && error.use_stderr() {
+                Reported::print_usage(&error.render().to_string());
+            }
+            error.exit()
+        }
+    };
     if program.verbose || program.command.logs() {
         tracing_subscriber::fmt()
             .with_writer(std::io::stderr)
-            .with_ansi(std::io::stderr().is_terminal())
+            .with_ansi(has_colours(&std::io::stderr()))
             .with_target(false)
             .init();
     }
     match program.command.run() {
         Ok(ending) => ending.code(),
-        Err(error) => Ending::report(&error).code(),
+        Err(error) => Ending::report(&error, json).code(),
     }
+}
+
+/// Whether colours are wanted on this stream: by NO_COLOR, CLICOLOR_FORCE and others, as of all
+/// other output.
+fn has_colours(stream: &impl anstream::stream::RawStream) -> bool {
+    anstream::AutoStream::choice(stream) != anstream::ColorChoice::Never
 }
 
 #[cfg(test)]
@@ -114,5 +128,97 @@ mod tests {
             let command = line.split(" #").next()?.trim_end_matches([' ', '&']);
             (in_shell && command.starts_with("franka ")).then_some(command)
         })
+    }
+
+    /// Commands that make a robot do something, or change it.
+    const ACTING: [&str; 10] = [
+        "bench",
+        "collision",
+        "gripper",
+        "guide",
+        "move",
+        "recover",
+        "replay",
+        "stop",
+        "test",
+        "tool",
+    ];
+
+    /// Places that advise one of them, because nothing else helps there.
+    const ADVISED: [(&str, &str); 5] = [
+        // The robot has stopped itself; the text asks to see to the cause first.
+        ("franka-cli/src/connection.rs", "recover"),
+        ("franka-cli/src/motion.rs", "recover"),
+        ("franka-doctor/src/at_rest.rs", "recover"),
+        ("franka-doctor/src/at_rest.rs", "recover"),
+        // Fingers that have not been homed know no width.
+        ("franka-cli/src/command/gripper.rs", "gripper"),
+    ];
+
+    /// Texts of the programs, without comments and tests. A text that sends a reader with a broken
+    /// file or a busy host to a command that acts on a robot is dangerous.
+    #[test]
+    fn texts_advise_no_command_that_acts_on_a_robot_unless_listed() {
+        use clap::CommandFactory;
+        let known: Vec<_> = Program::command()
+            .get_subcommands()
+            .map(|command| command.get_name().to_owned())
+            .collect();
+        for command in ACTING {
+            assert!(known.iter().any(|it| it == command), "{command}");
+        }
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let crates = fs::read_dir(&root).expect("the workspace");
+        let crates = crates.map(|entry| entry.expect("an entry").path());
+        let mut folders: Vec<_> = crates
+            .filter(|path| path.join("Cargo.toml").is_file() && path.join("src").is_dir())
+            .flat_map(|path| [path.join("src"), path.join("python")])
+            .filter(|path| path.is_dir())
+            .collect();
+        let (mut found, mut files) = (Vec::new(), 0);
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(&folder).expect("a folder") {
+                let path = entry.expect("an entry").path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else if path.extension().is_some_and(|it| it == "rs" || it == "py") {
+                    files += 1;
+                    let source = fs::read_to_string(&path).expect("a source");
+                    let name = path.strip_prefix(&root).expect("it is below");
+                    let name = name.to_str().expect("text").to_owned();
+                    let advised = advised(&source).into_iter();
+                    found.extend(advised.map(|command| (name.clone(), command)));
+                }
+            }
+        }
+        assert!(files > 500, "{files} sources");
+        found.sort();
+        let mut allowed = ADVISED.map(|(file, command)| (file.to_owned(), command));
+        allowed.sort();
+        assert_eq!(found, allowed);
+        let unsafe_advice = "#[error(\"damaged; `franka recover` helps\")]\n// franka move\n";
+        assert_eq!(advised(unsafe_advice), ["recover"]);
+    }
+
+    /// Commands that act on a robot, where a text of the source names them.
+    fn advised(source: &str) -> Vec<&'static str> {
+        let mut found = Vec::new();
+        for line in source.lines() {
+            let line = line.trim_start();
+            if line.starts_with("mod tests") {
+                break;
+            }
+            if line.starts_with("//") || line.starts_with('#') && !line.starts_with("#[error") {
+                continue;
+            }
+            for (at, _) in line.match_indices("franka ") {
+                if line[..at].ends_with(|c: char| c.is_alphanumeric() || c == '-') {
+                    continue;
+                }
+                let word = line[at + 7..].split(|c: char| !c.is_alphanumeric()).next();
+                found.extend(ACTING.into_iter().filter(|it| Some(*it) == word));
+            }
+        }
+        found
     }
 }

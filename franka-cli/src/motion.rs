@@ -18,7 +18,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::connection::{Place, Which, check_ready};
 use crate::ending::{Ending, Failure};
-use crate::interrupt::interrupted;
+use crate::interrupt::{Interruption, interrupted};
 use crate::output::{Output, say};
 use crate::question;
 use crate::robots_file::Realtime;
@@ -126,7 +126,7 @@ impl Moving {
     }
 
     /// Awaits a motion of the robot, with its progress on the terminal if its length is given.
-    /// Ctrl-C brakes.
+    /// Ctrl-C and SIGTERM brake.
     pub(crate) async fn drive<T, E: Into<Cause>>(
         &self,
         motion: impl Future<Output = Result<T, E>>,
@@ -143,7 +143,7 @@ impl Moving {
                     Ok(value) => Ok(value),
                     Err(error) => Err(self.explain(error).await),
                 },
-                () = &mut interrupt => break Err(self.brake().await),
+                by = &mut interrupt => break Err(self.brake(Some(by)).await),
                 _ = clock.tick() => {
                     let gone = length.as_ref().and_then(|length| length.gone(begin));
                     if let Some((part, left)) = gone {
@@ -157,18 +157,21 @@ impl Moving {
         outcome
     }
 
-    /// Brakes, and says what came of it.
-    pub(crate) async fn brake(&self) -> anyhow::Error {
-        say("Ctrl-C: braking");
+    /// Brakes, and says what came of it. Without an interruption, as the arm does not rest by itself.
+    pub(crate) async fn brake(&self, by: Option<Interruption>) -> anyhow::Error {
+        say(&by.map_or("braking".into(), |by| format!("{by}: braking")));
         match tokio::time::timeout(PATIENCE, self.robot.stop()).await {
             Ok(Ok(())) => {
-                let message = "interrupted: the arm was braked, and rests";
-                Failure::new(Ending::Interrupted, message).into()
+                let failure = match by {
+                    Some(by) => by.failure("interrupted: the arm was braked, and rests"),
+                    None => Failure::new(Ending::Failed, "the arm was braked, and rests"),
+                };
+                failure.into()
             }
             Ok(Err(error)) => self.explain(error).await.context("braking"),
             Err(_) => {
                 let seconds = PATIENCE.as_secs();
-                let message = format!("the arm has not come to rest in {seconds} s after Ctrl-C");
+                let message = format!("the arm has not come to rest in {seconds} s of braking");
                 let failure = Failure::new(Ending::Failed, message);
                 failure.advice("Press the user stop.").into()
             }
@@ -185,7 +188,7 @@ impl Moving {
             MotionError::LinkLost { .. } | MotionError::ConnectionClosed { .. } => Ending::NoRobot,
             _ => Ending::Failed,
         };
-        let failure = Failure::new(ending, error.to_string()).entry(error.entry());
+        let failure = Failure::new(ending, error.to_string()).of(error.party(), error.entry());
         // For want of packets, with the causes on this computer; else why the robot stopped.
         let advice = match doctor::diagnose(&error, self.robot.address().ip()).await {
             Some(diagnosis) => Some(diagnosis.to_string()),

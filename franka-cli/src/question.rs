@@ -47,9 +47,9 @@ pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
             "y" | "Y" | "yes" => Ok(()),
             _ => Err(Failure::new(Ending::NotConfirmed, "not confirmed. Nothing has moved.").into()),
         },
-        () = interrupt => {
+        by = interrupt => {
             say("");
-            Err(Failure::new(Ending::Interrupted, "interrupted. Nothing has moved.").into())
+            Err(by.failure("interrupted. Nothing has moved.").into())
         }
     }
 }

@@ -8,6 +8,7 @@
 //! ```
 
 use std::collections::BTreeMap;
+use std::io::Write as _;
 use std::path::PathBuf;
 use std::{env, fs, io};
 
@@ -15,6 +16,7 @@ use anyhow::Context;
 use clap::ValueEnum;
 use franka_async::connection::Endpoint;
 use serde::{Deserialize, Serialize};
+use toml_edit::{DocumentMut, Item, Table, Value, de};
 
 use crate::ending::{Ending, Failure};
 use crate::fields::fields;
@@ -45,21 +47,63 @@ pub(crate) struct Entry {
 pub(crate) struct RobotsFile {
     pub(crate) path: PathBuf,
     pub(crate) robots: BTreeMap<String, Entry>,
+    /// Its text, with the comments of the user.
+    document: DocumentMut,
 }
 
 impl RobotsFile {
     /// Reads the file; one that is not there has no robots.
     pub(crate) fn read() -> anyhow::Result<Self> {
         let path = path()?;
-        let robots = match fs::read_to_string(&path) {
-            Ok(text) => parse(&text).map_err(|error| {
-                let message = format!("{}: {error}", path.display());
-                Failure::usage(message.trim_end()).advice("Mend the file, or delete it.")
-            })?,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => BTreeMap::new(),
+        let text = match fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
             Err(error) => return Err(error).with_context(|| path.display().to_string()),
         };
-        Ok(Self { path, robots })
+        let (robots, document) = parse(&text).map_err(|error| {
+            let message = format!("{}: {error}", path.display());
+            Failure::usage(message.trim_end()).advice("Mend the file, or delete it.")
+        })?;
+        Ok(Self {
+            path,
+            robots,
+            document,
+        })
+    }
+
+    /// Adds a robot, or replaces it.
+    pub(crate) fn insert(&mut self, name: &str, entry: &Entry) {
+        let robot = self.document.entry(name);
+        let robot = robot.or_insert_with(|| Item::Table(Table::new()));
+        let fields = robot.as_table_like_mut().expect("robots are tables");
+        let realtime = entry.realtime.and_then(|it| it.to_possible_value());
+        let realtime = realtime.as_ref().map(|it| it.get_name());
+        for (key, new) in [
+            ("address", Some(&*entry.address)),
+            ("realtime", realtime),
+            ("hand", entry.hand.as_deref()),
+        ] {
+            let Some(new) = new else {
+                fields.remove(key);
+                continue;
+            };
+            let mut new = Value::from(new);
+            match fields.get_mut(key).and_then(Item::as_value_mut) {
+                Some(old) => {
+                    // The comment behind it.
+                    *new.decor_mut() = old.decor().clone();
+                    *old = new;
+                }
+                None => {
+                    fields.insert(key, Item::Value(new));
+                }
+            }
+        }
+    }
+
+    /// Removes a robot, and returns whether the file had it.
+    pub(crate) fn remove(&mut self, name: &str) -> bool {
+        self.document.remove(name).is_some()
     }
 
     /// Writes the file: a new one takes the place of the old one.
@@ -69,19 +113,20 @@ impl RobotsFile {
                 fs::create_dir_all(directory)?;
             }
             let new = self.path.with_extension("toml.new");
-            fs::write(
-                &new,
-                toml::to_string(&self.robots).map_err(io::Error::other)?,
-            )?;
+            let mut file = fs::File::create(&new)?;
+            file.write_all(self.document.to_string().as_bytes())?;
+            file.sync_all()?;
             fs::rename(&new, &self.path)
         };
         write().with_context(|| format!("writing {}", self.path.display()))
     }
 }
 
-fn parse(text: &str) -> Result<BTreeMap<String, Entry>, String> {
-    let robots: BTreeMap<String, Entry> =
-        toml::from_str(text).map_err(|error| error.to_string())?;
+fn parse(text: &str) -> Result<(BTreeMap<String, Entry>, DocumentMut), String> {
+    let robots: BTreeMap<String, Entry> = de::from_str(text).map_err(|error| error.to_string())?;
+    let document = text
+        .parse()
+        .map_err(|error: toml_edit::TomlError| error.to_string())?;
     for (name, entry) in &robots {
         check_name(name)?;
         for address in [Some(&entry.address), entry.hand.as_ref()]
@@ -92,7 +137,7 @@ fn parse(text: &str) -> Result<BTreeMap<String, Entry>, String> {
             parsed.map_err(|error| format!("robot `{name}`: {error}"))?;
         }
     }
-    Ok(robots)
+    Ok((robots, document))
 }
 
 /// Checks that a robot can be called so: names are no addresses and no fields of a state.
@@ -133,7 +178,9 @@ mod tests {
 
     #[test]
     fn a_file_says_what_is_wrong_with_it() {
-        let robots = parse("[left]\naddress = '172.16.0.2'\nrealtime = 'ignore'\n").unwrap();
+        let robots = parse("[left]\naddress = '172.16.0.2'\nrealtime = 'ignore'\n")
+            .unwrap()
+            .0;
         assert_eq!(robots["left"].realtime, Some(Realtime::Ignore));
         for (text, expected) in [
             ("[left]\n", "address"),
@@ -147,5 +194,45 @@ mod tests {
             let error = parse(text).expect_err(text);
             assert!(error.contains(expected), "{text}: {error}");
         }
+    }
+
+    #[test]
+    fn comments_of_the_user_stay() {
+        let text = "# The lab.\n\n[left] # by the door\naddress = \"172.16.0.2\" # old cable\n\n\
+                    # Borrowed.\n[right]\naddress = \"172.16.0.3\"\nrealtime = \"ignore\"\n";
+        let (robots, document) = parse(text).unwrap();
+        let mut file = RobotsFile {
+            path: PathBuf::new(),
+            robots,
+            document,
+        };
+        let entry = |address: &str| Entry {
+            address: address.to_owned(),
+            realtime: None,
+            hand: None,
+        };
+        file.insert("left", &entry("172.16.0.9"));
+        file.insert("third", &entry("172.16.0.4"));
+        let changed = text.replace("172.16.0.2", "172.16.0.9");
+        let third = "\n[third]\naddress = \"172.16.0.4\"\n";
+        assert_eq!(file.document.to_string(), format!("{changed}{third}"));
+        assert!(file.remove("third") && !file.remove("third"));
+        assert_eq!(file.document.to_string(), changed);
+        // One that has no real-time option any more.
+        file.insert("right", &entry("172.16.0.3"));
+        let changed = changed.replace("realtime = \"ignore\"\n", "");
+        assert_eq!(file.document.to_string(), changed);
+        // The file of a user who writes it in another way.
+        let (robots, document) = parse("left = { address = 'a' } # short\n").unwrap();
+        let mut file = RobotsFile {
+            path: PathBuf::new(),
+            robots,
+            document,
+        };
+        file.insert("left", &entry("b"));
+        assert_eq!(
+            file.document.to_string(),
+            "left = { address = \"b\" } # short\n"
+        );
     }
 }

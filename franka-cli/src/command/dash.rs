@@ -13,7 +13,7 @@ use tokio::task::JoinSet;
 use crate::connection::{Place, Which};
 use crate::ending::{Ending, Failure};
 use crate::interrupt::interrupted;
-use crate::output::line;
+use crate::output::{line, say};
 use crate::robots_file::Realtime;
 
 /// Show robots in the browser; with --allow-motion, move them while a button is held
@@ -98,6 +98,7 @@ impl Dash {
             }
             options = options.record_to(folder);
         }
+        let recordings_ended = options.recordings_ended();
         let listener = listen(self.listen, &options).await?;
         let address = listener.local_addr().context("the address of the page")?;
         let interrupt = interrupted()?;
@@ -157,12 +158,20 @@ impl Dash {
             let (place, robot) = (place.to_string(), robot.clone());
             closed.spawn(async move { (place, robot.closed().await) });
         }
-        let ended = tokio::select! {
-            () = interrupt => Ok(Ending::Done),
-            Some(Ok((place, reason))) = closed.join_next() => {
-                let text = format!("the connection to {place} has ended: {reason}");
-                Err(Failure::new(Ending::NoRobot, text).into())
+        // One robot that is lost takes neither the page nor its Stop button from the others.
+        let all_closed = async {
+            let mut last = String::new();
+            while let Some(Ok((place, reason))) = closed.join_next().await {
+                last = format!("the connection to {place} has ended: {reason}");
+                if !closed.is_empty() {
+                    say(&format!("{last}; the others continue"));
+                }
             }
+            Failure::new(Ending::NoRobot, last)
+        };
+        let ended = tokio::select! {
+            _ = interrupt => Ok(Ending::Done),
+            failure = all_closed => Err(failure.into()),
             served = axum::serve(listener, page).into_future() => {
                 served.map(|()| Ending::Done).map_err(Into::into)
             }
@@ -170,6 +179,7 @@ impl Dash {
         for (_, robot, _) in &robots {
             robot.shutdown().await;
         }
+        recordings_ended.await;
         ended
     }
 }

@@ -1,18 +1,20 @@
 //! `franka explain`: why a motion ended, by its recording or by a log of libfranka.
 
-use std::fs;
+use std::io::Write as _;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use anyhow::Context as _;
 use clap::Args;
 use franka_async::explain::Explanation;
+use franka_async::export::NewFile;
 use franka_async::model::Model;
 use franka_async::recording::control_log::{ControlLogError, ControlLogFile};
 use franka_async::recording::{HostTime, Recording, RecordingError};
 use franka_async::state::{Errors, RobotError};
 use serde_json::Value;
 
+use super::export::of_file;
 use super::limits::Kind;
 use crate::ending::{Ending, Failure};
 use crate::motion::while_turning;
@@ -30,7 +32,7 @@ pub(crate) struct Explain {
     /// Explain an earlier end of a motion: 1 is the one before the newest
     #[arg(long, value_name = "N", default_value_t = 0)]
     earlier: u64,
-    /// Draw the last second to a file
+    /// Draw the last second to a new file
     #[arg(long, value_name = "FILE.svg")]
     figure: Option<PathBuf>,
     /// Kind of the robot, for a log of libfranka, which does not say
@@ -185,8 +187,12 @@ impl Explain {
 
     fn draw(&self, explanation: &Explanation) -> anyhow::Result<()> {
         if let Some(file) = &self.figure {
-            let written = fs::write(file, explanation.figure());
-            written.with_context(|| format!("writing {}", file.display()))?;
+            let draw = || {
+                let mut to = NewFile::create(file)?;
+                to.write_all(explanation.figure().as_bytes())?;
+                to.finish()
+            };
+            draw().map_err(of_file)?;
         }
         Ok(())
     }

@@ -2,18 +2,18 @@
 
 use std::convert::Infallible;
 use std::error::Error;
-use std::fs::File;
+use std::io;
 #[cfg(feature = "export")]
 use std::path::Path;
 use std::path::PathBuf;
+use std::sync::{Arc, OnceLock};
 
-use anyhow::Context as _;
 use clap::Args;
 #[cfg(feature = "export")]
 use franka_async::export::lerobot::{Action, Dataset, DatasetOptions};
 #[cfg(feature = "export")]
 use franka_async::export::write_parquet;
-use franka_async::export::{Columns, write_csv};
+use franka_async::export::{Columns, ExportError, NewFile, write_csv};
 #[cfg(feature = "export")]
 use franka_async::model::RobotKind;
 use franka_async::recording::Cycle;
@@ -23,13 +23,15 @@ use serde_json::json;
 
 use super::explain::{Recorded, Source};
 use crate::ending::{Ending, Failure};
+use crate::interrupt::{Interruption, interrupted};
 use crate::motion::while_turning;
 use crate::output::Output;
 
 /// Export a recording as tables, or as a dataset for training
 ///
 /// FILE is a recording, or a table of libfranka's logToCSV. Tables have a row per cycle; a dataset
-/// has the episodes of the recording, in the layout of LeRobot.
+/// has the episodes of the recording, in the layout of LeRobot. A file that exists is never
+/// replaced; Ctrl-C deletes what is not complete.
 #[derive(Debug, Args)]
 #[group(id = "to", required = true, multiple = true, args = ["csv", "parquet", "lerobot"])]
 pub(crate) struct Export {
@@ -74,16 +76,24 @@ impl Export {
                 return Err(Failure::without(option, "export").into());
             }
         }
+        let stop = Stop::begin()?;
+        self.export(&stop).map_err(|error| match stop.by() {
+            Some(by) => by.failure("interrupted: the export is not complete").into(),
+            None => error,
+        })
+    }
+
+    fn export(self, stop: &Stop) -> anyhow::Result<Ending> {
         #[cfg_attr(not(feature = "export"), expect(unused_mut))]
         let mut dataset: Option<(usize, u64)> = None;
         #[cfg_attr(not(feature = "export"), expect(unused_variables))]
         let rows = match self.recorded.open_any()? {
             Source::Recording(recording, name, model) => {
                 let robot = recording.robot(&name)?;
-                let rows = self.write_tables(|| robot.cycles(), &Columns::all())?;
+                let rows = self.write_tables(|| robot.cycles(), &Columns::all(), stop)?;
                 #[cfg(feature = "export")]
                 if let Some(folder) = &self.lerobot {
-                    dataset = Some(self.add_to_dataset(folder, &robot, model.kind())?);
+                    dataset = Some(self.add_to_dataset(folder, &robot, model.kind(), stop)?);
                 }
                 rows
             }
@@ -98,7 +108,7 @@ impl Export {
                     return Err(Failure::usage(message).into());
                 }
                 let cycles = || file.cycles().map(Ok::<_, Infallible>);
-                self.write_tables(cycles, &Columns::of_log())?
+                self.write_tables(cycles, &Columns::of_log(), stop)?
             }
         };
         let (episodes, frames) = dataset.unzip();
@@ -118,6 +128,7 @@ impl Export {
         &self,
         cycles: impl Fn() -> I,
         columns: &Columns,
+        stop: &Stop,
     ) -> anyhow::Result<Option<u64>>
     where
         E: Error + Send + Sync + 'static,
@@ -131,15 +142,18 @@ impl Export {
         };
         let mut rows = None;
         if let Some(path) = &self.csv {
-            let file = File::create_new(path);
-            let file = file.with_context(|| format!("writing {}", path.display()))?;
-            let write = || write_csv(cycles(), &columns, true, file);
-            rows = Some(while_turning("writing the table", write)?);
+            let write = || {
+                let mut file = NewFile::create(path)?;
+                let rows = write_csv(stop.until_asked(cycles()), &columns, true, &mut file)?;
+                file.finish()?;
+                Ok(rows)
+            };
+            rows = Some(while_turning("writing the table", write).map_err(of_file)?);
         }
         #[cfg(feature = "export")]
         if let Some(path) = &self.parquet {
-            let write = || write_parquet(cycles(), &columns, path);
-            rows = Some(while_turning("writing the table", write)?);
+            let write = || write_parquet(stop.until_asked(cycles()), &columns, path);
+            rows = Some(while_turning("writing the table", write).map_err(of_file)?);
         }
         Ok(rows)
     }
@@ -151,6 +165,7 @@ impl Export {
         folder: &Path,
         robot: &RobotRecording<'_>,
         kind: RobotKind,
+        stop: &Stop,
     ) -> anyhow::Result<(usize, u64)> {
         let kind = match kind {
             RobotKind::Fer => "franka_fer",
@@ -184,7 +199,7 @@ impl Export {
         for episode in &found {
             let part = robot.from(episode.begin).to(episode.end);
             let samples = Samples::new(part.cycles(), robot.to(episode.end).gripper_states());
-            let samples: Vec<Sample> = samples.collect::<Result<_, _>>()?;
+            let samples: Vec<Sample> = stop.until_asked(samples).collect::<Result<_, _>>()?;
             let add = || dataset.add_episode(&episode.task, episode.success, samples);
             let added = while_turning("adding an episode", add);
             count += added.map_err(|error| {
@@ -197,5 +212,45 @@ impl Export {
         }
         dataset.finish()?;
         Ok((found.len(), count))
+    }
+}
+
+/// Ends an export at Ctrl-C. What is not complete is then deleted, as after any other error.
+struct Stop(Arc<OnceLock<Interruption>>);
+
+impl Stop {
+    fn begin() -> io::Result<Self> {
+        let by = Arc::<OnceLock<Interruption>>::default();
+        let (interrupt, to) = (interrupted()?, by.clone());
+        tokio::spawn(async move {
+            // The first one counts.
+            let _ = to.set(interrupt.await);
+        });
+        Ok(Self(by))
+    }
+
+    fn by(&self) -> Option<Interruption> {
+        self.0.get().copied()
+    }
+
+    /// The items, with an error once the export is to end.
+    fn until_asked<T, E: Error + Send + Sync + 'static>(
+        &self,
+        items: impl Iterator<Item = Result<T, E>>,
+    ) -> impl Iterator<Item = io::Result<T>> {
+        items.map(|item| match self.by() {
+            Some(_) => Err(io::ErrorKind::Interrupted.into()),
+            None => item.map_err(io::Error::other),
+        })
+    }
+}
+
+/// How an error of an exported file ends the program.
+pub(super) fn of_file(error: ExportError) -> anyhow::Error {
+    match error {
+        ExportError::Exists { .. } | ExportError::Io { .. } => {
+            Failure::new(Ending::Host, error.to_string()).into()
+        }
+        _ => error.into(),
     }
 }

@@ -10,7 +10,7 @@ use tokio::time::{Duration, timeout};
 
 use crate::connection::Which;
 use crate::ending::{Ending, Failure};
-use crate::interrupt::interrupted;
+use crate::interrupt::{Interruption, interrupted};
 use crate::output::{BOLD, Output, say};
 use crate::question;
 use crate::values::positive;
@@ -173,7 +173,7 @@ impl Fingers {
         let done = tokio::select! {
             biased;
             done = motion => done.map_err(Error::from)?,
-            () = interrupt => return Err(interrupted_by_ctrl_c(hand).await.into()),
+            by = interrupt => return Err(stopped(hand, by).await.into()),
         };
         let state = hand.state();
         if !done {
@@ -185,12 +185,12 @@ impl Fingers {
 }
 
 /// Stops the fingers; returns how that ends the program.
-async fn interrupted_by_ctrl_c(hand: &Hand) -> Failure {
-    say("Ctrl-C: stopping the fingers");
+async fn stopped(hand: &Hand, by: Interruption) -> Failure {
+    say(&format!("{by}: stopping the fingers"));
     let why = match timeout(PATIENCE, hand.stop()).await {
         Ok(Ok(true)) => {
             let message = "interrupted: the fingers were stopped, and hold nothing";
-            return Failure::new(Ending::Interrupted, message);
+            return by.failure(message);
         }
         Ok(Ok(false)) => "the Hand refused".to_owned(),
         Ok(Err(error)) => error.to_string(),

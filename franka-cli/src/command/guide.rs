@@ -6,16 +6,18 @@ use clap::{Args, ValueEnum};
 use franka_async::goal::Free;
 use franka_async::{Engage, MotionError};
 use serde_json::json;
+use tokio::time::timeout;
 
 use crate::ending::Ending;
-use crate::interrupt::interrupted;
+use crate::interrupt::{Interruption, interrupted};
 use crate::motion::{Mover, Moving};
 use crate::output::say;
 use crate::values::seconds;
 
 /// Let a hand guide the arm
 ///
-/// Until Ctrl-C. A load at the flange has to be declared before, or it pulls the arm down.
+/// Until Ctrl-C; a second one brakes at once. A load at the flange has to be declared before, or it
+/// pulls the arm down.
 #[derive(Debug, Args)]
 pub(crate) struct Guide {
     #[command(flatten)]
@@ -106,20 +108,58 @@ impl Guide {
                     None => std::future::pending().await,
                 }
             };
+            let first = tokio::select! {
+                () = end => None,
+                by = interrupt => Some(by),
+                ended = arm.ended() => return Ok(ended.map(drop)?),
+            };
+            let again = interrupted()?;
+            let held = async {
+                arm.hold().await?;
+                arm.at_rest().await?;
+                arm.disengage().await
+            };
+            // A hand that pushes on keeps the arm from resting.
             tokio::select! {
-                () = end => {}
-                () = interrupt => {}
-                ended = arm.ended() => return ended.map(drop),
+                held = timeout(PATIENCE, held) => match held {
+                    Ok(held) => Ok(held.map(drop)?),
+                    Err(_) => Err(Guiding::NotAtRest(first)),
+                },
+                by = again => Err(Guiding::NotAtRest(Some(by))),
             }
-            arm.hold().await?;
-            arm.at_rest().await?;
-            arm.disengage().await?;
-            Ok(())
         };
-        let guided: Result<(), MotionError> = guided.await;
+        let guided: Result<(), Guiding> = guided.await;
         match guided {
             Ok(()) => Ok(robot.state().q),
-            Err(error) => Err(moving.explain(error).await),
+            Err(Guiding::NotAtRest(by)) => {
+                say("The arm does not rest: it is pushed.");
+                Err(moving.brake(by).await)
+            }
+            Err(Guiding::Failed(error)) => Err(moving.explain(error).await),
+            Err(Guiding::Host(error)) => Err(error.into()),
         }
     }
 }
+
+/// Why the arm was not guided to its end.
+enum Guiding {
+    Failed(MotionError),
+    /// It was held, and did not come to rest.
+    NotAtRest(Option<Interruption>),
+    Host(std::io::Error),
+}
+
+impl From<MotionError> for Guiding {
+    fn from(error: MotionError) -> Self {
+        Self::Failed(error)
+    }
+}
+
+impl From<std::io::Error> for Guiding {
+    fn from(error: std::io::Error) -> Self {
+        Self::Host(error)
+    }
+}
+
+/// Time for the arm to come to rest.
+const PATIENCE: Duration = Duration::from_secs(5);

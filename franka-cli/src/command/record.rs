@@ -73,7 +73,7 @@ impl Record {
         let mut clock = tokio::time::interval(Duration::from_millis(100));
         let lost = loop {
             tokio::select! {
-                () = &mut interrupt => break None,
+                _ = &mut interrupt => break None,
                 reason = robot.closed() => break Some(reason),
                 _ = clock.tick() => {
                     let elapsed = begin.elapsed();

@@ -60,9 +60,9 @@ impl Recover {
         let interrupt = interrupted()?;
         let recovered = tokio::select! {
             recovered = robot.recover() => recovered,
-            () = interrupt => {
+            by = interrupt => {
                 let message = "interrupted: the robot may recover all the same";
-                return Err(Failure::new(Ending::Interrupted, message).into());
+                return Err(by.failure(message).into());
             }
         };
         recovered.map_err(|error| {

@@ -90,7 +90,7 @@ impl Replay {
         let fastest = fastest.into_iter().fold(0.0, f64::max);
         let what = format!(
             "First to where the recording begins:\n{}\nThen as recorded, for {:.1} s: joints at {fastest:.0} deg/s at most.",
-            Target::Joints(plan.start()).describe(robot, 1.0)?,
+            Target::Joints(plan.start()).describe(robot, plan.speed())?,
             plan.duration().as_secs_f64(),
         );
         moving.ask("replay", &what).await?;

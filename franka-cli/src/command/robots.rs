@@ -1,6 +1,5 @@
 //! `franka robots`: the file with the robots that have names.
 
-use anyhow::Context as _;
 use clap::Subcommand;
 use franka_async::connection::Endpoint;
 use serde_json::json;
@@ -67,16 +66,16 @@ impl Robots {
                     realtime,
                     hand: hand.map(|hand| hand.to_string()),
                 };
-                file.robots.insert(name.clone(), entry);
+                file.insert(&name, &entry);
                 file.write()?;
                 line(&format!("{name} is in {}", file.path.display()))?;
                 Ok(Ending::Done)
             }
             Self::Remove { name } => {
-                let removed = file.robots.remove(&name);
-                removed
-                    .with_context(|| format!("{} has no robot `{name}`", file.path.display()))
-                    .map_err(|error| Failure::usage(error.to_string()))?;
+                if !file.remove(&name) {
+                    let message = format!("{} has no robot `{name}`", file.path.display());
+                    return Err(Failure::usage(message).into());
+                }
                 file.write()?;
                 line(&format!("{name} is removed from {}", file.path.display()))?;
                 Ok(Ending::Done)

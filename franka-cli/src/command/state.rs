@@ -66,7 +66,7 @@ impl State {
         };
         loop {
             tokio::select! {
-                () = &mut interrupt => return Ok(Ending::Done),
+                _ = &mut interrupt => return Ok(Ending::Done),
                 _ = clock.tick() => {}
             }
             // A state that came after the last look: a link that has died is noticed.

@@ -1,6 +1,7 @@
 //! `franka tool`: what is at the flange.
 
-use std::fs;
+use std::fs::File;
+use std::io::Write as _;
 use std::path::PathBuf;
 
 use anyhow::Context as _;
@@ -126,7 +127,8 @@ impl Identify {
         let found = moving.end(outcome).await?;
         if let Some(path) = &self.save {
             let text = serde_json::to_string_pretty(&found)?;
-            let written = fs::write(path, text);
+            let written =
+                File::create_new(path).and_then(|mut file| file.write_all(text.as_bytes()));
             written.with_context(|| format!("writing {}", path.display()))?;
             say(&format!("in {}", path.display()));
         }

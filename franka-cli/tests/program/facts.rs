@@ -2,6 +2,7 @@
 
 use crate::program::Home;
 use crate::simulated::Simulated;
+use crate::terminal::Terminal;
 
 #[test]
 fn the_state_is_printed_as_text_and_as_json() {
@@ -32,6 +33,28 @@ fn colours_follow_the_rules_of_no_color() {
     };
     assert!(state("CLICOLOR_FORCE").contains('\x1b'));
     assert!(!state("NO_COLOR").contains('\x1b'));
+}
+
+#[test]
+fn colours_of_logs_follow_the_rules_of_no_color() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let arguments = ["state", &sim.address(), "-v"];
+    let mut forced = home.command(&arguments);
+    let forced = forced.env("CLICOLOR_FORCE", "1").output();
+    let log = String::from_utf8(forced.expect("it runs").stderr).expect("text");
+    assert!(log.contains("INFO") && log.contains('\x1b'), "{log:?}");
+    let (_, shown) = Terminal::run(&home, &arguments).ended();
+    assert!(log_lines(&shown).contains('\x1b'), "{shown:?}");
+    let (_, shown) = Terminal::with(&home, &arguments, &[("NO_COLOR", "1")]).ended();
+    assert!(!log_lines(&shown).contains('\x1b'), "{shown:?}");
+}
+
+/// The lines of a log, by its level.
+fn log_lines(shown: &str) -> String {
+    let lines = shown.lines().filter(|line| line.contains("INFO"));
+    let lines = lines.collect::<Vec<_>>().join("\n");
+    assert!(!lines.is_empty(), "{shown:?}");
+    lines
 }
 
 #[test]
@@ -182,4 +205,54 @@ fn an_address_needs_no_home() {
     let output = without("left");
     let text = String::from_utf8_lossy(&output.stderr);
     assert!(text.contains("HOME"), "{output:?}");
+}
+
+/// The fields have stable names; the text is for people.
+#[test]
+fn failures_are_json_on_standard_output_too() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let error = |arguments: &[&str], code: i32| {
+        let ran = home.run(arguments);
+        assert_eq!(ran.code, Some(code), "{ran:?}");
+        assert!(ran.err.contains("error:"), "{ran:?}");
+        let json: serde_json::Value = serde_json::from_str(&ran.out).expect("JSON");
+        assert_eq!(json["schema"], 1, "{json}");
+        assert_eq!(json["error"]["exit_code"], code, "{json}");
+        json["error"].clone()
+    };
+    let free = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let nowhere = free.local_addr().expect("bound").to_string();
+    drop(free);
+    let none = error(&["state", &nowhere, "--json"], 3);
+    assert_eq!(
+        (&none["kind"], &none["party"]),
+        (&"no_robot".into(), &"robot".into())
+    );
+    assert!(
+        none["entry"].is_string() && none["advice"].is_string(),
+        "{none}"
+    );
+    let usage = error(&["state", &sim.address(), "--json", "--rate", "x"], 2);
+    assert_eq!(usage["kind"], "usage", "{usage}");
+    assert!(
+        usage["text"].as_str().expect("text").contains("--rate"),
+        "{usage}"
+    );
+    let file = error(&["explain", "none.mcap", "--json"], 6);
+    assert_eq!(
+        (&file["kind"], &file["party"]),
+        (&"host".into(), &serde_json::Value::Null)
+    );
+    let asked = [
+        "move",
+        &sim.address(),
+        "--ready",
+        "--realtime",
+        "ignore",
+        "--json",
+    ];
+    assert_eq!(error(&asked, 5)["kind"], "not_confirmed");
+    // Without the option, nothing.
+    let ran = home.run(&["state", &nowhere]);
+    assert_eq!(ran.out, "", "{ran:?}");
 }

@@ -1,5 +1,6 @@
 //! Motions, and what ends them early.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use franka_async::model::Wrench;
@@ -76,16 +77,18 @@ fn without_real_time_rights_nothing_moves() {
 }
 
 #[test]
-fn ctrl_c_brakes_and_says_so() {
+fn ctrl_c_and_sigterm_brake_and_say_so() {
     Simulated::each(|sim| {
-        for signal in [Signal::SIGINT, Signal::SIGTERM] {
+        let signals = [
+            (Signal::SIGINT, 130, "Ctrl-C: braking"),
+            (Signal::SIGTERM, 143, "SIGTERM: braking"),
+        ];
+        for (signal, code, text) in signals {
             let (home, robot) = (Home::new(), sim.address());
             let mut program = home.start(&moving(&robot, &SLOW));
             sim.moves();
             program.signal(signal);
-            program
-                .ended()
-                .failed(130, &["braking", "braked, and rests"]);
+            program.ended().failed(code, &[text, "braked, and rests"]);
             sim.rests(RobotMode::Idle);
         }
     });
@@ -197,4 +200,39 @@ fn a_guided_arm_is_held_again_at_the_end() {
         let timed = [&guide[..], &["--seconds", "0.1", "--free", "elbow"]].concat();
         home.run(&timed).done();
     });
+}
+
+/// By a second Ctrl-C, and without one after some seconds.
+#[test]
+fn guide_ends_while_a_hand_pushes_on() {
+    let (home, sim) = (Home::new(), Simulated::fr3());
+    let robot = sim.address();
+    for again in [true, false] {
+        let mut program = home.start(&["guide", &robot, "--realtime", "ignore", "--yes"]);
+        until("a session", || sim.state().robot_mode == RobotMode::Move);
+        let ended = AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                for force in [15.0, -15.0].into_iter().cycle() {
+                    if ended.load(Ordering::Relaxed) {
+                        break;
+                    }
+                    let push = Wrench::new(0.0, force, 0.0, 0.0, 0.0, 0.0);
+                    sim.with(move |robot| robot.push_end_effector(push, 250));
+                    std::thread::sleep(Duration::from_millis(250));
+                }
+            });
+            sim.moves();
+            let begin = Instant::now();
+            program.signal(Signal::SIGINT);
+            if again {
+                std::thread::sleep(Duration::from_millis(300));
+                program.signal(Signal::SIGINT);
+            }
+            let ran = program.ended();
+            ended.store(true, Ordering::Relaxed);
+            ran.failed(130, &["it is pushed", "braked"]);
+            assert!(begin.elapsed() < Duration::from_secs(30), "{ran:?}");
+        });
+    }
 }

@@ -3,9 +3,12 @@
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 
+use franka_async::recording::Recording;
 use nix::sys::signal::Signal;
+use tungstenite::Message;
+use tungstenite::client::IntoClientRequest as _;
 
-use crate::program::{Home, Started};
+use crate::program::{Home, Started, until};
 use crate::simulated::Simulated;
 
 /// The address in the first line that has one, and that serves the page.
@@ -129,4 +132,63 @@ fn a_token_is_made_or_read_from_a_file_and_never_an_argument() {
     home.run(&both).failed(2, &["--new-token"]);
     let argument = [&dash[..], &["--token", "token-of-the-argument"]].concat();
     home.run(&argument).failed(2, &["--token"]);
+}
+
+#[test]
+fn one_lost_robot_leaves_the_others_their_page() {
+    let (home, left, right) = (Home::new(), Simulated::fr3(), Simulated::fer());
+    let robots = [left.address(), right.address()];
+    let mut program = home.start(&["dash", &robots[0], &robots[1], "--listen", "127.0.0.1:0"]);
+    let address = page(&mut program);
+    left.end();
+    let mut said = String::new();
+    let err = program.child().stderr.as_mut().expect("piped");
+    BufReader::new(err).read_line(&mut said).expect("text");
+    assert!(said.contains(&robots[0]), "{said}");
+    assert!(said.contains("the others continue"), "{said}");
+    let answer = get(&address, &format!("/{}/", robots[1]));
+    assert!(answer.starts_with("HTTP/1.1 200"), "{answer}");
+    assert_eq!(program.child().try_wait().expect("its child"), None);
+    right.end();
+    program.ended().failed(3, &[&robots[1], "has ended"]);
+}
+
+#[test]
+fn recording_of_a_page_is_complete_after_ctrl_c_and_a_lost_robot() {
+    for is_lost in [false, true] {
+        let (home, sim) = (Home::new(), Simulated::fr3());
+        let folder = home.path("recordings");
+        std::fs::create_dir(&folder).expect("a folder");
+        let record = ["--listen", "127.0.0.1:0", "--record", "recordings"];
+        let mut program = home.start(&[&["dash", &sim.address()][..], &record].concat());
+        let address = page(&mut program);
+        let request = format!("ws://{address}/ws").into_client_request();
+        let socket = TcpStream::connect(&address).expect("it listens");
+        let (mut socket, _) = tungstenite::client(request.expect("a request"), socket).expect("it");
+        for request in [r#"{"type":"take"}"#, r#"{"type":"record","on":true}"#] {
+            let request = Message::text(request);
+            socket.send(request).expect("it reads");
+        }
+        let file = || std::fs::read_dir(&folder).expect("a folder").next();
+        // The first write comes after a second; what follows is not on the disk yet.
+        until("a chunk", || {
+            let length = file().map_or(0, |it| it.expect("a file").metadata().expect("it").len());
+            length > 10_000
+        });
+        let code = match is_lost {
+            true => {
+                sim.end();
+                3
+            }
+            false => {
+                program.signal(Signal::SIGINT);
+                0
+            }
+        };
+        let ran = program.ended();
+        assert_eq!(ran.code, Some(code), "{ran:?}");
+        let path = file().expect("a file").expect("a file").path();
+        let recording = Recording::open(path).expect("a recording");
+        assert_eq!(recording.damage(), None, "lost: {is_lost}");
+    }
 }

@@ -44,6 +44,18 @@ fn a_motion_is_recorded_exported_and_replayed() {
         home.run(&["export", "run.mcap", "--parquet", "run.parquet"])
             .done();
         assert!(home.path("run.parquet").exists());
+        let recorded = std::fs::read(home.path("run.mcap")).expect("a recording");
+        for onto in ["run.mcap", "run.parquet", "run.csv"] {
+            for format in ["--parquet", "--csv"] {
+                let export = ["export", "run.mcap", format, onto];
+                home.run(&export)
+                    .failed(6, &[onto, "never replaces a file"]);
+            }
+        }
+        let figure = ["explain", "run.mcap", "--figure", "run.mcap"];
+        home.run(&figure)
+            .failed(6, &["run.mcap exists", "never replaces a file"]);
+        assert!(std::fs::read(home.path("run.mcap")).expect("it is there") == recorded);
         home.run(&["export", "run.mcap", "--lerobot", "data"])
             .failed(1, &["no episode that has ended"]);
         let bad = [

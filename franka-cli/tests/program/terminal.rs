@@ -25,6 +25,11 @@ pub(crate) struct Terminal {
 
 impl Terminal {
     pub(crate) fn run(home: &Home, arguments: &[&str]) -> Self {
+        Self::with(home, arguments, &[])
+    }
+
+    /// With these variables of the environment.
+    pub(crate) fn with(home: &Home, arguments: &[&str], variables: &[(&str, &str)]) -> Self {
         let size = Winsize {
             ws_row: 30,
             ws_col: 80,
@@ -36,6 +41,7 @@ impl Terminal {
         let mut command = home.command(arguments);
         command
             .env("TERM", "xterm-256color")
+            .envs(variables.iter().copied())
             .stdin(slave.try_clone().expect("a descriptor"))
             .stdout(slave.try_clone().expect("a descriptor"))
             .stderr(slave);
