@@ -83,8 +83,12 @@ export function stopControls(stops) {
   for (const stop of stops) stop.addEventListener("changed", show);
   const press = () => { for (const stop of stops) stop.press(); };
   document.getElementById("stop").addEventListener("click", press);
+  // A checkbox that was clicked gives the space bar back; a click by a key has no count.
+  addEventListener("click", ({ target, detail }) => {
+    if (detail > 0 && target.matches?.("input[type=checkbox]")) target.blur();
+  });
   addEventListener("keydown", (event) => {
-    // A checkbox has no other key. One that was clicked has the focus, too, and takes nothing.
+    // A checkbox that was reached by Tab has no other key.
     const checks = event.key === " " && event.target?.matches?.("input[type=checkbox]:focus-visible");
     if ((event.key !== "Escape" && event.key !== " ") || checks) return;
     // Also on a focused button, which a space would press.
