@@ -161,8 +161,8 @@ impl AsynchronousControl {
         self.status_in(&self.robot.state())
     }
 
-    /// Resolves when the newest target is reached. It has no time limit, as only the robot knows how
-    /// long the way takes.
+    /// Resolves when the newest target is reached. It has no time limit, as only the robot knows
+    /// how long the way takes.
     ///
     /// # Errors
     /// What ended the motion before; [`MotionError::Goal`] never, as the robot does the planning.

@@ -7,8 +7,8 @@ use franka_rt::session::{Chunk, Goal, GoalError, GoalId, Target, Waypoint};
 use tokio::sync::{mpsc, oneshot, watch};
 
 use crate::destination::Destination;
+use crate::kept_tuning::KeptTuning;
 use crate::publish::Subscriptions;
-use crate::session::KeptTuning;
 
 /// What handles and motions ask of the bridge.
 #[derive(Debug)]

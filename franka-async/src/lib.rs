@@ -406,6 +406,7 @@ pub mod identify;
 mod input;
 #[cfg(feature = "record")]
 mod journal;
+mod kept_tuning;
 mod link;
 #[cfg(feature = "metrics")]
 pub mod metrics;

@@ -88,7 +88,8 @@ impl Robot {
 
 impl Arm {
     /// Moves to the first target of a recorded motion as [`Arm::move_joints`] does, slower by the
-    /// [speed of the plan](ReplayPlan::speed), and then follows the targets at their times, with all guards of the session and the limits of the
+    /// [speed of the plan](ReplayPlan::speed), and then follows the targets at their times, with
+    /// all guards of the session and the limits of the
     /// [plan](ReplayPlan::budget). Resolves when the arm rests at the last one, with how far it was
     /// from where the recorded arm was.
     ///

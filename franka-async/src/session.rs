@@ -1,13 +1,14 @@
 //! What all handles of a session share.
 
 use std::future::Future;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, OnceLock};
 
 use franka_rt::lifecycle::{MotionError, Outcome, Tuning};
 use franka_rt::session::{GoalId, Lapse, Pulse};
 use tokio::sync::{oneshot, watch};
 
 use crate::input::{Input, Waiting, unserved};
+use crate::kept_tuning::KeptTuning;
 use crate::link::Link;
 use crate::robot::Robot;
 
@@ -132,27 +133,6 @@ impl Session {
             }
             (_, error) => error,
         }
-    }
-}
-
-/// How the goals to come of a session are pursued. Clones are the same.
-#[derive(Clone, Debug)]
-pub(crate) struct KeptTuning(Arc<Mutex<Tuning>>);
-
-impl KeptTuning {
-    fn new(tuning: Tuning) -> Self {
-        Self(Arc::new(Mutex::new(tuning)))
-    }
-
-    pub(crate) fn get(&self) -> Tuning {
-        // Nothing can panic while it is held.
-        *self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Changes what these changes name, and keeps the rest.
-    pub(crate) fn change(&self, changes: Tuning) {
-        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        *kept = changes.or(*kept);
     }
 }
 

@@ -4,13 +4,8 @@ use std::fmt;
 use std::io;
 use std::process::ExitCode;
 
-use anstyle::{AnsiColor, Style};
 use franka_async::error::{CommandError, ConnectError, Party};
 use franka_async::{Error, MotionError};
-use serde::Serialize;
-use serde_json::json;
-
-use crate::output::json_line;
 
 /// How a command ended. The numbers are the exit codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +53,7 @@ impl Ending {
     }
 
     /// Its name in JSON.
-    fn kind(self) -> &'static str {
+    pub(crate) fn kind(self) -> &'static str {
         match self {
             Self::Done => "done",
             Self::Failed => "failed",
@@ -71,29 +66,6 @@ impl Ending {
             Self::Interrupted => "interrupted",
             Self::Terminated => "terminated",
         }
-    }
-
-    /// Prints why a command failed, with `json` as JSON, too, and returns how that ends the program.
-    pub(crate) fn report(error: &anyhow::Error, json: bool) -> Self {
-        let ending = Self::of(error);
-        // The reader has closed the pipe: an error text would reach no one.
-        if is_broken_pipe(error) {
-            return Self::Done;
-        }
-        if json {
-            // Its reader may be gone; the exit code says the rest.
-            let _ = json_line(&json!({ "error": Reported::of(error) }));
-        }
-        let style = Style::new().fg_color(Some(AnsiColor::Red.into())).bold();
-        anstream::eprintln!("{style}error:{style:#} {error:#}");
-        let failure = error.downcast_ref::<Failure>();
-        if let Some(advice) = failure.and_then(|failure| failure.advice.as_ref()) {
-            anstream::eprintln!("{advice}");
-        }
-        if let Some((_, entry)) = origin_of(error) {
-            anstream::eprintln!("In the book: errors.md#{entry}");
-        }
-        ending
     }
 
     /// How an error ends the program.
@@ -129,60 +101,11 @@ fn of_driver(error: &anyhow::Error) -> Option<(Party, &'static str)> {
 }
 
 /// As [`of_driver`], also of errors that a command has put into its own words.
-fn origin_of(error: &anyhow::Error) -> Option<(Party, &'static str)> {
+pub(crate) fn origin_of(error: &anyhow::Error) -> Option<(Party, &'static str)> {
     match error.downcast_ref::<Failure>() {
         Some(failure) => failure.origin,
         None => of_driver(error),
     }
-}
-
-/// Why a command failed, for programs.
-#[derive(Debug, Serialize)]
-pub(crate) struct Reported {
-    /// The exit code, by its name.
-    kind: &'static str,
-    exit_code: u8,
-    /// Who can act on an error of the driver.
-    party: Option<String>,
-    /// Its row in the book's chapter of errors.
-    entry: Option<&'static str>,
-    text: String,
-    advice: Option<String>,
-}
-
-impl Reported {
-    fn of(error: &anyhow::Error) -> Self {
-        let ending = Ending::of(error);
-        let failure = error.downcast_ref::<Failure>();
-        let origin = origin_of(error);
-        Self {
-            kind: ending.kind(),
-            exit_code: ending as u8,
-            party: origin.map(|(party, _)| party.to_string()),
-            entry: origin.map(|(_, entry)| entry),
-            text: format!("{error:#}"),
-            advice: failure.and_then(|failure| failure.advice.clone()),
-        }
-    }
-
-    /// Prints that the arguments make no sense.
-    pub(crate) fn print_usage(text: &str) {
-        let reported = Self {
-            kind: Ending::Usage.kind(),
-            exit_code: Ending::Usage as u8,
-            party: None,
-            entry: None,
-            text: text.trim_end().to_owned(),
-            advice: None,
-        };
-        // As above.
-        let _ = json_line(&json!({ "error": reported }));
-    }
-}
-
-fn is_broken_pipe(error: &anyhow::Error) -> bool {
-    let io = error.downcast_ref::<io::Error>();
-    io.is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
 }
 
 /// What went wrong, how that ends the program, and what to do next.
@@ -190,7 +113,7 @@ fn is_broken_pipe(error: &anyhow::Error) -> bool {
 pub(crate) struct Failure {
     ending: Ending,
     message: String,
-    advice: Option<String>,
+    pub(crate) advice: Option<String>,
     /// Who can act on an error of the driver, and its row in the book's chapter of errors.
     origin: Option<(Party, &'static str)>,
 }

@@ -7,6 +7,7 @@
 //! | module | content |
 //! |---|---|
 //! | [`ending`] | exit codes, and errors that say what to do next |
+//! | [`report`] | why a command failed, printed |
 //! | [`robots_file`] | robots by name |
 //! | [`connection`] | which robot, connecting to it, whether it may be moved |
 //! | [`question`] | what will move, how far and how fast; asked before it does |
@@ -25,6 +26,7 @@ mod interrupt;
 mod motion;
 mod output;
 mod question;
+mod report;
 mod robots_file;
 mod values;
 
@@ -33,7 +35,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use command::Command;
-use ending::{Ending, Reported};
+use report::{report, report_usage};
 
 /// Franka robots from the command line: state, motions, simulator, recordings.
 ///
@@ -57,7 +59,7 @@ fn main() -> ExitCode {
         Ok(program) => program,
         Err(error) => {
             if json && error.use_stderr() {
-                Reported::print_usage(&error.render().to_string());
+                report_usage(&error.render().to_string());
             }
             error.exit()
         }
@@ -71,7 +73,7 @@ fn main() -> ExitCode {
     }
     match program.command.run() {
         Ok(ending) => ending.code(),
-        Err(error) => Ending::report(&error, json).code(),
+        Err(error) => report(&error, json).code(),
     }
 }
 

@@ -157,7 +157,8 @@ impl Moving {
         outcome
     }
 
-    /// Brakes, and says what came of it. Without an interruption, as the arm does not rest by itself.
+    /// Brakes, and says what came of it. Without an interruption, as the arm does not rest by
+    /// itself.
     pub(crate) async fn brake(&self, by: Option<Interruption>) -> anyhow::Error {
         say(&by.map_or("braking".into(), |by| format!("{by}: braking")));
         match tokio::time::timeout(PATIENCE, self.robot.stop()).await {

@@ -51,8 +51,8 @@ impl Recordings {
     }
 
     /// Begins a recording, of the gripper as well if there is one, and resolves when it has ended:
-    /// by [`Self::end`], after [`LONGEST`], with the connection, or as it fails. The result is a line about it. Without
-    /// effect, and `None`, while another goes on.
+    /// by [`Self::end`], after [`LONGEST`], with the connection, or as it fails. The result is a
+    /// line about it. Without effect, and `None`, while another goes on.
     pub(crate) async fn record(
         &self,
         robot: &Robot,

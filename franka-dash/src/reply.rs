@@ -25,8 +25,8 @@ pub(crate) enum Reply {
     Status {
         #[serde(flatten)]
         status: Status,
-        /// Requests of this viewer to begin a hold that had been handled by then. A page tells by it
-        /// whether a message is about its newest hold or about an earlier one.
+        /// Requests of this viewer to begin a hold that had been handled by then. A page tells by
+        /// it whether a message is about its newest hold or about an earlier one.
         begun: u64,
     },
     /// A stop of this viewer has been received.

@@ -3,7 +3,8 @@
 //! The FER and the FR3 have the same [geometry](crate::geometry) except for two lengths: an
 //! alternating chain in which every joint frame is rolled by 0 or ±90° against the one before, so a
 //! joint costs one plane rotation and a permutation of columns. Positions are relative to the
-//! shoulder S, where axes 1, 2 and 3 meet: those axes then have no moment about the reference point.
+//! shoulder S, where axes 1, 2 and 3 meet: those axes then have no moment about the reference
+//! point.
 
 use nalgebra::{Matrix3, Vector3};
 

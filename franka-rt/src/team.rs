@@ -14,8 +14,8 @@
 //! their own cycles: a load. Whoever sees a fault writes it there, by a compare-and-exchange. No
 //! thread waits for another one, and no async runtime is on the way: a member that brakes begins to
 //! within two of its cycles after the fault was seen by the thread of the member that has it. The
-//! first fault of a round stays. A newer round hides no stop: a member that has not looked yet still
-//! sees it, and a round that begins before all have seen a stop of the team is stopped by it.
+//! first fault of a round stays. A newer round hides no stop: a member that has not looked yet
+//! still sees it, and a round that begins before all have seen a stop of the team is stopped by it.
 //!
 //! [`together`](crate::together) has common starts of motions that end by themselves; here a
 //! session goes from goal to goal.

@@ -15,7 +15,8 @@
 //! The geometry is that of the crate, with one of the sets of lengths that robots are
 //! [known](crate::geometry::Lengths::KNOWN) to have: inverse kinematics and capsules are made for
 //! it. A text with another one is refused rather than computed with half of it. Up to 1 µm and
-//! 10 µrad, which is what rounded numbers may be off, the crate's numbers replace those of the text.
+//! 10 µrad, which is what rounded numbers may be off, the crate's numbers replace those of the
+//! text.
 //!
 //! The text has no limits of acceleration, jerk and torque rate, and none for the end effector:
 //! those of the FR3 are taken. Nor has it the positions to command

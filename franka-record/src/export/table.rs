@@ -23,7 +23,8 @@ const ROWS: usize = 60_000;
 /// The file has its name once it is complete.
 ///
 /// # Errors
-/// [`ExportError::Exists`] if there is a file of that name, others of the file, and [`ExportError::Cycles`] with what `cycles` fails with.
+/// [`ExportError::Exists`] if there is a file of that name, others of the file, and
+/// [`ExportError::Cycles`] with what `cycles` fails with.
 pub fn write_parquet<E: Error + Send + Sync + 'static>(
     cycles: impl IntoIterator<Item = Result<Cycle, E>>,
     columns: &Columns,

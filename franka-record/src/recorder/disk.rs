@@ -45,7 +45,8 @@ pub(super) struct Disk {
 enum Job {
     /// Begins the first file of the recording.
     Open(PathBuf, File),
-    /// Ends the file that is open and begins the next one of the recording whose first file is this.
+    /// Ends the file that is open and begins the next one of the recording whose first file is
+    /// this.
     Follow(PathBuf),
     /// Appends whole chunks with this many cycles.
     Append(Vec<u8>, u64),

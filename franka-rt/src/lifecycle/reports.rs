@@ -230,8 +230,8 @@ impl Lifecycle {
         })
     }
 
-    /// Moves the deadlines that are over by `now`: of the motion under way or the one that was given
-    /// up, and of stops.
+    /// Moves the deadlines that are over by `now`: of the motion under way or the one that was
+    /// given up, and of stops.
     fn postpone(&mut self, now: Duration, until: Duration) {
         self.postpone_stops(now, until);
         if self.phase_deadline().is_none_or(|deadline| now < deadline) {

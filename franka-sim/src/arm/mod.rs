@@ -85,8 +85,8 @@ impl Arm {
         Self::central(kind, &Family::bad())
     }
 
-    /// The controllers' model of this arm: that of its kind, with the geometry of its states and the
-    /// limits of its system.
+    /// The controllers' model of this arm: that of its kind, with the geometry of its states and
+    /// the limits of its system.
     pub(crate) fn model(&self, kind: RobotKind) -> Model {
         let limits = *self.limits.joints(kind);
         let model = self.body.state_geometry.model(kind);

@@ -211,7 +211,8 @@ impl Shaper {
     }
 
     /// Shapes a pose against the last one, [`RobotState::commanded_pose`] and its derivatives, and
-    /// its elbow against [`RobotState::commanded_elbow`]. `first` is whether no command of the motion came before.
+    /// its elbow against [`RobotState::commanded_elbow`]. `first` is whether no command of the
+    /// motion came before.
     ///
     /// # Errors
     /// As of [`torques`](Self::torques); also if the pose is not a transformation, or the elbow has

@@ -186,8 +186,8 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Postures that reach a pose with room to the ends of the joints' ranges, the nearest to `q` first:
-/// of each branch the nearest one and the one with the most room.
+/// Postures that reach a pose with room to the ends of the joints' ranges, the nearest to `q`
+/// first: of each branch the nearest one and the one with the most room.
 fn postures(
     model: &Model,
     there: &Isometry3<f64>,

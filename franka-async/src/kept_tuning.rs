@@ -1,0 +1,26 @@
+//! What a session keeps of its tuning, shared with the task that accepts changes.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use franka_rt::lifecycle::Tuning;
+
+/// How the goals to come of a session are pursued. Clones are the same.
+#[derive(Clone, Debug)]
+pub(crate) struct KeptTuning(Arc<Mutex<Tuning>>);
+
+impl KeptTuning {
+    pub(crate) fn new(tuning: Tuning) -> Self {
+        Self(Arc::new(Mutex::new(tuning)))
+    }
+
+    pub(crate) fn get(&self) -> Tuning {
+        // Nothing can panic while it is held.
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Changes what these changes name, and keeps the rest.
+    pub(crate) fn change(&self, changes: Tuning) {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        *kept = changes.or(*kept);
+    }
+}
