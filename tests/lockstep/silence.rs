@@ -73,5 +73,5 @@ fn allow(lockstep: &mut Lockstep, timeout: Duration) {
     let client = &mut lockstep.client;
     client.driver = Driver::new(client.version()).with_link_timeout(timeout);
     let model = client.lifecycle.model().clone();
-    client.lifecycle = Lifecycle::new(model.into(), client.version()).with_link_timeout(timeout);
+    client.lifecycle = Lifecycle::new(model, client.version()).with_link_timeout(timeout);
 }

@@ -159,7 +159,13 @@ fn recording_of_a_page_is_complete_after_ctrl_c_and_a_lost_robot() {
         let (home, sim) = (Home::new(), Simulated::fr3());
         let folder = home.path("recordings");
         std::fs::create_dir(&folder).expect("a folder");
-        let record = ["--listen", "127.0.0.1:0", "--record", "recordings"];
+        let record = [
+            "--listen",
+            "127.0.0.1:0",
+            "--allow-motion",
+            "--record",
+            "recordings",
+        ];
         let mut program = home.start(&[&["dash", &sim.address()][..], &record].concat());
         let address = page(&mut program);
         let request = format!("ws://{address}/ws").into_client_request();

@@ -40,7 +40,8 @@ impl NewFile {
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
         let file = builder.tempfile_in(folder_of(&path));
-        let file = file.map_err(|error| ExportError::at(&path)(plain(error)))?;
+        // Its text has the name of the partial file, and the user knows the other one.
+        let file = file.map_err(|error| ExportError::at(&path)(error.kind().into()))?;
         Ok(Self { path, file })
     }
 
@@ -75,17 +76,6 @@ impl Write for NewFile {
 
     fn flush(&mut self) -> io::Result<()> {
         self.file.as_file_mut().flush()
-    }
-}
-
-/// The system's error, without the name of the partial file: the caller adds the name that the user
-/// knows.
-fn plain(error: io::Error) -> io::Error {
-    let inner = error.get_ref().and_then(|it| it.source());
-    let inner = inner.and_then(|it| it.downcast_ref::<io::Error>());
-    match inner.unwrap_or(&error).raw_os_error() {
-        Some(code) => io::Error::from_raw_os_error(code),
-        None => error,
     }
 }
 

@@ -74,10 +74,12 @@ enum Room {
 
 impl Room {
     fn beside(backlog: u64) -> Self {
-        match backlog {
-            ..BACKLOG_MAX => Self::All,
-            ..EVENT_BACKLOG_MAX => Self::Events,
-            _ => Self::Nothing,
+        if backlog < BACKLOG_MAX {
+            Self::All
+        } else if backlog < EVENT_BACKLOG_MAX {
+            Self::Events
+        } else {
+            Self::Nothing
         }
     }
 

@@ -284,33 +284,6 @@ fn record_until_full(path: &Path) {
     assert_eq!((length, *bytes), (counted.bytes, counted.bytes));
 }
 
-#[test]
-fn a_recording_does_not_go_on_in_a_file_of_another() {
-    let scratch = Scratch::new();
-    let taken = scratch.path("run-0002.mcap");
-    std::fs::write(&taken, b"of somebody else").unwrap();
-    let options = RecordOptions {
-        rotation: Rotation {
-            bytes: Some(1_000_000),
-            time: None,
-        },
-        ..quick()
-    };
-    let recorder = Recorder::to_file(scratch.path("run.mcap"), options).unwrap();
-    let (mut arm, _handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fer));
-    arm.run(&recorder, 6000);
-    let error = recorder.finish().unwrap_err();
-    assert!(
-        matches!(&error, RecordError::Exists { path } if *path == taken),
-        "{error}"
-    );
-    assert_eq!(std::fs::read(&taken).unwrap(), b"of somebody else");
-    let first = Recording::open(scratch.path("run.mcap")).unwrap();
-    assert_eq!(first.damage(), None);
-    let robot = first.robot("").unwrap();
-    assert!(robot.cycles().map(Result::unwrap).count() > 1000);
-}
-
 /// A folder that is a file takes none, whoever asks.
 #[test]
 fn a_folder_that_takes_no_files_is_told_and_the_recording_goes_on() {
