@@ -201,7 +201,8 @@ impl Builder {
     /// blocks ([`spawn_blocking`](tokio::task::spawn_blocking)) and may take its time: the robot
     /// waits for its answer, and nothing else does, but for a runtime that is dropped. An answer
     /// that comes too late, as [`Robot::agree`] has it, has no effect. One that panics does not
-    /// agree.
+    /// agree. Without [`Self::supervise`], connecting fails as
+    /// [`ConnectError::Unsupervised`](crate::error::ConnectError::Unsupervised).
     pub fn ask_before_recovery(
         mut self,
         agrees: impl Fn(&Reflex) -> bool + Send + Sync + 'static,

@@ -66,6 +66,9 @@ async fn connect(mut builder: Builder) -> Result<Robot, ConnectError> {
         let got = builder.log_size;
         return Err(ConnectError::LogSize { got });
     }
+    if builder.ask.is_some() && builder.policy.is_none() {
+        return Err(ConnectError::Unsupervised);
+    }
     if let Some(policy) = builder.policy.take() {
         let policy = policy.or_seed(RandomState::new().hash_one(()));
         let asks = builder.ask.is_some();

@@ -6,6 +6,7 @@ use std::time::Duration;
 use franka_async::connection::Endpoint;
 use franka_async::error::{ConnectError, Party};
 use franka_async::gripper::Gripper;
+use franka_async::supervision::Policy;
 use franka_async::{Pose, Realtime, Robot};
 use franka_sim::{Fingers, Sim, Tool};
 use franka_tests::PATIENCE;
@@ -144,6 +145,23 @@ async fn a_log_of_more_than_ten_seconds_is_refused_with_the_bound() {
         } else {
             assert!(!matches!(error, ConnectError::LogSize { .. }), "{error}");
         }
+    }
+}
+
+#[tokio::test]
+async fn a_question_before_recoveries_needs_a_policy() {
+    let _alone = alone();
+    for (is_supervised, refused) in [(true, false), (false, true)] {
+        // No server is needed there.
+        let builder = Robot::builder("127.0.0.1:1").realtime(Realtime::Ignore);
+        let builder = match is_supervised {
+            true => builder.supervise(Policy::default()),
+            false => builder,
+        };
+        let asking = builder.ask_before_recovery(|_| true);
+        let error = asking.connect().await.expect_err("nothing listens");
+        let is_refused = matches!(error, ConnectError::Unsupervised);
+        assert_eq!(is_refused, refused, "{error}");
     }
 }
 

@@ -46,6 +46,11 @@ pub enum ConnectError<P: Protocol = Version> {
         /// Cycles asked for.
         got: usize,
     },
+    /// Caller: a function is to be asked before recoveries, and no policy supervises the robot, see
+    /// [`Builder::ask_before_recovery`](crate::connection::Builder::ask_before_recovery). Nothing
+    /// was sent.
+    #[error("ask_before_recovery without supervise: expected a policy that recovers")]
+    Unsupervised,
     /// Caller: what was given as known of the arm is of another kind of robot, or has numbers that
     /// no arm has, see [`Builder::known`](crate::connection::Builder::known).
     #[error(transparent)]
@@ -132,6 +137,7 @@ impl<P: Protocol> ConnectError<P> {
             Self::Endpoint(error) => error.entry(),
             Self::LinkTimeout(_) => "connect-link-timeout",
             Self::LogSize { .. } => "connect-log-size",
+            Self::Unsupervised => "connect-unsupervised",
             Self::Known(_) => "connect-known",
             Self::System(_) => "connect-system",
             Self::Refused { .. } => "connect-refused",
@@ -153,9 +159,11 @@ impl<P: Protocol> ConnectError<P> {
     /// Returns the party that can act on it.
     pub fn party(&self) -> Party {
         match self {
-            Self::Endpoint(_) | Self::LinkTimeout(_) | Self::LogSize { .. } | Self::Known(_) => {
-                Party::Caller
-            }
+            Self::Endpoint(_)
+            | Self::LinkTimeout(_)
+            | Self::LogSize { .. }
+            | Self::Unsupervised
+            | Self::Known(_) => Party::Caller,
             // One that refuses is there, the others need not be.
             Self::NoAddress { attempts } => attempts
                 .iter()
