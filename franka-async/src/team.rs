@@ -63,6 +63,7 @@ type Outcome = Result<MotionReport, MotionError>;
 /// Dropping it brakes all arms and ends their sessions, in the background, unless other handles of
 /// the arms are left.
 #[derive(Debug)]
+#[must_use = "the arms are braked when it is dropped"]
 pub struct Team<const N: usize> {
     arms: [Arm; N],
     coordinator: Coordinator,

@@ -36,6 +36,7 @@ impl Pulse {
 /// The control thread watches it by the robot's clock, whatever the rest of the program is busy
 /// with.
 #[derive(Debug)]
+#[must_use = "the arm is braked when it is dropped"]
 pub struct Deadman {
     pulse: Arc<Pulse>,
     silence: Duration,
