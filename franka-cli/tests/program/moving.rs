@@ -205,9 +205,9 @@ fn a_guided_arm_is_held_again_at_the_end() {
 /// By a second Ctrl-C, and without one after some seconds.
 #[test]
 fn guide_ends_while_a_hand_pushes_on() {
-    let (home, sim) = (Home::new(), Simulated::fr3());
-    let robot = sim.address();
     for again in [true, false] {
+        let (home, sim) = (Home::new(), Simulated::fr3());
+        let robot = sim.address();
         let mut program = home.start(&["guide", &robot, "--realtime", "ignore", "--yes"]);
         until("a session", || sim.state().robot_mode == RobotMode::Move);
         let ended = AtomicBool::new(false);

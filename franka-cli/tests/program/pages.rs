@@ -163,6 +163,8 @@ fn recording_of_a_page_is_complete_after_ctrl_c_and_a_lost_robot() {
             "--listen",
             "127.0.0.1:0",
             "--allow-motion",
+            "--realtime",
+            "ignore",
             "--record",
             "recordings",
         ];
