@@ -35,7 +35,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use command::Command;
-use report::{report, report_usage};
+use report::report_usage;
 
 /// Franka robots from the command line: state, motions, simulator, recordings.
 ///
@@ -73,7 +73,7 @@ fn main() -> ExitCode {
     }
     match program.command.run() {
         Ok(ending) => ending.code(),
-        Err(error) => report(&error, json).code(),
+        Err(error) => report::report(&error, json).code(),
     }
 }
 

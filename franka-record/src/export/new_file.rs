@@ -39,9 +39,12 @@ impl NewFile {
             // Like any other file, less what the user's mask takes away.
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
-        let file = builder.tempfile_in(folder_of(&path));
-        // Its text has the name of the partial file, and the user knows the other one.
-        let file = file.map_err(|error| ExportError::at(&path)(error.kind().into()))?;
+        let folder = folder_of(&path);
+        let file = builder.tempfile_in(folder).map_err(|error| {
+            // Its text has the name of the partial file, and the user knows the other one.
+            let of_folder = fs::metadata(folder).err();
+            ExportError::at(&path)(of_folder.unwrap_or(error.kind().into()))
+        })?;
         Ok(Self { path, file })
     }
 

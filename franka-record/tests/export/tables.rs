@@ -105,7 +105,7 @@ fn tables_replace_no_file_and_leave_none_when_they_fail() {
     }
     let missing = NewFile::create(folder.path().join("none/run.csv")).unwrap_err();
     let text = missing.to_string();
-    assert!(text.contains("none/run.csv: entity not found"), "{text}");
+    assert!(text.contains("none/run.csv: No such file"), "{text}");
     assert!(!text.contains(".partial"), "{text}");
 }
 
