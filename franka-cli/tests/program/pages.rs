@@ -173,7 +173,10 @@ fn recording_of_a_page_is_complete_after_ctrl_c_and_a_lost_robot() {
         let request = format!("ws://{address}/ws").into_client_request();
         let socket = TcpStream::connect(&address).expect("it listens");
         let (mut socket, _) = tungstenite::client(request.expect("a request"), socket).expect("it");
-        for request in [r#"{"type":"take"}"#, r#"{"type":"record","on":true}"#] {
+        for request in [
+            r#"{"type":"take","name":"test"}"#,
+            r#"{"type":"record","on":true}"#,
+        ] {
             let request = Message::text(request);
             socket.send(request).expect("it reads");
         }
