@@ -267,7 +267,7 @@ impl Arm {
     /// # Cancel safety
     /// Nothing happens if the future is dropped.
     pub async fn at_rest(&self) -> Result<(), MotionError> {
-        // Until what was set before is taken, whatever holds up the task that takes it.
+        // Goals that were set before are taken first, however long that task is held up.
         self.session.ask(|taken| Input::Await { taken }).await?;
         let link = self.session.link();
         let mut states = self.robot().states();

@@ -131,8 +131,7 @@ impl Bridge {
         reference.unwrap_or_else(|| self.publisher.state().q)
     }
 
-    /// Checks that a path that is being planned gives way to `motion`, as it does when it has
-    /// begun.
+    /// Checks that `motion` may supersede the pending path, by the rules for a path under way.
     pub(super) fn check_turn_of_plan(&self, motion: &NewMotion) -> Result<(), MotionError> {
         let supersedes = matches!(motion, NewMotion::Goal { ticket: None, .. });
         match &self.planning {
@@ -156,7 +155,7 @@ impl Bridge {
         self.take_back_plan(MotionError::Stopped, |plan| plan.session() == Some(session));
     }
 
-    /// Takes back whatever is being planned, for `reason`.
+    /// Takes back the pending path, for `reason`.
     pub(super) fn drop_plan(&mut self, reason: MotionError) {
         self.take_back_plan(reason, |_| true);
     }

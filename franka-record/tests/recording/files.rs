@@ -6,7 +6,9 @@ use std::time::{Duration, Instant};
 
 use franka_model::RobotKind;
 use franka_record::event::{Ending, Note, Outcome};
-use franka_record::recorder::{BlackBox, RecordError, RecordOptions, Recorder, Robot, Rotation};
+use franka_record::recorder::{
+    BlackBox, RecordError, RecordOptions, RecordStatus, Recorder, Robot, Rotation,
+};
 use franka_record::{EventKind, Recording};
 
 use crate::feed::{Arm, Scratch, quick};
@@ -119,9 +121,8 @@ fn a_folder_that_is_not_there_is_told_at_once() {
     assert!(error.to_string().contains("none/run.mcap"), "{error}");
 }
 
-#[test]
-fn a_recording_goes_on_in_the_next_file() {
-    let scratch = Scratch::new();
+/// Records three files or more.
+fn rotated(scratch: &Scratch) -> (Arm, RecordStatus) {
     let options = RecordOptions {
         rotation: Rotation {
             bytes: Some(1_000_000),
@@ -134,6 +135,13 @@ fn a_recording_goes_on_in_the_next_file() {
     arm.run(&recorder, 12_000);
     let status = recorder.finish().unwrap();
     assert!(status.files.len() >= 3, "{:?}", status.files);
+    (arm, status)
+}
+
+#[test]
+fn a_recording_goes_on_in_the_next_file() {
+    let scratch = Scratch::new();
+    let (arm, status) = rotated(&scratch);
     assert_eq!(status.files[1], scratch.path("run-0002.mcap"));
     let mut cycles = 0;
     for path in &status.files {
@@ -152,18 +160,7 @@ fn rotation_leaves_out_numbers_that_other_files_have() {
     for number in ["0002", "0003", "0005"] {
         std::fs::write(scratch.path(&format!("run-{number}.mcap")), "of before").unwrap();
     }
-    let options = RecordOptions {
-        rotation: Rotation {
-            bytes: Some(1_000_000),
-            time: None,
-        },
-        ..quick()
-    };
-    let recorder = Recorder::to_file(scratch.path("run.mcap"), options).unwrap();
-    let (mut arm, _handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fer));
-    arm.run(&recorder, 12_000);
-    let status = recorder.finish().unwrap();
-    assert!(status.files.len() >= 3, "{:?}", status.files);
+    let (arm, status) = rotated(&scratch);
     let names = ["run.mcap", "run-0004.mcap", "run-0006.mcap"];
     assert_eq!(status.files[..3], names.map(|name| scratch.path(name)));
     assert_eq!((status.cycles, status.dropped), (arm.cycles(), 0));
