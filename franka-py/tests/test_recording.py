@@ -182,6 +182,22 @@ def test_what_is_no_recording_is_said(tmp_path: Path) -> None:
     assert (text.value.kind, text.value.party) == ("not_mcap", "caller")
 
 
+def test_files_of_other_programs_are_named(tmp_path: Path) -> None:
+    def record(kind: int, body: bytes) -> bytes:
+        return bytes([kind]) + len(body).to_bytes(8, "little") + body
+
+    def text(text: str) -> bytes:
+        return len(text).to_bytes(4, "little") + text.encode()
+
+    magic = b"\x89MCAP0\r\n"
+    head = magic + record(0x01, text("ros2") + text("libmcap 0.8.0")) + record(0x0F, bytes(4))
+    footer = len(head).to_bytes(8, "little") + bytes(12)
+    (tmp_path / "bag.mcap").write_bytes(head + record(0x0B, bytes(46)) + record(0x02, footer) + magic)
+    with pytest.raises(RecordingError, match='not a recording of this program.*"libmcap 0.8.0"') as error:
+        RecordingFile.open(tmp_path / "bag.mcap")
+    assert (error.value.kind, error.value.party) == ("foreign", "caller")
+
+
 @pytest.fixture
 def pair(tmp_path: Path) -> Iterator[RecordingFile]:
     """A recording of two robots."""
@@ -195,7 +211,7 @@ def pair(tmp_path: Path) -> Iterator[RecordingFile]:
         yield RecordingFile.open(tmp_path / "pair.mcap")
 
 
-def test_of_several_robots_one_is_chosen(pair: RecordingFile) -> None:
+def test_of_several_robots_one_is_chosen(pair: RecordingFile, tmp_path: Path) -> None:
     assert [(robot.name, robot.kind) for robot in pair.robots] == [("left", "fr3"), ("right", "fer")]
     with pytest.raises(ValueError, match="there are 2 robots in this recording .*: choose one by robot"):
         pair.column("q")
@@ -204,5 +220,7 @@ def test_of_several_robots_one_is_chosen(pair: RecordingFile) -> None:
     assert repr(left).startswith("<RecordingFile of left,")
     with pytest.raises(RecordingError, match='no robot is called "middle"'):
         pair.robot("middle")
+    with pytest.raises(ValueError, match="there are 2 robots in this recording"):
+        pair.to_lerobot(tmp_path / "dataset")
 
 

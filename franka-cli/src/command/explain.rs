@@ -78,14 +78,22 @@ impl Recorded {
                 Ok(Source::Recording(Box::new(recording), name, model))
             }
             Err(RecordingError::NotMcap { .. }) => Ok(Source::Log(self.open_log()?)),
-            Err(error) => Err(Failure::new(Ending::Host, error.to_string()).into()),
+            Err(error) => Err(self.unreadable(&error).into()),
         }
     }
 
     /// Opens the recording; returns it with the name and the model of the robot.
     pub(super) fn open(&self) -> anyhow::Result<(Recording, String, &'static Model)> {
         let recording = Recording::open(&self.file);
-        self.of_recording(recording.map_err(|error| Failure::new(Ending::Host, error.to_string()))?)
+        self.of_recording(recording.map_err(|error| self.unreadable(&error))?)
+    }
+
+    fn unreadable(&self, error: &RecordingError) -> Failure {
+        let message = match error {
+            RecordingError::File { .. } => error.to_string(),
+            error => format!("{}: {error}", self.file.display()),
+        };
+        Failure::new(Ending::Host, message)
     }
 
     fn of_recording(
@@ -96,6 +104,10 @@ impl Recorded {
             say(&format!("{} ends early: {damage}", self.file.display()));
         }
         let robots = recording.robots();
+        if robots.is_empty() {
+            let message = format!("{} has no robot", self.file.display());
+            return Err(Failure::new(Ending::Host, message).into());
+        }
         let names: Vec<&str> = robots.iter().map(|robot| robot.name.as_str()).collect();
         let robot = match (&self.of, robots) {
             (None, [only]) => Some(only),

@@ -136,6 +136,41 @@ fn an_earlier_end_of_a_motion_is_explained() {
         .failed(2, &["--earlier 2", "before the newest there are 1"]);
 }
 
+#[test]
+fn a_file_of_another_program_is_refused_with_its_name() {
+    let home = Home::new();
+    std::fs::write(home.path("bag.mcap"), foreign_mcap()).expect("a file");
+    for command in [
+        &["explain", "bag.mcap"][..],
+        &["export", "bag.mcap", "--csv", "bag.csv"],
+        &["export", "bag.mcap", "--lerobot", "data"],
+        &["replay", "bag.mcap", "127.0.0.1:1", "--yes"],
+    ] {
+        let said = ["bag.mcap: not a recording of this program", "libmcap 0.8.0"];
+        home.run(command).failed(6, &said);
+    }
+    assert!(!home.path("bag.csv").exists() && !home.path("data").exists());
+}
+
+/// An MCAP file with nothing but what each has: the record that names its writer, and an end.
+fn foreign_mcap() -> Vec<u8> {
+    let text = |text: &str| [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
+    let record = |kind: u8, body: &[u8]| {
+        let length = (body.len() as u64).to_le_bytes();
+        [&[kind][..], &length, body].concat()
+    };
+    let magic = b"\x89MCAP0\r\n";
+    let header = [text("ros2"), text("libmcap 0.8.0")].concat();
+    let mut file = [&magic[..], &record(0x01, &header), &record(0x0f, &[0; 4])].concat();
+    // The summary has one record, of statistics: none of anything.
+    let summary = (file.len() as u64).to_le_bytes();
+    file.extend(record(0x0b, &[0; 46]));
+    let footer = [&summary[..], &[0; 12]].concat();
+    file.extend(record(0x02, &footer));
+    file.extend(magic);
+    file
+}
+
 /// A table of libfranka 0.9.2 in which joint 4 leaps, and the text of its exception.
 fn log_of_libfranka() -> String {
     let vectors = [

@@ -85,6 +85,7 @@ impl RecordingFile {
                 return Err(PyValueError::new_err(text));
             }
         };
+        self.chosen()?;
         let robot_type = robot_type.map_or_else(
             || match self.kind() {
                 Some(kind) => Ok(format!("franka_{}", variant(&kind))),

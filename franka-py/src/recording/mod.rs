@@ -258,24 +258,33 @@ impl RecordingFile {
 }
 
 impl RecordingFile {
+    /// Returns the name of the robot that is read.
+    ///
+    /// # Errors
+    /// `ValueError` if there is no robot, or there are several and none was chosen.
+    pub(super) fn chosen(&self) -> PyResult<&str> {
+        self.robot.as_deref().ok_or_else(|| {
+            let robots = self.recording.robots().iter();
+            let names: Vec<&str> = robots.map(|robot| &*robot.name).collect();
+            PyValueError::new_err(match names.len() {
+                0 => "the recording has no robot".to_owned(),
+                count => format!(
+                    "there are {count} robots in this recording {names:?}: choose one by robot(name)"
+                ),
+            })
+        })
+    }
+
     /// Reads from what was recorded of the robot, with the interpreter released.
     ///
     /// # Errors
-    /// `ValueError` if there are several robots and none was chosen.
+    /// As [`RecordingFile::chosen`].
     pub(crate) fn view<T: Send>(
         &self,
         py: Python<'_>,
         read: impl FnOnce(&RobotRecording<'_>) -> T + Send,
     ) -> PyResult<T> {
-        let robot = self.robot.as_deref().ok_or_else(|| {
-            let robots = self.recording.robots().iter();
-            let names: Vec<&str> = robots.map(|robot| &*robot.name).collect();
-            let text = format!(
-                "there are {} robots in this recording {names:?}: choose one by robot(name)",
-                names.len()
-            );
-            PyValueError::new_err(text)
-        })?;
+        let robot = self.chosen()?;
         let view = self
             .recording
             .robot(robot)
@@ -369,7 +378,7 @@ pub(crate) fn value<'py>(
 impl Raise for RecordingError {
     fn raise(self, py: Python<'_>) -> PyErr {
         let party = match &self {
-            Self::NoRobot { .. } | Self::NotMcap { .. } => "caller",
+            Self::NoRobot { .. } | Self::NotMcap { .. } | Self::Foreign { .. } => "caller",
             _ => "host",
         };
         let text = self.to_string();

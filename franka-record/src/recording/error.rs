@@ -22,6 +22,12 @@ pub enum RecordingError {
         /// The bytes at its beginning.
         got: Vec<u8>,
     },
+    /// It is an MCAP file, but not a recording: it describes neither a recording nor a robot.
+    #[error("not a recording of this program: {content}")]
+    Foreign {
+        /// What it is instead, with the program that wrote it if the file names one.
+        content: String,
+    },
     /// The system cannot read on.
     #[error("cannot read the recording: {source}")]
     Read {

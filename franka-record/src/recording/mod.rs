@@ -47,9 +47,9 @@ pub use self::messages::{Cycles, Events, GripperStates};
 pub(crate) use self::records::{Record, each_record};
 pub use self::recover::Recovery;
 pub use self::resample::Resampled;
-use self::wire::{AttachmentHeader, Fields, op};
+use self::wire::{AttachmentHeader, Fields, MAGIC, op};
 use crate::HostTime;
-use crate::schema::{METADATA, ROBOT_METADATA, Topic};
+use crate::schema::{CASSETTE_METADATA, METADATA, ROBOT_METADATA, Topic};
 
 /// A recording that was opened.
 #[derive(Clone, Debug)]
@@ -79,7 +79,8 @@ impl Recording {
     /// [`Recording::damage`].
     ///
     /// # Errors
-    /// [`RecordingError::File`], [`RecordingError::NotMcap`], [`RecordingError::Read`].
+    /// [`RecordingError::File`], [`RecordingError::NotMcap`], [`RecordingError::Foreign`],
+    /// [`RecordingError::Read`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, RecordingError> {
         let path = path.as_ref();
         let bytes = File::open(path).and_then(Bytes::of_file);
@@ -92,7 +93,7 @@ impl Recording {
     /// As [`Recording::open`], for the bytes of a file in memory.
     ///
     /// # Errors
-    /// [`RecordingError::NotMcap`].
+    /// [`RecordingError::NotMcap`], [`RecordingError::Foreign`].
     pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, RecordingError> {
         Self::read(Bytes::of_memory(bytes))
     }
@@ -107,12 +108,50 @@ impl Recording {
             damage: index.damage.clone(),
             index,
         };
-        recording.read_metadata()?;
+        let others = recording.read_metadata()?;
+        if recording.metadata.is_empty()
+            && recording.robots.is_empty()
+            && let Some(content) = recording.foreign(&others)?
+        {
+            return Err(RecordingError::Foreign { content });
+        }
         recording.read_channels()?;
         Ok(recording)
     }
 
-    fn read_metadata(&mut self) -> Result<(), RecordingError> {
+    /// Returns what a file without the metadata of a recording is; `None` for a recording that was
+    /// cut before it. `others` are the names of the metadata that it has.
+    fn foreign(&self, others: &[String]) -> Result<Option<String>, RecordingError> {
+        if others.iter().any(|name| name == CASSETTE_METADATA) {
+            return Ok(Some("a cassette, which `franka cassette` reads".to_owned()));
+        }
+        let start = MAGIC.len() as u64;
+        let length = self.bytes.length().saturating_sub(start).min(HEADER_MAX);
+        let record = self.bytes.read(start, length)?;
+        let header = record.as_deref().and_then(wire::split);
+        let written = header.and_then(|(kind, body, _)| {
+            let mut fields = Fields(body);
+            let (profile, library) = (fields.text()?, fields.text()?);
+            (kind == op::HEADER).then_some((profile, library))
+        });
+        let is_whole = self.damage.is_none();
+        Ok(match written {
+            Some((_, library)) if library.starts_with(env!("CARGO_PKG_NAME")) => {
+                is_whole.then(|| "it describes no robot".to_owned())
+            }
+            Some(("", library)) if !library.is_empty() => {
+                Some(format!("the file was written by {library:?}"))
+            }
+            Some((profile, library)) if !library.is_empty() => Some(format!(
+                "the file was written by {library:?} with the profile {profile:?}"
+            )),
+            _ => is_whole.then(|| "the file does not say what wrote it".to_owned()),
+        })
+    }
+
+    /// Returns the names of the metadata records that are not of a recording.
+    fn read_metadata(&mut self) -> Result<Vec<String>, RecordingError> {
+        let mut others = Vec::new();
         for entry in &self.index.metadata {
             let record = self.bytes.read(entry.offset, entry.length)?;
             let Some((op::METADATA, body, _)) = record.as_deref().and_then(wire::split) else {
@@ -134,9 +173,11 @@ impl Recording {
                     kind,
                     metadata,
                 });
+            } else {
+                others.push(name.to_owned());
             }
         }
-        Ok(())
+        Ok(others)
     }
 
     /// Finds the channels: in the summary, or else in the chunks, the first of which describe them.
@@ -263,6 +304,9 @@ fn attachment(record: &[u8]) -> Option<(&str, &[u8])> {
     let crc = fields.u32()?;
     (crc == 0 || crc32fast::hash(checked) == crc).then_some((name, data))
 }
+
+/// Bytes of the first record that are read; what is longer is not shown to a person.
+const HEADER_MAX: u64 = 1024;
 
 /// What was recorded of one robot, from one time to another; from its beginning to its end at
 /// first.

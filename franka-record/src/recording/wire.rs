@@ -10,6 +10,7 @@ pub(super) const MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
 
 /// Kinds of record.
 pub(super) mod op {
+    pub(in crate::recording) const HEADER: u8 = 0x01;
     pub(in crate::recording) const FOOTER: u8 = 0x02;
     pub(in crate::recording) const SCHEMA: u8 = 0x03;
     pub(in crate::recording) const CHANNEL: u8 = 0x04;

@@ -10,7 +10,7 @@ mod tool;
 mod topic;
 
 pub use prost::Message;
-pub(crate) use topic::{METADATA, ROBOT_METADATA, Topic};
+pub(crate) use topic::{CASSETTE_METADATA, METADATA, ROBOT_METADATA, Topic};
 
 /// Foxglove's well-known messages, as far as a recording has them.
 #[allow(missing_docs, reason = "documented in the definitions")]

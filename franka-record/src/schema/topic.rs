@@ -11,6 +11,9 @@ pub(crate) const METADATA: &str = "recording";
 /// Name of the metadata of a robot, before the robot's name.
 pub(crate) const ROBOT_METADATA: &str = "robot:";
 
+/// Name of the first metadata record of a cassette.
+pub(crate) const CASSETTE_METADATA: &str = "franka cassette";
+
 /// A channel of one robot. Its full name has the robot's name before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(usize)]

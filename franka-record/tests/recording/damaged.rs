@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use franka_model::RobotKind;
 use franka_record::Recording;
+use franka_record::cassette::Cassette;
 use franka_record::recorder::{RecordOptions, Recorder, Robot};
 use franka_record::recording::RecordingError;
 use rand::rngs::SmallRng;
@@ -252,6 +253,67 @@ fn a_file_of_another_kind_is_refused_with_what_it_begins_with() {
     assert!(matches!(error, RecordingError::NotMcap { .. }), "{error}");
     let error = Recording::open("/nowhere/run.mcap").unwrap_err();
     assert!(matches!(error, RecordingError::File { .. }), "{error}");
+}
+
+#[test]
+fn mcap_files_of_other_programs_are_no_recordings() {
+    let scratch = Scratch::new();
+    let bag = |library: &str, profile: &str| {
+        let path = scratch.path("bag.mcap");
+        let options = mcap::WriteOptions::new().library(library).profile(profile);
+        let file = std::fs::File::create(&path).unwrap();
+        let mut writer = options.create(std::io::BufWriter::new(file)).unwrap();
+        let metadata = mcap::records::Metadata {
+            name: "rosbag2".to_owned(),
+            metadata: BTreeMap::from([("serialized_metadata".to_owned(), "version: 5".to_owned())]),
+        };
+        writer.write_metadata(&metadata).unwrap();
+        let channel = writer.add_channel(0, "/joint_states", "cdr", &BTreeMap::new());
+        let header = mcap::records::MessageHeader {
+            channel_id: channel.unwrap(),
+            sequence: 0,
+            log_time: 1,
+            publish_time: 1,
+        };
+        writer.write_to_known_channel(&header, &[0; 64]).unwrap();
+        writer.finish().unwrap();
+        path
+    };
+    let refused = |path: &Path| {
+        let error = Recording::open(path).unwrap_err();
+        assert!(matches!(error, RecordingError::Foreign { .. }), "{error}");
+        error.to_string()
+    };
+    let path = bag("libmcap 0.8.0", "ros2");
+    let text = refused(&path);
+    assert!(text.contains("not a recording of this program"), "{text}");
+    assert!(
+        text.contains("\"libmcap 0.8.0\" with the profile \"ros2\""),
+        "{text}"
+    );
+    // A bag that is still written, or was cut.
+    let bytes = std::fs::read(&path).unwrap();
+    let cut = scratch.path("cut.mcap");
+    std::fs::write(&cut, &bytes[..bytes.len() / 2]).unwrap();
+    assert_eq!(refused(&cut), text);
+    // What is recovered of it is not a recording either.
+    let recovered = scratch.path("recovered.mcap");
+    Recording::recover(&path, &recovered).unwrap();
+    let text = refused(&recovered);
+    assert!(text.contains("describes no robot"), "{text}");
+    let text = refused(&bag("", ""));
+    assert!(text.contains("does not say what wrote it"), "{text}");
+    // A name of any length is not shown.
+    let text = refused(&bag(&"long ".repeat(1000), ""));
+    assert!(text.len() < 200, "{text}");
+}
+
+#[test]
+fn cassettes_are_no_recordings_but_called_cassettes() {
+    let cassette = Cassette::default().to_bytes().unwrap();
+    let error = Recording::from_bytes(cassette).unwrap_err();
+    assert!(matches!(error, RecordingError::Foreign { .. }), "{error}");
+    assert!(error.to_string().contains("`franka cassette`"), "{error}");
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod write;
 pub use write::CassetteWriter;
 
 use crate::recording::RecordingError;
+use crate::schema::CASSETTE_METADATA;
 
 /// Why a cassette cannot be written or read.
 #[derive(Debug, thiserror::Error)]
@@ -39,7 +40,7 @@ pub enum CassetteError {
     },
 }
 
-pub(super) const START: &str = "franka cassette";
+pub(super) const START: &str = CASSETTE_METADATA;
 pub(super) const END: &str = "franka cassette end";
 pub(super) const VERSION: &str = "1";
 pub(super) const MESSAGE_ENCODING: &str = "franka";
