@@ -137,6 +137,84 @@ fn what_each_host_is_known_for_is_found() {
 }
 
 #[test]
+fn kernel_advice_works_on_the_host() {
+    let name = format!("franka-doctor-kernels-{}", std::process::id());
+    let root = std::env::temp_dir().join(name);
+    let advice = |files: &[(&str, &str)]| {
+        let _ = fs::remove_dir_all(&root);
+        let plain = [("proc/sys/kernel/version", "#1 SMP PREEMPT")];
+        for (path, content) in plain.iter().chain(files) {
+            let path = root.join(path);
+            fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+            fs::write(path, content).expect("a file");
+        }
+        let kernel = Selection::new(vec!["kernel.rt".into()], Vec::new());
+        let doctor = Doctor::new(Purpose::Move).select(kernel);
+        let report = doctor.run(&Tree::new(&root), &mut |_, _| ());
+        let [finding] = &report.findings[..] else {
+            panic!("{:?}", report.findings)
+        };
+        assert_eq!(finding.verdict, Verdict::Failure);
+        let command = finding.fix.as_ref().map(|fix| fix.command.clone());
+        (command, finding.read.clone())
+    };
+    let system = |id: &str, version: &str| format!("ID={id}\nVERSION_ID=\"{version}\"\n");
+    let (model, release) = ("proc/device-tree/model", "proc/sys/kernel/osrelease");
+    let pi = (model, "Raspberry Pi 5 Model B Rev 1.0\0");
+    let orin = (model, "NVIDIA Jetson AGX Orin Developer Kit\0");
+    for (id, version, extra, command, words) in [
+        (
+            "ubuntu",
+            "22.04",
+            None,
+            "sudo pro enable realtime-kernel",
+            "",
+        ),
+        (
+            "ubuntu",
+            "26.04",
+            None,
+            "sudo pro enable realtime-kernel",
+            "",
+        ),
+        ("ubuntu", "24.04", Some(pi), "--variant=raspi", ""),
+        ("ubuntu", "22.04", Some(pi), "", "24.04 or later"),
+        ("ubuntu", "20.04", None, "", "Ubuntu 20.04 has no package"),
+        ("ubuntu", "18.04", None, "", "upgrade to 22.04 or later"),
+        ("ubuntu", "22.04", Some(orin), "", "real-time packages"),
+        (
+            "ubuntu",
+            "22.04",
+            Some((release, "5.10.216-tegra")),
+            "",
+            "Jetson",
+        ),
+        ("debian", "13", None, "sudo apt install linux-image-rt-", ""),
+        ("debian", "12", Some(pi), "linux-image-rpi-v8-rt", ""),
+        ("debian", "12", Some((".dockerenv", "")), "", "its host"),
+        (
+            "ubuntu",
+            "24.04",
+            Some(("proc/version", "Linux 5.15-microsoft")),
+            "",
+            "WSL",
+        ),
+        ("fedora", "43", None, "", ""),
+    ] {
+        let system = system(id, version);
+        let files: Vec<_> = extra
+            .into_iter()
+            .chain([("etc/os-release", &*system)])
+            .collect();
+        let (fix, read) = advice(&files);
+        assert_eq!(fix.is_some(), !command.is_empty(), "{files:?}: {fix:?}");
+        assert!(fix.unwrap_or_default().contains(command), "{files:?}");
+        assert!(read.contains(words), "{files:?}: {read}");
+    }
+    fs::remove_dir_all(&root).expect("it is there");
+}
+
+#[test]
 fn only_what_is_selected_is_checked() {
     let selection = Selection::new(vec!["nic".into()], vec!["nic.kind".into()]);
     let doctor = Doctor::new(Purpose::Move).robot(ROBOT).ping(true);

@@ -1,6 +1,6 @@
-//! Kernel, memory, clock, power, virtual machines.
+//! Memory, clock, power, virtual machines; the kernel's checks are in [`kernel`].
 
-use super::{Check, VENDOR};
+use super::{Check, VENDOR, kernel};
 use crate::finding::{Group, Judged, Matters, Needs};
 use crate::host::Unread;
 use crate::readings::Readings;
@@ -14,7 +14,7 @@ const HOST: Check = Check {
     source: "",
     reads_only: true,
     of_card: false,
-    judge: kernel_rt,
+    judge: kernel::realtime,
 };
 
 pub(super) const CHECKS: &[Check] = &[
@@ -23,7 +23,7 @@ pub(super) const CHECKS: &[Check] = &[
         wanted: "a kernel with PREEMPT_RT",
         why: "Other kernels hold a thread up for milliseconds; Realtime::Enforce refuses them.",
         source: VENDOR,
-        judge: kernel_rt,
+        judge: kernel::realtime,
         ..HOST
     },
     Check {
@@ -31,7 +31,7 @@ pub(super) const CHECKS: &[Check] = &[
         wanted: "any real-time kernel; the vendor names those of Ubuntu Pro 22.04 and 24.04, 6.8.0-rt8, 5.9.1-rt20, 5.4.19 and 4.14.12",
         why: "Users report 6.12 to be smoother than Ubuntu's 6.8 (libfranka issue 207).",
         source: VENDOR,
-        judge: kernel_version,
+        judge: kernel::version,
         ..HOST
     },
     Check {
@@ -140,45 +140,25 @@ pub(super) const CHECKS: &[Check] = &[
     },
 ];
 
-fn kernel_rt(readings: &Readings<'_>) -> Result<Judged, Unread> {
-    let kernel = readings.host.kernel();
-    readings.note("uname version", kernel.version.as_str());
-    readings.note("uname release", kernel.release.as_str());
-    if kernel.version.is_empty() && kernel.flag.is_none() && kernel.configured.is_none() {
-        return Err(Unread::Absent("the version of the kernel".into()));
-    }
-    if kernel.is_realtime() {
-        return Ok(Judged::good(format!("`{}`", kernel.version)));
-    }
-    let system = readings.text("/etc/os-release").unwrap_or_default();
-    let is = |id: &str| system.lines().any(|line| line == format!("ID={id}"));
-    let pi = readings.host.read("/proc/device-tree/model");
-    let command = if is("ubuntu") {
-        match pi.is_ok_and(|model| model.contains("Raspberry Pi")) {
-            true => "sudo pro enable realtime-kernel --variant=raspi",
-            false => "sudo pro enable realtime-kernel",
-        }
-    } else if is("debian") && pi.is_ok_and(|model| model.contains("Raspberry Pi")) {
-        "sudo apt install linux-image-rpi-v8-rt && echo kernel=kernel8_rt.img | sudo tee -a /boot/firmware/config.txt"
-    } else if is("debian") {
-        "sudo apt install linux-image-rt-$(dpkg --print-architecture)"
-    } else {
-        return Ok(Judged::failure(kernel.to_string()));
-    };
-    Ok(Judged::failure(kernel.to_string()).fix(Needs::Reboot, command))
+/// True on the Windows Subsystem for Linux, by the version text of its kernel.
+pub(super) fn is_wsl(readings: &Readings<'_>) -> Result<bool, Unread> {
+    let version = readings.text("/proc/version")?;
+    Ok(version.to_lowercase().contains("microsoft"))
 }
 
-fn kernel_version(readings: &Readings<'_>) -> Result<Judged, Unread> {
-    let release = readings.host.kernel().release;
-    if release.is_empty() {
-        return Err(Unread::Absent("the release of the kernel".into()));
-    }
-    Ok(Judged::info(release))
+/// The file that shows that this is a container.
+pub(super) fn container(readings: &Readings<'_>) -> Option<&'static str> {
+    [
+        "/.dockerenv",
+        "/run/.containerenv",
+        "/run/systemd/container",
+    ]
+    .into_iter()
+    .find(|path| readings.host.read(path).is_ok())
 }
 
 fn virt(readings: &Readings<'_>) -> Result<Judged, Unread> {
-    let version = readings.text("/proc/version")?;
-    if version.to_lowercase().contains("microsoft") {
+    if is_wsl(readings)? {
         return Ok(Judged::warning("Windows Subsystem for Linux"));
     }
     let cpuinfo = readings.host.read("/proc/cpuinfo").unwrap_or_default();
@@ -187,13 +167,7 @@ fn virt(readings: &Readings<'_>) -> Result<Judged, Unread> {
         .filter(|line| line.starts_with("flags"))
         .any(|line| line.split_whitespace().any(|flag| flag == "hypervisor"));
     readings.note("cpuinfo flag hypervisor", hypervisor.to_string());
-    let container = [
-        "/.dockerenv",
-        "/run/.containerenv",
-        "/run/systemd/container",
-    ]
-    .into_iter()
-    .find(|path| readings.host.read(path).is_ok());
+    let container = container(readings);
     readings.note("container", container.unwrap_or("none seen"));
     Ok(match (hypervisor, container) {
         (true, None) => Judged::warning("a virtual machine (the processor's flag `hypervisor`)"),

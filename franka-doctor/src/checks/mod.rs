@@ -2,6 +2,7 @@
 
 mod card;
 mod host;
+mod kernel;
 mod network;
 mod processor;
 mod scheduling;
