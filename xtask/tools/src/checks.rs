@@ -138,7 +138,7 @@ impl StepOf for Check {
             Self::Fmt => ("fmt", "formatting, and comments as wide as code"),
             Self::Circles => ("circles", "imports between the modules of a crate"),
             Self::Names => ("names", "what programs name, and where it is"),
-            Self::Texts => ("texts", "spelling, and the workflows"),
+            Self::Texts => ("texts", "names of files, spelling, and the workflows"),
             Self::Dependencies => ("dependencies", "their licences and sources"),
             Self::Release => ("release", "crates, version and change log"),
             Self::Book => ("book", "pages, programs and links of the book"),
