@@ -3,7 +3,7 @@
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
-use franka_async::error::ConnectError;
+use franka_async::error::{ConnectError, Party};
 use franka_async::{Realtime, Robot};
 use franka_proto::Version;
 use franka_proto::framing::next_message;
@@ -120,10 +120,14 @@ async fn another_version_is_named() {
     let error = refused(address).await;
     assert_eq!(
         error.to_string(),
-        "libfranka: Incompatible library version (server version: 9, library version: 10). Please check \
-         https://frankarobotics.github.io for system updates or choose a libfranka version that uses the server \
-         version 9 from the table at https://frankarobotics.github.io/docs/libfranka/docs/compatibility_with_images.html ."
+        "libfranka: Incompatible library version (server version: 9, library version: 10): version 9 is that of a \
+         Franka Research 3 with system image 5.7.2: update the robot's system to 5.9.0 or later (Desk, Settings, \
+         System)"
     );
+    // The robot keeps to its protocol: nothing is to be reported.
+    assert_eq!(error.party(), Party::Robot);
+    let error: &dyn std::error::Error = &error;
+    assert!(error.source().is_none());
 }
 
 #[tokio::test(flavor = "multi_thread")]

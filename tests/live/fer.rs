@@ -1,7 +1,7 @@
 //! The Franka Emika Robot: the same programs, over the protocol that negotiation finds.
 
 use franka_async::connection::{Version, VersionPolicy};
-use franka_async::error::{CommandError, ConnectError, PoseError};
+use franka_async::error::{CommandError, ConnectError, Party, PoseError};
 use franka_async::settings::Filters;
 use franka_async::{Pose, Realtime, Robot};
 use franka_model::RobotKind;
@@ -120,10 +120,11 @@ async fn a_pinned_version_is_the_only_one_that_connects() {
     assert_eq!(incompatible.server_version, 5);
     assert_eq!(
         error.to_string(),
-        "libfranka: Incompatible library version (server version: 5, library version: 10). Please check \
-         https://frankarobotics.github.io for system updates or choose a libfranka version that uses the server \
-         version 5 from the table at https://frankarobotics.github.io/docs/libfranka/docs/compatibility_with_images.html ."
+        "libfranka: Incompatible library version (server version: 5, library version: 10): version 5 is that of a \
+         Franka Emika Robot (Panda) with system image 4.2.1 or later: connect with version 5, which is understood \
+         here as well"
     );
+    assert_eq!(error.party(), Party::Caller);
     let robot = pinned(Version::V5).await.expect("its own version");
     robot.shutdown().await;
 
@@ -140,8 +141,8 @@ async fn a_pinned_version_is_the_only_one_that_connects() {
         .expect_err("refused");
     assert_eq!(
         error.to_string(),
-        "libfranka: Incompatible library version (server version: 10, library version: 5). Please check \
-         https://frankaemika.github.io for Panda system updates or choose a libfranka version that uses the server \
-         version 10 from the table at https://frankaemika.github.io/docs/compatibility.html ."
+        "libfranka: Incompatible library version (server version: 10, library version: 5): version 10 is that of a \
+         Franka Research 3 with system image 5.9.0 or later: connect with version 10, which is understood here as \
+         well"
     );
 }

@@ -87,9 +87,14 @@ pub enum ConnectError<P: Protocol = Version> {
         /// What came of each, in the order tried.
         attempts: Vec<Attempt<P>>,
     },
-    /// Peer: it speaks another protocol version.
-    #[error(transparent)]
-    IncompatibleVersion(#[from] IncompatibleVersion<P>),
+    /// Robot: its system has a protocol version that is not spoken here. Caller: the version was
+    /// given and is another, see [`VersionPolicy`](crate::connection::VersionPolicy). The text
+    /// names the system and what to do, where libfranka's text names versions of libfranka.
+    #[error(
+        "libfranka: Incompatible library version (server version: {}, library version: {}): {}",
+        .0.server_version, .0.library_version.number(), .0.explanation()
+    )]
+    IncompatibleVersion(IncompatibleVersion<P>),
     /// The connection ended during the handshake. The party that can act on it depends on the
     /// reason.
     #[error("{reason}{}", likely(.reason))]
@@ -179,7 +184,13 @@ impl<P: Protocol> ConnectError<P> {
             | Self::HandshakeTimeout { .. }
             | Self::NoState { .. } => Party::Link,
             Self::ConnectionClosed { reason } => reason.party(),
-            Self::IncompatibleVersion(_) | Self::Violation(_) | Self::Frame(_) => Party::Peer,
+            Self::IncompatibleVersion(refusal) => {
+                match P::spoken().contains(&refusal.server_version) {
+                    true => Party::Caller,
+                    false => Party::Robot,
+                }
+            }
+            Self::Violation(_) | Self::Frame(_) => Party::Peer,
             #[cfg(feature = "urdf")]
             Self::Model(error) => error.party(),
         }
@@ -222,6 +233,13 @@ impl From<StartError> for ConnectError {
             // The enum is open; whatever else keeps the thread from starting is the host's doing.
             other => Self::System(io::Error::other(other)),
         }
+    }
+}
+
+/// By hand, as the refusal is no source: its own text is libfranka's.
+impl<P: Protocol> From<IncompatibleVersion<P>> for ConnectError<P> {
+    fn from(refusal: IncompatibleVersion<P>) -> Self {
+        Self::IncompatibleVersion(refusal)
     }
 }
 

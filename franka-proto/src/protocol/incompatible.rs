@@ -66,7 +66,10 @@ impl<P: Protocol> fmt::Display for Explanation<P> {
                     "version {server} is that of a {name} with system image {system}: "
                 )?;
                 match field.update {
-                    Some(update) => write!(f, "install system image {update} on it"),
+                    Some(update) => write!(
+                        f,
+                        "update the robot's system to {update} (Desk, Settings, System)"
+                    ),
                     None => write!(
                         f,
                         "connect with version {server}, which is understood here as well"
@@ -83,7 +86,12 @@ impl<P: Protocol> fmt::Display for Explanation<P> {
                     let before = if position == 0 { "" } else { " and" };
                     write!(f, "{before} {number}")?;
                 }
-                Ok(())
+                match P::spoken().last() {
+                    Some(newest) if server > *newest => {
+                        f.write_str("; a newer release of this driver may speak it")
+                    }
+                    _ => Ok(()),
+                }
             }
         }
     }
@@ -135,8 +143,8 @@ mod tests {
             assert_eq!(
                 explanation(number),
                 std::format!(
-                    "version {number} is that of a {robot} with system image {system}: install \
-                     system image {update} or later on it"
+                    "version {number} is that of a {robot} with system image {system}: update the \
+                     robot's system to {update} or later (Desk, Settings, System)"
                 )
             );
         }
@@ -154,7 +162,8 @@ mod tests {
         }
         assert_eq!(
             explanation(11),
-            "no robot with version 11 is known here; understood are 5 and 10"
+            "no robot with version 11 is known here; understood are 5 and 10; a newer release of \
+             this driver may speak it"
         );
     }
 
