@@ -270,7 +270,10 @@ fn what_makes_no_episode_or_no_dataset_is_refused_with_what_was_expected() {
     let full = Dataset::create(&root, options()).unwrap_err().to_string();
     assert!(full.contains("expected an empty folder"), "{full}");
     for (other, what) in [
-        (options(), "features"),
+        (
+            options(),
+            "no width of a gripper: export without the gripper",
+        ),
         (measured.clone().fps(30), "its fps is 20, expected 30"),
         (
             DatasetOptions::new("franka_fer").fps(20),
@@ -289,6 +292,38 @@ fn what_makes_no_episode_or_no_dataset_is_refused_with_what_was_expected() {
         error.contains("the files in data have 4 rows, but meta/info.json says 2"),
         "{error}"
     );
+}
+
+#[test]
+fn dataset_with_cameras_is_refused_by_its_features() {
+    let root = folder("cameras");
+    let mut dataset = Dataset::create(&root, options()).unwrap();
+    let samples = (0..100).map(sample);
+    dataset.add_episode("pick", None, samples).unwrap();
+    dataset.finish().unwrap();
+    let mut info = json(&root, "meta/info.json");
+    let features = info["features"].as_object_mut().unwrap();
+    for camera in ["front", "wrist"] {
+        let images = serde_json::json!({
+            "dtype": "video", "shape": [480, 640, 3], "names": ["height", "width", "channels"],
+        });
+        features.insert(format!("observation.images.{camera}"), images);
+    }
+    features.remove("next.success");
+    features["action"]["shape"] = serde_json::json!([7]);
+    fs::write(root.join("meta/info.json"), info.to_string()).unwrap();
+    let error = Dataset::open(&root, options()).unwrap_err().to_string();
+    for difference in [
+        "it also has observation.images.front, observation.images.wrist;",
+        "it has no next.success",
+        "shape of action is [7], expected [15]",
+        "export to a folder of its own",
+    ] {
+        assert!(error.contains(difference), "{error}");
+    }
+    // What is the same is not named.
+    assert!(!error.contains("observation.state"), "{error}");
+    assert!(error.len() < 400, "{error}");
 }
 
 /// The process that a test starts adds episodes until it is killed.

@@ -111,13 +111,16 @@ pub(super) fn read(root: &Path, options: &DatasetOptions) -> Result<Contents, Ex
         ("codebase_version", json!(VERSION)),
         ("robot_type", json!(options.robot_type)),
         ("fps", json!(options.fps)),
-        ("features", features(options.gripper)),
     ];
     for (key, expected) in expected {
         let got = info.get(key).unwrap_or(&Value::Null);
         if *got != expected {
             return Err(refused(format!("its {key} is {got}, expected {expected}")));
         }
+    }
+    let got = info.get("features").unwrap_or(&Value::Null);
+    if let Some(why) = difference(got, options.gripper) {
+        return Err(refused(why));
     }
     let number = |key: &str| {
         let got = info.get(key).unwrap_or(&Value::Null);
@@ -143,6 +146,54 @@ pub(super) fn read(root: &Path, options: &DatasetOptions) -> Result<Contents, Ex
         frames,
         stats,
     })
+}
+
+/// How the features of a dataset differ from those that are written, and what to do about it;
+/// `None` if they are the same.
+fn difference(got: &Value, gripper: bool) -> Option<String> {
+    let expected = features(gripper);
+    if *got == expected {
+        return None;
+    }
+    if *got == features(!gripper) {
+        let (has, to) = match gripper {
+            true => ("no width of a gripper", "without"),
+            false => ("the width of a gripper", "with"),
+        };
+        return Some(format!("it has {has}: export {to} the gripper"));
+    }
+    let empty = serde_json::Map::new();
+    let got = got.as_object().unwrap_or(&empty);
+    let expected = expected.as_object().unwrap_or(&empty);
+    let mut differences = Vec::new();
+    let more = got.keys().filter(|name| !expected.contains_key(*name));
+    let more: Vec<&str> = more.map(String::as_str).collect();
+    if !more.is_empty() {
+        differences.push(format!("it also has {}", more.join(", ")));
+    }
+    for (name, expected) in expected {
+        let Some(got) = got.get(name) else {
+            differences.push(format!("it has no {name}"));
+            continue;
+        };
+        for key in ["dtype", "shape"] {
+            if got[key] != expected[key] {
+                let (got, expected) = (&got[key], &expected[key]);
+                differences.push(format!("{key} of {name} is {got}, expected {expected}"));
+            }
+        }
+        if got["names"] != expected["names"] {
+            differences.push(format!("the names of {name} are {}", got["names"]));
+        }
+    }
+    // What is left may be more than these keys, as in the features of videos.
+    if differences.is_empty() {
+        differences.push("their features have further properties".into());
+    }
+    Some(format!(
+        "its features differ: {}; export to a folder of its own",
+        differences.join("; ")
+    ))
 }
 
 /// Every feature with how many numbers a frame has of it.
