@@ -13,15 +13,20 @@ use crate::feed::{Arm, Scratch, quick};
 const LAYOUT: &str = include_str!("../../viewers/foxglove.json");
 const BLUEPRINT: &str = include_str!("../../viewers/rerun_blueprint.py");
 
-/// The channels of an only robot.
-fn channels() -> BTreeSet<String> {
+/// A recording of an only robot.
+fn recorded() -> Vec<u8> {
     let scratch = Scratch::new();
     let path = scratch.path("run.mcap");
     let recorder = Recorder::to_file(&path, quick()).unwrap();
     let (mut arm, _) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
     arm.run(&recorder, 1);
     recorder.finish().unwrap();
-    let bytes = std::fs::read(path).unwrap();
+    std::fs::read(path).unwrap()
+}
+
+/// Its channels.
+fn channels() -> BTreeSet<String> {
+    let bytes = recorded();
     let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
     let channels = summary.channels.values();
     channels.map(|channel| channel.topic.clone()).collect()
@@ -81,9 +86,38 @@ fn the_layout_names_only_channels_and_fields_that_exist() {
 fn the_blueprint_names_only_channels_that_exist() {
     let known = channels();
     let texts = BLUEPRINT.split('"').skip(1).step_by(2);
-    let named: Vec<_> = texts.filter(|text| text.starts_with('/')).collect();
-    assert_eq!(named.len(), 4, "{named:?}");
+    let channel = |text: &&str| text.starts_with('/') && !text.contains('{');
+    let named: Vec<_> = texts.filter(channel).collect();
+    assert_eq!(named.len(), 3, "{named:?}");
     for channel in named {
         assert!(known.contains(channel), "{channel}");
     }
+}
+
+/// A viewer gives an MCAP file an id by its path, and draws no frame without axes.
+#[test]
+fn the_blueprint_is_saved_for_the_id_that_the_book_converts_to() {
+    let id = |text: &str, before: &str| {
+        let (_, rest) = text.split_once(before).expect("it is named");
+        let end = rest.find(|it: char| it == '"' || it.is_whitespace());
+        rest[..end.expect("an end")].to_owned()
+    };
+    let saved = id(BLUEPRINT, "APPLICATION_ID = \"");
+    let option = "rerun mcap convert run.mcap --application-id ";
+    assert_eq!(id(BLUEPRINT, option), saved);
+    assert_eq!(
+        id(include_str!("../../../docs/src/recording.md"), option),
+        saved
+    );
+    assert!(BLUEPRINT.contains(".save(APPLICATION_ID, "));
+    assert!(BLUEPRINT.contains("overrides={frames: rr.TransformAxes3D("));
+    // The base of an arm is the root of its frames, by which a view finds them.
+    let bytes = recorded();
+    let mut messages = mcap::MessageStream::new(&bytes)
+        .unwrap()
+        .map(Result::unwrap);
+    let frames = messages.find(|message| message.channel.topic == "/tf");
+    let frames = String::from_utf8_lossy(&frames.unwrap().data).into_owned();
+    assert!(frames.contains("fr3_link0"), "{frames}");
+    assert!(BLUEPRINT.contains("target_frame=f\"{robot}_link0\""));
 }
