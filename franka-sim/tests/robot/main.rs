@@ -16,6 +16,7 @@
 //! | `stiffest` | the stiffest springs that clients set |
 //! | `echo` | what the state contains of a motion |
 //! | `hand`, `scene` | the Franka Hand and the vacuum gripper, alone and in MuJoCo |
+//! | `recorded` | the model and the arms against recordings of real arms |
 //! | `fer` | the Franka Emika Robot |
 //! | `open` | what is not known of a robot: each an option, with the default that is documented |
 //! | `pair`, `plants` | a client and a robot in one thread; on every plant |
@@ -37,6 +38,7 @@ mod pair;
 mod people;
 mod plants;
 mod pushes;
+mod recorded;
 #[cfg(feature = "mujoco")]
 mod scene;
 mod session;
