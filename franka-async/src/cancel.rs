@@ -16,13 +16,14 @@ use tokio::sync::oneshot;
 use tokio_util::sync::CancellationToken;
 
 use crate::input::{Beginning, Input};
-use crate::robot::Robot;
+use crate::robot::{Robot, WeakRobot};
 
 /// Takes a motion back: an arm on its way to a goal brakes, and a control function or program has
-/// the robot stop. Clones take back the same motion.
+/// the robot stop. Clones take back the same motion. None of them counts as a handle of the robot:
+/// dropping the last one of those still brakes the arm and closes the connection.
 #[derive(Clone, Debug)]
 pub struct Canceller {
-    robot: Robot,
+    robot: WeakRobot,
     id: GoalId,
     cancelled: CancellationToken,
     /// Whether it is to pause; locked while that is sent.
@@ -30,9 +31,10 @@ pub struct Canceller {
 }
 
 impl Canceller {
-    pub(crate) fn new(robot: Robot, id: GoalId) -> Self {
+    /// Returns what takes back the motion `id` of this robot.
+    pub(crate) fn new(robot: &Robot, id: GoalId) -> Self {
         Self {
-            robot,
+            robot: robot.downgrade(),
             id,
             cancelled: CancellationToken::new(),
             paused: Arc::default(),
@@ -44,7 +46,10 @@ impl Canceller {
     /// effect after the motion has ended or was superseded.
     pub fn cancel(&self) {
         self.cancelled.cancel();
-        self.robot.cancel(self.id);
+        // A robot that is gone has braked its motions.
+        if let Some(robot) = self.robot() {
+            robot.cancel(self.id);
+        }
     }
 
     /// Pauses the motion or lets it go on. One that has not begun will begin paused.
@@ -53,7 +58,9 @@ impl Canceller {
         *wanted = paused;
         // Without effect on a motion that has not begun.
         let goal = self.id;
-        self.robot.send(Input::Pause { goal, paused });
+        if let Some(robot) = self.robot() {
+            robot.send(Input::Pause { goal, paused });
+        }
     }
 
     fn lock_paused(&self) -> MutexGuard<'_, bool> {
@@ -61,16 +68,22 @@ impl Canceller {
         self.paused.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    pub(crate) fn robot(&self) -> &Robot {
-        &self.robot
+    /// The robot, unless its last handle was dropped.
+    pub(crate) fn robot(&self) -> Option<Robot> {
+        self.robot.upgrade()
     }
 
     pub(crate) fn id(&self) -> GoalId {
         self.id
     }
 
-    /// Begins `motion`, unless it is cancelled already. Returns the receiver of its outcome.
-    pub(crate) fn begin(&self, mut motion: Beginning) -> Option<oneshot::Receiver<Outcome>> {
+    /// Begins `motion` of its robot, unless it is cancelled already. Returns the receiver of its
+    /// outcome.
+    pub(crate) fn begin(
+        &self,
+        robot: &Robot,
+        mut motion: Beginning,
+    ) -> Option<oneshot::Receiver<Outcome>> {
         if self.cancelled.is_cancelled() {
             return None;
         }
@@ -79,12 +92,12 @@ impl Canceller {
         if let NewMotion::Goal { goal, .. } = &mut motion.motion {
             goal.paused = *paused;
         }
-        let outcome = self.robot.begin(motion);
+        let outcome = robot.begin(motion);
         drop(paused);
         // `cancel` sets the token before it sends: if its input came before the motion, and so had
         // no effect, the token is set here.
         if self.cancelled.is_cancelled() {
-            self.robot.cancel(self.id);
+            robot.cancel(self.id);
         }
         Some(outcome)
     }

@@ -97,6 +97,7 @@ impl Robot {
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited or detached"]
 pub struct Control {
+    robot: Robot,
     canceller: Canceller,
     callback: Callback,
     controller: MoveControllerMode,
@@ -113,7 +114,8 @@ impl Control {
             limit_rate: Shaper::limits_by_default(robot.version()),
             cutoff_frequency: DEFAULT_CUTOFF_FREQUENCY,
             ticket: None,
-            canceller: Canceller::new(robot.clone(), robot.next_goal()),
+            canceller: Canceller::new(&robot, robot.next_goal()),
+            robot,
         }
     }
 
@@ -165,9 +167,9 @@ impl Control {
 
     /// Begins the motion without a future: it runs on, and its outcome is only logged.
     pub fn detach(self) {
-        let canceller = self.canceller.clone();
+        let (robot, canceller) = (self.robot.clone(), self.canceller.clone());
         match self.begin() {
-            Ok(motion) => drop(canceller.begin(motion.into())),
+            Ok(motion) => drop(canceller.begin(&robot, motion.into())),
             Err(error) => tracing::warn!(%error, "the motion does not begin"),
         }
     }
@@ -178,7 +180,7 @@ impl Control {
     }
 
     fn begin(self) -> Result<NewMotion, GoalError> {
-        let robot = self.canceller.robot();
+        let robot = &self.robot;
         let version = robot.version();
         let shaper = Shaper::new(version, self.limit_rate, self.cutoff_frequency)
             .with_limits_of(robot.model().joint_limits());
@@ -209,7 +211,7 @@ impl IntoFuture for Control {
     type IntoFuture = Moving;
 
     fn into_future(self) -> Moving {
-        let canceller = self.canceller.clone();
-        Moving::new(canceller, None, self.begin().map(Into::into))
+        let (robot, canceller) = (self.robot.clone(), self.canceller.clone());
+        Moving::new(robot, canceller, None, self.begin().map(Into::into))
     }
 }

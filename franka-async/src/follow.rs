@@ -165,7 +165,8 @@ impl Follow {
             session: session.as_deref().map(Session::id),
         };
         let mut moving = Moving::new(
-            Canceller::new(robot.clone(), id),
+            robot.clone(),
+            Canceller::new(&robot, id),
             session,
             Ok(motion.into()),
         );

@@ -33,6 +33,7 @@ use crate::session::Session;
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited or detached"]
 pub struct Motion {
+    robot: Robot,
     canceller: Canceller,
     session: Option<Arc<Session>>,
     destination: Destination,
@@ -98,7 +99,8 @@ impl Robot {
 impl Motion {
     fn of_robot(robot: &Robot, destination: Destination) -> Self {
         Self {
-            canceller: Canceller::new(robot.clone(), robot.next_goal()),
+            robot: robot.clone(),
+            canceller: Canceller::new(robot, robot.next_goal()),
             session: None,
             destination,
             path: None,
@@ -166,8 +168,8 @@ impl Motion {
     pub fn detach(mut self) {
         match self.begin() {
             Ok(mut motion) => {
-                plan_line(&mut motion, self.canceller.robot(), self.session.as_deref());
-                drop(self.canceller.begin(motion));
+                plan_line(&mut motion, &self.robot, self.session.as_deref());
+                drop(self.canceller.begin(&self.robot, motion));
             }
             Err(error) => tracing::info!(goal = self.canceller.id().0, %error, "motion ended"),
         }
@@ -190,7 +192,7 @@ impl Motion {
         reason = "in the caller's own thread, and no task of a connection calls it"
     )]
     pub fn preview(&self) -> Result<Preview, MotionError> {
-        let (robot, model) = (self.canceller.robot(), self.canceller.robot().model());
+        let (robot, model) = (&self.robot, self.robot.model());
         let (state, course) = (robot.state(), &robot.link().course);
         let reference = course.reference().map(|reference| reference.q);
         let now = Now::of(model, &state, course.target(), reference);
@@ -219,7 +221,7 @@ impl Motion {
     }
 
     fn begin(&mut self) -> Result<Beginning, GoalError> {
-        let (id, model) = (self.canceller.id(), self.canceller.robot().model());
+        let (id, model) = (self.canceller.id(), self.robot.model());
         let kind = self.destination.kind();
         let goal = Goal::new(id, kind, self.on_arrival, model.joint_limits());
         let motion = NewMotion::Goal {
@@ -268,13 +270,12 @@ fn plan_line(motion: &mut Beginning, robot: &Robot, session: Option<&Session>) {
 
 impl Clone for Motion {
     fn clone(&self) -> Self {
-        let robot = self.canceller.robot();
         Self {
             session: self.session.clone(),
             path: self.path.clone(),
             on_arrival: self.on_arrival,
             options: self.options,
-            ..Self::of_robot(robot, self.destination)
+            ..Self::of_robot(&self.robot, self.destination)
         }
     }
 }
@@ -285,12 +286,12 @@ impl IntoFuture for Motion {
 
     fn into_future(mut self) -> Moving {
         let motion = self.begin();
-        Moving::new(self.canceller, self.session, motion)
+        Moving::new(self.robot, self.canceller, self.session, motion)
     }
 }
 
 /// A motion from elsewhere: how far it is, and pausing or braking it. Clones are about the same
-/// motion; none of them counts as a handle of the robot's session or keeps the motion going.
+/// motion; none of them counts as a handle of the robot or its session, or keeps the motion going.
 #[derive(Clone, Debug)]
 pub struct MotionHandle(Canceller);
 
@@ -317,7 +318,7 @@ impl MotionHandle {
 
     /// How far the motion has come; `None` before it has begun and after its end.
     pub fn progress(&self) -> Option<Progress> {
-        self.0.robot().link().course.progress(self.0.id())
+        self.0.robot()?.link().course.progress(self.0.id())
     }
 }
 
@@ -333,6 +334,8 @@ impl MotionHandle {
 #[derive(Debug)]
 #[must_use = "futures do nothing unless polled"]
 pub struct Moving {
+    /// Keeps the robot.
+    robot: Robot,
     canceller: Canceller,
     /// Keeps the session of the goal.
     session: Option<Arc<Session>>,
@@ -348,8 +351,9 @@ enum Stage {
 }
 
 impl Moving {
-    /// `motion`, which has the name of the canceller, as a future.
+    /// `motion` of this robot, which has the name of the canceller, as a future.
     pub(crate) fn new(
+        robot: Robot,
         canceller: Canceller,
         session: Option<Arc<Session>>,
         motion: Result<Beginning, GoalError>,
@@ -357,6 +361,7 @@ impl Moving {
         let named = |motion: &Beginning| motion.motion.id() == canceller.id();
         debug_assert!(motion.as_ref().ok().is_none_or(named));
         Self {
+            robot,
             canceller,
             session,
             stage: Stage::Ready(motion.map(Box::new)),
@@ -375,8 +380,8 @@ impl Future for Moving {
         let mut outcome = match std::mem::replace(&mut self.stage, Stage::Over) {
             Stage::Ready(Err(error)) => return Poll::Ready(Err(error.into())),
             Stage::Ready(Ok(mut motion)) => {
-                plan_line(&mut motion, self.canceller.robot(), self.session.as_deref());
-                match self.canceller.begin(*motion) {
+                plan_line(&mut motion, &self.robot, self.session.as_deref());
+                match self.canceller.begin(&self.robot, *motion) {
                     Some(outcome) => outcome,
                     None => return Poll::Ready(Err(MotionError::Stopped)),
                 }

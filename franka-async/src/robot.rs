@@ -363,12 +363,19 @@ impl Robot {
     }
 }
 
-/// A robot whose handles it does not keep.
+/// A robot without being a handle of it.
+#[derive(Clone)]
 pub(crate) struct WeakRobot(Weak<Shared>);
 
 impl WeakRobot {
     pub(crate) fn upgrade(&self) -> Option<Robot> {
         self.0.upgrade().map(|shared| Robot { shared })
+    }
+}
+
+impl fmt::Debug for WeakRobot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("WeakRobot").field(&self.upgrade()).finish()
     }
 }
 

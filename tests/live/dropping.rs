@@ -4,7 +4,9 @@ use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 use std::time::Duration;
 
+use franka_async::control::JointPositions;
 use franka_async::settings::CollisionBehavior;
+use franka_async::state::{RobotMode, RobotState};
 use franka_async::{MotionError, Pose};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -103,6 +105,49 @@ async fn a_hundred_motions_at_once_all_resolve() {
         "{off} m from the target of the motion that arrived last"
     );
     robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn handles_of_a_motion_do_not_keep_its_robot() {
+    let _alone = alone();
+    for is_program in [false, true] {
+        let (robot, sim) = simulated().await;
+        let (handle, canceller) = match is_program {
+            false => {
+                let motion = long_way(&robot);
+                let handle = motion.handle();
+                motion.detach();
+                (Some(handle), None)
+            }
+            true => {
+                let hold = |state: &RobotState, _| JointPositions(state.q_d);
+                let control = robot.control_joint_positions(hold);
+                let canceller = control.canceller();
+                control.detach();
+                (None, Some(canceller))
+            }
+        };
+        under_way(&robot).await;
+        drop(robot);
+        let gone = async {
+            while sim.with(|robot| robot.is_connected()).await.unwrap() {
+                tokio::task::yield_now().await;
+            }
+        };
+        timeout(SOON, gone).await.expect("the connection closes");
+        let state = sim.state().await.unwrap();
+        assert_eq!(state.robot_mode, RobotMode::Idle, "{is_program}");
+        assert!(state.dq.iter().all(|dq| dq.abs() < 0.01), "{:?}", state.dq);
+        // Without effect now.
+        if let Some(handle) = handle {
+            assert_eq!(handle.progress(), None);
+            handle.pause();
+            handle.cancel();
+        }
+        if let Some(canceller) = canceller {
+            canceller.cancel();
+        }
+    }
 }
 
 #[tokio::test(flavor = "multi_thread")]
