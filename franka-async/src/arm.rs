@@ -258,8 +258,9 @@ impl Arm {
     /// that friction has been made up for. For goals that are [set](Self::set); a motion that is
     /// awaited rests when it resolves.
     ///
-    /// It has no time limit: an arm that is pushed, or that follows a stream, rests only when that
-    /// ends. Where that may take for ever, await it within `tokio::time::timeout`.
+    /// It has no time limit: an arm that is pushed, that something holds back from its target, or
+    /// that follows a stream, rests only when that ends, and only the program knows how long that
+    /// may take. Where it may take for ever, await it within `tokio::time::timeout`.
     ///
     /// # Errors
     /// What ended the session.

@@ -68,6 +68,8 @@ pub(crate) enum Input {
     },
     Stop {
         goal: GoalId,
+        /// Whether no motion is admitted after it until it is released.
+        latches: bool,
         ended: oneshot::Sender<Outcome>,
     },
     /// Brakes, finishes and closes. The reply comes when the control thread has ended.

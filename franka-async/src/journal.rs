@@ -224,8 +224,9 @@ impl Journal {
                 None => format!("goal {} is taken back", goal.0),
             })),
             Input::Disengage { id } => Some(What::Remark(format!("session {} is to end", id.0))),
-            Input::Stop { goal, .. } => {
-                let text = format!("a stop is asked for: goal {}", goal.0);
+            Input::Stop { goal, latches, .. } => {
+                let what = if *latches { "latched stop" } else { "stop" };
+                let text = format!("a {what} is asked for: goal {}", goal.0);
                 Some(What::Remark(text))
             }
             Input::Shutdown { .. } => Some(What::Remark("a shutdown is asked for".into())),

@@ -4,18 +4,21 @@ use std::fmt;
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, PoisonError, RwLock, Weak};
+use std::time::Duration;
 
 use franka_model::Model;
 use franka_proto::{RobotState, Version};
 use franka_rt::driver::Record;
 use franka_rt::law::Gains;
-use franka_rt::lifecycle::{CloseReason, MotionError, Outcome};
+use franka_rt::lifecycle::{CloseReason, MotionError, Outcome, Unready};
 use franka_rt::sched::Granted;
 use franka_rt::session::{GoalId, Margin};
 use franka_rt::stats::Stats;
-use franka_rt::supervision::Health;
+use franka_rt::supervision::{Condition, Health};
 use franka_rt::thread::{AttachError, CycleReader};
+use tokio::runtime::Handle;
 use tokio::sync::{broadcast, mpsc, oneshot};
+use tokio::time::{Instant, timeout_at};
 use tokio_util::sync::DropGuard;
 
 use crate::command_channel::Channel;
@@ -59,6 +62,8 @@ struct Shared {
     supervisor: Arc<Supervisor>,
     /// The way into the task that reconnects; `None` if there is none. Closed when it has ended.
     shutdowns: Option<mpsc::UnboundedSender<oneshot::Sender<()>>>,
+    /// Where that task runs, and the bridges.
+    runtime: Handle,
     /// Tells that task of the end of the last handle.
     _handles: DropGuard,
     /// How many goals were named so far, whatever the connection.
@@ -66,7 +71,8 @@ struct Shared {
 }
 
 impl Robot {
-    /// Returns the robot of this model and version that `link` connects to. The last two are the
+    /// Returns the robot of this model and version that `link` connects to, within the runtime that
+    /// serves it. The last two are the
     /// way into the task that reconnects, if there is one, and what tells it of the end of the
     /// last handle.
     pub(crate) fn new(
@@ -85,6 +91,7 @@ impl Robot {
                 link: RwLock::new(link),
                 supervisor,
                 shutdowns,
+                runtime: Handle::current(),
                 _handles: handles,
                 goals: AtomicU64::new(0),
             }),
@@ -212,7 +219,11 @@ impl Robot {
     /// Stops of several callers share one brake and its outcome. If a motion was given up and the
     /// robot still shows it, each call tells the robot to stop once more. A stop does not hold: a
     /// motion that another task begins after it moves the arm again, and the stop then resolves as
-    /// [`MotionError::Superseded`] unless the arm was seen to rest before.
+    /// [`MotionError::Superseded`] unless the arm was seen to rest before. [`Self::latch_stop`]
+    /// holds.
+    ///
+    /// If the connection to a [supervised](crate::connection::Builder::supervise) robot is lost
+    /// meanwhile, the stop waits for the next one, 10 s at most, and stops there as well.
     ///
     /// # Errors
     /// [`MotionError`] if the motion ended otherwise, for instance by a reflex;
@@ -223,11 +234,69 @@ impl Robot {
     /// connection: it is unknown whether the arm rests.
     ///
     /// # Cancel safety
-    /// Once polled, the arm is braked even if the future is dropped.
+    /// Once polled, the arm is braked even if the future is dropped; a dropped stop does not wait
+    /// for another connection.
     pub async fn stop(&self) -> Result<(), MotionError> {
+        self.brake(false).await
+    }
+
+    /// Stops as [`Self::stop`] does, and latches the stop: until [`Self::release_stop`] every
+    /// motion, session, control function and goal is refused as [`MotionError::NotReady`] with
+    /// [`Unready::StopLatched`](crate::error::Unready::StopLatched), whoever asks for it and by
+    /// whatever handle. A motion that waits for the robot is taken back. The latch outlives
+    /// connections, and holds whatever the stop resolves as. Parameters can be set, and the robot
+    /// recovered; neither moves anything.
+    ///
+    /// It is a latch of this program, and no safety function: it is gone when the program ends.
+    ///
+    /// # Errors
+    /// As [`Self::stop`], except [`MotionError::Superseded`].
+    ///
+    /// # Cancel safety
+    /// Once polled, the stop is latched and the arm is braked even if the future is dropped.
+    pub async fn latch_stop(&self) -> Result<(), MotionError> {
+        self.brake(true).await
+    }
+
+    /// Releases a [latched](Self::latch_stop) stop: motions are admitted again. Nothing moves by
+    /// it. Returns whether one was latched.
+    pub fn release_stop(&self) -> bool {
+        self.shared.supervisor.release_stop()
+    }
+
+    /// Whether a stop is [latched](Self::latch_stop).
+    pub fn is_stop_latched(&self) -> bool {
+        self.shared.supervisor.is_stop_latched()
+    }
+
+    async fn brake(&self, latches: bool) -> Result<(), MotionError> {
+        let mut outcome = self.brake_once(latches).await;
+        if self.shared.shutdowns.is_none() {
+            return outcome;
+        }
+        let end = Instant::now() + RECONNECTED_WITHIN;
+        while let Err(MotionError::ConnectionClosed { .. } | MotionError::LinkLost { .. }) = outcome
+        {
+            // This may be awaited without a runtime.
+            let connected = self.shared.runtime.spawn(connected(self.health(), end));
+            if !connected.await.unwrap_or(false) {
+                break;
+            }
+            // Never releases what another call has latched.
+            outcome = self.brake_once(false).await;
+        }
+        outcome
+    }
+
+    /// Brakes by the newest connection.
+    async fn brake_once(&self, latches: bool) -> Result<(), MotionError> {
         let (ended, outcome) = oneshot::channel();
         let goal = self.next_goal();
-        let link = self.send(Input::Stop { goal, ended });
+        let link = self.send(Input::Stop {
+            goal,
+            latches,
+            ended,
+        });
         match outcome.await {
             Ok(outcome) => outcome.map(|_| ()),
             Err(_) if link.has_ended() => Err(link.closed()),
@@ -362,6 +431,24 @@ impl Robot {
         self.shared.supervisor.pass(input, || self.link())
     }
 }
+
+/// Waits until there is a connection to the robot with states, for a while at first so that what was
+/// just lost is shown as lost. Returns false if there is none before `end`.
+async fn connected(mut health: States<Health>, end: Instant) -> bool {
+    tokio::time::sleep(SHOWN_WITHIN).await;
+    let away = [Unready::Disconnected, Unready::Silent].map(Condition::Unready);
+    let there = health.wait_for(|health| !away.contains(&health.condition));
+    match timeout_at(end, there).await {
+        Ok(Ok(health)) => health.condition != Condition::Closed,
+        _ => false,
+    }
+}
+
+/// How long a stop waits for the next connection.
+const RECONNECTED_WITHIN: Duration = Duration::from_secs(10);
+
+/// Time in which the bridge shows that the robot is silent: it looks every 50 ms.
+const SHOWN_WITHIN: Duration = Duration::from_millis(100);
 
 /// A robot without being a handle of it.
 #[derive(Clone)]

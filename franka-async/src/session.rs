@@ -90,8 +90,10 @@ impl Session {
         }
     }
 
-    /// As [`Self::check`], and what a goal is answered with while a deadman holds the arm.
+    /// As [`Self::check`], and what a goal is answered with while a stop is latched or a deadman
+    /// holds the arm.
     pub(crate) fn check_goal(&self) -> Result<(), MotionError> {
+        self.robot.supervisor().check_latch()?;
         self.check()?;
         match &self.pulse {
             Some(pulse) if pulse.is_silent() => Err(MotionError::Held(Lapse::Deadman)),

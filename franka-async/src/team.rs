@@ -187,6 +187,26 @@ impl<const N: usize> Team<N> {
         self.coordinator.stop();
     }
 
+    /// Brakes all arms as [`Self::stop`] does, ends their sessions and latches the stop of each
+    /// robot: see [`Robot::latch_stop`]. Until it is released, joint motions and those of single
+    /// arms are refused. Returns what the stop of each arm came to.
+    ///
+    /// # Cancel safety
+    /// Once polled, the stops are latched and all arms are braked even if the future is dropped.
+    pub async fn latch_stop(&self) -> [Result<(), MotionError>; N] {
+        self.coordinator.stop();
+        let stops = self.arms.iter().map(|arm| arm.robot().latch_stop());
+        let stops = join_all(stops).await;
+        stops.try_into().expect("one for each arm")
+    }
+
+    /// Releases the latched stop of each robot: see [`Robot::release_stop`]. The sessions have
+    /// ended, so the next motions are those of a new team. Returns whether one was latched.
+    pub fn release_stop(&self) -> bool {
+        let release = |released, arm: &Arm| arm.robot().release_stop() | released;
+        self.arms.iter().fold(false, release)
+    }
+
     /// A handle that stops the team from elsewhere.
     pub fn stopper(&self) -> Stopper {
         Stopper(self.coordinator.clone())

@@ -12,7 +12,7 @@ use crate::destination::{destination, is, offset, target_object, waypoints};
 use crate::follow::{self, Leader};
 use crate::goals::motion;
 use crate::motion::{Follow, Motion, Report, reference};
-use crate::operation::Operation;
+use crate::operation::{Operation, seconds};
 use crate::options::{Keywords, tuning};
 use crate::runtime::{self, Threaded};
 use crate::told::{Told, leave, telling};
@@ -185,9 +185,20 @@ impl Arm {
     }
 
     /// Waits until the arm rests at the target that was taken last, or where that has been given
-    /// up. Cancelling has no effect on the arm.
-    fn at_rest(&self) -> PyResult<Operation> {
-        self.operation("Arm.at_rest", |arm| async move { arm.at_rest().await })
+    /// up; returns whether it does. Without a `timeout` it waits for ever for an arm that is pushed
+    /// or held back, or that follows a stream; `False` says that it did not rest within so many
+    /// seconds. Cancelling has no effect on the arm.
+    #[pyo3(signature = (timeout = None))]
+    fn at_rest(&self, timeout: Option<f64>) -> PyResult<Operation> {
+        let timeout = timeout.map(|timeout| seconds("timeout", timeout));
+        let timeout = timeout.transpose()?;
+        self.operation("Arm.at_rest", |arm| async move {
+            let Some(timeout) = timeout else {
+                return arm.at_rest().await.map(|()| true);
+            };
+            let rests = tokio::time::timeout(timeout, arm.at_rest()).await;
+            rests.map_or(Ok(false), |rests| rests.map(|()| true))
+        })
     }
 
     /// Follows points with times, as a policy predicts them, from now on; over as soon as they are

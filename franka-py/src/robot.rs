@@ -198,6 +198,28 @@ impl Robot {
         ))
     }
 
+    /// Stops as `stop` does, and latches the stop: until `release_stop` every motion, session and
+    /// goal is refused, as `MotionError` of the kind `not_ready`, whoever asks for it. The latch
+    /// outlives connections, and holds whatever this raises. It is no safety function.
+    fn latch_stop(&self) -> PyResult<Operation> {
+        let robot = self.connected()?;
+        Ok(Operation::new("Robot.latch_stop", async move {
+            robot.latch_stop().await
+        }))
+    }
+
+    /// Releases a latched stop: motions are admitted again. Nothing moves by it. Returns whether
+    /// one was latched.
+    fn release_stop(&self) -> PyResult<bool> {
+        Ok(self.connected()?.release_stop())
+    }
+
+    /// Whether a stop is latched.
+    #[getter]
+    fn is_stop_latched(&self) -> PyResult<bool> {
+        Ok(self.connected()?.is_stop_latched())
+    }
+
     /// Recovers the robot from a reflex, and waits until it takes motions again; without effect if
     /// there is nothing to recover from. Moves nothing. Raises `CommandError`.
     fn recover(&self) -> PyResult<Operation> {

@@ -289,6 +289,7 @@ fn event(py: Python<'_>, notification: Notification) -> PyResult<Bound<'_, PyAny
         EventKind::UserStop { pressed } => fields.set_item("pressed", pressed)?,
         EventKind::Guiding { active } => fields.set_item("active", active)?,
         EventKind::Brakes { closed } => fields.set_item("closed", closed)?,
+        EventKind::StopLatch { latched } => fields.set_item("latched", latched)?,
         EventKind::MotionBegun { goal } => fields.set_item("goal", goal)?,
         EventKind::MotionEnded { goal, outcome } => {
             fields.set_item("goal", goal)?;

@@ -145,6 +145,25 @@ impl Team {
         with_team!(&**self.members, team => team.stop());
     }
 
+    /// Brakes all arms as `stop` does, ends their sessions and latches the stop of each robot: see
+    /// `Robot.latch_stop`. Waits until all rest, and raises `MotionError` of the first arm that was
+    /// not seen to.
+    fn latch_stop(&self) -> Operation {
+        let members = Arc::clone(&self.members);
+        Operation::new("Team.latch_stop", async move {
+            with_team!(&*members, team => {
+                let stops = team.latch_stop().await;
+                stops.into_iter().collect::<Result<(), _>>()
+            })
+        })
+    }
+
+    /// Releases the latched stop of each robot, and returns whether one was latched. The sessions
+    /// have ended: the next motions are those of a new team.
+    fn release_stop(&self) -> bool {
+        with_team!(&**self.members, team => team.release_stop())
+    }
+
     /// Why the newest joint motion, or what came after it, has stopped: `requested`, or the name of
     /// what happened with the number of the arm, `("robot_stopped", 1)`; `None` if nothing has.
     fn stopped<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {

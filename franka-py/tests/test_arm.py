@@ -171,7 +171,8 @@ def test_goals_follow_each_other_without_a_stop(sim: Sim) -> None:
             np.testing.assert_allclose(pose, start, atol=1e-9)
             await arm.move_through([Joints(robot.state().q + 0.02), Joints(robot.state().q)])
             await arm.set(start)
-            await arm.at_rest()
+            assert not await arm.at_rest(timeout=0.0)
+            assert await arm.at_rest()
             assert np.linalg.norm(robot.pose()[:3, 3] - start[:3, 3]) < NEAR
             for _ in range(3):
                 arm.try_set(Offset([0.0, 0.0, 0.01]))

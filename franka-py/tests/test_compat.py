@@ -10,6 +10,7 @@ import inspect
 import json
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -131,6 +132,20 @@ def test_waiting_works_where_an_event_loop_runs() -> None:
             return str(robot.read_once().robot_mode.name)
 
     assert asyncio.run(cell()) == "Idle"
+
+
+def test_target_control_of_franka_ends_on_an_arm_that_is_held() -> None:
+    with Sim.fr3(virtual_time=True, ideal=True, hand=True) as sim:
+        robot = franka_layer.Robot(sim.address, realtime="ignore")
+        robot.set_collision_behavior_simple([100.0] * 7, [100.0] * 7, [200.0] * 6, [200.0] * 6)
+        targets = robot.cartesian_targets(max_velocity=0.1)
+        sim.wall(targets.target()[:3] - [0.0, 0.0, 0.04], [0.0, 0.0, 1.0])
+        targets.move_by([0.0, 0.0, -0.12])
+        stopping = threading.Thread(target=targets.stop, daemon=True)
+        stopping.start()
+        stopping.join(60.0)
+        assert not stopping.is_alive()
+        assert not targets.running
 
 
 @pytest.mark.parametrize("name", ["ActiveControlBase", "AsyncPositionControlHandler", "Duration", "GripperState", "Model", "RobotState"])

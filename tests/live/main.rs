@@ -35,6 +35,7 @@ mod replaying;
 mod scripts;
 mod stalls;
 mod starving;
+mod stopping;
 mod supervising;
 mod taring;
 mod team;

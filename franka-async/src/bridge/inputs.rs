@@ -98,7 +98,7 @@ impl Bridge {
                 }
                 self.lifecycle.cancel(goal, now);
             }
-            Input::Stop { goal, ended } => {
+            Input::Stop { goal, ended, .. } => {
                 self.drop_plan(MotionError::Stopped);
                 let stops = self.lifecycle.stop(goal, &self.publisher.state(), now);
                 if stops {

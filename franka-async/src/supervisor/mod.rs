@@ -229,6 +229,19 @@ impl Supervisor {
         self.with(|inner, now| inner.core.agree(reflex, agreed, now))
     }
 
+    pub(crate) fn release_stop(&self) -> bool {
+        self.with(|inner, now| inner.core.release_stop(now))
+    }
+
+    pub(crate) fn is_stop_latched(&self) -> bool {
+        self.lock().core.is_stop_latched()
+    }
+
+    /// See [`Supervision::check_latch`].
+    pub(crate) fn check_latch(&self) -> Result<(), MotionError> {
+        self.lock().core.check_latch()
+    }
+
     /// When [`Self::on_time`] has to be called; `None` also for what no clock can show.
     pub(crate) fn deadline(&self) -> Option<Instant> {
         let after = self.lock().core.deadline()?;
@@ -298,6 +311,9 @@ impl Inner {
     fn pass(&mut self, input: Input, link: &Link, now: Duration) {
         #[cfg(feature = "record")]
         self.journal.asked(&input);
+        let Some(input) = self.check_latch(input) else {
+            return;
+        };
         let input = match input {
             Input::Begin { motion, replies } => {
                 match self.core.submit(&motion.motion, now) {
@@ -377,13 +393,51 @@ impl Inner {
                 }
                 return;
             }
-            Input::Stop { .. } => {
-                self.core.stop();
+            Input::Stop { latches, .. } => {
+                match latches {
+                    true => self.core.latch_stop(now),
+                    false => self.core.stop(),
+                }
                 input
             }
             other => other,
         };
         link.send(input);
+    }
+
+    /// Answers what would have the arm move while a stop is latched, and returns everything else.
+    /// Motions that begin are refused where they are submitted.
+    fn check_latch(&mut self, input: Input) -> Option<Input> {
+        let Err(error) = self.core.check_latch() else {
+            return Some(input);
+        };
+        // Receivers may have been dropped.
+        match input {
+            Input::Set { motion, taken } => {
+                self.note_refused(motion.motion.id(), &error);
+                let _ = taken.send(Err(error));
+            }
+            Input::SetNewest { waiting } => {
+                if let Some(motion) = waiting.take() {
+                    self.note_refused(motion.motion.id(), &error);
+                }
+            }
+            Input::Chunk { goal, taken, .. } => {
+                self.note_refused(goal.id, &error);
+                let _ = taken.send(Err(error));
+            }
+            // The motion itself says that it was stopped.
+            Input::Update { taken, .. } => drop(taken.send(Ok(false))),
+            input => return Some(input),
+        }
+        None
+    }
+
+    /// Notes a goal that its session does not get.
+    fn note_refused(&self, goal: GoalId, error: &MotionError) {
+        tracing::info!(goal = goal.0, %error, "a goal is refused");
+        #[cfg(feature = "record")]
+        self.journal.ended(goal, &Err(error.clone()));
     }
 
     /// Hands a motion over to a connection.
@@ -490,6 +544,7 @@ mod tests {
         let (ended, _outcome) = tokio::sync::oneshot::channel();
         let stop = Input::Stop {
             goal: GoalId(1),
+            latches: false,
             ended,
         };
         let cancel = Input::Cancel {

@@ -20,6 +20,7 @@ Condition = Literal[
     "user_stopped",
     "guided",
     "braked",
+    "stop_latched",
     "closed",
 ]
 
@@ -35,6 +36,7 @@ EventKind = Literal[
     "user_stop",
     "guiding",
     "brakes",
+    "stop_latch",
     "motion_begun",
     "motion_ended",
     "load_changed",
@@ -147,6 +149,7 @@ class Event:
     user_stop           ``pressed``
     guiding             ``active``
     brakes              ``closed``
+    stop_latch          ``latched``
     motion_begun        ``goal``: its name, as in the log
     motion_ended        ``goal``; ``error``: why, ``None`` if it arrived
     load_changed        ``mass``, kg; ``center`` in the flange frame, ``(3,)`` m; ``inertia`` about it, ``(3, 3)`` kg m^2

@@ -2,7 +2,8 @@
 
 use super::Party;
 
-/// Why a supervised robot takes no motion now.
+/// Why a robot takes no motion now. One that is not supervised refuses motions itself, but for a
+/// stop that is latched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -31,6 +32,9 @@ pub enum Unready {
     /// Robot: its brakes are closed, or it is not ready for another reason.
     #[error("the brakes are closed, or the robot is not ready")]
     Braked,
+    /// Caller: this program has latched a stop, and not released it.
+    #[error("a stop is latched; it has to be released first")]
+    StopLatched,
 }
 
 impl Unready {
@@ -53,6 +57,7 @@ impl Unready {
             Self::UserStopped => "unready-user-stopped",
             Self::Guided => "unready-guided",
             Self::Braked => "unready-braked",
+            Self::StopLatched => "unready-stop-latched",
         }
     }
 
@@ -66,6 +71,7 @@ impl Unready {
             | Self::UserStopped
             | Self::Guided
             | Self::Braked => Party::Robot,
+            Self::StopLatched => Party::Caller,
         }
     }
 }

@@ -89,6 +89,11 @@ pub enum EventKind {
         /// Whether they are closed now.
         closed: bool,
     },
+    /// This program has latched a stop, or released it.
+    StopLatch {
+        /// Whether no motion is admitted now.
+        latched: bool,
+    },
     /// A motion, a session or a program was handed over to the connection. Goals that a session
     /// takes without a future (`set`, `chunk`, `guide`) are not told.
     MotionBegun {
@@ -158,6 +163,8 @@ impl fmt::Display for EventKind {
             Self::Guiding { active: false } => f.write_str("no longer guided by hand"),
             Self::Brakes { closed: true } => f.write_str("brakes closed"),
             Self::Brakes { closed: false } => f.write_str("brakes open"),
+            Self::StopLatch { latched: true } => f.write_str("stop latched: no motion is admitted"),
+            Self::StopLatch { latched: false } => f.write_str("stop released"),
             Self::MotionBegun { goal } => write!(f, "motion {goal} begun"),
             Self::MotionEnded { goal, outcome } => match &**outcome {
                 Ok(_) => write!(f, "motion {goal} ended"),

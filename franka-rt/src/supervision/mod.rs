@@ -107,6 +107,8 @@ pub struct Supervision {
     /// Motions that have begun and not ended.
     motions: BTreeSet<GoalId>,
     waiting: Option<Waiting>,
+    /// Whether a stop is latched, which outlives connections.
+    stop_latched: bool,
     health: Health,
     outputs: VecDeque<Output>,
 }
@@ -128,6 +130,7 @@ impl Supervision {
             unshown: None,
             motions: BTreeSet::new(),
             waiting: None,
+            stop_latched: false,
             health: Health {
                 condition: Condition::Unready(Unready::Disconnected),
                 since: Duration::ZERO,
@@ -159,6 +162,9 @@ impl Supervision {
 
     /// Decides on a motion that a caller asks for.
     pub fn submit(&mut self, motion: &NewMotion, now: Duration) -> Admission {
+        if let Err(error) = self.check_latch() {
+            return Admission::Refuse(error);
+        }
         let why = match self.connection.unready() {
             Some(why) if why.is_passing() && !motion.is_within_a_session() => why,
             _ => return Admission::Begin,
@@ -183,6 +189,49 @@ impl Supervision {
     /// Takes back the motion that waits, because a stop was asked for.
     pub fn stop(&mut self) {
         self.refuse(|_| MotionError::Stopped);
+    }
+
+    /// Takes back the motion that waits, and admits none until [`Self::release_stop`], on this
+    /// connection and those to come.
+    pub fn latch_stop(&mut self, now: Duration) {
+        self.stop();
+        self.set_latch(true, now);
+    }
+
+    /// Admits motions again. Returns whether a stop was latched.
+    pub fn release_stop(&mut self, now: Duration) -> bool {
+        self.set_latch(false, now)
+    }
+
+    /// Whether a stop is latched.
+    pub fn is_stop_latched(&self) -> bool {
+        self.stop_latched
+    }
+
+    /// The answer to every goal, of whatever motion or session, while a stop is latched.
+    ///
+    /// # Errors
+    /// [`MotionError::NotReady`].
+    pub fn check_latch(&self) -> Result<(), MotionError> {
+        match self.connection {
+            // A closed connection says so itself.
+            Connection::Closed => Ok(()),
+            _ if self.stop_latched => Err(MotionError::NotReady {
+                why: Unready::StopLatched,
+                waited: Duration::ZERO,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Returns whether a stop was latched before.
+    fn set_latch(&mut self, latched: bool, now: Duration) -> bool {
+        let before = core::mem::replace(&mut self.stop_latched, latched);
+        if before != latched {
+            self.tell(EventKind::StopLatch { latched }, now);
+        }
+        self.go_on(now);
+        before
     }
 
     /// Says whether the robot may be recovered from the reflex of this number. Returns whether that
@@ -301,6 +350,7 @@ impl Supervision {
         }
         let condition = match (&self.connection, self.connection.unready()) {
             (Connection::Closed, _) => Condition::Closed,
+            (_, None) if self.stop_latched => Condition::Unready(Unready::StopLatched),
             (_, None) => Condition::Ready,
             (_, Some(why)) => Condition::Unready(why),
         };

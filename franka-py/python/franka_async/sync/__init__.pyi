@@ -60,7 +60,7 @@ class Arm:
     def reference(self) -> Reference | None:
         ...
 
-    def at_rest(self) -> None:
+    def at_rest(self, timeout: float | None=None) -> bool:
         ...
 
     def chunk(self, points: ArrayLike | Chunk, dt: float | None=None, times: ArrayLike | None=None, *, velocities: ArrayLike | None=None, joints: bool=False, observed_at: RobotState | int | None=None, blend: float | None=None) -> None:
@@ -275,6 +275,16 @@ class Robot:
     def stop(self) -> None:
         ...
 
+    def latch_stop(self) -> None:
+        ...
+
+    def release_stop(self) -> bool:
+        ...
+
+    @property
+    def is_stop_latched(self) -> bool:
+        ...
+
     def recover(self) -> None:
         ...
 
@@ -411,6 +421,12 @@ class Team:
         ...
 
     def stop(self) -> None:
+        ...
+
+    def latch_stop(self) -> None:
+        ...
+
+    def release_stop(self) -> bool:
         ...
 
     def stopped(self) -> str | tuple[str, int] | None:

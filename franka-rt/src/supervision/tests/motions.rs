@@ -51,6 +51,68 @@ fn a_motion_that_waits_begins_when_the_robot_is_ready_and_not_after_its_time() {
     assert_eq!(robot.motions(), []);
 }
 
+#[test]
+fn latched_stop_refuses_every_motion_until_released_across_connections() {
+    let latched = not_ready(Unready::StopLatched, 0);
+    for policy in [
+        None,
+        Some(
+            without_chance()
+                .recover(3, WINDOW)
+                .motions_wait(MS(60_000)),
+        ),
+    ] {
+        let mut robot = Supervised::connected(policy);
+        let refused = |robot: &mut Supervised, id| match robot.submit(id) {
+            Admission::Refuse(error) => assert_eq!(error, latched, "{id}"),
+            other => panic!("{id}: {other:?}"),
+        };
+        let now = MS(robot.now);
+        robot.after(|it| it.latch_stop(now));
+        assert_eq!(robot.condition(), Condition::Unready(Unready::StopLatched));
+        refused(&mut robot, 1);
+        if policy.is_some() {
+            // In a reflex, without a connection, and when the next one is there.
+            robot.reflex([COLLISION]);
+            refused(&mut robot, 2);
+            robot.lose(CloseReason::ClosedByPeer);
+            refused(&mut robot, 3);
+            robot.release();
+            robot.pass(500);
+            assert!(robot.connect());
+            refused(&mut robot, 4);
+            robot.recovers();
+            refused(&mut robot, 5);
+            assert_eq!(robot.condition(), Condition::Unready(Unready::StopLatched));
+        }
+        assert_eq!(robot.motions(), []);
+        let now = MS(robot.now);
+        assert!(robot.after(|it| it.release_stop(now)));
+        assert!(!robot.after(|it| it.release_stop(now)), "it was released");
+        assert_eq!(robot.condition(), Condition::Ready);
+        assert!(matches!(robot.submit(6), Admission::Begin));
+        let latches = robot.told.iter().filter_map(|kind| match kind {
+            EventKind::StopLatch { latched } => Some(*latched),
+            _ => None,
+        });
+        assert_eq!(latches.collect::<Vec<_>>(), [true, false]);
+    }
+}
+
+#[test]
+fn latched_stop_takes_back_the_motion_that_waits() {
+    let mut robot = Supervised::ready(without_chance().motions_wait(MS(60_000)));
+    robot.lose(CloseReason::ClosedByPeer);
+    assert!(matches!(robot.submit(1), Admission::Wait));
+    let now = MS(robot.now);
+    robot.after(|it| it.latch_stop(now));
+    assert_eq!(robot.motions(), [(1, Some(MotionError::Stopped))]);
+    robot.after(|it| it.release_stop(now));
+    robot.release();
+    assert!(robot.connect());
+    assert_eq!(robot.motions(), [], "it never begins");
+}
+
 /// A program that waits indefinitely says so with the longest duration.
 #[test]
 fn motions_and_silences_may_take_the_longest_duration() {

@@ -23,6 +23,13 @@ _STOPPED = (
 )
 
 
+_HELD = 5.0
+"""Seconds without progress after which something holds the arm."""
+
+_COMES_FURTHER = 5e-3
+"""Way of a joint of the reference that counts as progress, rad: slower arms than 1 mrad/s are held."""
+
+
 class _Targets:
     """A session. It runs from the call that made it on, with or without ``with``."""
 
@@ -125,8 +132,8 @@ class _Targets:
         return not self._is_stopped and self._arm.reference() is not None
 
     def stop(self) -> None:
-        """Waits until the arm rests at the last target, and ends the session. Raises what had ended it before. Without effect once
-        it was stopped.
+        """Waits until the arm rests at the last target, or has come no further for five seconds because something holds it, and ends
+        the session. Raises what had ended it before. Without effect once it was stopped.
         """
         with self._locked():
             self._following += 1
@@ -134,8 +141,20 @@ class _Targets:
                 return
             self._is_stopped = True
         with translated():
-            wait(self._arm.at_rest())
+            self._wait_for_rest()
             wait(self._arm.disengage())
+
+    def _wait_for_rest(self) -> None:
+        since = self._robot.state().time
+        before: Array | None = None
+        while not wait(self._arm.at_rest(timeout=1.0)):
+            reference = self._arm.reference()
+            if reference is None:
+                return
+            if before is None or np.abs(reference.q - before).max() > _COMES_FURTHER:
+                since, before = self._robot.state().time, reference.q
+            elif self._robot.state().time - since > _HELD:
+                return
 
     def __enter__(self) -> Any:
         return self
