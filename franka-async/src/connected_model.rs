@@ -1,5 +1,7 @@
 //! The model of the connected arm: from what the robot says of itself, where it says something.
 
+#[cfg(feature = "urdf")]
+use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 use std::time::Duration;
 
 use franka_model::Model;
@@ -22,25 +24,30 @@ use crate::state_model::nominal;
 /// Time for a library to come over the network.
 const DOWNLOAD: Duration = Duration::from_secs(30);
 
-/// The model of the arm: from its description if it has one and that is wanted, the constants of
-/// its kind otherwise.
+/// The model of the arm, from its description if it has one and that is wanted, with a hash of
+/// that; the constants of its kind otherwise.
 #[cfg(feature = "urdf")]
 pub(crate) async fn of(
     version: Version,
     channel: &Channel,
     builder: &Builder,
-) -> Result<Model, ModelError> {
+) -> Result<(Model, Option<u64>), ModelError> {
     if version.supports(Command::GetRobotModel) && !builder.nominal_model {
         let text = parameters::urdf(channel, builder.connect_timeout).await?;
-        return Ok(Model::from_urdf(&text)?);
+        let hash = BuildHasherDefault::<DefaultHasher>::default().hash_one(&text);
+        return Ok((Model::from_urdf(&text)?, Some(hash)));
     }
-    Ok(nominal(version))
+    Ok((nominal(version), None))
 }
 
 /// The model of the arm: the constants of its kind.
 #[cfg(not(feature = "urdf"))]
-pub(crate) async fn of(version: Version, _: &Channel, _: &Builder) -> Result<Model, ConnectError> {
-    Ok(nominal(version))
+pub(crate) async fn of(
+    version: Version,
+    _: &Channel,
+    _: &Builder,
+) -> Result<(Model, Option<u64>), ConnectError> {
+    Ok((nominal(version), None))
 }
 
 impl Robot {

@@ -20,6 +20,8 @@ use crate::thresholds::Thresholds;
 /// connection, in the background.
 pub(crate) struct Link {
     pub(crate) address: SocketAddr,
+    /// Stands for what the robot says of itself, if it does.
+    pub(crate) description: Option<u64>,
     pub(crate) bridge: BridgeHandle,
     pub(crate) channel: Channel,
     pub(crate) newest: Newest,

@@ -73,7 +73,8 @@ pub(crate) async fn open(
     let granted = Arc::new(session.handle.granted.clone());
     let lender = session.handle.lender.clone();
     let cycles = session.handle.cycles.clone();
-    let model = Arc::new(connected_model::of(session.version, &channel, builder).await?);
+    let (model, description) = connected_model::of(session.version, &channel, builder).await?;
+    let model = Arc::new(model);
     let mut lifecycle = Lifecycle::new(model.clone(), session.version)
         .with_log_size(builder.log_size)
         .with_link_timeout(LinkTimeout::new(builder.link_timeout)?);
@@ -96,6 +97,7 @@ pub(crate) async fn open(
         version: session.version,
         link: Link {
             address,
+            description,
             bridge,
             channel,
             newest,

@@ -432,8 +432,8 @@ impl Robot {
     }
 }
 
-/// Waits until there is a connection to the robot with states, for a while at first so that what was
-/// just lost is shown as lost. Returns false if there is none before `end`.
+/// Waits until there is a connection to the robot with states, for a while at first so that what
+/// was just lost is shown as lost. Returns false if there is none before `end`.
 async fn connected(mut health: States<Health>, end: Instant) -> bool {
     tokio::time::sleep(SHOWN_WITHIN).await;
     let away = [Unready::Disconnected, Unready::Silent].map(Condition::Unready);

@@ -15,6 +15,8 @@ pub(crate) fn of_event(kind: &EventKind) -> Option<(Level, String, Option<String
         | EventKind::Reflex(_)
         | EventKind::Closed { .. } => Level::Error,
         EventKind::RealtimeRefused { .. }
+        | EventKind::Unrecognised { .. }
+        | EventKind::StopLatch { latched: true }
         | EventKind::NotRecovered { .. }
         | EventKind::UserStop { pressed: true }
         | EventKind::Brakes { closed: true } => Level::Warning,

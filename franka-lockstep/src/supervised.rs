@@ -209,7 +209,7 @@ impl Supervised {
         self.seen = state.message_id;
         let now = self.time();
         assert!(
-            self.supervision.on_connected(&state, &[], now),
+            self.supervision.on_connected(None, &state, &[], now),
             "it is wanted"
         );
         self.carry_out();

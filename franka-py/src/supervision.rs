@@ -247,7 +247,8 @@ fn reflex<'py>(py: Python<'py>, reflex: &Reflex) -> PyResult<Bound<'py, PyAny>> 
         let error = Error::Control(Box::new((**error).clone()));
         error.raise(py).into_value(py)
     });
-    class(py, "Reflex")?.call1((reflex.number, names(reflex.errors), error))
+    let differences = reflex.differences.map(|what| what.to_string());
+    class(py, "Reflex")?.call1((reflex.number, names(reflex.errors), error, differences))
 }
 
 fn event(py: Python<'_>, notification: Notification) -> PyResult<Bound<'_, PyAny>> {
@@ -268,6 +269,9 @@ fn event(py: Python<'_>, notification: Notification) -> PyResult<Bound<'_, PyAny
         EventKind::RealtimeRefused { refusals } => {
             let texts: Vec<String> = refusals.iter().map(ToString::to_string).collect();
             fields.set_item("refusals", texts)?;
+        }
+        EventKind::Unrecognised { differences } => {
+            fields.set_item("differences", differences.to_string())?;
         }
         EventKind::Lost { reason } | EventKind::Closed { reason } => set_reason(reason.clone())?,
         EventKind::Silent { silence } => fields.set_item("silence", silence.as_secs_f64())?,

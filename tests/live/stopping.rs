@@ -60,7 +60,10 @@ async fn latched_stop_admits_nothing_until_it_is_released() {
     // What moves nothing goes on, and neither does it release the stop.
     robot.stop().await.expect("it rests");
     robot.recover().await.expect("nothing to recover from");
-    robot.set_joint_impedance([3000.0; 7]).await.expect("no motion runs");
+    robot
+        .set_joint_impedance([3000.0; 7])
+        .await
+        .expect("no motion runs");
     robot_time(&robot, 300).await;
     assert!(!robot.state().motion_running());
     for (joint, (before, now)) in rests.iter().zip(robot.state().q).enumerate() {
@@ -71,7 +74,9 @@ async fn latched_stop_admits_nothing_until_it_is_released() {
     assert!(!robot.release_stop(), "it was released");
     robot_time(&robot, 300).await;
     assert!(!robot.state().motion_running(), "nothing begins by itself");
-    small_motion(&robot).await.expect("motions are admitted again");
+    small_motion(&robot)
+        .await
+        .expect("motions are admitted again");
     robot.shutdown().await;
 }
 
@@ -119,7 +124,9 @@ async fn latched_stop_of_a_team_refuses_rounds_and_single_motions() {
     assert_eq!(two.team.arms()[1].move_to(targets[1]).await, latched());
     nothing_is_admitted(left).await;
     assert!(two.team.release_stop());
-    small_motion(right).await.expect("motions are admitted again");
+    small_motion(right)
+        .await
+        .expect("motions are admitted again");
     for robot in &two.robots {
         robot.shutdown().await;
     }
@@ -135,7 +142,9 @@ async fn stop_waits_for_the_next_connection_and_a_latch_outlives_it() {
     under_way(&robot).await;
     sim.stop().await;
     let outcome = timeout(SOON, moving).await.expect("no hang");
-    outcome.expect("no panic").expect_err("the connection is lost");
+    outcome
+        .expect("no panic")
+        .expect_err("the connection is lost");
     condition(&robot, Condition::Unready(Unready::Disconnected)).await;
 
     let waiting = tokio::spawn(std::future::IntoFuture::into_future(long_way(&robot)));
@@ -143,24 +152,38 @@ async fn stop_waits_for_the_next_connection_and_a_latch_outlives_it() {
     let mut stop = pin!(async move { stopping.latch_stop().await });
     let first = poll_fn(|context| Poll::Ready(stop.as_mut().poll(context))).await;
     assert!(first.is_pending(), "{first:?}");
-    let outcome = timeout(SOON, waiting).await.expect("no hang").expect("no panic");
+    let outcome = timeout(SOON, waiting)
+        .await
+        .expect("no hang")
+        .expect("no panic");
     // Taken back if it was asked for first.
-    assert!([latched(), Err(MotionError::Stopped)].contains(&outcome), "{outcome:?}");
+    assert!(
+        [latched(), Err(MotionError::Stopped)].contains(&outcome),
+        "{outcome:?}"
+    );
     nothing_is_admitted(&robot).await;
     let sim = restart(address).await;
-    timeout(SOON, stop).await.expect("no hang").expect("a state shows that it rests");
+    timeout(SOON, stop)
+        .await
+        .expect("no hang")
+        .expect("a state shows that it rests");
     condition(&robot, Condition::Unready(Unready::StopLatched)).await;
     nothing_is_admitted(&robot).await;
     robot_time(&robot, 300).await;
     assert!(!sim.state().await.expect("it runs").motion_running());
     assert!(robot.release_stop());
     condition(&robot, Condition::Ready).await;
-    small_motion(&robot).await.expect("motions are admitted again");
+    small_motion(&robot)
+        .await
+        .expect("motions are admitted again");
 
     // One that is lost for good is not waited for.
     drop(robot);
     let robot = supervised(&sim, policy().without_reconnecting()).await;
     sim.stop().await;
     let lost = timeout(SOON, robot.stop()).await.expect("no hang");
-    assert!(matches!(lost, Err(MotionError::ConnectionClosed { .. })), "{lost:?}");
+    assert!(
+        matches!(lost, Err(MotionError::ConnectionClosed { .. })),
+        "{lost:?}"
+    );
 }

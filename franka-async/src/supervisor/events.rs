@@ -83,7 +83,7 @@ mod tests {
     fn a_listener_that_lags_is_told_how_many_events_it_missed() {
         let mut supervision = Supervision::new(None);
         let now = Duration::ZERO;
-        assert!(supervision.on_connected(&RobotState::default(), &[], now));
+        assert!(supervision.on_connected(None, &RobotState::default(), &[], now));
         while supervision.poll().is_some() {}
         let (sender, events) = broadcast::channel(CAPACITY);
         let mut events = Events::new(events);

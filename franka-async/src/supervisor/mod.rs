@@ -167,7 +167,9 @@ impl Supervisor {
         self.journal().connected(&link.cycles);
         self.with(|inner, now| {
             inner.link = Arc::downgrade(link);
-            inner.core.on_connected(state, refusals, now)
+            inner
+                .core
+                .on_connected(link.description, state, refusals, now)
         })
     }
 
@@ -570,7 +572,8 @@ mod tests {
         let silence = |silence| {
             let supervisor = Supervisor::new(Some(Policy::default().silence(silence)));
             supervisor.with(|inner, now| {
-                inner.core.on_connected(&RobotState::default(), &[], now);
+                let state = RobotState::default();
+                inner.core.on_connected(None, &state, &[], now);
                 inner.core.on_silence(Duration::from_secs(1), now);
             });
             supervisor.deadline()

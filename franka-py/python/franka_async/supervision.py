@@ -16,6 +16,7 @@ Condition = Literal[
     "silent",
     "recovering",
     "agreement_awaited",
+    "unrecognised",
     "reflex",
     "user_stopped",
     "guided",
@@ -27,6 +28,7 @@ Condition = Literal[
 EventKind = Literal[
     "connected",
     "realtime_refused",
+    "unrecognised",
     "lost",
     "silent",
     "resumed",
@@ -115,6 +117,9 @@ class Reflex:
     error: Exception | None
     """The ``ControlError`` of the motion that ran, with its log and diagnosis; ``None`` if no motion of this program did."""
 
+    differences: str | None = None
+    """What differs from the robot of before a connection was lost, if that is not recognised. Somebody has to agree then."""
+
 
 @dataclass(frozen=True)
 class CloseReason:
@@ -140,6 +145,7 @@ class Event:
     ==================  ==============================================================================================
     connected           ``attempts``; ``after``: seconds since the loss, ``None`` for the first connection
     realtime_refused    ``refusals``: what the operating system refused the control thread, as texts
+    unrecognised        ``differences`` from the robot of before the connection was lost, as a text
     lost                ``reason``: a ``CloseReason``
     silent              ``silence``: seconds without a state, on a connection that still stands
     resumed             ``after``: seconds since the silence was noticed

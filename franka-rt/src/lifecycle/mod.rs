@@ -28,6 +28,7 @@
 
 mod close_reason;
 mod current_motion;
+mod differences;
 mod ending;
 mod engagement;
 mod goal_progress;
@@ -58,6 +59,7 @@ use current_motion::CurrentMotion;
 use stops::Stop;
 
 pub use close_reason::CloseReason;
+pub use differences::Differences;
 pub use engagement::{Engagement, Tuning};
 pub use new_motion::NewMotion;
 pub use outcome::{ControlError, MotionError, MotionReport, Outcome, Party, Stage};

@@ -1,6 +1,6 @@
 //! Why a robot takes no motion.
 
-use super::Party;
+use super::{Differences, Party};
 
 /// Why a robot takes no motion now. One that is not supervised refuses motions itself, but for a
 /// stop that is latched.
@@ -20,6 +20,10 @@ pub enum Unready {
     /// Robot: a reflex. Its recovery waits for somebody to agree.
     #[error("somebody has to agree to the recovery from a reflex")]
     AgreementAwaited,
+    /// Robot: what answers after a lost connection differs from the robot of before. Its recovery
+    /// from a reflex waits for somebody to agree, and a motion that waited does not begin.
+    #[error("the robot is not recognised: {0}")]
+    Unrecognised(Differences),
     /// Robot: a reflex, which somebody has to recover it from.
     #[error("a reflex holds the robot")]
     Reflex,
@@ -42,7 +46,11 @@ impl Unready {
     pub fn is_passing(self) -> bool {
         matches!(
             self,
-            Self::Disconnected | Self::Silent | Self::Recovering | Self::AgreementAwaited
+            Self::Disconnected
+                | Self::Silent
+                | Self::Recovering
+                | Self::AgreementAwaited
+                | Self::Unrecognised(_)
         )
     }
 
@@ -53,6 +61,7 @@ impl Unready {
             Self::Silent => "unready-silent",
             Self::Recovering => "unready-recovering",
             Self::AgreementAwaited => "unready-agreement-awaited",
+            Self::Unrecognised(_) => "unready-unrecognised",
             Self::Reflex => "unready-reflex",
             Self::UserStopped => "unready-user-stopped",
             Self::Guided => "unready-guided",
@@ -67,6 +76,7 @@ impl Unready {
             Self::Disconnected | Self::Silent => Party::Link,
             Self::Recovering
             | Self::AgreementAwaited
+            | Self::Unrecognised(_)
             | Self::Reflex
             | Self::UserStopped
             | Self::Guided

@@ -6,7 +6,7 @@ use franka_proto::{Errors, Load, RobotMode, RobotState};
 
 use super::policy::Policy;
 use super::reflex::ReflexCase;
-use crate::lifecycle::{CloseReason, Unready};
+use crate::lifecycle::{CloseReason, Differences, Unready};
 
 /// Where the connection stands.
 #[derive(Debug)]
@@ -41,6 +41,9 @@ pub(super) struct Up {
     pub(super) told: RobotMode,
     /// The reflex that holds the robot.
     pub(super) reflex: Option<ReflexCase>,
+    /// What differs from the robot of the connection before, until somebody has agreed to a
+    /// recovery or a motion was asked for.
+    pub(super) differences: Option<Differences>,
 }
 
 /// A robot that sends no states.
@@ -97,7 +100,7 @@ impl Silent {
 
 impl Up {
     /// Returns a connection that has just been made, and shows nothing yet.
-    pub(super) fn new(attempts: u32, now: Duration) -> Self {
+    pub(super) fn new(attempts: u32, differences: Option<Differences>, now: Duration) -> Self {
         Self {
             since: now,
             attempts,
@@ -105,6 +108,7 @@ impl Up {
             seen: None,
             told: RobotMode::Idle,
             reflex: None,
+            differences,
         }
     }
 
@@ -125,7 +129,10 @@ impl Up {
             (RobotMode::Guiding, _) => Some(Unready::Guided),
             (RobotMode::Other, _) => Some(Unready::Braked),
             (_, Some(reflex)) if mode != RobotMode::AutomaticErrorRecovery => {
-                Some(reflex.unready())
+                Some(match (reflex.unready(), self.differences) {
+                    (Unready::AgreementAwaited, Some(what)) => Unready::Unrecognised(what),
+                    (why, _) => why,
+                })
             }
             _ => Some(Unready::Recovering),
         }

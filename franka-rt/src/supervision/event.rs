@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use franka_proto::{Errors, Load};
 
-use crate::lifecycle::{CloseReason, ControlError, Outcome, Unready};
+use crate::lifecycle::{CloseReason, ControlError, Differences, Outcome, Unready};
 use crate::sched::SchedError;
 
 /// Something that happened to a robot.
@@ -39,6 +39,13 @@ pub enum EventKind {
     RealtimeRefused {
         /// What was refused.
         refusals: Arc<[SchedError]>,
+    },
+    /// What answers differs from the robot of the connection before, and may be another one.
+    /// Follows on `Connected`. A motion that waited is refused, and a recovery takes somebody's
+    /// agreement.
+    Unrecognised {
+        /// What differs.
+        differences: Differences,
     },
     /// The connection has ended. Motions end with it.
     Lost {
@@ -134,6 +141,9 @@ impl fmt::Display for EventKind {
                 let mut refusals = refusals.iter();
                 refusals.try_for_each(|refusal| write!(f, "; {refusal}"))
             }
+            Self::Unrecognised { differences } => {
+                write!(f, "not recognised as the robot of before: {differences}")
+            }
             Self::Lost { reason } => write!(f, "connection lost: {reason}"),
             Self::Silent { silence } => write!(f, "no state for {silence:.1?}"),
             Self::Resumed { after } => write!(f, "states come again after {after:.1?}"),
@@ -187,6 +197,9 @@ pub struct Reflex {
     /// How it ended the motion that ran, with its last cycles; `None` if none of this program did.
     /// `franka_diagnosis` says what led to it.
     pub error: Option<Arc<ControlError>>,
+    /// What differs from the robot of before a connection was lost, if that is not recognised: the
+    /// recovery then takes somebody's agreement, whatever the policy.
+    pub differences: Option<Differences>,
 }
 
 /// Why a supervisor leaves a robot in its reflex.

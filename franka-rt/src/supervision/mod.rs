@@ -25,6 +25,7 @@
 mod attempts;
 mod connection;
 mod event;
+mod identity;
 mod policy;
 mod reflex;
 mod reports;
@@ -42,6 +43,7 @@ use crate::session::GoalId;
 
 use attempts::{Attempts, Pauses};
 use connection::{Connection, Loss};
+use identity::Identity;
 use reflex::Step;
 use waiting::Waiting;
 
@@ -98,6 +100,8 @@ pub struct Supervision {
     robot_time: Option<u64>,
     /// The load that the robot was last seen with.
     load: Option<Load>,
+    /// What the robot was when it was last seen.
+    identity: Option<Identity>,
     /// Reflexes so far.
     reflexes: u64,
     recoveries: Attempts,
@@ -124,6 +128,7 @@ impl Supervision {
             connection: Connection::First,
             robot_time: None,
             load: None,
+            identity: None,
             reflexes: 0,
             recoveries: Attempts::default(),
             pauses: Pauses::new(backoff.unwrap_or_default(), seed),
@@ -242,6 +247,9 @@ impl Supervision {
         };
         let case = up.reflex.as_mut().filter(|case| case.number == reflex);
         let awaited = case.is_some_and(|case| case.agree(agreed, now));
+        if awaited && agreed {
+            up.differences = None;
+        }
         self.go_on(now);
         awaited
     }

@@ -8,7 +8,7 @@ use franka_proto::{Errors, RobotMode};
 use super::attempts::{Attempts, Pauses};
 use super::event::{NotRecovered, Reflex};
 use super::policy::{Policy, Recovery};
-use crate::lifecycle::{ControlError, Unready};
+use crate::lifecycle::{ControlError, Differences, Unready};
 
 /// Why a recovery did not succeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +26,7 @@ pub(super) struct ReflexCase {
     pub(super) since: Duration,
     pub(super) errors: Errors,
     error: Option<Arc<ControlError>>,
+    differences: Option<Differences>,
     /// Whether it has been told. That waits for the end of the motion, which has the log.
     told: bool,
     stage: Stage,
@@ -58,10 +59,12 @@ pub(super) enum Step {
 }
 
 impl ReflexCase {
-    /// Returns a reflex that was noticed at `now`.
+    /// Returns a reflex that was noticed at `now`, of a robot that differs so from the one of
+    /// before.
     pub(super) fn new(
         number: u64,
         errors: Errors,
+        differences: Option<Differences>,
         policy: Option<&Policy>,
         attempts: &mut Attempts,
         now: Duration,
@@ -71,8 +74,9 @@ impl ReflexCase {
             since: now,
             errors,
             error: None,
+            differences,
             told: false,
-            stage: Stage::of(errors, policy, attempts, now),
+            stage: Stage::of(errors, differences.is_some(), policy, attempts, now),
             stage_told: false,
         }
     }
@@ -203,13 +207,20 @@ impl ReflexCase {
             number: self.number,
             errors: self.errors,
             error: self.error.clone(),
+            differences: self.differences,
         }
     }
 }
 
 impl Stage {
-    /// What the policy makes of a reflex with these errors.
-    fn of(errors: Errors, policy: Option<&Policy>, attempts: &mut Attempts, now: Duration) -> Self {
+    /// What the policy makes of a reflex with these errors, of a robot that may be another one.
+    fn of(
+        errors: Errors,
+        is_unlike: bool,
+        policy: Option<&Policy>,
+        attempts: &mut Attempts,
+        now: Duration,
+    ) -> Self {
         let Some((policy, recovery)) = policy.and_then(|it| Some((it, it.recovery?))) else {
             return Self::Left(NotRecovered::Never);
         };
@@ -219,7 +230,7 @@ impl Stage {
             Self::Left(NotRecovered::OtherError)
         } else if !attempts.may(times, window, now) {
             Self::Left(NotRecovered::TooOften)
-        } else if policy.agreement {
+        } else if policy.agreement || is_unlike {
             Self::AgreementAwaited
         } else {
             Self::Due { at: now, failed: 0 }

@@ -8,8 +8,9 @@ use franka_proto::{Errors, RobotMode, RobotState};
 use super::Supervision;
 use super::connection::{Connection, Loss, Seen, Silent, Up};
 use super::event::EventKind;
+use super::identity::Identity;
 use super::reflex::{RecoveryFailure, ReflexCase};
-use crate::lifecycle::{CloseReason, MotionError, Outcome};
+use crate::lifecycle::{CloseReason, MotionError, Outcome, Unready};
 use crate::sched::SchedError;
 use crate::session::GoalId;
 
@@ -30,9 +31,11 @@ pub enum ConnectFailure {
 
 impl Supervision {
     /// Takes note that there is a connection, whose first state this is, and what the control
-    /// thread was refused. Returns false if none is wanted any more: it has to be closed.
+    /// thread was refused; `description` stands for what the robot says of itself, if it does.
+    /// Returns false if none is wanted any more: it has to be closed.
     pub fn on_connected(
         &mut self,
+        description: Option<u64>,
         state: &RobotState,
         refusals: &[SchedError],
         now: Duration,
@@ -45,7 +48,12 @@ impl Supervision {
             | Connection::Pausing { .. }
             | Connection::Closed => return false,
         };
-        self.connection = Connection::Up(Up::new(attempts, now));
+        let identity = Identity::of(description, state, now);
+        let before = self.identity.as_ref();
+        let differences = before.map(|before| before.differences(&identity));
+        let differences = differences.filter(|differences| !differences.is_empty());
+        self.identity = Some(identity);
+        self.connection = Connection::Up(Up::new(attempts, differences, now));
         self.robot_time = Some(state.message_id);
         self.health.reconnects += u64::from(after.is_some());
         self.health.last_reconnect = after.or(self.health.last_reconnect);
@@ -53,6 +61,10 @@ impl Supervision {
         if !refusals.is_empty() {
             let refusals = Arc::from(refusals);
             self.tell(EventKind::RealtimeRefused { refusals }, now);
+        }
+        if let Some(differences) = differences {
+            self.tell(EventKind::Unrecognised { differences }, now);
+            self.refuse(|waiting| waiting.refusal(Unready::Unrecognised(differences), now));
         }
         self.show(state, now);
         true
@@ -71,6 +83,9 @@ impl Supervision {
             return;
         };
         self.robot_time = Some(state.message_id);
+        if let Some(identity) = &mut self.identity {
+            identity.update(state, now);
+        }
         let seen = Seen::of(state);
         let is_first = up.seen.replace(seen).is_none();
         let told = core::mem::replace(&mut up.told, seen.mode);
@@ -113,7 +128,8 @@ impl Supervision {
             return false;
         }
         let (policy, recoveries) = (self.policy.as_ref(), &mut self.recoveries);
-        let mut case = ReflexCase::new(self.reflexes + 1, errors, policy, recoveries, now);
+        let (number, differences) = (self.reflexes + 1, up.differences);
+        let mut case = ReflexCase::new(number, errors, differences, policy, recoveries, now);
         match up.reflex.take() {
             Some(before) if !before.is_told() => case.continue_from(before),
             _ => self.reflexes += 1,
@@ -132,6 +148,9 @@ impl Supervision {
         };
         if up.silent.is_some() {
             return;
+        }
+        if let Some(identity) = &mut self.identity {
+            identity.silent_for(silence, now);
         }
         up.seen = None;
         up.silent = Some(Silent {
@@ -238,6 +257,10 @@ impl Supervision {
     pub fn on_begun(&mut self, goal: GoalId, now: Duration) {
         self.motions.insert(goal);
         self.unshown = None;
+        // Whoever asks for it takes the robot as it is.
+        if let Connection::Up(up) = &mut self.connection {
+            up.differences = None;
+        }
         self.tell(EventKind::MotionBegun { goal: goal.0 }, now);
     }
 

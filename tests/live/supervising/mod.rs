@@ -10,13 +10,16 @@ mod recoveries;
 mod waiting;
 
 use std::future::IntoFuture;
-use std::net::SocketAddr;
+use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
 use franka_async::supervision::{Backoff, Condition, EventKind, Events, Notification, Policy};
 use franka_async::{MotionError, Pose, Realtime, Robot};
 use franka_sim::{Running, Sim, Tool};
 use franka_tests::PATIENCE;
+use tokio::io::copy_bidirectional;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::task::JoinSet;
 use tokio::time::{sleep, timeout};
 
 use crate::SOON;
@@ -54,8 +57,72 @@ pub(crate) async fn restart(address: SocketAddr) -> Running {
     .expect("the port is free again")
 }
 
+/// The way to a simulator's command port, which can be cut and mended: the robot stays the same.
+pub(crate) struct Relay {
+    address: SocketAddr,
+    to: SocketAddr,
+    passing: JoinSet<()>,
+}
+
+impl Relay {
+    pub(crate) async fn open(to: SocketAddr) -> Self {
+        let mut relay = Self {
+            address: (Ipv4Addr::LOCALHOST, 0).into(),
+            to,
+            passing: JoinSet::new(),
+        };
+        relay.mend().await;
+        relay
+    }
+
+    pub(crate) fn addr(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Ends the connections, and refuses others.
+    pub(crate) async fn cut(&mut self) {
+        self.passing.shutdown().await;
+    }
+
+    pub(crate) async fn mend(&mut self) {
+        let listener = timeout(SOON, async {
+            loop {
+                match TcpListener::bind(self.address).await {
+                    Ok(listener) => return listener,
+                    // The port is not free at once.
+                    Err(_) => sleep(Duration::from_millis(5)).await,
+                }
+            }
+        });
+        let listener = listener.await.expect("the port is free again");
+        self.address = listener.local_addr().expect("it is bound");
+        let to = self.to;
+        self.passing.spawn(async move {
+            loop {
+                let (mut client, _) = listener.accept().await.expect("it listens");
+                if let Ok(mut robot) = TcpStream::connect(to).await {
+                    // Until one side closes.
+                    let _ = copy_bidirectional(&mut client, &mut robot).await;
+                }
+            }
+        });
+    }
+}
+
+/// A simulator at no more than a thousand states per second, and the way to it.
+pub(crate) async fn relayed(sim: Sim) -> (Running, Relay) {
+    let sim = sim.ideal().tool(Tool::hand()).wait_for_commands(PATIENCE);
+    let sim = sim.start().await.expect("a simulator starts");
+    let relay = Relay::open(sim.addr()).await;
+    (sim, relay)
+}
+
 pub(crate) async fn supervised(sim: &Running, policy: Policy) -> Robot {
-    let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+    supervised_at(sim.addr(), policy).await
+}
+
+pub(crate) async fn supervised_at(address: SocketAddr, policy: Policy) -> Robot {
+    let builder = Robot::builder(address).realtime(Realtime::Ignore);
     let robot = builder.supervise(policy).connect().await;
     robot.expect("a simulator takes a client")
 }

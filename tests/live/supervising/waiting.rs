@@ -12,28 +12,30 @@ use franka_sim::Sim;
 use tokio::task::JoinHandle;
 use tokio::time::timeout;
 
-use super::{condition, policy, restart, start, supervised};
+use super::{condition, policy, relayed, restart, small_motion, start, supervised, supervised_at};
 use crate::{SOON, alone};
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn motions_wait_for_a_robot_and_begin_for_whoever_awaits_them_only() {
     let _alone = alone();
-    let sim = start(Sim::fr3()).await;
-    let address = sim.addr();
-    let robot = supervised(&sim, policy().motions_wait(SOON)).await;
+    let (sim, mut way) = relayed(Sim::fr3()).await;
+    let robot = supervised_at(way.addr(), policy().motions_wait(SOON)).await;
     let q = robot.state().q;
     let target = |joint: usize| {
         let mut q = q;
         q[joint] += 0.05;
         q
     };
-    sim.stop().await;
+    way.cut().await;
     condition(&robot, Condition::Unready(Unready::Disconnected)).await;
     let superseded = asked_for(robot.move_joints(target(0))).await;
     let stopped = asked_for(robot.move_joints(target(1))).await;
     assert_eq!(superseded.await.unwrap(), Err(MotionError::Superseded));
-    // Without a connection it is not known whether the arm rests.
-    robot.stop().await.unwrap_err();
+    // Without a connection it is not known whether the arm rests: it waits for one.
+    let mut stop = Box::pin(robot.stop());
+    let first = poll_fn(|context| Poll::Ready(stop.as_mut().poll(context))).await;
+    assert!(first.is_pending(), "{first:?}");
+    drop(stop);
     assert_eq!(stopped.await.unwrap(), Err(MotionError::Stopped));
     // Dropped, detached, and cancelled.
     let dropped = asked_for(robot.move_joints(target(2))).await;
@@ -46,7 +48,7 @@ async fn motions_wait_for_a_robot_and_begin_for_whoever_awaits_them_only() {
     assert_eq!(cancelled.await.unwrap(), Err(MotionError::Stopped));
     robot.move_joints(target(4)).detach();
 
-    let sim = restart(address).await;
+    way.mend().await;
     condition(&robot, Condition::Ready).await;
     crate::robot_time(&robot, 300).await;
     let state = sim.state().await.unwrap();
@@ -55,23 +57,23 @@ async fn motions_wait_for_a_robot_and_begin_for_whoever_awaits_them_only() {
         assert!((before - now).abs() < 1e-6, "nobody awaits a motion");
     }
 
-    sim.stop().await;
+    way.cut().await;
     condition(&robot, Condition::Unready(Unready::Disconnected)).await;
     let waiting = asked_for(robot.move_joints(target(5))).await;
-    let sim = restart(address).await;
+    way.mend().await;
     let outcome = timeout(SOON, waiting).await.expect("no hang").unwrap();
     outcome.expect("it arrives");
     let moved = sim.state().await.unwrap().q[5] - q[5];
     assert!((moved - 0.05).abs() < 2e-3, "{moved}");
 
     // A session waits likewise.
-    sim.stop().await;
+    way.cut().await;
     condition(&robot, Condition::Unready(Unready::Disconnected)).await;
     let engaging = tokio::spawn({
         let robot = robot.clone();
         async move { robot.engage(Engage::default()).await }
     });
-    let sim = restart(address).await;
+    way.mend().await;
     let arm = timeout(SOON, engaging).await.expect("no hang").unwrap();
     let arm = arm.expect("the session begins");
     arm.disengage().await.expect("it ends");
@@ -82,14 +84,13 @@ async fn motions_wait_for_a_robot_and_begin_for_whoever_awaits_them_only() {
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_motion_that_waits_begins_paused_if_it_was_paused_last() {
     let _alone = alone();
-    let sim = start(Sim::fr3()).await;
-    let (address, q) = (sim.addr(), sim.state().await.unwrap().q);
-    let robot = supervised(&sim, policy().motions_wait(SOON)).await;
+    let (sim, mut way) = relayed(Sim::fr3()).await;
+    let q = sim.state().await.unwrap().q;
+    let robot = supervised_at(way.addr(), policy().motions_wait(SOON)).await;
     let mut target = q;
     target[6] += 0.05;
-    let mut sim = sim;
     for resumed in [false, true] {
-        sim.stop().await;
+        way.cut().await;
         condition(&robot, Condition::Unready(Unready::Disconnected)).await;
         let motion = robot.move_joints(target);
         let handle = motion.handle();
@@ -98,7 +99,7 @@ async fn a_motion_that_waits_begins_paused_if_it_was_paused_last() {
         if resumed {
             handle.resume();
         }
-        sim = restart(address).await;
+        way.mend().await;
         condition(&robot, Condition::Ready).await;
         if !resumed {
             crate::shown(&robot, || handle.progress()).await;
@@ -114,6 +115,35 @@ async fn a_motion_that_waits_begins_paused_if_it_was_paused_last() {
         let moved = sim.state().await.unwrap().q[6] - q[6];
         assert!((moved - 0.05).abs() < 2e-3, "{moved}");
     }
+    robot.shutdown().await;
+    sim.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn motion_that_waits_does_not_begin_with_a_robot_that_was_restarted() {
+    let _alone = alone();
+    let sim = start(Sim::fr3()).await;
+    let address = sim.addr();
+    let robot = supervised(&sim, policy().motions_wait(SOON)).await;
+    small_motion(&robot).await.expect("it is ready");
+    let mut target = robot.state().q;
+    target[5] += 0.05;
+    sim.stop().await;
+    condition(&robot, Condition::Unready(Unready::Disconnected)).await;
+    let waiting = asked_for(robot.move_joints(target)).await;
+    let sim = restart(address).await;
+    let outcome = timeout(SOON, waiting).await.expect("no hang").unwrap();
+    let Err(MotionError::NotReady {
+        why: Unready::Unrecognised(what),
+        ..
+    }) = outcome
+    else {
+        panic!("{outcome:?}")
+    };
+    assert!(what.clock && !what.description && !what.frames, "{what}");
+    condition(&robot, Condition::Ready).await;
+    // Whoever asks now takes it as it is.
+    small_motion(&robot).await.expect("motions are admitted");
     robot.shutdown().await;
     sim.stop().await;
 }

@@ -52,6 +52,10 @@ impl Chronicle {
                 (self.is_connected, self.was_connected) = (true, true);
                 "connected"
             }
+            EventKind::Unrecognised { differences } => {
+                assert!(self.is_connected && !differences.is_empty());
+                "unrecognised"
+            }
             EventKind::Lost { .. } => {
                 assert!(self.is_connected);
                 self.is_connected = false;

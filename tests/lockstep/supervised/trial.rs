@@ -8,7 +8,7 @@ use franka_model::{READY, RobotKind};
 use franka_proto::{Errors, RobotError, RobotMode};
 use franka_rt::lifecycle::{MotionError, Unready};
 use franka_rt::session::{GoalId, Target};
-use franka_rt::supervision::{Backoff, Condition, Policy};
+use franka_rt::supervision::{Backoff, Condition, EventKind, Policy};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
@@ -121,6 +121,10 @@ pub(super) struct Trial {
     /// A person's answers to come: when, to which reflex, and whether it is yes.
     answers: Vec<(u64, u64, bool)>,
     agreed: BTreeSet<u64>,
+    /// Reflexes of a robot that was not recognised.
+    unrecognised: BTreeSet<u64>,
+    /// Whether it was started again since it was last connected to.
+    is_restarted: bool,
     /// When it was last asked to connect, since the connection was lost.
     attempt: Option<u64>,
     /// Motions that have waited and begun.
@@ -143,6 +147,8 @@ impl Trial {
             recoveries: VecDeque::new(),
             answers: Vec::new(),
             agreed: BTreeSet::new(),
+            unrecognised: BTreeSet::new(),
+            is_restarted: false,
             attempt: None,
             waited: 0,
             chronicle: Chronicle::default(),
@@ -235,7 +241,10 @@ impl Trial {
         while let Some((&end, _)) = self.ends.iter().find(|(_, at)| **at <= now) {
             self.ends.remove(&end);
             match end {
-                End::Restart => self.robot.restart(),
+                End::Restart => {
+                    self.robot.restart();
+                    self.is_restarted = true;
+                }
                 End::Release => self.robot.robot().press_user_stop(false),
                 End::LetGo => drop(self.robot.robot().guide(false)),
                 End::Open => self.robot.robot().open_brakes(),
@@ -265,7 +274,10 @@ impl Trial {
                     self.judge_recovery(reflex, errors);
                 }
                 Asked::Agreement(reflex) => {
-                    assert!(self.rules.asks);
+                    assert!(self.rules.asks || reflex.differences.is_some());
+                    if reflex.differences.is_some() {
+                        self.unrecognised.insert(reflex.number);
+                    }
                     let at = self.robot.now() + self.random.random_range(0..1500);
                     match self.random.random_range(0..10) {
                         0 => {}
@@ -285,6 +297,13 @@ impl Trial {
         }
         for event in std::mem::take(&mut self.robot.events) {
             self.chronicle.take(&event);
+            match event.kind {
+                EventKind::Unrecognised { differences } => {
+                    assert!(self.is_restarted, "{differences}");
+                }
+                EventKind::Lost { .. } => self.is_restarted = false,
+                _ => {}
+            }
         }
         if self.robot.health().condition != Condition::Unready(Unready::Disconnected) {
             self.attempt = None;
@@ -338,7 +357,8 @@ impl Trial {
             assert_eq!(errors, Errors::from(only));
         }
         assert!(
-            !self.rules.asks || self.agreed.contains(&reflex),
+            !self.rules.asks && !self.unrecognised.contains(&reflex)
+                || self.agreed.contains(&reflex),
             "{reflex}"
         );
     }
@@ -368,7 +388,9 @@ impl Trial {
             assert!(self.robot.now() < deadline, "{health:?}");
             if matches!(
                 health.condition,
-                Condition::Unready(Unready::Reflex | Unready::AgreementAwaited)
+                Condition::Unready(
+                    Unready::Reflex | Unready::AgreementAwaited | Unready::Unrecognised(_)
+                )
             ) && self.robot.state().robot_mode == RobotMode::Reflex
             {
                 // A person does what the policy leaves.

@@ -83,6 +83,92 @@ fn it_gives_up_as_told_and_when_another_robot_answers() {
     assert_eq!(robot.told.last(), Some(&EventKind::Closed { reason }));
 }
 
+/// A robot that was restarted, and an arm that was moved meanwhile.
+const CHANGES: [fn(&mut RobotState); 4] = [
+    |state| state.message_id = 1,
+    |state| state.q[3] += 0.02,
+    |state| state.F_T_NE[14] += 0.1,
+    |state| state.message_id += 3_600_000,
+];
+
+/// Loses the connection and makes it again with a robot that has changed; returns what is told to
+/// differ.
+fn change(robot: &mut Supervised, change: fn(&mut RobotState), mode: RobotMode) -> Differences {
+    robot.lose(CloseReason::ClosedByPeer);
+    robot.release();
+    robot.pass(3000);
+    robot.goes_on();
+    change(&mut robot.state);
+    robot.state.robot_mode = mode;
+    assert!(robot.connect_as_it_is());
+    let told = robot.told.iter().find_map(|kind| match kind {
+        EventKind::Unrecognised { differences } => Some(*differences),
+        _ => None,
+    });
+    told.expect("something differs")
+}
+
+#[test]
+fn robot_that_is_not_recognised_is_recovered_only_by_agreement() {
+    for changed in CHANGES {
+        let mut robot = Supervised::ready(without_chance().recover(100, WINDOW));
+        robot.state.errors = COLLISION.into();
+        let differences = change(&mut robot, changed, RobotMode::Reflex);
+        assert!(robot.recoveries().is_empty(), "{differences}");
+        let why = Unready::Unrecognised(differences);
+        assert_eq!(robot.condition(), Condition::Unready(why));
+        let asked = robot.asked.iter().find_map(|output| match output {
+            Output::Ask(reflex) => Some(reflex.clone()),
+            _ => None,
+        });
+        let asked = asked.expect("somebody is asked");
+        assert_eq!(asked.differences, Some(differences));
+        let now = MS(robot.now);
+        assert!(robot.after(|it| it.agree(asked.number, true, now)));
+        assert_eq!(robot.recoveries(), [asked.number]);
+        robot.answers(asked.number, Ok(()));
+        robot.recovers();
+        assert_eq!(robot.condition(), Condition::Ready);
+        // From now on it is known.
+        robot.reflex([COLLISION]);
+        assert_eq!(robot.recoveries(), [asked.number, asked.number + 1]);
+    }
+}
+
+#[test]
+fn motion_does_not_wait_for_a_robot_that_is_not_recognised() {
+    for changed in CHANGES {
+        let mut robot = Supervised::ready(without_chance().motions_wait(MS(60_000)));
+        robot.lose(CloseReason::ClosedByPeer);
+        assert!(matches!(robot.submit(1), Admission::Wait));
+        robot.release();
+        robot.goes_on();
+        changed(&mut robot.state);
+        assert!(robot.connect_as_it_is());
+        let motions = robot.motions();
+        let [(1, Some(MotionError::NotReady { why, .. }))] = &motions[..] else {
+            panic!("{motions:?}")
+        };
+        assert!(matches!(why, Unready::Unrecognised(_)), "{why}");
+        // Whoever asks now takes it as it is.
+        assert_eq!(robot.condition(), Condition::Ready);
+        assert!(matches!(robot.submit(2), Admission::Begin));
+    }
+}
+
+#[test]
+fn robot_that_is_recognised_is_recovered_as_before() {
+    let mut robot = Supervised::ready(without_chance().recover(100, WINDOW));
+    robot.lose(CloseReason::ClosedByPeer);
+    robot.release();
+    robot.pass(30_000);
+    robot.state.errors = COLLISION.into();
+    robot.state.robot_mode = RobotMode::Reflex;
+    robot.state.q[3] += 1e-3;
+    assert!(robot.connect());
+    assert_eq!(robot.recoveries().len(), 1);
+}
+
 #[test]
 fn what_this_program_closes_is_not_made_again() {
     for reason in [CloseReason::ClosedByUs, CloseReason::RuntimeEnded] {
@@ -120,6 +206,7 @@ fn a_robot_that_is_only_watched_tells_what_happens_and_asks_for_nothing() {
             number: 1,
             errors: COLLISION.into(),
             error: None,
+            differences: None,
         }),
         EventKind::NotRecovered {
             reflex: 1,

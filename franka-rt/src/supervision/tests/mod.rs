@@ -13,7 +13,7 @@ use franka_proto::{
 
 use super::*;
 use crate::driver::{Commander, ControlLog};
-use crate::lifecycle::{Outcome, Stage};
+use crate::lifecycle::{Differences, Outcome, Stage};
 use crate::session::{Goal, OnArrival, Target};
 use crate::stats::MotionStatistics;
 use crate::together::StartBarrier;
@@ -56,9 +56,19 @@ impl Supervised {
         this
     }
 
+    /// The clock of a robot that is not restarted.
+    fn goes_on(&mut self) {
+        self.state.message_id = (self.state.message_id + 1).max(self.now + 1);
+    }
+
     fn connect(&mut self) -> bool {
+        self.goes_on();
+        self.connect_as_it_is()
+    }
+
+    fn connect_as_it_is(&mut self) -> bool {
         let (state, now) = (self.state, MS(self.now));
-        self.after(|it| it.on_connected(&state, &[], now))
+        self.after(|it| it.on_connected(Some(1), &state, &[], now))
     }
 
     fn after<T>(&mut self, act: impl FnOnce(&mut Supervision) -> T) -> T {
@@ -87,7 +97,7 @@ impl Supervised {
     }
 
     fn shows(&mut self, robot_mode: RobotMode) {
-        self.state.message_id += 1;
+        self.goes_on();
         self.state.robot_mode = robot_mode;
         let (state, now) = (self.state, MS(self.now));
         self.after(|it| it.on_state(&state, now));

@@ -56,11 +56,7 @@ fn latched_stop_refuses_every_motion_until_released_across_connections() {
     let latched = not_ready(Unready::StopLatched, 0);
     for policy in [
         None,
-        Some(
-            without_chance()
-                .recover(3, WINDOW)
-                .motions_wait(MS(60_000)),
-        ),
+        Some(without_chance().recover(3, WINDOW).motions_wait(MS(60_000))),
     ] {
         let mut robot = Supervised::connected(policy);
         let refused = |robot: &mut Supervised, id| match robot.submit(id) {
