@@ -5,21 +5,22 @@
 //! then connect to `ws://localhost:8080/teleoperation` and send
 //!
 //! ```text
-//! {"type": "take"}
+//! {"type": "take", "name": "Ada"}                                               the name may be missing
 //! {"type": "target", "position": [0.3, 0.1, 0.5], "quaternion": [1, 0, 0, 0]}   at any rate
 //! {"type": "alive"}                                                             without a target
 //! {"type": "release"}
-//! {"type": "recover"}                                                           from a reflex, without the lease
+//! {"type": "stop"}                                                              from anyone
+//! {"type": "recover"}                                                           from a reflex, while the lease is free
 //! ```
 
-mod lease;
 mod messages;
+mod session;
 
-use std::sync::Arc;
-use std::time::Duration;
+use std::net::SocketAddr;
+use std::time::{Duration, Instant};
 
 use axum::Router;
-use axum::extract::State;
+use axum::extract::{ConnectInfo, State};
 use axum::extract::ws::{Message, WebSocket, WebSocketUpgrade};
 use axum::response::Response;
 use axum::routing::get;
@@ -27,11 +28,10 @@ use clap::Parser;
 use franka_async::Robot;
 use franka_async::connection::CancellationToken;
 use franka_examples::{Serving, admit, seconds, serve_until_told};
-use tokio::sync::Semaphore;
 use tokio::time::{MissedTickBehavior, interval, timeout};
 
-use lease::Lease;
 use messages::{Reply, Request, refused};
+use session::Session;
 
 #[derive(Parser)]
 struct Arguments {
@@ -46,8 +46,6 @@ struct Arguments {
 #[derive(Clone)]
 struct Service {
     robot: Robot,
-    /// Has one permit: the lease.
-    free: Arc<Semaphore>,
     silence: Duration,
     closing: CancellationToken,
 }
@@ -59,12 +57,8 @@ async fn main() -> anyhow::Result<()> {
     let closing = CancellationToken::new();
     let service = Service {
         robot: robot.clone(),
-        free: Arc::new(Semaphore::new(1)),
         silence,
         closing: closing.clone(),
-    };
-    let connect = async |service: State<Service>, upgrade: WebSocketUpgrade| -> Response {
-        upgrade.on_upgrade(|socket| service.0.attend(socket))
     };
     let app = Router::new()
         .route("/teleoperation", get(connect))
@@ -78,29 +72,37 @@ async fn main() -> anyhow::Result<()> {
     .await
 }
 
+async fn connect(
+    service: State<Service>,
+    peer: ConnectInfo<SocketAddr>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    upgrade.on_upgrade(move |socket| service.0.attend(socket, peer.0))
+}
+
 impl Service {
-    /// Attends to a socket until it ends. Whatever ends it, its lease is dropped here, and with
+    /// Attends to a socket until it ends. Whatever ends it, its session is dropped here, and with
     /// that the arm brakes.
-    async fn attend(self, mut socket: WebSocket) {
-        let mut lease = None;
+    async fn attend(self, mut socket: WebSocket, peer: SocketAddr) {
+        let mut session = None;
         let mut clock = interval(Duration::from_millis(20));
         clock.set_missed_tick_behavior(MissedTickBehavior::Skip);
         loop {
             let reply = tokio::select! {
                 message = socket.recv() => match message {
-                    Some(Ok(Message::Text(text))) => self.answer(&text, &mut lease).await,
+                    Some(Ok(Message::Text(text))) => self.answer(&text, &mut session, peer).await,
                     // Libraries answer pings, whatever became of the program that uses them: only
                     // messages of the program itself keep the lease.
                     Some(Ok(Message::Ping(_) | Message::Pong(_) | Message::Binary(_))) => None,
                     Some(Ok(Message::Close(_))) => {
-                        drop(lease);
+                        drop(session);
                         // Reading on answers the farewell.
                         let _ = socket.recv().await;
                         return;
                     }
                     Some(Err(_)) | None => return,
                 },
-                reply = Lease::trouble(&mut lease) => Some(reply),
+                reply = Session::trouble(&mut session) => Some(reply),
                 _ = clock.tick() => Some(Reply::state(&self.robot)),
                 () = self.closing.cancelled() => return,
             };
@@ -114,41 +116,66 @@ impl Service {
         }
     }
 
-    async fn answer(&self, text: &str, lease: &mut Option<Lease>) -> Option<Reply> {
+    async fn answer(
+        &self,
+        text: &str,
+        session: &mut Option<Session>,
+        peer: SocketAddr,
+    ) -> Option<Reply> {
         let request = match serde_json::from_str(text) {
             Ok(request) => request,
             Err(error) => return Some(refused(error)),
         };
-        let Some(held) = lease else {
-            if !matches!(request, Request::Take | Request::Recover) {
-                return Some(refused("this socket does not have the lease"));
-            }
-            let Ok(permit) = self.free.clone().try_acquire_owned() else {
-                return Some(refused("another socket has the lease"));
-            };
-            if matches!(request, Request::Recover) {
-                let recovered = self.robot.recover().await;
-                return Some(recovered.map_or_else(refused, |()| Reply::Recovered));
-            }
-            *lease = match Lease::begin(&self.robot, permit, self.silence).await {
-                Ok(begun) => Some(begun),
-                Err(error) => return Some(refused(error)),
-            };
-            return Some(Reply::Taken);
+        if matches!(request, Request::Stop) {
+            let stopped = self.robot.stop().await;
+            return Some(stopped.map_or_else(refused, |()| Reply::Stopped));
+        }
+        let Some(held) = session else {
+            return Some(match request {
+                Request::Take { name } => match self.take(name, peer).await {
+                    Ok(begun) => {
+                        *session = Some(begun);
+                        Reply::Taken
+                    }
+                    Err(refused) => refused,
+                },
+                Request::Recover => self.recover(peer).await.unwrap_or_else(|refused| refused),
+                _ => refused("this socket does not have the lease"),
+            });
         };
-        held.keep_alive();
+        if let Err(lost) = held.keep_alive() {
+            *session = None;
+            let why = lost.to_string();
+            return Some(Reply::Lost { why });
+        }
         match request {
             Request::Target(target) => match target.pose() {
                 Some(pose) => held.head_for(pose),
                 None => return Some(refused("the quaternion is no rotation")),
             },
-            Request::Take | Request::Alive => {}
+            Request::Take { .. } | Request::Alive | Request::Stop => {}
             Request::Recover => return Some(refused("release the lease first")),
             Request::Release => {
-                *lease = None;
+                *session = None;
                 return Some(Reply::Released);
             }
         }
         None
+    }
+
+    async fn take(&self, name: Option<String>, peer: SocketAddr) -> Result<Session, Reply> {
+        let name = name.unwrap_or_else(|| peer.to_string());
+        let holder = self.robot.lease().take(name, self.silence, Instant::now());
+        let holder = holder.map_err(refused)?;
+        Session::begin(&self.robot, holder).await.map_err(refused)
+    }
+
+    /// Recovers the robot for a client that holds the lease meanwhile.
+    async fn recover(&self, peer: SocketAddr) -> Result<Reply, Reply> {
+        let lease = self.robot.lease();
+        let holder = lease.take(peer.to_string(), Duration::MAX, Instant::now());
+        let _holder = holder.map_err(refused)?;
+        self.robot.recover().await.map_err(refused)?;
+        Ok(Reply::Recovered)
     }
 }

@@ -7,11 +7,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Request {
-    Take,
+    Take {
+        /// Other clients are told who holds the lease: this, or the address of the socket.
+        name: Option<String>,
+    },
     Target(Placement),
     Alive,
     Release,
     Recover,
+    Stop,
 }
 
 /// To a client.
@@ -29,6 +33,8 @@ pub(crate) enum Reply {
     },
     Released,
     Recovered,
+    /// The arm rests.
+    Stopped,
     State {
         time: u64,
         mode: String,

@@ -4,14 +4,16 @@
 //! `cargo run --release --features grpc --example tonic_service`, then `-- ADDRESS` for the robot
 //! there, and `--listen 127.0.0.1:8080` for another port
 
+use std::net::SocketAddr;
 use std::pin::Pin;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::Parser;
 use franka_async::Robot;
 use franka_async::connection::CancellationToken;
 use franka_async::connection::admission::Refused;
 use franka_async::goal::{Lead, OnTimeout};
+use franka_async::lease::Holder;
 use franka_examples::{Serving, serve_until_told};
 use tokio::sync::{mpsc, watch};
 use tokio_stream::wrappers::{ReceiverStream, TcpListenerStream};
@@ -104,12 +106,12 @@ impl Arm for Service {
     }
 
     async fn move_to(&self, request: Request<MoveRequest>) -> Result<Response<Arrival>, Status> {
-        self.is_open()?;
+        let _holder = self.lease(request.remote_addr())?;
         let MoveRequest { target, speed } = request.into_inner();
         let target = target.ok_or_else(|| Status::invalid_argument("no target"))?;
         let target = target.to_isometry(&self.robot.pose())?;
         let speed = if speed == 0.0 { 1.0 } else { speed };
-        // Dropped if the call is cancelled, which brakes the arm.
+        // Dropped if the call is cancelled, which brakes the arm. The lease is free then.
         let moving = self.robot.move_to(target).speed(speed);
         let report = moving.await.map_err(status)?;
         Ok(Response::new(Arrival {
@@ -122,11 +124,11 @@ impl Arm for Service {
         &self,
         request: Request<Streaming<Pose>>,
     ) -> Result<Response<Answers<State>>, Status> {
-        self.is_open()?;
+        let holder = self.lease(request.remote_addr())?;
         let (robot, (states, answers)) = (self.robot.clone(), mpsc::channel(1));
         tokio::spawn(async move {
             let end = tokio::select! {
-                end = follow(&robot, request.into_inner(), &states) => end,
+                end = follow(&robot, holder, request.into_inner(), &states) => end,
                 () = states.closed() => return, // the caller has gone: the arm brakes
             };
             if let Err(status) = end {
@@ -148,18 +150,22 @@ impl Arm for Service {
 }
 
 impl Service {
-    fn is_open(&self) -> Result<(), Status> {
-        match self.closing.is_cancelled() {
-            true => Err(Status::unavailable("the service is ending")),
-            false => Ok(()),
+    /// Takes the lease for a call: it ends with the call, and there is no silence to watch for.
+    fn lease(&self, peer: Option<SocketAddr>) -> Result<Holder, Status> {
+        if self.closing.is_cancelled() {
+            return Err(Status::unavailable("the service is ending"));
         }
+        let name = peer.map_or_else(|| "unknown".to_owned(), |peer| peer.to_string());
+        let holder = self.robot.lease().take(name, Duration::MAX, Instant::now());
+        holder.map_err(|taken| Status::failed_precondition(taken.to_string()))
     }
 }
 
 /// Follows the caller's targets to their end, and answers with states at 50 Hz. The motion is
-/// dropped, and the arm braked, with this future.
+/// dropped, and the arm braked, with this future; then the lease is free.
 async fn follow(
     robot: &Robot,
+    _holder: Holder,
     mut targets: Streaming<Pose>,
     states: &mpsc::Sender<Result<State, Status>>,
 ) -> Result<(), Status> {

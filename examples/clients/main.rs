@@ -62,7 +62,7 @@ fn job(address: &str) -> anyhow::Result<()> {
 
 fn lead(address: &str) -> anyhow::Result<()> {
     let (mut socket, _) = tungstenite::connect(format!("ws://{address}/teleoperation"))?;
-    let take = json!({ "type": "take" });
+    let take = json!({ "type": "take", "name": "the client" });
     socket.send(take.to_string().into())?;
     let (mut start, mut targets) = (None, 0);
     // A target for each state.

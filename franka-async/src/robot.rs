@@ -24,6 +24,7 @@ use tokio_util::sync::DropGuard;
 use crate::command_channel::Channel;
 use crate::end_effector_pose::{pose_at, pose_of};
 use crate::input::{Beginning, EndReply, Input, Replies};
+use crate::lease::Lease;
 use crate::link::Link;
 use crate::progress::Reference;
 use crate::state_model::StateModel;
@@ -68,6 +69,7 @@ struct Shared {
     _handles: DropGuard,
     /// How many goals were named so far, whatever the connection.
     goals: AtomicU64,
+    lease: Lease,
 }
 
 impl Robot {
@@ -94,6 +96,7 @@ impl Robot {
                 runtime: Handle::current(),
                 _handles: handles,
                 goals: AtomicU64::new(0),
+                lease: Lease::default(),
             }),
         }
     }
@@ -197,6 +200,11 @@ impl Robot {
     /// Where the robot is.
     pub fn address(&self) -> SocketAddr {
         self.link().address
+    }
+
+    /// Returns the lease of the arm, for services whose clients move it. It outlives connections.
+    pub fn lease(&self) -> &Lease {
+        &self.shared.lease
     }
 
     /// Counters and histograms of the control thread, its worst cycle and the motion that runs,

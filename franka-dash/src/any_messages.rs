@@ -2,6 +2,9 @@
 //! of a test, and of the fuzz target `dashboard`.
 
 use core::time::Duration;
+use std::time::Instant;
+
+use franka_async::lease::Lease;
 
 use crate::authority::{Authority, DEADMAN, Effect, LEASE, Permissions};
 use crate::request::Request;
@@ -21,7 +24,7 @@ pub(crate) fn check(bytes: &[u8]) {
         recording: permitted & 8 != 0,
         patience: Duration::ZERO,
     };
-    let mut authority = Authority::new(permissions);
+    let mut authority = Authority::new(permissions, Lease::default(), Instant::now());
     let (mut now, mut fed) = (Duration::ZERO, Duration::ZERO);
     for line in bytes.split(|byte| *byte == b'\n') {
         let [viewer, wait, text @ ..] = line else {

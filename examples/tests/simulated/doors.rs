@@ -139,10 +139,7 @@ fn services_with_a_token_refuse_clients_without_it() {
 fn a_foreign_grpc_call_moves_nothing() {
     let arm = Arm::by_the_clock("fr3");
     let (_service, address) = Beside::serve("tonic_service", &arm.address, &[]);
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build();
-    runtime.expect("a runtime starts").block_on(async {
+    with_clients(async {
         let connect = async |authority: &str| {
             let endpoint = Endpoint::from_shared(format!("http://{address}")).expect("a URI");
             let endpoint = endpoint.origin(authority.parse().expect("a URI"));
@@ -181,6 +178,82 @@ fn a_foreign_grpc_call_moves_nothing() {
         }
     });
     stayed(arm, "tonic_service");
+}
+
+/// Runs clients in this process.
+fn with_clients(test: impl Future<Output = ()>) {
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build();
+    runtime.expect("a runtime starts").block_on(test);
+}
+
+#[test]
+fn grpc_calls_need_the_token() {
+    let arm = Arm::by_the_clock("fr3");
+    let (mut service, address) = Beside::serve("tonic_service", &arm.address, &["--new-token"]);
+    let token = service.said("token ");
+    with_clients(async {
+        let call = async |authority: &str, bearer: Option<&str>| {
+            let endpoint = Endpoint::from_shared(format!("http://{address}")).expect("a URI");
+            let endpoint = endpoint.origin(authority.parse().expect("a URI"));
+            let mut client = ArmClient::new(endpoint.connect().await.expect("it listens"));
+            let mut request = tonic::Request::new(());
+            if let Some(bearer) = bearer {
+                let value = bearer.parse().expect("text");
+                request.metadata_mut().insert("authorization", value);
+            }
+            client.recover(request).await.map_err(|status| status.code())
+        };
+        let own = format!("http://{address}");
+        let right = format!("Bearer {token}");
+        let wrong = format!("Bearer {}", "wrong-".repeat(8));
+        for bearer in [None, Some(""), Some("Bearer "), Some(&wrong), Some(&token)] {
+            let code = call(&own, bearer).await.expect_err("it is refused");
+            assert_eq!(code, Code::Unauthenticated, "{bearer:?}");
+        }
+        let rebound = call("http://evil.example", Some(&right)).await;
+        assert_eq!(rebound.expect_err("it is refused"), Code::PermissionDenied);
+        // The robot has nothing to recover from; that answer is its own.
+        let answered = call(&own, Some(&right)).await;
+        assert!(matches!(answered, Ok(_) | Err(Code::FailedPrecondition)));
+    });
+    stayed(arm, "tonic_service");
+}
+
+/// The first caller keeps the arm, and the second is told its name. A stop needs no lease.
+#[test]
+fn second_grpc_caller_is_refused_and_stops() {
+    let arm = Arm::by_the_clock("fr3");
+    let (_service, address) = Beside::serve("tonic_service", &arm.address, &[]);
+    let start = arm.state();
+    let first = Beside::start("client", &["move", &address]);
+    arm.wait_until_it_moves();
+    with_clients(async {
+        let connect = ArmClient::connect(format!("http://{address}")).await;
+        let mut second = connect.expect("the service listens");
+        let state = second.get_state(()).await.expect("a state").into_inner();
+        let mut target = state.pose.expect("a pose");
+        target.position[1] += 0.1;
+        let order = MoveRequest {
+            target: Some(target.clone()),
+            speed: 1.0,
+        };
+        let refused = second.move_to(order).await.expect_err("it is refused");
+        assert_eq!(refused.code(), Code::FailedPrecondition, "{refused}");
+        let named = refused.message().starts_with("\"127.0.0.1:");
+        assert!(named && refused.message().contains("holds the lease"), "{refused}");
+        let targets = tokio_stream::iter([target]);
+        let refused = second.follow_targets(targets).await;
+        let refused = refused.expect_err("it is refused");
+        assert_eq!(refused.code(), Code::FailedPrecondition, "{refused}");
+        let state = second.get_state(()).await.expect("a state").into_inner();
+        assert_eq!(state.mode, "Move", "the first goes on");
+        second.stop(()).await.expect("the arm rests");
+    });
+    drop(first);
+    let sideways = arm.rests().O_T_EE[13] - start.O_T_EE[13];
+    assert!(sideways.abs() < 1e-3, "{sideways} m");
 }
 
 #[test]

@@ -56,7 +56,8 @@ impl Client {
             if answer["type"] == "taken" {
                 return;
             }
-            assert_eq!(answer["why"], "another socket has the lease");
+            let why = answer["why"].as_str().expect("a reason");
+            assert!(why.contains("holds the lease"), "{why}");
         }
         panic!("the lease was never free");
     }
@@ -89,12 +90,16 @@ fn one_socket_has_the_lease_until_it_is_killed() {
     arm.wait_until_it_moves();
     let mut other = Client::connect(&address);
     assert_eq!(other.receive()["mode"], "Move", "everyone sees the states");
-    for (request, why) in [
-        ("take", "another socket has the lease"),
+    for (request, refused) in [
+        ("take", "\"the client\" holds the lease"),
+        ("recover", "\"the client\" holds the lease"),
         ("release", "this socket does not have the lease"),
+        ("alive", "this socket does not have the lease"),
     ] {
         other.send(json!({ "type": request }));
-        assert_eq!(other.answer(), json!({ "type": "refused", "why": why }));
+        let answer = other.answer();
+        let why = answer["why"].as_str().expect("a reason");
+        assert!(why.starts_with(refused), "{request}: {answer}");
     }
     // It is not the silence that ends the lease: that would last a minute.
     leader.kill();
@@ -135,11 +140,26 @@ fn a_silent_socket_is_told_that_its_lease_is_lost() {
     assert!(
         lost["why"]
             .as_str()
-            .is_some_and(|why| why.starts_with("held: ")),
+            .is_some_and(|why| why.contains("silent")),
         "{lost}"
     );
     arm.rests();
     client.take();
+}
+
+#[test]
+fn stop_is_open_to_every_socket_and_ends_the_lease() {
+    let arm = Arm::by_the_clock("fr3");
+    let (_service, address) = serve(&arm, "60");
+    let mut leader = Beside::start("client", &["lead", &address]);
+    leader.said("leading");
+    arm.wait_until_it_moves();
+    let mut other = Client::connect(&address);
+    other.send(json!({ "type": "stop" }));
+    assert_eq!(other.answer()["type"], "stopped");
+    arm.rests();
+    assert!(!leader.ended().success(), "it is told that its lease is lost");
+    other.take();
 }
 
 #[test]

@@ -57,7 +57,7 @@ export class Strip {
     const lease = document.getElementById("lease");
     lease.textContent = this.commands ? "Release" : hello && !may ? "View only" : "Take command";
     lease.title = hello && !may ? "this server was started without permission to move the arm" : "";
-    lease.disabled = !may || (status.commander !== null && !this.commands);
+    lease.disabled = !may || (status.name !== null && !this.commands);
     const moves = this.commands && hello?.motion_allowed;
     for (const it of document.querySelectorAll("#recover, #jog button, .joint button")) it.disabled = !moves;
     for (const it of document.querySelectorAll("[data-needs]")) {

@@ -8,17 +8,20 @@
 //! ```
 //!
 //! Requests and the time go in ([`Authority::handle`], [`Authority::tick`]); effects and refusals
-//! come out. Time is any monotonic count; one that goes back counts as standing still. A hold that
-//! has ended stays ended: only another `Begin` moves the arm.
+//! come out. Time is any monotonic count; one that goes back counts as standing still. The lease is
+//! that of the robot, which others may hold, too. A hold that has ended stays ended: only another
+//! `Begin` moves the arm.
 
 mod refusal;
 #[cfg(test)]
 mod tests;
 
 use core::time::Duration;
+use std::time::Instant;
 
 pub(crate) use refusal::Refusal;
 
+use franka_async::lease::{Holder, Lease};
 use serde::Serialize;
 
 use crate::request::{Disturbance, GripperAction, Motion, Request, Tuning};
@@ -44,9 +47,9 @@ pub(crate) struct Permissions {
 /// Who may command, and what is going on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Status {
-    /// Number of the viewer that has the lease.
+    /// Number of the viewer that has the lease; `None` for a holder that is no viewer.
     pub(crate) commander: Option<u64>,
-    /// The name that it gave.
+    /// Name of the holder of the lease.
     pub(crate) name: Option<String>,
     /// Whether a hold goes on.
     pub(crate) holding: bool,
@@ -123,16 +126,19 @@ pub(crate) struct Step {
 #[derive(Debug)]
 pub(crate) struct Authority {
     permissions: Permissions,
+    lease: Lease,
+    /// Time zero of `now`.
+    start: Instant,
     now: Duration,
-    lease: Option<Lease>,
+    commander: Option<Commander>,
     holds: u64,
 }
 
+/// The viewer that has the lease.
 #[derive(Debug)]
-struct Lease {
+struct Commander {
     viewer: ViewerId,
-    name: String,
-    heard: Duration,
+    holder: Holder,
     hold: Option<Hold>,
     expired: bool,
 }
@@ -145,23 +151,30 @@ struct Hold {
 }
 
 impl Authority {
-    pub(crate) fn new(permissions: Permissions) -> Self {
+    /// The commander holds `lease`. Time counts from `start`.
+    pub(crate) fn new(permissions: Permissions, lease: Lease, start: Instant) -> Self {
         Self {
             permissions,
+            lease,
+            start,
             now: Duration::ZERO,
-            lease: None,
+            commander: None,
             holds: 0,
         }
     }
 
     pub(crate) fn status(&self) -> Status {
-        let lease = self.lease.as_ref();
+        let commander = self.commander.as_ref();
         Status {
-            commander: lease.map(|lease| lease.viewer),
-            name: lease.map(|lease| lease.name.clone()),
-            holding: lease.is_some_and(|lease| lease.hold.is_some()),
-            expired: lease.is_some_and(|lease| lease.expired),
+            commander: commander.map(|commander| commander.viewer),
+            name: self.lease.holder(self.instant()),
+            holding: commander.is_some_and(|commander| commander.hold.is_some()),
+            expired: commander.is_some_and(|commander| commander.expired),
         }
+    }
+
+    fn instant(&self) -> Instant {
+        self.start + self.now
     }
 
     /// Takes a request of a viewer. `round_trip` is the newest one that was measured with it,
@@ -174,14 +187,19 @@ impl Authority {
         request: Request,
     ) -> Step {
         // A request cannot revive what its own lateness has ended.
-        let silent = self.tick(now);
-        if let Some(lease) = self.lease.as_mut().filter(|lease| lease.viewer == viewer) {
-            lease.heard = self.now;
+        let mut silent = self.tick(now);
+        let now = self.instant();
+        if let Some(commander) = self.commander_mut(viewer)
+            && commander.holder.keep_alive(now).is_err()
+        {
+            // Another service has looked at the lease since `now`.
+            silent = silent.or(self.lose());
         }
         let valid = request.check().map_err(Refusal::Value);
         let step = match request {
             Request::Stop {} => {
-                let hold = self.lease.as_mut().and_then(|lease| lease.hold.take());
+                let commander = self.commander.as_mut();
+                let hold = commander.and_then(|commander| commander.hold.take());
                 Ok(Step {
                     ended: hold.map(|_| Lost::Stopped),
                     ..effect(Effect::Stop)
@@ -204,50 +222,56 @@ impl Authority {
     /// Ends what has been silent for too long. To be called every few milliseconds.
     pub(crate) fn tick(&mut self, now: Duration) -> Option<Lost> {
         self.now = self.now.max(now);
-        let deadman = DEADMAN + self.permissions.patience;
-        let lease = self.lease.as_mut()?;
+        let (deadman, now) = (DEADMAN + self.permissions.patience, self.instant());
+        let commander = self.commander.as_mut()?;
         let silent = |hold: &mut Hold| self.now - hold.heard > deadman;
-        if lease.hold.take_if(silent).is_some() {
-            lease.expired = true;
-            return Some(Lost::Silent);
+        let lost = commander.hold.take_if(silent).map(|_| Lost::Silent);
+        commander.expired |= lost.is_some();
+        match commander.holder.is_held(now) {
+            true => lost,
+            false => lost.or(self.lose()),
         }
-        if self.now - lease.heard > LEASE {
-            self.lease = None;
-        }
-        None
+    }
+
+    /// Takes the command from a viewer that has lost the lease.
+    fn lose(&mut self) -> Option<Lost> {
+        let commander = self.commander.take()?;
+        commander.hold.map(|_| Lost::Silent)
     }
 
     /// A viewer has gone.
     pub(crate) fn gone(&mut self, viewer: ViewerId) -> Option<Lost> {
-        let lease = self.lease.take_if(|lease| lease.viewer == viewer)?;
-        lease.hold.map(|_| Lost::Disconnected)
+        let commander = self.commander.take_if(|it| it.viewer == viewer)?;
+        commander.hold.map(|_| Lost::Disconnected)
     }
 
     /// The motion of a hold has ended by itself.
     pub(crate) fn ended(&mut self, number: u64) {
-        if let Some(lease) = &mut self.lease {
-            lease.hold.take_if(|hold| hold.number == number);
+        if let Some(commander) = &mut self.commander {
+            commander.hold.take_if(|hold| hold.number == number);
         }
     }
 
     fn take(&mut self, viewer: ViewerId, name: String) -> Result<Step, Refusal> {
-        match &self.lease {
-            _ if !self.permissions.any() => return Err(Refusal::ViewOnly),
-            Some(lease) if lease.viewer != viewer => {
-                return Err(Refusal::Taken(lease.name.clone()));
-            }
-            Some(_) => {}
-            None => {
-                self.lease = Some(Lease {
-                    viewer,
-                    name,
-                    heard: self.now,
-                    hold: None,
-                    expired: false,
-                });
-            }
+        if !self.permissions.any() {
+            return Err(Refusal::ViewOnly);
+        }
+        if self.commander_mut(viewer).is_none() {
+            let silence = LEASE + self.permissions.patience;
+            let holder = self.lease.take(name, silence, self.instant())?;
+            self.commander = Some(Commander {
+                viewer,
+                holder,
+                hold: None,
+                expired: false,
+            });
         }
         Ok(Step::default())
+    }
+
+    /// Returns the commander, if it is this viewer.
+    fn commander_mut(&mut self, viewer: ViewerId) -> Option<&mut Commander> {
+        self.commander.as_mut().filter(|it| it.viewer == viewer)
     }
 
     /// What only the commander may ask for.
@@ -259,10 +283,11 @@ impl Authority {
         valid: Result<(), Refusal>,
     ) -> Result<Step, Refusal> {
         let may = self.permissions;
-        let lease = self.lease.as_mut().filter(|lease| lease.viewer == viewer);
-        let lease = lease.ok_or(Refusal::NoLease)?;
+        let now = self.now;
+        let commander = self.commander.as_mut().filter(|it| it.viewer == viewer);
+        let commander = commander.ok_or(Refusal::NoLease)?;
         if let Request::Begin { .. } = request
-            && let hold @ Some(_) = lease.hold.take()
+            && let hold @ Some(_) = commander.hold.take()
         {
             return Ok(Step {
                 refusal: Some(Refusal::Holding),
@@ -272,8 +297,8 @@ impl Authority {
         valid?;
         Ok(match request {
             Request::Release {} => {
-                let hold = lease.hold.take();
-                self.lease = None;
+                let hold = commander.hold.take();
+                self.commander = None;
                 ended(hold, Lost::Released)
             }
             Request::Begin { motion, speed } => {
@@ -288,11 +313,11 @@ impl Authority {
                     Some(_) => {}
                 }
                 self.holds += 1;
-                lease.expired = false;
-                lease.hold = Some(Hold {
+                commander.expired = false;
+                commander.hold = Some(Hold {
                     number: self.holds,
                     seq: 0,
-                    heard: self.now,
+                    heard: now,
                 });
                 effect(Effect::Begin {
                     hold: self.holds,
@@ -301,19 +326,19 @@ impl Authority {
                 })
             }
             Request::Hold { seq } => {
-                let hold = lease.hold.as_mut().ok_or(Refusal::NoHold)?;
+                let hold = commander.hold.as_mut().ok_or(Refusal::NoHold)?;
                 let expected = hold.seq.saturating_add(1);
                 if seq != expected {
                     let lost = Lost::Sequence { expected, got: seq };
-                    return Ok(ended(lease.hold.take(), lost));
+                    return Ok(ended(commander.hold.take(), lost));
                 }
                 hold.seq = seq;
-                hold.heard = self.now;
+                hold.heard = now;
                 effect(Effect::KeepAlive)
             }
             // Without effect if it has ended by itself in the meantime.
-            Request::End {} => ended(lease.hold.take(), Lost::LetGo),
-            Request::Speed { .. } if lease.hold.is_none() => return Err(Refusal::NoHold),
+            Request::End {} => ended(commander.hold.take(), Lost::LetGo),
+            Request::Speed { .. } if commander.hold.is_none() => return Err(Refusal::NoHold),
             Request::Speed { speed } => effect(Effect::Speed(speed)),
             Request::Disturb { disturbance } if may.disturbances => {
                 effect(Effect::Disturb(disturbance))

@@ -2,6 +2,8 @@
 
 use core::time::Duration;
 
+use franka_async::lease::Taken;
+
 use super::ROUND_TRIP_MAX;
 
 /// Why a request has no effect. The text says what was got and what is expected.
@@ -9,8 +11,8 @@ use super::ROUND_TRIP_MAX;
 pub(crate) enum Refusal {
     #[error("this server is view-only: it was started without permission to move the arm")]
     ViewOnly,
-    #[error("{0:?} commands; take over when the lease is released or has expired")]
-    Taken(String),
+    #[error(transparent)]
+    Taken(#[from] Taken),
     #[error("this viewer does not command; take the lease first")]
     NoLease,
     #[error("{0}")]

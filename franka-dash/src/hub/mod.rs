@@ -80,6 +80,8 @@ impl Hub {
                 None => Duration::ZERO,
             },
         };
+        let lease = source.robot().map(|robot| robot.lease().clone());
+        let (lease, start) = (lease.unwrap_or_default(), Instant::now());
         let hub = Arc::new(Self {
             permissions,
             news: broadcast::Sender::new(NEWS),
@@ -93,13 +95,13 @@ impl Hub {
             fingers: gripper.map(Fingers::new),
             recordings: recordings.map(|folder| Recordings::new(folder, writing)),
             command: Mutex::new(Command {
-                authority: Authority::new(permissions),
+                authority: Authority::new(permissions, lease, start),
                 hold: None,
                 settings: watch::Sender::default(),
             }),
             stopping: AtomicBool::new(false),
             viewers: AtomicU64::new(0),
-            start: Instant::now(),
+            start,
             began_ms: {
                 let since = SystemTime::now()
                     .duration_since(UNIX_EPOCH)

@@ -1,6 +1,6 @@
 //! A hold over a socket: it moves the arm, and what ends it has the arm rest.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde_json::json;
 
@@ -76,6 +76,27 @@ fn a_second_viewer_sees_stops_and_does_not_command() {
         commander.read().expect("the server has closed");
     }
     served.wait_for_rest();
+}
+
+/// A dashboard and another service of the same program, or two dashboards, share the robot's lease.
+#[test]
+fn lease_of_the_robot_is_shared_by_all_services() {
+    let served = Served::movable();
+    let mut viewer = Viewer::connect(served.address);
+    let silence = Duration::from_secs(60);
+    let lease = served.robot.lease();
+    let joystick = lease.take("a joystick", silence, Instant::now());
+    let joystick = joystick.expect("it is free");
+    viewer.wait_for_status(|status| status["name"] == "a joystick");
+    viewer.send(json!({"type": "take", "name": "a viewer"}));
+    assert!(viewer.refusal().contains("\"a joystick\" holds the lease"));
+    viewer.send(json!({"type": "begin", "motion": up(), "speed": 0.1}));
+    assert!(viewer.refusal().contains("take the lease"));
+    assert!(!served.robot.state().motion_running());
+    drop(joystick);
+    viewer.take();
+    let taken = lease.take("a joystick", silence, Instant::now());
+    assert_eq!(taken.expect_err("it is taken").name, "a test");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //!
 //! * `geometry`: robots that compute their poses with another geometry.
 //! * `lapses`: timeouts of streams and deadmen.
+//! * `leases`: sessions of clients that hold the lease of the arm.
 //! * `options`: gains, force cap and regions.
 //! * `backends`: the robot's own controller, and observers.
 //! * `chunks`: the end of chunks.
@@ -16,6 +17,7 @@ mod controllers;
 mod corners;
 mod geometry;
 mod lapses;
+mod leases;
 mod options;
 mod speed_cap;
 mod waiting;

@@ -20,6 +20,10 @@ const UP: Motion = Motion::Translate {
 /// An authority, and the time that it is told.
 struct Server {
     authority: Authority,
+    /// Of the robot.
+    lease: Lease,
+    /// Time zero.
+    start: Instant,
     now: Duration,
 }
 
@@ -35,8 +39,11 @@ impl Server {
     }
 
     fn with(permissions: Permissions) -> Self {
+        let (lease, start) = (Lease::default(), Instant::now());
         Self {
-            authority: Authority::new(permissions),
+            authority: Authority::new(permissions, lease.clone(), start),
+            lease,
+            start,
             now: Duration::ZERO,
         }
     }

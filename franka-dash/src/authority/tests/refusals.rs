@@ -1,11 +1,14 @@
 //! Who may command, and what is refused.
 
+use franka_async::lease::Taken;
+
 use super::*;
 
 #[test]
 fn a_second_viewer_commands_only_after_release_expiry_or_departure() {
     let mut server = Server::holding(3);
-    let taken = Refusal::Taken("a person".to_owned());
+    let name = "a person".to_owned();
+    let taken = Refusal::Taken(Taken { name });
     assert_eq!(server.take(OTHER).refusal, Some(taken.clone()));
     for request in [
         begin(0.05),
@@ -32,6 +35,55 @@ fn a_second_viewer_commands_only_after_release_expiry_or_departure() {
     assert_eq!(server.take(COMMANDER).refusal, None);
     server.authority.gone(COMMANDER);
     assert_eq!(server.take(OTHER).refusal, None);
+}
+
+#[test]
+fn lease_of_another_service_keeps_viewers_from_commanding() {
+    let mut server = Server::new();
+    let silence = Duration::from_millis(300);
+    let lease = server.lease.clone();
+    let other = lease.take("a joystick", silence, server.start);
+    let other = other.expect("it is free");
+    let refused = server.take(COMMANDER).refusal;
+    let name = "a joystick".to_owned();
+    assert_eq!(refused, Some(Refusal::Taken(Taken { name: name.clone() })));
+    let status = server.authority.status();
+    assert_eq!((status.commander, status.name), (None, Some(name)));
+    assert_eq!(server.begin(COMMANDER).refusal, Some(Refusal::NoLease));
+    drop(other);
+    assert_eq!(server.take(COMMANDER).refusal, None);
+    let later = server.start + server.now;
+    assert!(lease.take("a joystick", silence, later).is_err());
+}
+
+#[test]
+fn lease_that_another_service_finds_lost_ends_the_hold() {
+    let mut server = Server::holding(3);
+    // The other one looks later than this server has, and takes the lease.
+    let later = server.start + server.now + LEASE + Duration::from_millis(1);
+    let other = server.lease.take("a joystick", LEASE, later);
+    let other = other.expect("it is free");
+    let step = server.ask(COMMANDER, Request::Hold { seq: 4 });
+    assert_eq!(step.ended, Some(Lost::Silent));
+    assert_eq!(step.refusal, Some(Refusal::NoLease));
+    assert_eq!(server.begin(COMMANDER).refusal, Some(Refusal::NoLease));
+    server.assert_at_rest();
+    assert!(other.is_held(later));
+}
+
+#[test]
+fn lease_with_patience_outlasts_its_deadman() {
+    let mut server = Server::with(Permissions {
+        motion: true,
+        patience: Duration::from_secs(30),
+        ..Permissions::default()
+    });
+    server.take(COMMANDER);
+    assert!(server.begin(COMMANDER).effect.is_some());
+    assert_eq!(server.pass(30_150), None);
+    assert!(server.authority.status().holding);
+    assert_eq!(server.pass(1), Some(Lost::Silent));
+    assert_eq!(server.authority.status().commander, Some(COMMANDER));
 }
 
 #[test]

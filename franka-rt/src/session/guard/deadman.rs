@@ -42,8 +42,9 @@ pub struct Deadman {
     silence: Duration,
 }
 
-/// The other end of a [`Deadman`], for the session that is bound to it.
-#[derive(Debug)]
+/// The other end of a [`Deadman`], for the session that is bound to it. A clone is for another
+/// session.
+#[derive(Clone, Debug)]
 pub struct DeadmanMonitor {
     pulse: Arc<Pulse>,
     silence: Duration,
@@ -97,6 +98,12 @@ impl DeadmanMonitor {
     /// How long the token may be silent.
     pub fn silence(&self) -> Duration {
         self.silence
+    }
+
+    /// True once the token was dropped.
+    pub fn is_gone(&self) -> bool {
+        // Relaxed, as above.
+        self.pulse.beats.load(Ordering::Relaxed) == GONE
     }
 
     /// Whether the token lives at the robot's time `now`, `[ms]`. Its silence counts from the first

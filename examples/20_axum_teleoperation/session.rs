@@ -1,0 +1,102 @@
+//! The session of the socket that holds the lease.
+
+use std::future::pending;
+use std::pin::{Pin, pin};
+use std::time::{Duration, Instant};
+
+use franka_async::diagnosis::Diagnose;
+use franka_async::goal::Lead;
+use franka_async::lease::{Holder, Lost};
+use franka_async::{Arm, Engage, MotionError, MotionReport, Pose, Robot};
+use tokio::sync::watch;
+
+use crate::messages::{Reply, refused};
+
+/// A session that leads the arm. Dropping it brakes the arm, releases it and frees the lease, in
+/// this order.
+pub(crate) struct Session {
+    following: Following,
+    targets: watch::Sender<Pose>,
+    arm: Arm,
+    holder: Holder,
+}
+
+/// Greatest speed of any joint and of the hand, `[m/s]`: a person may be near.
+const SPEED_CAP: f64 = 0.25;
+
+type Following = Pin<Box<dyn Future<Output = Result<MotionReport, MotionError>> + Send>>;
+
+impl Session {
+    /// Engages the arm for the holder of the lease. The control thread itself watches for the
+    /// silence: it brakes the arm even if this program is stuck.
+    pub(crate) async fn begin(robot: &Robot, holder: Holder) -> Result<Self, MotionError> {
+        let engage = Engage::default().speed_cap(SPEED_CAP);
+        // After a session that has just ended, this waits until the arm rests.
+        let mut engaging = pin!(robot.engage(engage.deadman(holder.deadman())));
+        let arm = loop {
+            tokio::select! {
+                arm = &mut engaging => break arm?,
+                // Until then, the client waits for an answer.
+                () = tokio::time::sleep(Duration::from_millis(5)) => {
+                    let _ = holder.keep_alive(Instant::now()); // a lost lease holds the arm
+                }
+            }
+        };
+        let (targets, following) = follow(&arm);
+        Ok(Self {
+            following,
+            targets,
+            arm,
+            holder,
+        })
+    }
+
+    pub(crate) fn keep_alive(&self) -> Result<(), Lost> {
+        self.holder.keep_alive(Instant::now())
+    }
+
+    pub(crate) fn head_for(&self, target: Pose) {
+        self.targets.send_replace(target);
+    }
+
+    /// Resolves when the arm has stopped following, with the reply for the client. A target that
+    /// was refused has braked the arm, which follows the next one. Anything else ends the session:
+    /// the client was silent, or the robot stopped itself.
+    pub(crate) async fn trouble(session: &mut Option<Self>) -> Reply {
+        let Some(held) = session else {
+            pending().await
+        };
+        let why = tokio::select! {
+            ended = &mut held.following => match ended {
+                Err(MotionError::Goal(error)) => {
+                    (held.targets, held.following) = follow(&held.arm);
+                    return refused(error);
+                }
+                ended => ended.err().map_or_else(String::new, explain),
+            },
+            lost = held.holder.lost() => lost.to_string(),
+        };
+        *session = None;
+        Reply::Lost { why }
+    }
+}
+
+/// Follows targets, beginning with where the hand is.
+fn follow(arm: &Arm) -> (watch::Sender<Pose>, Following) {
+    let (targets, followed) = watch::channel(arm.robot().pose());
+    (targets, arm.follow(followed).lead(LEAD).into_future())
+}
+
+fn explain(error: MotionError) -> String {
+    match error.diagnose() {
+        Some(diagnosis) => format!("{error}\n{diagnosis}"),
+        None => error.to_string(),
+    }
+}
+
+/// How far ahead of the arm a target counts: a wild one does not send the arm far.
+const LEAD: Lead = Lead {
+    translation: 0.1,
+    rotation: 0.3,
+    joints: 0.3,
+};
