@@ -71,7 +71,7 @@ impl Shared {
 
 #[test]
 fn silent_holder_loses_the_lease_and_the_arm_brakes() {
-    let seed = rand::rng().random();
+    let seed = 55;
     println!("seed {seed}");
     for_each_robot(|ready| {
         let mut random = SmallRng::seed_from_u64(seed);
