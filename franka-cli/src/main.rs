@@ -133,7 +133,7 @@ mod tests {
     }
 
     /// Commands that make a robot do something, or change it.
-    const ACTING: [&str; 10] = [
+    const ACTING: [&str; 11] = [
         "bench",
         "collision",
         "gripper",
@@ -144,10 +144,11 @@ mod tests {
         "stop",
         "test",
         "tool",
+        "trial",
     ];
 
     /// Places that advise one of them, because nothing else helps there.
-    const ADVISED: [(&str, &str); 5] = [
+    const ADVISED: [(&str, &str); 8] = [
         // The robot has stopped itself; the text asks to see to the cause first.
         ("franka-cli/src/connection.rs", "recover"),
         ("franka-cli/src/motion.rs", "recover"),
@@ -155,6 +156,10 @@ mod tests {
         ("franka-doctor/src/at_rest.rs", "recover"),
         // Fingers that have not been homed know no width.
         ("franka-cli/src/command/gripper.rs", "gripper"),
+        // Examples in the command's own help.
+        ("franka-cli/src/command/trial.rs", "trial"),
+        ("franka-cli/src/command/trial.rs", "trial"),
+        ("franka-cli/src/command/trial.rs", "trial"),
     ];
 
     /// Texts of the programs, without comments and tests. A text that sends a reader with a broken

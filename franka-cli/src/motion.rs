@@ -44,7 +44,7 @@ pub(crate) struct MoverOptions {
     pub(crate) yes: bool,
     /// Record everything to a new file meanwhile
     #[arg(long, value_name = "FILE.mcap")]
-    record: Option<PathBuf>,
+    pub(crate) record: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) output: Output,
 }
@@ -67,6 +67,15 @@ impl Mover {
 impl MoverOptions {
     /// Connects to this robot, and checks that it takes a motion.
     pub(crate) async fn begin(&self, which: &Which) -> anyhow::Result<Moving> {
+        self.begin_with(which, RecordOptions::default()).await
+    }
+
+    /// As [`Self::begin`], recorded with these options.
+    pub(crate) async fn begin_with(
+        &self,
+        which: &Which,
+        options: RecordOptions,
+    ) -> anyhow::Result<Moving> {
         let place = which.place()?;
         // An error then carries the last second.
         let robot = place.connect(self.realtime, |builder| builder.log_size(1000));
@@ -74,7 +83,7 @@ impl MoverOptions {
         check_ready(&robot.state(), &place)?;
         let recorder = match &self.record {
             Some(file) => {
-                let recorder = Recorder::to_file(file, RecordOptions::default());
+                let recorder = Recorder::to_file(file, options);
                 let recorder =
                     recorder.map_err(|error| Failure::new(Ending::Host, error.to_string()))?;
                 recorder.attach(&robot, Track::default()).await?;

@@ -45,11 +45,11 @@ pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
     tokio::select! {
         line = answered => match line??.trim() {
             "y" | "Y" | "yes" => Ok(()),
-            _ => Err(Failure::new(Ending::NotConfirmed, "not confirmed. Nothing has moved.").into()),
+            _ => Err(Failure::new(Ending::NotConfirmed, "not confirmed. Nothing has moved since the question.").into()),
         },
         by = interrupt => {
             say("");
-            Err(by.failure("interrupted. Nothing has moved.").into())
+            Err(by.failure("interrupted. Nothing has moved since the question.").into())
         }
     }
 }

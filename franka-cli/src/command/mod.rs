@@ -25,6 +25,7 @@ mod stop;
 mod tap;
 mod test;
 mod tool;
+mod trial;
 mod view;
 
 use clap::Subcommand;
@@ -62,6 +63,8 @@ pub(crate) enum Command {
     Cassette(cassette::Cassette),
     #[command(subcommand)]
     Test(test::Test),
+    #[command(after_help = trial::EXAMPLES)]
+    Trial(trial::Trial),
     #[command(subcommand)]
     Bench(bench::Bench),
     Completions(completions::Completions),
@@ -97,6 +100,7 @@ impl Command {
                 Self::Replay(replay) => replay.run().await,
                 Self::Tap(tap) => tap.run().await,
                 Self::Test(test) => test.run().await,
+                Self::Trial(trial) => trial.run().await,
                 Self::Bench(bench) => bench.run().await,
                 Self::Robots(robots) => robots.run(),
                 Self::Explain(explain) => explain.run(),

@@ -35,12 +35,13 @@ const STILL: [&str; 16] = [
 ];
 
 /// Commands that move the arm for some seconds, or could.
-const MOVING: [&str; 5] = [
+const MOVING: [&str; 6] = [
     "move ROBOT --by 0,0.2,0 --speed 0.3 --yes --realtime ignore",
     "replay run.mcap ROBOT --speed 0.3 --yes --realtime ignore",
     "guide ROBOT --yes --realtime ignore",
     "tool identify ROBOT --yes --realtime ignore",
     "test communication ROBOT --seconds 60 --yes --realtime ignore",
+    "trial ROBOT --report new.md --yes --realtime ignore",
 ];
 
 /// Others that connect.
@@ -193,7 +194,7 @@ fn a_reflex_ends_every_motion_and_is_explained() {
 /// Waits until a command has begun to move the arm, or to hold it.
 fn begins(sim: &Simulated, command: &str) {
     match command.split(' ').next() {
-        Some("guide" | "test") => until("a motion", || sim.state().motion_running()),
+        Some("guide" | "test" | "trial") => until("a motion", || sim.state().motion_running()),
         _ => sim.moves(),
     }
 }

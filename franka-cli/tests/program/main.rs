@@ -14,6 +14,7 @@
 //! | `settings` | tool, collision, recovery, stop |
 //! | `recording` | recordings and cassettes |
 //! | `measuring` | tests of connections, benchmarks |
+//! | `trial` | the trial of an arm, and its report |
 //! | `pages` | the dashboard |
 //! | `papers` | help, completions, man pages, the book |
 
@@ -31,4 +32,5 @@ mod recording;
 mod settings;
 mod simulated;
 mod terminal;
+mod trial;
 mod watching;

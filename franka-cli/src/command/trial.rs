@@ -1,0 +1,119 @@
+//! `franka trial`: the first motions of an arm, small and slow, with checks and a report.
+
+mod limits;
+mod look;
+mod report;
+mod steps;
+
+use std::collections::BTreeMap;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::pin::pin;
+
+use clap::Args;
+use franka_async::export::NewFile;
+use franka_async::recording::RecordOptions;
+
+use super::export::of_file;
+use crate::ending::{Ending, Failure};
+use crate::interrupt::interrupted;
+use crate::motion::{Mover, Moving};
+use crate::output::say;
+use report::Report;
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  franka trial                            writes trial.md and trial.mcap
+  franka trial left --report left.md      of the robot called left: left.md and left.mcap
+  franka trial sim --yes                  without questions, for simulators";
+
+/// Make the first motions of an arm, with checks, and write a report
+///
+/// First looks at the arm at rest. Then asks before each of five steps: hold, 1 cm and 5 cm up and
+/// back, joint 7, a stream of targets. Each is slow, and presses with 15 N at most. What is bad
+/// ends the trial. Ctrl-C brakes. The report is written in any case, and says if it is incomplete.
+#[derive(Debug, Args)]
+pub(crate) struct Trial {
+    #[command(flatten)]
+    mover: Mover,
+    /// The new report, Markdown. The recording has its name with the ending .mcap, unless --record
+    /// names another
+    #[arg(long, value_name = "FILE.md", default_value = "trial.md")]
+    report: PathBuf,
+}
+
+impl Trial {
+    pub(super) async fn run(mut self) -> anyhow::Result<Ending> {
+        // From here on every signal ends it in order, also between two steps.
+        let mut interrupt = pin!(interrupted()?);
+        let recording = self.recording()?;
+        let mut file = NewFile::create(&self.report).map_err(of_file)?;
+        let options = RecordOptions {
+            // Recordings of trials are passed on.
+            metadata: BTreeMap::from([("host".to_owned(), String::new())]),
+            ..RecordOptions::default()
+        };
+        // A signal meanwhile is seen after that, so that there is a report beside the recording.
+        let moving = self.mover.how.begin_with(&self.mover.which, options);
+        let moving = moving.await?;
+        let secrets = secrets(&moving);
+        let mut report = Report::new(&moving.robot, recording);
+        let outcome = tokio::select! {
+            biased;
+            outcome = steps::all(&moving, &mut report) => outcome,
+            by = &mut interrupt => Err(moving.brake(Some(by)).await),
+        };
+        let outcome = moving.end(outcome).await;
+        report.end(&outcome, &secrets);
+        let written = report
+            .markdown()
+            .map_err(anyhow::Error::from)
+            .and_then(|text| {
+                file.write_all(text.as_bytes())?;
+                file.finish().map_err(of_file)
+            });
+        match &written {
+            Ok(()) => say(&format!("report in {}", self.report.display())),
+            Err(error) if outcome.is_err() => say(&format!("no report: {error:#}")),
+            Err(_) => {}
+        }
+        outcome?;
+        written?;
+        let output = self.mover.how.output;
+        output.print(&report, || report.summary())
+    }
+
+    /// Names the recording, if no other name was given. Returns the name without its folder.
+    fn recording(&mut self) -> anyhow::Result<String> {
+        let beside = self.report.with_extension("mcap");
+        let path = self.mover.how.record.get_or_insert(beside);
+        if *path == self.report {
+            let message = format!("report and recording are both {}", path.display());
+            return Err(Failure::usage(message).into());
+        }
+        if path.exists() {
+            let message = format!("{} exists; a trial replaces no file", path.display());
+            let failure = Failure::new(Ending::Host, message);
+            return Err(failure.advice("--report names another one.").into());
+        }
+        let name = path.file_name().unwrap_or_default();
+        Ok(name.to_string_lossy().into_owned())
+    }
+}
+
+/// What a report does not name.
+fn secrets(moving: &Moving) -> Vec<String> {
+    let address = moving.robot.address();
+    vec![
+        moving.place.to_string(),
+        moving.place.address.to_string(),
+        address.to_string(),
+        address.ip().to_string(),
+    ]
+}
+
+/// Speed, as a factor of the default: 75 mm/s at most.
+const PACE: f64 = 0.25;
+
+/// The most that the hand presses with, `[N]`.
+const FORCE: f64 = 15.0;

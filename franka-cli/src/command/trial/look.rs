@@ -1,0 +1,233 @@
+//! Looking at an arm for a while: its mean pose, what its states leave at zero, and how well they
+//! fit the model.
+
+use std::ops::ControlFlow;
+use std::time::Duration;
+
+use franka_async::error::ReadError;
+use franka_async::model::geometry::Lengths;
+use franka_async::model::{EndEffector, Frame, Model};
+use franka_async::nalgebra::Vector3;
+use franka_async::state::RobotState;
+use franka_async::{Pose, Robot, pose};
+
+/// The mean of some states.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Mean {
+    count: u32,
+    pose: [f64; 16],
+    q: [f64; 7],
+}
+
+impl Mean {
+    pub(super) fn push(&mut self, state: &RobotState) {
+        self.count += 1;
+        for (sum, value) in self.pose.iter_mut().zip(state.O_T_EE) {
+            *sum += value;
+        }
+        for (sum, value) in self.q.iter_mut().zip(state.q) {
+            *sum += value;
+        }
+    }
+
+    /// The pose that the robot reports, if it is one.
+    pub(super) fn pose(&self) -> Option<Pose> {
+        let count = f64::from(self.count);
+        pose::from_array(&self.pose.map(|sum| sum / count)).ok()
+    }
+
+    /// Joint positions, `[rad]`.
+    pub(super) fn q(&self) -> [f64; 7] {
+        let count = f64::from(self.count);
+        self.q.map(|sum| sum / count)
+    }
+}
+
+/// Distance `[m]` and angle `[rad]` between two poses.
+pub(super) fn apart(one: &Pose, other: &Pose) -> (f64, f64) {
+    let way = one.translation.vector - other.translation.vector;
+    (way.norm(), one.rotation.angle_to(&other.rotation))
+}
+
+/// Fields that some robots leave at zero.
+pub(super) const SPARSE: [&str; 4] = ["O_T_EE_c", "elbow_c", "tau_J_d", "O_ddP_O"];
+
+/// States of a while.
+#[derive(Debug)]
+pub(super) struct Look {
+    /// `message_id` of the first and the last state.
+    ids: Option<(u64, u64)>,
+    /// How many states came.
+    pub(super) states: u64,
+    /// Of the third second, when whatever began with the first state is over.
+    pub(super) begin: Mean,
+    /// Of the last second.
+    pub(super) end: Mean,
+    /// True for each of [`SPARSE`] that was zero in every state.
+    pub(super) zero: [bool; SPARSE.len()],
+    /// Distance of reported poses from those of each of [`sets`], `[m]`.
+    gaps: Vec<[f64; SETS]>,
+}
+
+impl Look {
+    /// Looks for so long, by the robot's clock.
+    pub(super) async fn over(robot: &Robot, duration: Duration) -> Result<Self, ReadError> {
+        let mut look = Self {
+            ids: None,
+            states: 0,
+            begin: Mean::default(),
+            end: Mean::default(),
+            zero: [true; SPARSE.len()],
+            gaps: Vec::new(),
+        };
+        let sets = sets(robot.model());
+        let duration = duration.as_millis() as u64;
+        robot
+            .read(|state| {
+                let since = look.push(state, &sets, duration);
+                match since < duration {
+                    true => ControlFlow::Continue(()),
+                    false => ControlFlow::Break(()),
+                }
+            })
+            .await?;
+        Ok(look)
+    }
+
+    /// Takes in a state; returns how long it is after the first one, `[ms]`.
+    fn push(&mut self, state: &RobotState, sets: &[Model; SETS], duration: u64) -> u64 {
+        let id = state.message_id;
+        let (first, _) = self.ids.unwrap_or((id, id));
+        self.ids = Some((first, id));
+        self.states += 1;
+        let since = id - first;
+        if (SETTLED..SETTLED + SECOND).contains(&since) {
+            self.begin.push(state);
+        }
+        if since + SECOND > duration {
+            self.end.push(state);
+        }
+        let sparse: [&[f64]; SPARSE.len()] = [
+            &state.O_T_EE_c,
+            &state.elbow_c,
+            &state.tau_J_d,
+            &state.O_ddP_O,
+        ];
+        for (zero, field) in self.zero.iter_mut().zip(sparse) {
+            *zero &= field.iter().all(|value| *value == 0.0);
+        }
+        // Enough for a median, and little to compute.
+        if self.states % 10 == 1 {
+            self.gaps
+                .push(std::array::from_fn(|i| gap(&sets[i], state)));
+        }
+        since
+    }
+
+    /// How many states between the first and the last did not come.
+    pub(super) fn missing(&self) -> u64 {
+        let (first, last) = self.ids.unwrap_or_default();
+        (last - first + 1).saturating_sub(self.states)
+    }
+
+    /// How far reported poses are from those of each of the lengths, `[m]`: the medians. The first
+    /// lengths are those of the model.
+    pub(super) fn geometry(&self, model: &Model) -> [(Lengths, f64); SETS] {
+        let lengths = sets(model).map(|model| *model.lengths());
+        std::array::from_fn(|i| {
+            let mut gaps: Vec<f64> = self.gaps.iter().map(|gaps| gaps[i]).collect();
+            gaps.sort_by(f64::total_cmp);
+            (
+                lengths[i],
+                gaps.get(gaps.len() / 2).copied().unwrap_or(f64::NAN),
+            )
+        })
+    }
+}
+
+/// The model as it is, and with each set of lengths that robots are known to have.
+fn sets(model: &Model) -> [Model; SETS] {
+    std::array::from_fn(|i| match i {
+        0 => model.clone(),
+        i => model.clone().with_lengths(Lengths::KNOWN[i - 1]),
+    })
+}
+
+/// Distance of the pose that a state reports from that of the model, `[m]`.
+fn gap(model: &Model, state: &RobotState) -> f64 {
+    let ee = EndEffector::from_arrays(&state.F_T_EE, &state.EE_T_K);
+    let pose = model.pose(Frame::EndEffector, &state.q.into(), &ee);
+    let reported = Vector3::from_column_slice(&state.O_T_EE[12..15]);
+    (pose.fixed_view::<3, 1>(0, 3) - reported).norm()
+}
+
+const SETS: usize = 1 + Lengths::KNOWN.len();
+
+/// Time after which a drift is measured, `[ms]`.
+const SETTLED: u64 = 2000;
+
+/// `[ms]`.
+const SECOND: u64 = 1000;
+
+#[cfg(test)]
+mod tests {
+    use franka_async::READY;
+    use franka_async::pose::to_array;
+
+    use super::*;
+
+    /// States of an arm with these lengths that creeps up, by metres per second.
+    fn look(lengths: Lengths, creep: f64) -> Look {
+        let arm = Model::fr3().clone().with_lengths(lengths);
+        let pose = arm.pose(Frame::EndEffector, &READY, &EndEffector::default());
+        let identity = to_array(&Pose::identity());
+        let mut state = RobotState {
+            q: READY.into(),
+            F_T_EE: identity,
+            EE_T_K: identity,
+            tau_J_d: [0.1; 7],
+            O_T_EE_c: [0.0; 16],
+            ..RobotState::default()
+        };
+        state.O_T_EE.copy_from_slice(pose.as_slice());
+        let mut look = Look {
+            ids: None,
+            states: 0,
+            begin: Mean::default(),
+            end: Mean::default(),
+            zero: [true; SPARSE.len()],
+            gaps: Vec::new(),
+        };
+        for id in (0..=10_000).filter(|id| id % 100 != 7) {
+            state.message_id = 500 + id;
+            state.O_T_EE[14] = pose[(2, 3)] + creep * id as f64 * 1e-3;
+            look.push(&state, &sets(Model::fr3()), 10_000);
+        }
+        look
+    }
+
+    #[test]
+    fn lengths_are_found_by_the_poses_that_are_reported() {
+        for (lengths, good, bad) in [
+            (Lengths::DESCRIBED, [0, 1], 2),
+            (Lengths::RECORDED_FR3, [2, 2], 0),
+        ] {
+            let found = look(lengths, 0.0).geometry(Model::fr3());
+            for good in good {
+                assert!(found[good].1 < 1e-9, "{found:?}");
+                assert_eq!(found[good].0, lengths);
+            }
+            assert!((1e-4..1e-3).contains(&found[bad].1), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn a_drift_a_gap_and_zeros_are_seen() {
+        let look = look(Lengths::DESCRIBED, 1e-4);
+        let [begin, end] = [&look.begin, &look.end].map(|mean| mean.pose().expect("a pose"));
+        let (drift, turn) = apart(&begin, &end);
+        assert!((drift - 7e-4).abs() < 1e-5 && turn < 1e-9, "{drift}");
+        assert_eq!(look.missing(), 100);
+        assert_eq!(look.zero, [true, true, false, true]);
+    }
+}

@@ -1,0 +1,274 @@
+//! What a trial found, as a text that people read and programs, too.
+
+use std::fmt::Write as _;
+
+use franka_async::Robot;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::{FORCE, PACE};
+use crate::connection::kind_name;
+use crate::ending::{Ending, Failure};
+use crate::output::{BAD, GOOD, WARN, say};
+
+/// What was found, in the order in which it was.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    driver: &'static str,
+    kind: &'static str,
+    fci_version: u16,
+    /// Priority of the control thread; `None` without real-time scheduling.
+    priority: Option<i32>,
+    kernel: Option<String>,
+    machine: &'static str,
+    speed: f64,
+    force_cap: f64,
+    recording: String,
+    complete: bool,
+    /// Why it is not complete.
+    ended: Option<Ended>,
+    pub(super) steps: Vec<Step>,
+}
+
+/// What was done, and found meanwhile.
+#[derive(Debug, Serialize)]
+pub(super) struct Step {
+    name: &'static str,
+    findings: Vec<Finding>,
+}
+
+/// A check, with its figures.
+#[derive(Debug, Serialize)]
+pub(super) struct Finding {
+    check: &'static str,
+    verdict: Verdict,
+    text: String,
+    figures: Value,
+}
+
+/// How what was found compares with what was expected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Verdict {
+    Good,
+    /// Worth a look, and no reason to stop.
+    Look,
+    /// Ends the trial.
+    Bad,
+}
+
+impl Verdict {
+    /// Good up to the first of two limits, worth a look up to the second.
+    pub(super) fn of(value: f64, [good, bad]: [f64; 2]) -> Self {
+        match value {
+            value if value <= good => Self::Good,
+            value if value <= bad => Self::Look,
+            // What is not a number as well.
+            _ => Self::Bad,
+        }
+    }
+
+    fn text(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Look => "look",
+            Self::Bad => "bad",
+        }
+    }
+}
+
+/// How a trial ended before its end.
+#[derive(Debug, Serialize)]
+struct Ended {
+    step: &'static str,
+    kind: &'static str,
+    exit_code: u8,
+    text: String,
+}
+
+impl Report {
+    pub(super) fn new(robot: &Robot, recording: String) -> Self {
+        let kernel = std::fs::read_to_string("/proc/sys/kernel/osrelease");
+        Self {
+            driver: env!("CARGO_PKG_VERSION"),
+            kind: kind_name(robot.model().kind()),
+            fci_version: robot.version().number(),
+            priority: robot.granted().priority,
+            kernel: kernel.ok().map(|text| text.trim().to_owned()),
+            machine: std::env::consts::ARCH,
+            speed: PACE,
+            force_cap: FORCE,
+            recording,
+            complete: false,
+            ended: None,
+            steps: Vec::new(),
+        }
+    }
+
+    /// Begins a step.
+    pub(super) fn begin(&mut self, name: &'static str) {
+        let findings = Vec::new();
+        self.steps.push(Step { name, findings });
+    }
+
+    /// Notes what was found in this step, and says it.
+    ///
+    /// # Errors
+    /// What is bad ends the trial.
+    pub(super) fn note(
+        &mut self,
+        check: &'static str,
+        verdict: Verdict,
+        text: String,
+        figures: Value,
+    ) -> Result<(), Failure> {
+        let style = match verdict {
+            Verdict::Good => GOOD,
+            Verdict::Look => WARN,
+            Verdict::Bad => BAD,
+        };
+        // A part in each line: a terminal has 80 columns.
+        let lines = text.replace("; ", &format!(";\n{:20}", ""));
+        let said = verdict.text();
+        say(&format!(
+            "  {style}{said:<4}{style:#}  {check:<10}  {lines}"
+        ));
+        let failed = (verdict == Verdict::Bad).then(|| format!("{check}: {text}"));
+        if let Some(step) = self.steps.last_mut() {
+            step.findings.push(Finding {
+                check,
+                verdict,
+                text,
+                figures,
+            });
+        }
+        match failed {
+            Some(text) => Err(Failure::new(Ending::Failed, text)),
+            None => Ok(()),
+        }
+    }
+
+    /// Notes how it ended, with the texts of `secrets` taken out.
+    pub(super) fn end(&mut self, outcome: &anyhow::Result<()>, secrets: &[String]) {
+        self.complete = outcome.is_ok();
+        self.ended = outcome.as_ref().err().map(|error| {
+            let ending = Ending::of(error);
+            Ended {
+                step: self.steps.last().map_or("connecting", |step| step.name),
+                kind: ending.kind(),
+                exit_code: ending as u8,
+                text: without(&format!("{error:#}"), secrets),
+            }
+        });
+    }
+
+    /// How it went, in a line.
+    pub(super) fn summary(&self) -> String {
+        let all = self.steps.iter().flat_map(|step| &step.findings);
+        let count = |verdict| all.clone().filter(|it| it.verdict == verdict).count();
+        let looks = count(Verdict::Look);
+        let of = format!(
+            "{} checks, {looks} of them worth a look",
+            all.clone().count()
+        );
+        match &self.ended {
+            None => format!("complete: {} steps, {of}", self.steps.len()),
+            Some(ended) => format!(
+                "incomplete: ended at the step \"{}\", {of}: {}",
+                ended.step, ended.text
+            ),
+        }
+    }
+
+    /// The report as Markdown, with all of it as JSON at the end.
+    pub(super) fn markdown(&self) -> serde_json::Result<String> {
+        let priority = match self.priority {
+            Some(priority) => format!("real-time scheduling, priority {priority}"),
+            None => "no real-time scheduling".to_owned(),
+        };
+        let mut text = format!(
+            "# Trial of a robot arm: {kind}\n\n\
+             **{summary}**\n\n\
+             | | |\n|---|---|\n\
+             | driver | `franka` {driver} |\n\
+             | robot | {kind}, FCI version {version} |\n\
+             | control thread | {priority} |\n\
+             | computer | {machine}, kernel {kernel} |\n\
+             | limits | {speed} of the default speed, {force:.0} N |\n\
+             | recording | `{recording}`, in the folder of this report unless another was named |\n\n\
+             This report holds no names, addresses or serial numbers of the robot or the computer, \
+             and no time of day.\nThe recording holds every state of the robot, the description \
+             that the robot serves, the kernel of the\ncomputer and the time of day; the name of \
+             the computer is left out.\n",
+            kind = self.kind,
+            summary = escaped(&self.summary()),
+            driver = self.driver,
+            version = self.fci_version,
+            machine = self.machine,
+            kernel = self.kernel.as_deref().unwrap_or("unknown"),
+            speed = self.speed,
+            force = self.force_cap,
+            recording = self.recording,
+        );
+        for (number, step) in self.steps.iter().enumerate() {
+            let _ = write!(text, "\n## {number}. {}\n\n", step.name);
+            if step.findings.is_empty() {
+                text.push_str("Nothing was measured.\n");
+                continue;
+            }
+            text.push_str("| check | verdict | found |\n|---|---|---|\n");
+            for Finding {
+                check,
+                verdict,
+                text: found,
+                ..
+            } in &step.findings
+            {
+                let (verdict, found) = (verdict.text(), escaped(found));
+                let _ = writeln!(text, "| {check} | {verdict} | {found} |");
+            }
+        }
+        let all = serde_json::to_string_pretty(&json!({ "schema": SCHEMA, "trial": self }))?;
+        let _ = write!(text, "\n## All figures\n\n```json\n{all}\n```\n");
+        Ok(text)
+    }
+}
+
+/// A text in a cell of a table.
+fn escaped(text: &str) -> String {
+    text.replace('|', "\\|").replace('\n', " ")
+}
+
+/// The text, with a placeholder for each of these.
+fn without(text: &str, secrets: &[String]) -> String {
+    let mut secrets: Vec<_> = secrets.iter().filter(|it| !it.is_empty()).collect();
+    // One may be a part of another.
+    secrets.sort_by_key(|it| std::cmp::Reverse(it.len()));
+    secrets.iter().fold(text.to_owned(), |text, secret| {
+        text.replace(*secret, "ROBOT")
+    })
+}
+
+/// Version of the figures in a report: raised when one goes or changes its meaning.
+const SCHEMA: u32 = 1;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_and_names_are_taken_out() {
+        let secrets = ["left (10.0.0.2)", "10.0.0.2", "", "10.0.0.2:1337"].map(str::to_owned);
+        let text = "robot at left (10.0.0.2) is silent: 10.0.0.2:1337";
+        assert_eq!(without(text, &secrets), "robot at ROBOT is silent: ROBOT");
+    }
+
+    #[test]
+    fn what_is_no_number_is_bad() {
+        let limits = [1.0, 2.0];
+        assert_eq!(Verdict::of(1.0, limits), Verdict::Good);
+        assert_eq!(Verdict::of(1.5, limits), Verdict::Look);
+        assert_eq!(Verdict::of(2.5, limits), Verdict::Bad);
+        assert_eq!(Verdict::of(f64::NAN, limits), Verdict::Bad);
+    }
+}
