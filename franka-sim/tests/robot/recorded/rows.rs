@@ -311,6 +311,6 @@ pub(super) const SAMPLES: [Sample; 24] = [
     },
 ];
 
-/// Mean of `tau_J - tau_ext_hat_filtered` over the 6942 rows, with `tau_J` behind the same low-pass,
-/// `[N·m]`.
+/// Mean of `tau_J - tau_ext_hat_filtered` over the 6942 rows, with `tau_J` behind the same
+/// low-pass, `[N·m]`.
 pub(super) const TORQUE: [f64; 7] = [0.0012, -42.3738, -3.8106, 16.3492, 0.4477, 2.2485, -0.0015];
