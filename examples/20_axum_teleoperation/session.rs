@@ -4,9 +4,9 @@ use std::future::pending;
 use std::pin::{Pin, pin};
 use std::time::{Duration, Instant};
 
+use franka_async::connection::lease::{Holder, Lost};
 use franka_async::diagnosis::Diagnose;
 use franka_async::goal::Lead;
-use franka_async::lease::{Holder, Lost};
 use franka_async::{Arm, Engage, MotionError, MotionReport, Pose, Robot};
 use tokio::sync::watch;
 
@@ -63,9 +63,7 @@ impl Session {
     /// was refused has braked the arm, which follows the next one. Anything else ends the session:
     /// the client was silent, or the robot stopped itself.
     pub(crate) async fn trouble(session: &mut Option<Self>) -> Reply {
-        let Some(held) = session else {
-            pending().await
-        };
+        let Some(held) = session else { pending().await };
         let why = tokio::select! {
             ended = &mut held.following => match ended {
                 Err(MotionError::Goal(error)) => {

@@ -344,7 +344,7 @@
 //! | `cassette` | sessions byte for byte, played back as the robot (features `record`, `pcap`) |
 //! | `doctor` | checks of this computer (features `doctor`, `doctor-desk`) |
 //! | `metrics` | statistics as OpenMetrics text (feature `metrics`) |
-//! | [`lease`] | one client of a service at a time moves the arm |
+//! | [`connection::lease`] | one client of a service at a time moves the arm |
 //! | `connection::admission` | checks of who asks a service (feature `admission`) |
 //! | `blocking` | programs without async (feature `blocking`) |
 //!
@@ -408,7 +408,7 @@ mod input;
 #[cfg(feature = "record")]
 mod journal;
 mod kept_tuning;
-pub mod lease;
+mod lease;
 mod link;
 #[cfg(feature = "metrics")]
 pub mod metrics;

@@ -4,7 +4,7 @@
 use core::time::Duration;
 use std::time::Instant;
 
-use franka_async::lease::Lease;
+use franka_async::connection::lease::Lease;
 
 use crate::authority::{Authority, DEADMAN, Effect, LEASE, Permissions};
 use crate::request::Request;

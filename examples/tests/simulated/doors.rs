@@ -203,7 +203,10 @@ fn grpc_calls_need_the_token() {
                 let value = bearer.parse().expect("text");
                 request.metadata_mut().insert("authorization", value);
             }
-            client.recover(request).await.map_err(|status| status.code())
+            client
+                .recover(request)
+                .await
+                .map_err(|status| status.code())
         };
         let own = format!("http://{address}");
         let right = format!("Bearer {token}");
@@ -242,7 +245,10 @@ fn second_grpc_caller_is_refused_and_stops() {
         let refused = second.move_to(order).await.expect_err("it is refused");
         assert_eq!(refused.code(), Code::FailedPrecondition, "{refused}");
         let named = refused.message().starts_with("\"127.0.0.1:");
-        assert!(named && refused.message().contains("holds the lease"), "{refused}");
+        assert!(
+            named && refused.message().contains("holds the lease"),
+            "{refused}"
+        );
         let targets = tokio_stream::iter([target]);
         let refused = second.follow_targets(targets).await;
         let refused = refused.expect_err("it is refused");

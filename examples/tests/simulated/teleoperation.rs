@@ -158,7 +158,10 @@ fn stop_is_open_to_every_socket_and_ends_the_lease() {
     other.send(json!({ "type": "stop" }));
     assert_eq!(other.answer()["type"], "stopped");
     arm.rests();
-    assert!(!leader.ended().success(), "it is told that its lease is lost");
+    assert!(
+        !leader.ended().success(),
+        "it is told that its lease is lost"
+    );
     other.take();
 }
 

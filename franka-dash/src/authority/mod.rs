@@ -21,7 +21,7 @@ use std::time::Instant;
 
 pub(crate) use refusal::Refusal;
 
-use franka_async::lease::{Holder, Lease};
+use franka_async::connection::lease::{Holder, Lease};
 use serde::Serialize;
 
 use crate::request::{Disturbance, GripperAction, Motion, Request, Tuning};

@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use franka_async::lease::Taken;
+use franka_async::connection::lease::Taken;
 
 use super::ROUND_TRIP_MAX;
 

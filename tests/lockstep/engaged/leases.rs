@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use franka_async::lease::{Holder, Lease, Lost, Taken};
+use franka_async::connection::lease::{Holder, Lease, Lost, Taken};
 use franka_rt::session::Lapse;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};

@@ -1,6 +1,6 @@
 //! Who may command, and what is refused.
 
-use franka_async::lease::Taken;
+use franka_async::connection::lease::Taken;
 
 use super::*;
 
