@@ -54,8 +54,9 @@ impl Identity {
         let tool = differs(&self.tool.0, &other.tool.0) || differs(&self.tool.1, &other.tool.1);
         let elsewhere = |joint: &usize| {
             let reach = MOVED + self.dq[*joint].abs() * BRAKING;
-            // A position that is not finite is elsewhere.
-            !((self.q[*joint] - other.q[*joint]).abs() <= reach)
+            let moved = (self.q[*joint] - other.q[*joint]).abs();
+            // A position that is not a number is elsewhere.
+            moved.is_nan() || moved > reach
         };
         Differences {
             description: self.description != other.description,
