@@ -22,7 +22,7 @@ pub(super) fn nearest(kind: RobotKind, served: &JointLimits) -> (&'static str, O
     let compared = tables(kind).into_iter().map(|(name, table)| {
         let most = differences(served, table)
             .max_by(|one, other| one.0.total_cmp(&other.0))
-            .filter(|(difference, _)| !(*difference <= SAME));
+            .filter(|(difference, _)| difference.is_nan() || *difference > SAME);
         (name, most)
     });
     let size = |most: &Option<(f64, String)>| most.as_ref().map_or(0.0, |(size, _)| *size);
