@@ -89,6 +89,13 @@ fn a_trial_ends_in_a_report_and_a_recording() {
         home.run(&["explain", "trial.mcap"]).done();
         let recording = fs::read(home.path("trial.mcap")).expect("a recording");
         assert!(recording.len() > 1_000_000, "{}", recording.len());
+        // Metadata are not compressed: the key and an empty text, each behind its length.
+        let nameless = b"\x04\0\0\0host\0\0\0\0";
+        assert!(
+            recording
+                .windows(nameless.len())
+                .any(|part| part == nameless)
+        );
         sim.rests(RobotMode::Idle);
     }
 }

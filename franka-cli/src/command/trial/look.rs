@@ -70,16 +70,21 @@ pub(super) struct Look {
 }
 
 impl Look {
-    /// Looks for so long, by the robot's clock.
-    pub(super) async fn over(robot: &Robot, duration: Duration) -> Result<Self, ReadError> {
-        let mut look = Self {
+    /// Before the first state.
+    fn new() -> Self {
+        Self {
             ids: None,
             states: 0,
             begin: Mean::default(),
             end: Mean::default(),
             zero: [true; SPARSE.len()],
             gaps: Vec::new(),
-        };
+        }
+    }
+
+    /// Looks for so long, by the robot's clock.
+    pub(super) async fn over(robot: &Robot, duration: Duration) -> Result<Self, ReadError> {
+        let mut look = Self::new();
         let sets = sets(robot.model());
         let duration = duration.as_millis() as u64;
         robot
@@ -190,14 +195,7 @@ mod tests {
             ..RobotState::default()
         };
         state.O_T_EE.copy_from_slice(pose.as_slice());
-        let mut look = Look {
-            ids: None,
-            states: 0,
-            begin: Mean::default(),
-            end: Mean::default(),
-            zero: [true; SPARSE.len()],
-            gaps: Vec::new(),
-        };
+        let mut look = Look::new();
         for id in (0..=10_000).filter(|id| id % 100 != 7) {
             state.message_id = 500 + id;
             state.O_T_EE[14] = pose[(2, 3)] + creep * id as f64 * 1e-3;
