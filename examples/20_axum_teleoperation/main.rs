@@ -81,8 +81,7 @@ async fn connect(
 }
 
 impl Service {
-    /// Attends to a socket until it ends. Whatever ends it, its session is dropped here, and with
-    /// that the arm brakes.
+    /// Attends to a socket until it ends. Its session is dropped then, which brakes the arm.
     async fn attend(self, mut socket: WebSocket, peer: SocketAddr) {
         let mut session = None;
         let mut clock = interval(Duration::from_millis(20));

@@ -36,7 +36,7 @@ impl Session {
         let arm = loop {
             tokio::select! {
                 arm = &mut engaging => break arm?,
-                // Until then, the client waits for an answer.
+                // The client waits for its answer meanwhile, and sends nothing.
                 () = tokio::time::sleep(Duration::from_millis(5)) => {
                     let _ = holder.keep_alive(Instant::now()); // a lost lease holds the arm
                 }

@@ -73,10 +73,12 @@ struct Shared {
 }
 
 impl Robot {
-    /// Returns the robot of this model and version that `link` connects to, within the runtime that
-    /// serves it. The last two are the
-    /// way into the task that reconnects, if there is one, and what tells it of the end of the
-    /// last handle.
+    /// Returns the robot of this model and version that `link` connects to. `shutdowns` leads to
+    /// the task that reconnects, if there is one; `handles` tells that task when the last handle is
+    /// dropped.
+    ///
+    /// # Panics
+    /// Outside a Tokio runtime.
     pub(crate) fn new(
         (model, version): (Arc<Model>, Version),
         link: Arc<Link>,
