@@ -161,16 +161,20 @@ impl RobotState {
         (version.table().state_codec.encode)(self, buffer)
     }
 
-    /// Pose of the end effector that was commanded last, column-major: `O_T_EE_c`, or else
-    /// `O_T_EE_d`, or else `O_T_EE`.
+    /// Pose of the end effector that was commanded last, column-major: the first of `O_T_EE_c` and
+    /// `O_T_EE_d` that is a rigid transformation, or else `O_T_EE`.
     ///
     /// Robots leave `O_T_EE_c` at zero while they move by joint setpoints (recorded on a Franka
-    /// Research 3), and zeros are no pose.
+    /// Research 3), and zeros are no pose. A matrix with a number that is not finite is returned as
+    /// it is: nothing may continue from a state that is broken.
     #[must_use]
     pub fn commanded_pose(&self) -> &[f64; 16] {
         let poses = [&self.O_T_EE_c, &self.O_T_EE_d];
-        let filled = poses.into_iter().find(|pose| pose[15] != 0.0);
-        filled.unwrap_or(&self.O_T_EE)
+        let broken = |pose: &[f64; 16]| pose.iter().any(|x| !x.is_finite());
+        let found = poses
+            .into_iter()
+            .find(|pose| is_rigid(pose) || broken(pose));
+        found.unwrap_or(&self.O_T_EE)
     }
 
     /// Elbow that was commanded last: `elbow_c`, or else `elbow_d`, or else `elbow`. Robots leave
@@ -231,6 +235,37 @@ fn rotate(pose: &[f64; 16], [x, y, z]: [f64; 3]) -> [f64; 3] {
     core::array::from_fn(|i| pose[i] * x + pose[4 + i] * y + pose[8 + i] * z)
 }
 
+/// True if a column-major matrix is a rigid transformation, up to the rounding of the vendor's
+/// constants: `franka_model::transform` takes what passes here for a pose, too.
+fn is_rigid(pose: &[f64; 16]) -> bool {
+    let [x, y, z] = [0, 4, 8].map(|i| [pose[i], pose[i + 1], pose[i + 2]]);
+    if [pose[3], pose[7], pose[11], pose[15]] != [0.0, 0.0, 0.0, 1.0] {
+        return false;
+    }
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let right_handed = dot(cross(x, y), z) > 0.0;
+    let off = [
+        dot(x, x) - 1.0,
+        dot(y, y) - 1.0,
+        dot(z, z) - 1.0,
+        dot(x, y),
+        dot(y, z),
+        dot(z, x),
+    ];
+    right_handed && off.iter().all(|off| off.abs() <= DISTORTION_MAX)
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    core::array::from_fn(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        a[j] * b[k] - a[k] * b[j]
+    })
+}
+
+/// How far a product of two axes of a rotation may be from that of a rotation. The vendor's 0.7071
+/// for `sqrt(1/2)` makes 2e-5.
+const DISTORTION_MAX: f64 = 1e-3;
+
 impl Default for RobotState {
     fn default() -> Self {
         Self {
@@ -290,3 +325,49 @@ impl Default for RobotState {
 const IDENTITY: [f64; 16] = [
     1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0,
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn moved_by(metres: f64) -> [f64; 16] {
+        let mut pose = IDENTITY;
+        pose[12] = metres;
+        pose
+    }
+
+    #[test]
+    fn the_commanded_pose_is_the_first_that_is_one() {
+        let mut sheared = moved_by(0.1);
+        sheared[4] = 0.1;
+        let mut mirrored = moved_by(0.1);
+        mirrored[10] = -1.0;
+        let mut empty = [0.0; 16];
+        empty[15] = 1.0; // filled in, and no pose all the same
+        for none in [sheared, mirrored, empty, [0.0; 16]] {
+            let mut state = RobotState {
+                O_T_EE_c: none,
+                O_T_EE_d: moved_by(0.2),
+                O_T_EE: moved_by(0.3),
+                ..RobotState::default()
+            };
+            assert_eq!(state.commanded_pose(), &moved_by(0.2), "{none:?}");
+            state.O_T_EE_d = none;
+            assert_eq!(state.commanded_pose(), &moved_by(0.3), "{none:?}");
+        }
+        let infinite = RobotState {
+            O_T_EE_c: moved_by(f64::INFINITY),
+            O_T_EE_d: moved_by(0.2),
+            ..RobotState::default()
+        };
+        assert_eq!(infinite.commanded_pose(), &moved_by(f64::INFINITY));
+        let mut rounded = moved_by(0.1);
+        // An eighth of a turn, as the vendor rounds it.
+        (rounded[0], rounded[1], rounded[4], rounded[5]) = (0.7071, -0.7071, 0.7071, 0.7071);
+        let state = RobotState {
+            O_T_EE_c: rounded,
+            ..RobotState::default()
+        };
+        assert_eq!(state.commanded_pose(), &rounded);
+    }
+}
