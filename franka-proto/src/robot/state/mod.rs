@@ -362,8 +362,8 @@ mod tests {
         };
         assert_eq!(infinite.commanded_pose(), &moved_by(f64::INFINITY));
         let mut rounded = moved_by(0.1);
-        // An eighth of a turn, as the vendor rounds it.
-        (rounded[0], rounded[1], rounded[4], rounded[5]) = (0.7071, -0.7071, 0.7071, 0.7071);
+        // A turn by thirty degrees, rounded to four digits.
+        (rounded[0], rounded[1], rounded[4], rounded[5]) = (0.8660, -0.5, 0.5, 0.8660);
         let state = RobotState {
             O_T_EE_c: rounded,
             ..RobotState::default()
