@@ -1,7 +1,8 @@
 //! The pose of the end effector in the base frame, `[m]`: as measured, and at joint positions.
 
-use franka_model::{EndEffector, Frame, Model, transform};
+use franka_model::{Frame, Model, transform};
 use franka_proto::RobotState;
+use franka_rt::session::geometry::reported_end_effector;
 use nalgebra::Isometry3;
 
 /// `O_T_EE` of a state, if it is a rigid transformation.
@@ -9,14 +10,10 @@ pub(crate) fn pose_of(state: &RobotState) -> Option<Isometry3<f64>> {
     transform::isometry_from_array(&state.O_T_EE)
 }
 
-/// The pose that it has at the joint positions `q`, `[rad]`, with the end effector of `state`. One
-/// that is not a rigid transformation counts as the flange.
+/// The pose that it has at the joint positions `q`, `[rad]`, with the end effector of `state` as
+/// the robot reports it there. One that is not a rigid transformation counts as the flange.
 pub(crate) fn pose_at(model: &Model, state: &RobotState, q: [f64; 7]) -> Isometry3<f64> {
-    let ee = transform::isometry_from_array(&state.F_T_EE).unwrap_or_default();
-    let ee = EndEffector {
-        f_t_ee: transform::matrix(&ee),
-        ..EndEffector::default()
-    };
+    let ee = reported_end_effector(model, state).unwrap_or_default();
     let pose = model.pose(Frame::EndEffector, &q.into(), &ee);
     transform::isometry(&pose).unwrap_or_default()
 }

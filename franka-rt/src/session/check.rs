@@ -9,6 +9,7 @@ use franka_otg::AxisLimits;
 use franka_proto::{RobotState, Version};
 
 use crate::law::Law;
+use crate::session::geometry::reported_end_effector;
 use crate::session::guard::speed_cap;
 use crate::session::{
     Budget, ForceCap, Goal, GoalError, KeepOut, Leash, OnArrival, Settling, Target, Watchdog,
@@ -122,7 +123,7 @@ impl Goal {
 
 /// Checks that a robot in `state` can get to a target.
 pub(super) fn target(to: &Target, model: &Model, state: &RobotState) -> Result<(), GoalError> {
-    let ee = super::end_effector_of(state).ok_or(GoalError::Tool)?;
+    let ee = reported_end_effector(model, state).ok_or(GoalError::Tool)?;
     match to {
         Target::Rest | Target::Guide(_) => Ok(()),
         Target::MovingJoints { q, dq } => {

@@ -28,6 +28,7 @@ mod chunk;
 pub mod condition;
 mod course;
 mod effort;
+pub mod geometry;
 mod goal;
 mod goal_error;
 mod guard;

@@ -7,7 +7,7 @@ mod tests;
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, JointVector, Model, Twist, rotation, transform};
 use franka_proto::{RobotState, Version};
-use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+use nalgebra::Isometry3;
 
 use crate::control::{
     CartesianPose, CartesianVelocities, JointPositions, JointVelocities, MotionCommand, Shaper,
@@ -42,39 +42,6 @@ pub(super) struct SetpointStream {
     from: JointVector,
     /// What velocities make up for.
     drift: Drift,
-    /// Offset of the robot's poses from the model's.
-    offset: PoseOffset,
-}
-
-/// Offset of the robot's commanded pose from the pose of the model at the same joint positions.
-///
-/// The robot computes its poses with lengths of its own. Cartesian setpoints are poses of the model
-/// with this offset, so that they continue what the robot commands. It is fixed until the reference
-/// is taken from the robot again: an offset that followed the robot would hide a drift.
-#[derive(Clone, Copy, Debug)]
-struct PoseOffset {
-    /// Base axes, `[m]`.
-    translation: Vector3<f64>,
-    /// In the axes of the end effector: base axes would turn motions, too.
-    rotation: UnitQuaternion<f64>,
-}
-
-impl PoseOffset {
-    /// The offset of `robots` from `models`.
-    fn between(models: &Isometry3<f64>, robots: &Isometry3<f64>) -> Self {
-        Self {
-            translation: robots.translation.vector - models.translation.vector,
-            rotation: models.rotation.inverse() * robots.rotation,
-        }
-    }
-
-    /// Returns the robot's pose where the model has `pose`.
-    fn apply(&self, pose: &Isometry3<f64>) -> Isometry3<f64> {
-        Isometry3::from_parts(
-            (pose.translation.vector + self.translation).into(),
-            pose.rotation * self.rotation,
-        )
-    }
 }
 
 /// How far the robot's integrated position is from the reference, as far as that matters.
@@ -104,15 +71,36 @@ impl SetpointStream {
             last: None,
             from: JointVector::zeros(),
             drift: Drift::None,
-            offset: PoseOffset {
-                translation: Vector3::zeros(),
-                rotation: UnitQuaternion::identity(),
-            },
         }
     }
 
     pub(super) fn controller(&self) -> Controller {
         self.controller
+    }
+
+    /// True if poses or twists are sent.
+    pub(super) fn is_cartesian(&self) -> bool {
+        matches!(
+            self.setpoints,
+            Setpoints::CartesianPoses | Setpoints::CartesianVelocities
+        )
+    }
+
+    /// Returns the robot's own commanded pose in that of `hand` at the joint positions `q`, which
+    /// were taken from the robot: poses and twists continue it with an end effector that is moved
+    /// by that. `None` for setpoints of joints, and if it is no rigid transform.
+    ///
+    /// It counts until the reference is taken from the robot again: a correction that followed the
+    /// robot would hide a drift.
+    pub(super) fn correction(
+        &self,
+        model: &Model,
+        hand: &EndEffector,
+        q: &JointVector,
+        state: &RobotState,
+    ) -> Option<Isometry3<f64>> {
+        let commanded = self.is_cartesian().then(|| commanded_pose(state)).flatten();
+        commanded.map(|commanded| pose_of(model, hand, q).inverse() * commanded)
     }
 
     /// Returns the setpoint as the robot has it, if it differs from that of `reference`, the last
@@ -136,7 +124,7 @@ impl SetpointStream {
                 self.drift = Drift::Joints(joint_drift(&drift));
             }
             Setpoints::CartesianVelocities if !differs => {
-                let pose = self.pose_at(model, ee, &reference.q);
+                let pose = pose_of(model, ee, &reference.q);
                 let robots = commanded_pose(state);
                 let drift = robots.map_or(Twist::zeros(), |robots| twist(&pose, &robots));
                 differs = drift.amax() > is_off::POSE;
@@ -147,9 +135,6 @@ impl SetpointStream {
         let [q, dq, ddq] = [state.q_d, state.dq_d, state.ddq_d].map(JointVector::from);
         if differs {
             (self.from, self.drift) = (q, Drift::None);
-            if let Some(robots) = commanded_pose(state) {
-                self.offset = PoseOffset::between(&pose_of(model, ee, &q), &robots);
-            }
         }
         // The robot's velocity is the mean of its last cycle, the reference's that at the end of
         // it.
@@ -175,7 +160,7 @@ impl SetpointStream {
             (self.from, self.drift) = (reference.q, Drift::None);
         }
         let from = match self.setpoints {
-            Setpoints::CartesianVelocities => self.pose_at(model, ee, &self.from),
+            Setpoints::CartesianVelocities => pose_of(model, ee, &self.from),
             _ => Isometry3::identity(),
         };
         let wish = |q: &JointVector| self.setpoint(model, ee, &from, q);
@@ -225,7 +210,7 @@ impl SetpointStream {
                 JointVelocities(((q - self.from) / CYCLE + back).into()).into()
             }
             Setpoints::CartesianPoses => CartesianPose {
-                O_T_EE: transform::array(&self.pose_at(model, ee, q)),
+                O_T_EE: transform::array(&pose_of(model, ee, q)),
                 elbow: Some(elbow(q)),
             }
             .into(),
@@ -234,7 +219,7 @@ impl SetpointStream {
                     Drift::Pose(drift) => drift * RETURN,
                     Drift::Joints(_) | Drift::None => Twist::zeros(),
                 };
-                let velocity = twist(&self.pose_at(model, ee, q), from) / CYCLE + back;
+                let velocity = twist(&pose_of(model, ee, q), from) / CYCLE + back;
                 CartesianVelocities {
                     O_dP_EE: velocity.into(),
                     elbow: Some(elbow(q)),
@@ -242,11 +227,6 @@ impl SetpointStream {
                 .into()
             }
         }
-    }
-
-    /// The robot's pose at these joint positions of the reference.
-    fn pose_at(&self, model: &Model, ee: &EndEffector, q: &JointVector) -> Isometry3<f64> {
-        self.offset.apply(&pose_of(model, ee, q))
     }
 }
 

@@ -31,6 +31,8 @@ impl Arm {
                 time: 1000,
                 q: q.into(),
                 dq: JointVector::zeros(),
+                modelled: Isometry3::translation(0.3, -0.1, 0.5),
+                reported: RobotState::default().O_T_EE,
                 pose: Isometry3::translation(0.3, -0.1, 0.5),
                 object: Isometry3::translation(0.3, -0.1, 0.5),
                 jacobian,

@@ -1,6 +1,6 @@
 //! An object that the hand holds, alone or with the arms of a team.
 
-use franka_model::{rotation, transform};
+use franka_model::rotation;
 use franka_otg::AxisLimits;
 use nalgebra::Isometry3;
 
@@ -49,19 +49,14 @@ impl RunningSession {
         if grasp == self.grasp {
             return;
         }
-        let object = grasp.unwrap_or_default();
-        self.arm.object = self.arm.pose * object;
-        self.ee.f_t_ee = self.hand.f_t_ee * transform::matrix(&object);
         self.grasp = grasp;
+        self.place_object();
+        self.leave_pose_course();
         self.lags = false;
         // Arms at rest plan the same way of the same object. What rounding has left of a motion
         // would give it another direction, and limits of its own, on each.
         if self.reference.dq.amax() < AT_REST {
             self.reference = Reference::at_rest(self.reference.q);
-        }
-        // Its plan is one for the other frame.
-        if matches!(self.route.course, Course::Pose(..)) {
-            self.route.course = Course::Rest;
         }
     }
 

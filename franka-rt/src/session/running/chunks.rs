@@ -46,6 +46,7 @@ impl RunningSession {
             }
             self.heard = now;
             self.stage = GoalStage::UnderWay;
+            self.is_refined = false;
         } else if over && let Course::Chunk(chunk) = &self.route.course {
             let target = chunk.target();
             self.turn_to(target);

@@ -35,6 +35,7 @@ impl RunningSession {
         if !named {
             self.since = now;
             self.reacting = Reacting::to(goal, now);
+            self.renew_correction();
         }
         self.goal = *goal;
         self.take_hold();
@@ -84,6 +85,7 @@ impl RunningSession {
     /// Sets out for the target of the goal; along a path once that is there.
     pub(super) fn set_out(&mut self) {
         self.stage = GoalStage::UnderWay;
+        self.is_refined = false;
         self.held_back = 0;
         self.route.chunk_end = None;
         self.turn_to(match self.goal.along_path {

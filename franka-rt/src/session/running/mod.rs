@@ -5,6 +5,7 @@
 
 mod carry;
 mod chunks;
+mod correction;
 mod goals;
 mod react;
 mod stages;
@@ -50,8 +51,12 @@ use stages::GoalStage;
 pub(super) struct RunningSession {
     /// As the robot's state has it. Springs and dampers act there.
     hand: EndEffector,
-    /// What goals lead somewhere: the hand, or an object in it.
+    /// What goals lead somewhere: the hand as the robot reports it, or an object in it.
     ee: EndEffector,
+    /// Pose of the reported hand in the hand.
+    correction: Isometry3<f64>,
+    /// True once the correction was renewed where the reference has arrived.
+    is_refined: bool,
     grasp: Option<Isometry3<f64>>,
     load: Load,
     /// The joint positions that it began with, `[rad]`: the posture of goals without one.
@@ -144,7 +149,11 @@ pub(super) struct Measured {
     pub(super) time: u64,
     pub(super) q: JointVector,
     pub(super) dq: JointVector,
-    /// `O_T_EE`.
+    /// The pose that the model has.
+    pub(super) modelled: Isometry3<f64>,
+    /// `O_T_EE`, column-major, unchecked.
+    pub(super) reported: [f64; 16],
+    /// The pose of the hand as the robot reports it, from the model and the correction.
     pub(super) pose: Isometry3<f64>,
     /// The pose of what goals lead somewhere: the object in the hand, or the same.
     pub(super) object: Isometry3<f64>,
@@ -198,6 +207,8 @@ impl RunningSession {
                 time: state.message_id,
                 q: measured,
                 dq: state.dq.into(),
+                modelled: rigid(&pose),
+                reported: state.O_T_EE,
                 pose: rigid(&pose),
                 object: rigid(&pose),
                 jacobian,
@@ -220,11 +231,14 @@ impl RunningSession {
             load,
             hand: ee,
             ee,
+            correction: Isometry3::identity(),
+            is_refined: false,
             grasp: None,
             waits: false,
             lags: false,
             speed_cap: None,
         };
+        this.renew_correction();
         this.take_hold();
         this.set_out();
         Some(this)
@@ -365,13 +379,16 @@ impl RunningSession {
         let q = JointVector::from(state.q);
         let dq = JointVector::from(state.dq);
         let dynamics = model.dynamics(&q, &dq, &self.hand, &self.load, &GRAVITY_EARTH);
-        let hand = rigid(&dynamics.pose);
+        let modelled = rigid(&dynamics.pose);
+        let pose = modelled * self.correction;
         self.arm = Measured {
             time: state.message_id,
             q,
             dq,
-            pose: hand,
-            object: hand * self.grasp.unwrap_or_default(),
+            modelled,
+            reported: state.O_T_EE,
+            pose,
+            object: pose * self.grasp.unwrap_or_default(),
             jacobian: dynamics.jacobian,
         };
         let Next { step, mut bindings } = self.next.take().unwrap_or_default();
@@ -466,7 +483,11 @@ impl RunningSession {
         let Some(echo) = stream.echo(model, &self.ee, &self.reference, state) else {
             return false;
         };
+        let correction = stream.correction(model, &self.hand, &echo.q, state);
         self.reference = echo;
+        if let Some(correction) = correction {
+            self.correct(correction);
+        }
         let mut aim = self.aim(model, state.message_id);
         let target = match self.stage {
             GoalStage::UnderWay => aim.target,

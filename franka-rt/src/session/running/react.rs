@@ -56,7 +56,7 @@ impl RunningSession {
             after: Duration::from_millis(self.arm.time.saturating_sub(self.since)),
             time: self.arm.time,
             wrench: state.wrench,
-            pose: self.arm.pose,
+            pose: self.arm.as_reported(),
         };
         let on_arrival = match self.goal.on_arrival {
             OnArrival::Hold => self.afterwards,

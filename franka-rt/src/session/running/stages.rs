@@ -44,14 +44,18 @@ impl RunningSession {
             GoalStage::UnderWay => self.end_way(model),
             GoalStage::Landing(landing) => {
                 let working = matches!(&self.drive, Drive::Torques(effort) if effort.is_working());
-                let (mut settlement, held) = match landing.judge(&self.arm.pose, at_rest, working) {
+                // By the robot's own report: under its Cartesian controllers the correction is
+                // that of the setpoint, from where the last one was taken up.
+                let measured = self.arm.as_reported();
+                let (mut settlement, held) = match landing.judge(&measured, at_rest, working) {
                     Verdict::Settling => return,
                     Verdict::Settled(settlement, held) => (settlement, held),
                 };
                 let target = landing.target();
                 let reference = model.pose(Frame::EndEffector, &self.reference.q, &self.hand);
+                let reference = rigid(&reference) * self.correction;
                 let out_of_reach =
-                    !self.obstructed && landing.is_short_at(&rigid(&reference), &self.arm.pose);
+                    !self.obstructed && landing.is_short_at(&reference, &self.arm.pose);
                 if self.goal.on_arrival == OnArrival::ReportAndFinish
                     && self.reference.dq.amax() > REFERENCE_REST
                 {
@@ -113,7 +117,7 @@ impl RunningSession {
                 self.reference = Reference::at_rest(release.reference());
                 self.route.rest();
                 if release.is_over(at_rest) {
-                    self.stage = GoalStage::Finished(release.error(&self.arm.pose));
+                    self.stage = GoalStage::Finished(release.error(&self.arm.as_reported()));
                 }
             }
             GoalStage::Staying | GoalStage::Finished(_) => {}
@@ -139,6 +143,9 @@ impl RunningSession {
         let arrived = self.route.is_done() && !turns && !(pursued && self.waits);
         let stalled = stalled && !(pursued && self.waits && !self.lags);
         let paused = pursued && self.goal.paused;
+        if arrived && !paused && self.refine(&heading) {
+            return;
+        }
         let ends = self.goal.on_arrival != OnArrival::Hold && !paused;
         if ends && (arrived || stalled) {
             if stalled && let Some(lapse) = self.route.hindrance() {
@@ -155,6 +162,8 @@ impl RunningSession {
                     Some(pose * self.grasp.unwrap_or_default().inverse())
                 }
                 Target::Joints(q) | Target::MovingJoints { q, .. } => {
+                    // The report is not to count the way's change of the correction as an error.
+                    self.renew_correction();
                     Some(rigid(&model.pose(Frame::EndEffector, &q.into(), &self.ee)))
                 }
             };

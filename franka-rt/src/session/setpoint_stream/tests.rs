@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use franka_model::{Model, READY};
+use nalgebra::Vector3;
 
 use super::*;
+use crate::session::geometry::corrected;
 use crate::session::{
     Backend, Goal, GoalId, OnArrival, SessionCommand, SessionEvent, Settlement, TargetSession,
 };
@@ -157,7 +159,8 @@ fn cartesian_setpoints_begin_and_go_on_where_the_robot_is() {
     for setpoints in [Setpoints::CartesianPoses, Setpoints::CartesianVelocities] {
         for is_filled in [true, false] {
             let mut state = resting();
-            let ee = crate::session::end_effector_of(&state).expect("a rigid one");
+            let mut ee = crate::session::end_effector_of(&state).expect("a rigid one");
+            let hand = ee;
             let robots = off * pose_of(model, &ee, &READY);
             (state.O_T_EE, state.O_T_EE_d) = (transform::array(&robots), transform::array(&robots));
             state.elbow_d = state.elbow_c;
@@ -172,7 +175,11 @@ fn cartesian_setpoints_begin_and_go_on_where_the_robot_is() {
             for cycle in 0..5 {
                 let anew = stream.echo(model, &ee, &reference, &state);
                 assert_eq!(anew.is_some(), cycle == 0, "{setpoints}, cycle {cycle}");
-                reference = anew.unwrap_or(reference);
+                if let Some(anew) = anew {
+                    reference = anew;
+                    let correction = stream.correction(model, &hand, &reference.q, &state);
+                    ee = corrected(&hand, &correction.expect("of Cartesian setpoints"));
+                }
                 match stream.command(model, &ee, &reference, false, &state).0 {
                     MotionCommand::CartesianPose(pose) => {
                         let pose = transform::isometry_from_array(&pose.O_T_EE).expect("rigid");

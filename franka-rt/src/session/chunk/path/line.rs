@@ -16,11 +16,12 @@ use super::poses::through_poses;
 use super::reach::Arm;
 use super::{Preview, Waypoint};
 use crate::session::chunk::value::TURN_MAX;
+use crate::session::geometry::reported_end_effector;
 use crate::session::guard::clearance::{Clearance, KeepOut};
 use crate::session::guard::joint_bounds;
 use crate::session::kinematics::Posture;
 use crate::session::pose::PoseState;
-use crate::session::{Budget, Goal, GoalError, OnArrival, Target, end_effector_of, rigid};
+use crate::session::{Budget, Goal, GoalError, OnArrival, Target, rigid};
 
 impl Goal {
     /// Looks for a way to the pose of a goal that is to arrive there, on a straight line from the
@@ -53,7 +54,7 @@ impl Goal {
         {
             return Ok(());
         }
-        let ee = end_effector_of(state).unwrap_or_default();
+        let ee = reported_end_effector(model, state).unwrap_or_default();
         let q = JointVector::from(*q);
         let Some(line) = Line::new(&there, q, &self.budget, model, (ee, state.m_ee > 0.0)) else {
             return Ok(());

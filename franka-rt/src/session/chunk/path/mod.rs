@@ -31,8 +31,9 @@ pub use self::error::PathError;
 pub use self::preview::{Blocked, Preview};
 use self::reach::Arm;
 use super::value::{Chunk, Points};
+use crate::session::geometry::reported_end_effector;
 use crate::session::kinematics::Posture;
-use crate::session::{Goal, Target, check, end_effector_of, rigid};
+use crate::session::{Goal, Target, check, rigid};
 
 /// A place on a path, and how far from it the path may round its corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,7 +136,7 @@ impl Chunk {
             let pace = joints::pace(&way.states, budget);
             (Points::Joints(way.into_curve()), pace)
         } else {
-            let ee = end_effector_of(state).unwrap_or_default();
+            let ee = reported_end_effector(model, state).unwrap_or_default();
             let start = rigid(&model.pose(Frame::EndEffector, &q, &ee));
             let way = poses::through_poses(waypoints, start, budget)?;
             let posture = goal
