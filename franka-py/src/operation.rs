@@ -257,7 +257,9 @@ impl Operation {
     fn wait(&self, py: Python<'_>, timeout: Option<f64>) -> PyResult<Py<PyAny>> {
         let timeout = timeout.map(|timeout| seconds("timeout", timeout));
         let timeout = timeout.transpose()?;
-        let delivered = runtime::wait(py, self.begin()?, timeout)?;
+        // What is refused here has not begun, and can still be awaited.
+        let runtime = runtime::may_wait(py)?;
+        let delivered = runtime::wait(py, runtime, self.begin()?, timeout)?;
         (delivered.0)(py)
     }
 

@@ -77,15 +77,13 @@ impl<T> Drop for Threaded<T> {
 /// a signal handler raises (Ctrl-C), `work` is dropped first: a motion brakes.
 ///
 /// # Errors
-/// `TimeoutError`, what the signal handler raised, and `RuntimeError` on a thread that runs an
-/// event loop.
+/// `TimeoutError`, and what the signal handler raised.
 pub(crate) fn wait<T: Send + 'static>(
     py: Python<'_>,
+    runtime: &'static Runtime,
     work: impl Future<Output = T> + Send + 'static,
     timeout: Option<Duration>,
 ) -> PyResult<T> {
-    let runtime = runtime()?;
-    refuse_in_event_loop(py)?;
     py.detach(|| {
         // A task: what it drives goes on while this thread waits for the interpreter.
         let mut task = runtime.spawn(work);
@@ -117,11 +115,16 @@ pub(crate) fn wait<T: Send + 'static>(
     })
 }
 
-/// An event loop that waits here serves nothing else, timeouts and cancellation included.
-fn refuse_in_event_loop(py: Python<'_>) -> PyResult<()> {
+/// The runtime, for [`wait`] on this thread.
+///
+/// # Errors
+/// As [`runtime`], and `RuntimeError` on a thread that runs an event loop: one that waits here
+/// serves nothing else, timeouts and cancellation included.
+pub(crate) fn may_wait(py: Python<'_>) -> PyResult<&'static Runtime> {
+    let runtime = runtime()?;
     let running = py.import("asyncio")?.call_method0("_get_running_loop")?;
     if running.is_none() {
-        return Ok(());
+        return Ok(runtime);
     }
     Err(PyRuntimeError::new_err(
         "waiting would block the event loop of this thread: use 'await' here, and \
