@@ -8,7 +8,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyAny;
 
 use crate::arrays::vector;
-use crate::errors::{Raise, variant};
+use crate::errors::Raise;
+use crate::names::Named;
 use crate::operation::Operation;
 use crate::robot::Robot;
 
@@ -64,13 +65,13 @@ impl AsynchronousControl {
 
     /// How far the newest target has been followed: `idle`, `executing`, `target_reached` or
     /// `aborted`; and why it was aborted, if it was.
-    fn status(&self) -> PyResult<(String, Option<String>)> {
+    fn status(&self) -> PyResult<(&'static str, Option<String>)> {
         let status = self.control()?.status();
         let reason = match status {
             TargetStatus::Aborted(reason) => Some(reason.to_string()),
             _ => None,
         };
-        Ok((variant(&status), reason))
+        Ok((status.python_name(), reason))
     }
 
     /// Waits until the newest target is reached. Raises what ended the motion before. Cancelling

@@ -12,6 +12,7 @@ use franka_async::model::RobotKind;
 use pyo3::prelude::*;
 
 use crate::log::ControlLog;
+use crate::names::Named;
 use crate::state::names;
 
 /// Becomes an exception, where the interpreter is at hand.
@@ -77,20 +78,28 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
         Error::Connect(_) | Error::ConnectGripper(_) | Error::ConnectVacuumGripper(_) => {
             "ConnectError"
         }
+        Error::Command(CommandError::LinkLost { .. } | CommandError::ConnectionClosed { .. }) => {
+            "CommandConnectionLostError"
+        }
         Error::Command(_) => "CommandError",
         Error::Control(_) => "ControlError",
-        Error::Motion(_) => "MotionError",
+        Error::Motion(error) => motion_class(error),
         Error::Active(_) => "ActiveError",
         Error::Identify(_) => "IdentifyError",
+        Error::Read(ReadError::LinkLost { .. } | ReadError::ConnectionClosed { .. }) => {
+            "ReadConnectionLostError"
+        }
         Error::Read(_) => "ReadError",
         Error::Tare(_) => "TareError",
+        Error::Gripper(ActionError::ConnectionClosed { .. })
+        | Error::VacuumGripper(ActionError::ConnectionClosed { .. }) => "ActionConnectionLostError",
         Error::Gripper(_) | Error::VacuumGripper(_) => "ActionError",
         _ => "FrankaError",
     };
     let class = py.import("franka_async.errors")?.getattr(class)?;
     let exception = class.call1((error.to_string(),))?;
     exception.setattr("kind", kind(error))?;
-    exception.setattr("party", variant(&error.party()))?;
+    exception.setattr("party", error.party().python_name())?;
     exception.setattr("entry", error.entry())?;
     // What a traceback shows below the text, from Python 3.11 on.
     if exception.hasattr("add_note")? {
@@ -117,9 +126,27 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     Ok(PyErr::from_value(exception))
 }
 
+/// The subclass of `MotionError`, for what programs tell apart.
+fn motion_class(error: &MotionError) -> &'static str {
+    match error {
+        MotionError::Goal(_) | MotionError::Path(_) => "GoalError",
+        MotionError::Superseded => "SupersededError",
+        MotionError::Stopped => "StoppedError",
+        MotionError::Held(_) | MotionError::Braked(_) => "GuardError",
+        MotionError::Busy => "BusyError",
+        MotionError::NotReady { .. } => "NotReadyError",
+        MotionError::TargetNotReached(_) => "TargetNotReachedError",
+        MotionError::LinkLost { .. } | MotionError::ConnectionClosed { .. } => {
+            "MotionConnectionLostError"
+        }
+        MotionError::AfterReaction { error, .. } => motion_class(error),
+        _ => "MotionError",
+    }
+}
+
 fn set_control(exception: &Bound<'_, PyAny>, control: &ControlError) -> PyResult<()> {
     exception.setattr("errors", names(control.failure.reflex_reason))?;
-    exception.setattr("move_status", status(control.refusal().status()))?;
+    exception.setattr("move_status", status(control))?;
     let version = match control.model.kind() {
         RobotKind::Fer => Version::V5,
         _ => Version::V10,
@@ -139,49 +166,30 @@ pub(crate) fn findings<'py>(py: Python<'py>, diagnosis: &Diagnosis) -> PyResult<
 }
 
 /// The name of what happened.
-fn kind(error: &Error) -> String {
+fn kind(error: &Error) -> &'static str {
     match error {
-        Error::Connect(error) => variant(error),
-        Error::Command(error) => variant(error),
-        Error::Control(error) => status(error.refusal().status()),
-        Error::Motion(error) => variant(error),
-        Error::Active(error) => variant(error),
-        Error::Identify(error) => variant(error),
-        Error::Read(error) => variant(error),
-        Error::Tare(TareError::Refused(error)) => variant(error),
-        Error::ConnectGripper(error) => variant(error),
+        Error::Connect(error) => error.python_name(),
+        Error::Command(error) => error.python_name(),
+        Error::Control(error) => status(error),
+        Error::Motion(error) => error.python_name(),
+        Error::Active(error) => error.python_name(),
+        Error::Identify(error) => error.python_name(),
+        Error::Read(error) => error.python_name(),
+        Error::Tare(TareError::Refused(error)) => error.python_name(),
+        Error::ConnectGripper(error) => error.python_name(),
         Error::Gripper(ActionError::Failure(ActionFailure::Aborted { .. }))
-        | Error::VacuumGripper(ActionError::Failure(ActionFailure::Aborted { .. })) => {
-            "aborted".to_owned()
-        }
-        Error::Gripper(error) => variant(error),
-        Error::ConnectVacuumGripper(error) => variant(error),
-        Error::VacuumGripper(error) => variant(error),
-        _ => variant(error),
+        | Error::VacuumGripper(ActionError::Failure(ActionFailure::Aborted { .. })) => "aborted",
+        Error::Gripper(error) => error.python_name(),
+        Error::ConnectVacuumGripper(error) => error.python_name(),
+        Error::VacuumGripper(error) => error.python_name(),
+        _ => "other",
     }
 }
 
-/// The name of the robot's answer, without that of the command: `reflex_aborted`.
-fn status(status: Status) -> String {
-    let text = format!("{status:?}");
-    let name = text.rsplit('(').next().unwrap_or_default();
-    snake_case(name.trim_end_matches(')'))
-}
-
-/// The name of an enum's variant, which a derived `Debug` begins with: `link_lost`.
-pub(crate) fn variant(value: &impl std::fmt::Debug) -> String {
-    let text = format!("{value:?}");
-    let is_name = |c: char| c.is_alphanumeric() || c == '_';
-    snake_case(text.split(|c| !is_name(c)).next().unwrap_or_default())
-}
-
-fn snake_case(name: &str) -> String {
-    let mut snake = String::with_capacity(name.len() + 4);
-    for (i, letter) in name.char_indices() {
-        if letter.is_uppercase() && i > 0 {
-            snake.push('_');
-        }
-        snake.extend(letter.to_lowercase());
+/// The name of the robot's answer to a motion: `reflex_aborted`.
+fn status(control: &ControlError) -> &'static str {
+    match control.refusal().status() {
+        Status::Move(status) => status.python_name(),
+        _ => "other",
     }
-    snake
 }

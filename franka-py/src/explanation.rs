@@ -8,8 +8,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::array;
-use crate::errors::{findings, variant};
+use crate::errors::findings;
 use crate::log::ControlLog;
+use crate::names::Named;
 use crate::recording::RecordingFile;
 use crate::state::names;
 
@@ -61,8 +62,8 @@ pub(crate) struct Explanation(Box<Explained>);
 impl Explanation {
     /// The robot, `fr3` or `fer`.
     #[getter]
-    fn robot(&self) -> String {
-        variant(&self.0.robot)
+    fn robot(&self) -> &'static str {
+        self.0.robot.python_name()
     }
 
     /// How many cycles there were.
@@ -146,7 +147,7 @@ impl Explanation {
         let class = class(py, "Moment")?;
         let moments = self.0.timeline.iter();
         moments
-            .map(|moment| class.call1((moment.time, variant(&moment.kind), &*moment.text)))
+            .map(|moment| class.call1((moment.time, moment.kind.python_name(), &*moment.text)))
             .collect()
     }
 

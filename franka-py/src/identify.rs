@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::arrays::{array, table};
-use crate::errors::variant;
+use crate::names::Named;
 use crate::operation::Operation;
 use crate::robot::Robot;
 
@@ -97,8 +97,8 @@ pub(crate) struct PyIdentified(pub(crate) Identified);
 impl PyIdentified {
     /// The kind of the robot: `fr3` or `fer`.
     #[getter]
-    fn kind(&self) -> String {
-        variant(&self.0.kind)
+    fn kind(&self) -> &'static str {
+        self.0.kind.python_name()
     }
 
     /// Friction of each joint at 0.2 rad/s, beyond what the robot compensates itself, `(7,)` N m.
@@ -171,7 +171,7 @@ impl PyIdentified {
         let kind: RobotKind = self.0.kind;
         format!(
             "<Identified {}, load {:.3} kg>",
-            variant(&kind),
+            kind.python_name(),
             self.mass()
         )
     }

@@ -35,6 +35,7 @@ mod log;
 mod logging;
 mod model;
 mod motion;
+mod names;
 mod once_moving;
 mod operation;
 mod options;
@@ -109,6 +110,8 @@ mod _native {
     use crate::model::{CartesianLimits, Clearance, Dynamics, JointLimits, Model, MotionLimits};
     #[pymodule_export]
     use crate::motion::{Follow, Motion, MotionHandle};
+    #[pymodule_export]
+    use crate::names::_names;
     #[pymodule_export]
     use crate::operation::{_complete, Operation};
     #[pymodule_export]

@@ -13,7 +13,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyAny, PyTuple};
 
 use crate::arrays::{array, pose_array};
-use crate::errors::variant;
+use crate::names::Named;
 use crate::operation::Operation;
 use crate::stats;
 use crate::told::{Telling, Told};
@@ -242,8 +242,8 @@ pub(crate) fn reference<'py>(
     py: Python<'py>,
     reference: &Reference,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let guards = reference.guards.iter().map(|guard| variant(&guard));
-    let guards: Vec<String> = guards.collect();
+    let guards = reference.guards.iter().map(|guard| guard.python_name());
+    let guards: Vec<_> = guards.collect();
     class(py, "Reference")?.call1((
         reference.time,
         array(py, &reference.q),

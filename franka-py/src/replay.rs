@@ -12,7 +12,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyAny;
 
 use crate::arm::Arm;
-use crate::errors::{Raise, made, variant};
+use crate::errors::{Raise, made};
+use crate::names::Named;
 use crate::operation::Operation;
 use crate::recording::{RecordingFile, value};
 use crate::robot::Robot;
@@ -171,10 +172,10 @@ impl Raise for Failure {
             ReplayFailure::Refused(ReplayError::Speed { .. }) => {
                 return PyValueError::new_err(text);
             }
-            ReplayFailure::Refused(error) => (variant(&error), "caller"),
-            failure => (variant(&failure), "robot"),
+            ReplayFailure::Refused(error) => (error.python_name(), "caller"),
+            failure => (failure.python_name(), "robot"),
         };
-        made(py, "ReplayError", &kind, party, &text)
+        made(py, "ReplayError", kind, party, &text)
     }
 }
 

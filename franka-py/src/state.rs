@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::arrays::{array, columns, table};
-use crate::errors::variant;
+use crate::names::Named;
 
 /// Everything that the robot says in one millisecond, by the vendor's names: O base, F flange, NE
 /// nominal end effector, EE end effector, K stiffness frame; `X_T_Y` is the pose of Y in X, with
@@ -312,20 +312,20 @@ impl RobotState {
     /// What the robot does: `other`, `idle`, `move`, `guiding`, `reflex`, `user_stopped` or
     /// `automatic_error_recovery`.
     #[getter]
-    pub(crate) fn robot_mode(&self) -> String {
-        variant(&self.state.robot_mode)
+    pub(crate) fn robot_mode(&self) -> &'static str {
+        self.state.robot_mode.python_name()
     }
 
     /// The active motion generator.
     #[getter]
-    pub(crate) fn motion_generator_mode(&self) -> String {
-        variant(&self.state.motion_generator_mode)
+    pub(crate) fn motion_generator_mode(&self) -> &'static str {
+        self.state.motion_generator_mode.python_name()
     }
 
     /// The active controller.
     #[getter]
-    pub(crate) fn controller_mode(&self) -> String {
-        variant(&self.state.controller_mode)
+    pub(crate) fn controller_mode(&self) -> &'static str {
+        self.state.controller_mode.python_name()
     }
 
     /// Errors that hold the robot now, by the vendor's names.

@@ -6,7 +6,7 @@ use franka_async::realtime::{CycleTimes, Histogram, Phases};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::errors::variant;
+use crate::names::Named;
 use crate::robot::Robot;
 
 #[pymethods]
@@ -115,7 +115,7 @@ fn times<'py>(py: Python<'py>, cycle: &CycleTimes) -> PyResult<Bound<'py, PyDict
     let phases = cycle.phases.as_ref().map(|phases| self::phases(py, phases));
     all.set_item("phases", phases.transpose()?)?;
     let (longest, time) = cycle.longest();
-    all.set_item("longest", (variant(&longest), time.as_secs_f64()))?;
+    all.set_item("longest", (longest.python_name(), time.as_secs_f64()))?;
     Ok(all)
 }
 

@@ -13,8 +13,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
 
 use crate::arrays::{array, columns};
-use crate::errors::{Raise, variant};
+use crate::errors::Raise;
 use crate::exit;
+use crate::names::Named;
 use crate::operation::{Operation, seconds};
 use crate::robot::Robot;
 use crate::state::names;
@@ -213,9 +214,9 @@ impl<'py> IntoPyObject<'py> for Closed {
     fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let Self(reason) = &self;
         let fields = (
-            variant(reason),
+            reason.python_name(),
             reason.to_string(),
-            variant(&reason.party()),
+            reason.party().python_name(),
         );
         class(py, "CloseReason")?.call1(fields)
     }
@@ -227,8 +228,8 @@ fn class<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
 
 fn health(py: Python<'_>, health: Health) -> PyResult<Bound<'_, PyAny>> {
     let condition = match &health.condition {
-        Condition::Unready(why) => variant(why),
-        condition => variant(condition),
+        Condition::Unready(why) => why.python_name(),
+        condition => condition.python_name(),
     };
     class(py, "Health")?.call1((
         condition,
@@ -279,7 +280,7 @@ fn event(py: Python<'_>, notification: Notification) -> PyResult<Bound<'_, PyAny
         EventKind::Reflex(reflex) => fields.set_item("reflex", self::reflex(py, reflex)?)?,
         EventKind::NotRecovered { reflex, why } => {
             fields.set_item("number", reflex)?;
-            fields.set_item("why", variant(why))?;
+            fields.set_item("why", why.python_name())?;
         }
         EventKind::Recovered {
             reflex,
@@ -311,7 +312,7 @@ fn event(py: Python<'_>, notification: Notification) -> PyResult<Bound<'_, PyAny
     }
     let robot_time = robot_time.map(|time| time as f64 / 1000.0);
     class(py, "Event")?.call1((
-        variant(&kind),
+        kind.python_name(),
         at.as_secs_f64(),
         robot_time,
         missed,

@@ -16,8 +16,9 @@ use pyo3::types::{PyAny, PyDict, PyList, PyTuple};
 use crate::arm::Arm;
 use crate::arrays::{pose, pose_array};
 use crate::destination::destination;
-use crate::errors::{Raise, variant};
+use crate::errors::Raise;
 use crate::motion::{Member, Report};
+use crate::names::Named;
 use crate::operation::{Operation, seconds};
 use crate::options::{Keywords, Options, with_options};
 use crate::robot::Robot;
@@ -171,9 +172,9 @@ impl Team {
         Ok(match stopped {
             None => None,
             Some(TeamStop::Member { member, fault }) => {
-                Some((variant(&fault), member).into_pyobject(py)?.into_any())
+                Some((fault.python_name(), member).into_pyobject(py)?.into_any())
             }
-            Some(other) => Some(variant(&other).into_pyobject(py)?.into_any()),
+            Some(other) => Some(other.python_name().into_pyobject(py)?.into_any()),
         })
     }
 

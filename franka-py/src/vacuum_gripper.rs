@@ -7,7 +7,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::device::{Device, device_methods, given};
-use crate::errors::variant;
+use crate::names::Named;
 use crate::operation::{Operation, seconds};
 use crate::robot::Robot;
 use crate::stream::stream;
@@ -133,8 +133,8 @@ impl VacuumGripperState {
     /// The status light: `green`, `yellow` (warnings), `orange` (severe ones), `red` (does not
     /// work) or `unknown`.
     #[getter]
-    fn device_status(&self) -> String {
-        variant(&self.0.device_status)
+    fn device_status(&self) -> &'static str {
+        self.0.device_status.python_name()
     }
 
     /// Power of the pump, per cent.
@@ -168,7 +168,7 @@ impl VacuumGripperState {
             self.time(),
             state.vacuum,
             state.actual_power,
-            variant(&status)
+            status.python_name()
         )
     }
 }

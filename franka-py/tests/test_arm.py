@@ -14,11 +14,13 @@ from conftest import begun, connection, outcome
 from franka_async import (
     Arm,
     Box,
+    BusyError,
     Chunk,
     ControlError,
     Deadman,
     Engagement,
     Gains,
+    GuardError,
     Joints,
     Latest,
     Lead,
@@ -51,7 +53,7 @@ def test_a_session_is_entered_or_awaited(sim: Sim) -> None:
             assert isinstance(arm, Arm) and arm.reference() is not None
             with pytest.raises(MotionError) as caught:
                 await robot.move_by([0.0, 0.0, 0.02])
-            assert caught.value.kind == "busy"
+            assert isinstance(caught.value, BusyError) and caught.value.kind == "busy"
         with pytest.raises(MotionError) as caught:
             arm.try_set(Offset([0.0, 0.0, 0.01]))
         assert caught.value.kind == "disengaged" and arm.target() is None and arm.reference() is None
@@ -421,7 +423,7 @@ def test_an_arm_holds_while_its_deadman_is_silent(live: Sim) -> None:
             deadman.release()
             with pytest.raises(MotionError) as caught:
                 await motion
-            assert caught.value.kind == "held"
+            assert isinstance(caught.value, GuardError) and caught.value.kind == "held"
             reference = arm.reference()
             assert reference is not None and "deadman" in reference.guards
             assert set(reference.guards) <= set(get_args(Guard))

@@ -9,24 +9,37 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from . import kinds
     from ._native import ControlLog
     from .motion import MotionReport
 
 __all__ = [
+    "ActionConnectionLostError",
     "ActionError",
     "ActiveError",
+    "BusyError",
+    "CommandConnectionLostError",
     "CommandError",
     "ConnectError",
+    "ConnectionLostError",
     "ControlError",
     "ExportError",
     "FrankaError",
+    "GoalError",
+    "GuardError",
     "IdentifyError",
+    "MotionConnectionLostError",
     "MotionError",
+    "NotReadyError",
+    "ReadConnectionLostError",
     "ReadError",
     "RecordError",
     "RecordingError",
     "ReplayError",
+    "StoppedError",
+    "SupersededError",
     "TareError",
+    "TargetNotReachedError",
     "TeamError",
 ]
 
@@ -35,10 +48,11 @@ class FrankaError(Exception):
     """Anything that can go wrong with a robot or its end effectors."""
 
     kind: str
-    """What went wrong, as one word or more in snake case: ``superseded``, ``link_lost``, ``refused``."""
+    """What went wrong, as one word or more in snake case: ``superseded``, ``link_lost``, ``refused``. :mod:`franka_async.kinds` lists
+    the kinds of each class. They are part of the interface."""
 
-    party: str
-    """Who can act on it: ``caller``, ``robot``, ``link``, ``host`` or ``peer``."""
+    party: kinds.Party
+    """Who can act on it."""
 
     entry: str | None = None
     """Row of the book's chapter of errors, which says what to do: ``errors.md#`` and this name. A traceback has it as a note."""
@@ -47,41 +61,78 @@ class FrankaError(Exception):
 class ConnectError(FrankaError):
     """There is no connection."""
 
+    kind: kinds.ConnectErrorKind
+
+
+class ConnectionLostError(FrankaError):
+    """The robot is silent (``link_lost``), or the connection has ended (``connection_closed``): under a motion, a command,
+    a read or an action of a gripper."""
+
 
 class CommandError(FrankaError):
     """A command other than a motion was not carried out."""
+
+    kind: kinds.CommandErrorKind
+
+
+class CommandConnectionLostError(CommandError, ConnectionLostError):
+    """A connection was lost before the answer to a command; the robot may have carried it out."""
 
 
 class ReadError(FrankaError):
     """States could not be read any further."""
 
+    kind: kinds.ReadErrorKind
+
+
+class ReadConnectionLostError(ReadError, ConnectionLostError):
+    """A connection was lost while states were read."""
+
 
 class ActionError(FrankaError):
     """An end effector did not do it. The kind is ``aborted`` if a newer action or ``stop()`` ended it."""
+
+    kind: kinds.ActionErrorKind
+
+
+class ActionConnectionLostError(ActionError, ConnectionLostError):
+    """A connection was lost before an end effector had answered; it may have done it."""
 
 
 class RecordError(FrankaError):
     """A recording is not written, or not to its end. Motions go on."""
 
+    kind: kinds.RecordErrorKind
+
 
 class RecordingError(FrankaError):
     """A recording, or a part of it, cannot be read."""
+
+    kind: kinds.RecordingErrorKind
 
 
 class ExportError(FrankaError):
     """Nothing, or not everything, was exported."""
 
+    kind: kinds.ExportErrorKind
+
 
 class IdentifyError(FrankaError):
     """An arm was not identified."""
+
+    kind: kinds.IdentifyErrorKind
 
 
 class TareError(FrankaError):
     """No tare was taken: the arm moves, is touched or guided, or is near a singularity."""
 
+    kind: kinds.TareErrorKind
+
 
 class MotionError(FrankaError):
-    """A motion ended short of its goal."""
+    """A motion ended short of its goal. What followed a reaction has the class of that error and the kind ``after_reaction``."""
+
+    kind: kinds.MotionErrorKind | kinds.ActiveErrorKind | kinds.ControlErrorKind | kinds.ReplayErrorKind
 
     is_ready_for_more: bool
     """Whether the robot takes a new motion without help from outside."""
@@ -90,8 +141,42 @@ class MotionError(FrankaError):
     """What a control law returned that gave up, below 0; `None` unless the kind is ``given_up``."""
 
 
+class GoalError(MotionError):
+    """A goal or a path was refused. Nothing has moved; a stream that it belongs to brakes the arm. The kind is ``goal`` or ``path``."""
+
+
+class SupersededError(MotionError):
+    """A newer goal took the place of this one."""
+
+
+class StoppedError(MotionError):
+    """The motion was stopped: by ``stop()`` or ``cancel()``."""
+
+
+class GuardError(MotionError):
+    """A guard ended the goal. The kind is ``held`` if the arm holds where it is, or ``braked`` if its session has ended."""
+
+
+class BusyError(MotionError):
+    """Something else controls the arm."""
+
+
+class NotReadyError(MotionError):
+    """A supervised robot takes no motions now. The motion has not begun."""
+
+
+class TargetNotReachedError(MotionError):
+    """The arm rests, and not at its target."""
+
+
+class MotionConnectionLostError(MotionError, ConnectionLostError):
+    """A connection was lost under a motion."""
+
+
 class ReplayError(MotionError):
     """A recorded motion was not made again. Unless the kind is ``off`` nothing has moved."""
+
+    kind: kinds.ReplayErrorKind
 
     is_ready_for_more = True
 
@@ -109,9 +194,13 @@ class TeamError(MotionError):
 class ActiveError(MotionError):
     """Active control could not go on."""
 
+    kind: kinds.ActiveErrorKind
+
 
 class ControlError(MotionError):
     """The robot ended the motion: a reflex, a user stop, another client's stop."""
+
+    kind: kinds.ControlErrorKind
 
     errors: list[str]
     """The errors that stopped it, by the vendor's names."""

@@ -1,11 +1,13 @@
 //! What a recorder says of itself, and why it does not record.
 
+use franka_async::record::AttachError;
 use franka_async::recording::{RecordError, RecordStatus, TrackError};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyAny;
 
-use crate::errors::{Raise, made, variant};
+use crate::errors::{Raise, made};
+use crate::names::Named;
 
 /// A [`RecordStatus`] on its way into Python.
 pub(super) struct Status(pub(super) RecordStatus);
@@ -53,7 +55,8 @@ impl Raise for RecordError {
             Self::Exists { .. } | Self::SameName { .. } | Self::Ended => "caller",
             _ => "host",
         };
-        made(py, "RecordError", &variant(&self), party, &self.to_string())
+        let text = self.to_string();
+        made(py, "RecordError", self.python_name(), party, &text)
     }
 }
 
@@ -62,11 +65,9 @@ impl Raise for TrackError {
         let text = self.to_string();
         match self {
             Self::Record(error) => error.raise(py),
-            Self::Cycles(error) => match variant(&error) {
-                kind if kind == "capacity" => PyValueError::new_err(text),
-                kind => made(py, "RecordError", &kind, "caller", &text),
-            },
-            other => made(py, "RecordError", &variant(&other), "caller", &text),
+            Self::Cycles(AttachError::Capacity { .. }) => PyValueError::new_err(text),
+            Self::Cycles(error) => made(py, "RecordError", error.python_name(), "caller", &text),
+            other => made(py, "RecordError", other.python_name(), "caller", &text),
         }
     }
 }

@@ -10,7 +10,8 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::RecordingFile;
-use crate::errors::{Raise, made, variant};
+use crate::errors::{Raise, made};
+use crate::names::Named;
 
 #[pymethods]
 impl RecordingFile {
@@ -88,7 +89,7 @@ impl RecordingFile {
         self.chosen()?;
         let robot_type = robot_type.map_or_else(
             || match self.kind() {
-                Some(kind) => Ok(format!("franka_{}", variant(&kind))),
+                Some(kind) => Ok(format!("franka_{}", kind.python_name())),
                 None => Err(PyValueError::new_err(
                     "the recording does not say which robot it is of: robot_type is needed",
                 )),
@@ -171,6 +172,12 @@ impl Raise for ExportError {
             Self::Exists { .. } | Self::Episode { .. } | Self::Dataset { .. } => "caller",
             _ => "host",
         };
-        made(py, "ExportError", &variant(&self), party, &self.to_string())
+        made(
+            py,
+            "ExportError",
+            self.python_name(),
+            party,
+            &self.to_string(),
+        )
     }
 }

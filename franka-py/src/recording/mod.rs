@@ -17,8 +17,9 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyTuple};
 
-use crate::errors::{Raise, made, variant};
+use crate::errors::{Raise, made};
 use crate::gripper;
+use crate::names::Named;
 use crate::vacuum_gripper::VacuumGripperState;
 use cycles::Rows;
 pub(crate) use cycles::{Cycles, RecordedCycle, recording_columns};
@@ -112,7 +113,7 @@ impl RecordingFile {
     fn robots<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let robots = self.recording.robots().iter();
         let made = robots.map(|robot| {
-            let kind = robot.kind.map(|kind| variant(&kind));
+            let kind = robot.kind.map(|kind| kind.python_name());
             value(
                 py,
                 "RecordedRobot",
@@ -238,7 +239,7 @@ impl RecordingFile {
                 kind: Some(kind),
                 name,
                 ..
-            } if name.is_empty() => variant(kind),
+            } if name.is_empty() => kind.python_name().to_owned(),
             robot => robot.name.clone(),
         });
         let robots: Vec<String> = match &self.robot {
@@ -349,14 +350,14 @@ fn event_object<'py>(py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyAn
         _ => None,
     };
     let ending = match kind {
-        EventKind::Outcome(outcome) => Some(variant(&outcome.ending)),
+        EventKind::Outcome(outcome) => Some(outcome.ending.python_name()),
         _ => None,
     };
     let fields = (
         event.time.as_nanos(),
         event.robot_time,
-        variant(kind),
-        variant(&kind.level()),
+        kind.python_name(),
+        kind.level().python_name(),
         kind.source(),
         kind.to_string(),
         goal,
@@ -382,6 +383,6 @@ impl Raise for RecordingError {
             _ => "host",
         };
         let text = self.to_string();
-        made(py, "RecordingError", &variant(&self), party, &text)
+        made(py, "RecordingError", self.python_name(), party, &text)
     }
 }
