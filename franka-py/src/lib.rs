@@ -133,6 +133,8 @@ mod _native {
     #[pymodule_export]
     use crate::state::{_state_of_json, RobotState};
     #[pymodule_export]
+    use crate::stats::_metrics;
+    #[pymodule_export]
     use crate::stream::Source;
     #[pymodule_export]
     use crate::supervision::_check_policy;
@@ -158,6 +160,7 @@ mod _native {
         module.add("FLAT_LAYOUT", crate::state_views::FLAT_LAYOUT)?;
         let thresholds = crate::settings::COLLISION_THRESHOLDS;
         module.add("COLLISION_THRESHOLDS", thresholds)?;
+        module.add("_METRICS_CONTENT_TYPE", franka_async::metrics::CONTENT_TYPE)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -2,12 +2,14 @@
 
 use std::time::Duration;
 
+use franka_async::metrics::Exporter;
 use franka_async::realtime::{CycleTimes, Histogram, Phases};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::names::Named;
 use crate::robot::Robot;
+use crate::runtime::runtime;
 
 #[pymethods]
 impl Robot {
@@ -87,11 +89,27 @@ impl Robot {
     }
 
     /// The robot's metrics as OpenMetrics text, for Prometheus and whatever else reads that; the
-    /// label `robot` is its address.
+    /// label `robot` is its address. `franka_async.metrics.text` is the text of several robots.
     fn metrics(&self, py: Python<'_>) -> PyResult<String> {
         let robot = self.connected()?;
         Ok(py.detach(|| robot.metrics()))
     }
+}
+
+/// The metrics of the robots that are connected, each with its value of the label `robot`, as one
+/// text.
+#[pyfunction]
+pub(crate) fn _metrics(
+    py: Python<'_>,
+    robots: Vec<(String, Bound<'_, Robot>)>,
+) -> PyResult<String> {
+    runtime()?;
+    let connected = robots.iter().filter_map(|(label, robot)| {
+        let robot = robot.get().connected().ok()?;
+        Some((label.clone(), robot))
+    });
+    let exporter = Exporter::new(connected);
+    Ok(py.detach(|| exporter.text()))
 }
 
 fn histogram<'py>(py: Python<'py>, times: &Histogram) -> PyResult<Bound<'py, PyDict>> {

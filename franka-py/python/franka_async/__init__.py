@@ -1,6 +1,6 @@
 """Driver for Franka robots: motions are awaitables, states are numpy arrays, control stays on a real-time thread."""
 
-from . import condition, explanation, kinds, laws, otg, pose, recording, tools
+from . import condition, explanation, kinds, laws, metrics, otg, pose, recording, tools
 from ._native import (
     COLLISION_THRESHOLDS,
     FLAT_LAYOUT,
@@ -212,6 +212,7 @@ __all__ = [
     "explanation",
     "kinds",
     "laws",
+    "metrics",
     "otg",
     "pose",
     "record_columns",
