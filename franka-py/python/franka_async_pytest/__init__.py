@@ -23,6 +23,9 @@ So does a parameter: ``ideal``, ``realistic``, or a ``dict`` of arguments::
     def test_reach(fr3):
         fr3.move_by([0.0, 0.0, 0.05]).wait()
 
+A fixture of the same name in a test module or a ``conftest.py`` takes the place of one of these. Nothing but this module is loaded
+before a test asks for one.
+
 In a test that is a coroutine, ``await`` stands in the place of ``wait()``.
 
 A test fails at its end if something with ``once_moving=True`` still waits for a motion: what it was to disturb has not been disturbed.
