@@ -6,8 +6,10 @@ use std::time::Duration;
 
 use franka_model::transform;
 use franka_proto::{
-    CollisionBehavior, Filters, Load, Request, RobotState, SetterStatus, Status, VirtualWall,
+    CollisionBehavior, Command, Filters, Load, Refusal, Request, RobotState, SetterStatus, Status,
+    VirtualWall,
 };
+use nalgebra::Matrix3;
 
 use crate::command_channel::{Channel, Response};
 use crate::error::CommandError;
@@ -121,9 +123,10 @@ impl Robot {
     /// Declares the load beyond the end effector: mass `[kg]`, centre of mass in the flange frame
     /// `[m]`, inertia about it `[kg m^2]`, column-major. Resolves when a state shows it.
     ///
-    /// The vendor documents no range. The simulator refuses more than 10 kg, a centre more than 1 m
-    /// away, and an inertia that is not symmetric, not that of a body, or has a principal moment
-    /// above 1 kg m^2; its configuration has other bounds.
+    /// A load that no rigid body has is refused, and not sent: a mass below 0, an inertia that is
+    /// not symmetric, or one with a principal moment below 0 or above the sum of the others. The
+    /// vendor documents no range. The simulator also refuses more than 10 kg, a centre more than 1
+    /// m away, and a principal moment above 1 kg m^2; its configuration has other bounds.
     ///
     /// # Errors
     /// Those of [`Self::set_k`].
@@ -131,12 +134,20 @@ impl Robot {
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
     pub async fn set_load(&self, load: Load) -> Result<(), CommandError> {
+        let request = Request::SetLoad(load);
+        check_finite(&request)?;
+        if let Some(why) = impossible(&load) {
+            let status = Status::Setter(SetterStatus::InvalidArgumentRejected);
+            let mode = self.state().robot_mode;
+            let refusal = Refusal::new(Command::SetLoad, status, mode).expect("no success");
+            return Err(CommandError::InvalidArgument { refusal, why });
+        }
         let shows = |state: &RobotState| {
             is_near(&[state.m_load], &[load.m_load])
                 && is_near(&state.F_x_Cload, &load.F_x_Cload)
                 && is_near(&state.I_load, &load.I_load)
         };
-        self.set_shown(Request::SetLoad(load), shows).await
+        self.set_shown(request, shows).await
     }
 
     /// Recovers from a reflex (`AutomaticErrorRecovery`) and resolves when the robot takes motions
@@ -275,6 +286,39 @@ fn check_finite(request: &Request) -> Result<(), CommandError> {
         }
     }
     Ok(())
+}
+
+/// Returns why no rigid body has this load, which is finite; `None` if one may have it.
+fn impossible(load: &Load) -> Option<String> {
+    if load.m_load < 0.0 {
+        return Some(format!("m_load is {} kg, expected 0 or more", load.m_load));
+    }
+    let inertia = Matrix3::from_column_slice(&load.I_load);
+    // States have single precision, and programs set what they have read.
+    let rounding = 1e-9 + 1e-6 * inertia.amax();
+    if (inertia - inertia.transpose()).amax() > rounding {
+        return Some(format!(
+            "I_load is {:?} kg m^2, expected a symmetric matrix",
+            load.I_load
+        ));
+    }
+    let mut moments: [f64; 3] = inertia.symmetric_eigenvalues().into();
+    moments.sort_by(f64::total_cmp);
+    let [least, middle, greatest] = moments;
+    (least < -rounding || greatest > least + middle + rounding).then(|| {
+        format!(
+            "I_load has the principal moments {}, {} and {} kg m^2, expected none below 0 and none \
+             above the sum of the others",
+            short(least),
+            short(middle),
+            short(greatest)
+        )
+    })
+}
+
+/// Six digits after the point, without zeros at the end.
+fn short(number: f64) -> f64 {
+    (number * 1e6).round() / 1e6
 }
 
 /// Adds to an answer that names no number what was sent, and what is documented.

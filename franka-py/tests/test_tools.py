@@ -125,6 +125,8 @@ def test_the_file_may_be_elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     [
         ({"mass": float("nan")}, "mass is nan"),
         ({"inertia": np.arange(9.0).reshape(3, 3)}, "expected a symmetric matrix"),
+        ({"inertia": np.diag([1e-4, 1e-4, 5e-3])}, "principal moments 0.0001, 0.0001 and 0.005 kg m.2, expected none below 0"),
+        ({"inertia": np.diag([1e-3, 1e-3, -1e-4])}, "principal moments -0.0001, 0.001 and 0.001 kg m.2, expected none below 0"),
         ({"frame": 2 * np.eye(4)}, "expected a rigid transformation"),
         ({"center": [0.0, float("inf"), 0.0]}, "center holds inf, expected finite numbers"),
     ],
@@ -132,6 +134,12 @@ def test_the_file_may_be_elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 def test_tools_that_make_no_sense_are_refused(fields: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         Tool(**fields)
+
+
+def test_a_thin_plate_is_a_tool() -> None:
+    """Its greatest moment is the sum of the others; rounded to six digits, it is more."""
+    for moment in (1.234567e-4, 4e-7):
+        assert Tool(mass=0.1, inertia=np.diag([moment, moment, 2 * moment])).mass == 0.1
 
 
 def test_a_plan_is_shown_before_anything_moves(fr3: Robot) -> None:

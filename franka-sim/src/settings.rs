@@ -158,8 +158,8 @@ fn rigid(column_major: &[f64; 16], bounds: &SetterBounds) -> Option<Matrix4<f64>
     is_near.then(|| Matrix4::from_column_slice(column_major))
 }
 
-/// A load that a rigid body can have: mass not negative, inertia symmetric and positive
-/// semidefinite (up to rounding), all of it within the bounds.
+/// A load that a rigid body can have: mass not negative, inertia symmetric, no principal moment
+/// below zero or above the sum of the others (up to rounding), all of it within the bounds.
 fn physical(load: &franka_proto::Load, bounds: &SetterBounds) -> Option<Load> {
     let inertia = Matrix3::from_column_slice(&load.I_load);
     let com = Vector3::from(load.F_x_Cload);
@@ -175,7 +175,9 @@ fn physical(load: &franka_proto::Load, bounds: &SetterBounds) -> Option<Load> {
         return None;
     }
     let moments = inertia.symmetric_eigenvalues();
-    (moments.min() >= -tolerance && moments.max() <= bounds.inertia).then_some(Load {
+    let is_of_a_body =
+        moments.min() >= -tolerance && 2.0 * moments.max() <= moments.sum() + tolerance;
+    (is_of_a_body && moments.max() <= bounds.inertia).then_some(Load {
         mass: load.m_load,
         com,
         inertia,
@@ -286,6 +288,9 @@ mod tests {
         assert_eq!(settings.apply(&Request::SetLoad(light)), INVALID);
         let mut odd = good;
         odd.I_load[8] = -0.01;
+        assert_eq!(settings.apply(&Request::SetLoad(odd)), INVALID);
+        // More than the sum of the others.
+        odd.I_load[8] = 0.03;
         assert_eq!(settings.apply(&Request::SetLoad(odd)), INVALID);
     }
 

@@ -18,10 +18,11 @@ pub enum CommandError {
     /// Robot: it refused, or gave up.
     #[error(transparent)]
     Refused(#[from] Refusal),
-    /// Caller: the robot takes no such number. Nothing has changed.
+    /// Caller: the robot takes no such number. Nothing has changed. A load that no rigid body has
+    /// is refused in the same way, and not sent.
     #[error("{refusal} ({why})")]
     InvalidArgument {
-        /// What the robot answered.
+        /// The robot's answer, or the one it would have given.
         refusal: Refusal,
         /// What was asked for, and what is documented.
         why: String,

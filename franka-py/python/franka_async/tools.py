@@ -73,6 +73,12 @@ class Tool:
         object.__setattr__(self, "mass", float(self.mass))
         if not np.array_equal(np.transpose(np.asarray(self.inertia)), np.asarray(self.inertia)):
             raise ValueError(f"inertia is {self.inertia}, expected a symmetric matrix")
+        least, middle, greatest = np.linalg.eigvalsh(np.asarray(self.inertia)).tolist()
+        # As much as the driver does: states, whose loads become tools, have single precision.
+        rounding = 1e-9 + 1e-6 * float(np.abs(self.inertia).max())
+        if least < -rounding or greatest > least + middle + rounding:
+            moments = f"{round(least, 6):g}, {round(middle, 6):g} and {round(greatest, 6):g} kg m^2"
+            raise ValueError(f"inertia has the principal moments {moments}, expected none below 0 and none above the sum of the others")
         rotation = self.pose[:3, :3]
         if not (np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-6) and np.linalg.det(rotation) > 0):
             raise ValueError(f"frame is {self.frame}, expected a rigid transformation")
