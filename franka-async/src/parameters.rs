@@ -24,6 +24,9 @@ const RECOVERY: Duration = Duration::from_secs(30);
 /// How much longer than the link timeout a robot that recovers may be silent.
 const SILENT: Duration = Duration::from_secs(3);
 
+/// Payload of both arms, `[kg]`. Source: the vendor's data sheets.
+const PAYLOAD: f64 = 3.0;
+
 /// How many milliseconds after the answer states are looked through for what was set.
 const SHOWN_MS: u64 = 200;
 
@@ -244,7 +247,18 @@ impl Robot {
 
 /// Refuses numbers of which a robot can make nothing. What it takes is for the robot to say.
 fn check_finite(request: &Request) -> Result<(), CommandError> {
-    let parts: &[(&'static str, &[f64])] = match request {
+    for &(what, values) in &parts(request) {
+        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
+            let number = index + 1;
+            return Err(CommandError::NotFinite { what, number });
+        }
+    }
+    Ok(())
+}
+
+/// The numbers of a request, by argument.
+fn parts(request: &Request) -> Vec<(&'static str, &[f64])> {
+    match request {
         Request::SetCollisionBehavior(CollisionBehavior {
             lower_torque_thresholds_acceleration: a,
             upper_torque_thresholds_acceleration: b,
@@ -254,7 +268,7 @@ fn check_finite(request: &Request) -> Result<(), CommandError> {
             upper_force_thresholds_acceleration: f,
             lower_force_thresholds_nominal: g,
             upper_force_thresholds_nominal: h,
-        }) => &[
+        }) => vec![
             ("lower_torque_thresholds_acceleration", a),
             ("upper_torque_thresholds_acceleration", b),
             ("lower_torque_thresholds_nominal", c),
@@ -264,28 +278,21 @@ fn check_finite(request: &Request) -> Result<(), CommandError> {
             ("lower_force_thresholds_nominal", g),
             ("upper_force_thresholds_nominal", h),
         ],
-        Request::SetJointImpedance(stiffness) => &[("joint stiffness", stiffness)],
-        Request::SetCartesianImpedance(stiffness) => &[("Cartesian stiffness", stiffness)],
-        Request::SetEEToK(frame) => &[("stiffness frame", frame)],
-        Request::SetNEToEE(frame) => &[("end effector", frame)],
+        Request::SetJointImpedance(stiffness) => vec![("joint stiffness", stiffness)],
+        Request::SetCartesianImpedance(stiffness) => vec![("Cartesian stiffness", stiffness)],
+        Request::SetEEToK(frame) => vec![("stiffness frame", frame)],
+        Request::SetNEToEE(frame) => vec![("end effector", frame)],
         Request::SetLoad(Load {
             m_load,
             F_x_Cload,
             I_load,
-        }) => &[
+        }) => vec![
             ("m_load", core::slice::from_ref(m_load)),
             ("F_x_Cload", F_x_Cload),
             ("I_load", I_load),
         ],
-        _ => return Ok(()),
-    };
-    for &(what, values) in parts {
-        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-            let number = index + 1;
-            return Err(CommandError::NotFinite { what, number });
-        }
+        _ => Vec::new(),
     }
-    Ok(())
 }
 
 /// Returns why no rigid body has this load, which is finite; `None` if one may have it.
@@ -329,7 +336,19 @@ fn explained(error: CommandError, request: &Request) -> CommandError {
         other => return other,
     };
     let why = match request {
-        Request::SetCollisionBehavior(got) => format!("got {got:?}, expected 0 or more"),
+        Request::SetCollisionBehavior(_) => {
+            let below = parts(request).into_iter().find_map(|(what, values)| {
+                let number = values.iter().position(|value| *value < 0.0)?;
+                Some((what, number, values[number]))
+            });
+            match below {
+                Some((what, number, got)) => {
+                    let number = number + 1;
+                    format!("number {number} of {what} is {got}, expected 0 or more")
+                }
+                None => "all thresholds are 0 or more; the vendor documents no range".to_owned(),
+            }
+        }
         Request::SetJointImpedance(got) => format!("got {got:?}, expected 0 to 14250 N m/rad each"),
         Request::SetCartesianImpedance(got) => format!(
             "got {got:?}, expected 10 to 3000 N/m for x y z and 1 to 300 N m/rad for roll pitch yaw"
@@ -338,11 +357,27 @@ fn explained(error: CommandError, request: &Request) -> CommandError {
             let [x, y, z] = [got[12], got[13], got[14]];
             format!("got a frame at [{x}, {y}, {z}] m; the vendor documents no range")
         }
-        Request::SetLoad(got) => format!(
-            "got {got:?}, expected 0 kg or more and no more than the robot carries, a centre in m \
-             in the flange frame and a symmetric inertia about it in kg m^2"
-        ),
-        Request::SetFilters(got) => format!("got {got:?}, expected 1 to 1000 Hz each"),
+        Request::SetLoad(got) => {
+            let [x, y, z] = got.F_x_Cload;
+            let trace = got.I_load[0] + got.I_load[4] + got.I_load[8];
+            format!(
+                "m_load is {} kg, expected at most {PAYLOAD} kg; F_x_Cload is [{x}, {y}, {z}] m from \
+                 the flange; the moments of I_load add up to {} kg m^2; the vendor documents no \
+                 ranges",
+                got.m_load,
+                short(trace)
+            )
+        }
+        Request::SetFilters(got) => {
+            let got = [
+                got.joint_position_filter_frequency,
+                got.joint_velocity_filter_frequency,
+                got.cartesian_position_filter_frequency,
+                got.cartesian_velocity_filter_frequency,
+                got.controller_filter_frequency,
+            ];
+            format!("got {got:?} Hz, expected 1 to 1000 Hz each")
+        }
         _ => return CommandError::Refused(refusal),
     };
     CommandError::InvalidArgument { refusal, why }

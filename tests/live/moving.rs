@@ -234,6 +234,20 @@ async fn parameters_are_taken_at_rest_and_refused_in_motion() {
          0.0001, 0.0001 and 0.005 kg m^2, expected none below 0 and none above the sum of the \
          others)"
     );
+    assert_eq!(
+        refused(30.0, [1e-3, 1e-3, 2e-3]).await,
+        "libfranka: Set Load command rejected: invalid argument! (m_load is 30 kg, expected at most \
+         3 kg; F_x_Cload is [0, 0, 0.1] m from the flange; the moments of I_load add up to 0.004 \
+         kg m^2; the vendor documents no ranges)"
+    );
+    let mut thresholds = CollisionBehavior::careful();
+    thresholds.upper_force_thresholds_nominal[2] = -1.0;
+    let invalid = robot.set_collision_behavior(thresholds).await.unwrap_err();
+    assert_eq!(
+        invalid.to_string(),
+        "libfranka: Set Collision Behavior command rejected: invalid argument! (number 3 of \
+         upper_force_thresholds_nominal is -1, expected 0 or more)"
+    );
 
     crate::long_way(&robot).detach();
     under_way(&robot).await;
