@@ -22,7 +22,7 @@ pub struct AsynchronousOptions {
     /// Bounds of the joint velocities, `[rad/s]`.
     pub maximum_joint_velocities: [f64; 7],
     /// Distance of the desired joint positions from the target that counts as reached, as Euclidean
-    /// norm, `[rad]`.
+    /// norm, `[rad]`; 20 at most, which is farther than any two postures are apart.
     pub goal_tolerance: f64,
 }
 
@@ -57,7 +57,7 @@ impl AsynchronousOptions {
                 limits[i],
             )
         });
-        let tolerance = ("goal tolerance", self.goal_tolerance, "rad", 1.0);
+        let tolerance = ("goal tolerance", self.goal_tolerance, "rad", FARTHEST);
         for (what, got, unit, most) in velocities.chain([tolerance]) {
             if !(LEAST..=most).contains(&got) {
                 let least = LEAST;
@@ -76,6 +76,10 @@ impl AsynchronousOptions {
 
 /// The least velocity, `[rad/s]`, and the least tolerance, `[rad]`.
 const LEAST: f64 = 1e-6;
+
+/// Farther than any two postures of an arm are apart, `[rad]`. The vendor's examples have a
+/// tolerance of 10.
+const FARTHEST: f64 = 20.0;
 
 impl Robot {
     /// Starts a motion in which the robot itself moves to sparse joint targets, and resolves when

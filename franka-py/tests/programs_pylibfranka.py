@@ -197,6 +197,52 @@ def asynchronous(p: Any, address: str, outcome: Any) -> None:
     outcome.note("refused", [str(refused.was_successful), str(refused.motion_uuid), str(refused.error_message)])
 
 
+def asynchronous_as_in_the_example(p: Any, address: str, outcome: Any) -> None:
+    """By the numbers of the vendor's example for sparse targets: a tolerance that every posture is within, targets at 50 Hz."""
+    robot = connect(p, address)
+    handlers = p.AsyncPositionControlHandler
+    made = handlers.configure(robot, handlers.Configuration([0.655] * 4 + [1.315] * 3, 10.0))
+    outcome.note("error", str(made.error_message))
+    ready = [0.0, -math.pi / 4, 0.0, -3 * math.pi / 4, 0.0, math.pi / 2, math.pi / 4]
+    errors = set()
+    for step in range(30):
+        errors.add(str(made.handler.get_target_feedback().error_message))
+        target = handlers.JointPositionTarget([q + (0.05 if step < 15 else -0.05) for q in ready])
+        errors.add(str(made.handler.set_joint_position_target(target).error_message))
+        time.sleep(0.02)
+    outcome.note("errors", sorted(errors))
+    outcome.note("reached", _status_at_rest(made.handler, robot))
+    made.handler.stop_control()
+
+
+def _status_at_rest(handler: Any, robot: Any) -> str:
+    """The status once the robot plans no motion any more."""
+    end = time.monotonic() + 20.0
+    while time.monotonic() < end:
+        time.sleep(0.05)
+        if max(map(abs, robot.read_once().dq_d)) < 1e-3:
+            return str(handler.get_target_feedback().status)
+    return "never at rest"
+
+
+def tolerances(p: Any, address: str, outcome: Any) -> None:
+    """What counts as reached, for any number."""
+    robot = connect(p, address)
+    handlers = p.AsyncPositionControlHandler
+    for tolerance in (10.0, math.inf, 0.0, -1.0, math.nan, None):
+        configuration = handlers.Configuration([0.6] * 7, 1.0)
+        configuration.goal_tolerance = tolerance
+        made = handlers.configure(robot, configuration)
+        outcome.note(f"error of {tolerance}", str(made.error_message))
+        q = robot.read_once().q_d
+        made.handler.set_joint_position_target(handlers.JointPositionTarget([*q[:6], q[6] + 0.02]))
+        time.sleep(0.2)
+        outcome.note(f"reached with {tolerance}", _status_at_rest(made.handler, robot))
+        made.handler.stop_control()
+        while robot.read_once().robot_mode != p.RobotMode.Idle:
+            pass
+
+
 def enumerations(p: Any, address: str, outcome: Any) -> None:
     for enumeration in (p.ControllerMode, p.RealtimeConfig, p.RobotMode):
         members = enumeration.__members__

@@ -89,7 +89,7 @@ def test_every_use_and_misuse_has_the_same_outcome(original: str, program: str) 
     beside(original, program, "usage")
 
 
-FR3_ONLY = {"asynchronous"}
+FR3_ONLY = {"asynchronous", "asynchronous_as_in_the_example", "tolerances"}
 
 
 @pytest.mark.parametrize("program", sorted({*programs_of(programs_pylibfranka)} - FR3_ONLY))

@@ -389,17 +389,17 @@ async fn the_robot_itself_goes_from_target_to_target() {
         (
             -1.0,
             0.5,
-            "goal tolerance is -1 rad, expected between 0.000001 and 1",
+            "goal tolerance is -1 rad, expected between 0.000001 and 20",
         ),
         (
             f64::NAN,
             0.5,
-            "goal tolerance is NaN rad, expected between 0.000001 and 1",
+            "goal tolerance is NaN rad, expected between 0.000001 and 20",
         ),
         (
             f64::INFINITY,
             0.5,
-            "goal tolerance is inf rad, expected between 0.000001 and 1",
+            "goal tolerance is inf rad, expected between 0.000001 and 20",
         ),
         (
             1e-3,

@@ -12,6 +12,9 @@ from ._commands import number, numbers
 from ._robot import Robot
 from ._state import NoConstructor, RobotState, _Number, made
 
+_NEAREST, _FARTHEST = 1e-6, 20.0
+"""The least and the greatest tolerance that the driver takes, rad."""
+
 _ABORTED = "Control interface is in aborted state."
 
 
@@ -50,8 +53,8 @@ class AsyncPositionControlHandler(metaclass=NoConstructor):
         """Bounds of the joint velocities, 7, rad/s, and the distance that counts as reached, rad."""
 
         def __init__(self, maximum_joint_velocities: Sequence[float], goal_tolerance: float) -> None:
-            self.maximum_joint_velocities = _seven("joint_velocities", maximum_joint_velocities)
-            self.goal_tolerance = number("goal_tolerance", goal_tolerance)
+            self.maximum_joint_velocities: list[float] | None = _seven("joint_velocities", maximum_joint_velocities)
+            self.goal_tolerance: float | None = number("goal_tolerance", goal_tolerance)
 
     @dataclass
     class ConfigurationResult:
@@ -81,8 +84,9 @@ class AsyncPositionControlHandler(metaclass=NoConstructor):
         status: TargetStatus
         error_message: str | None
 
-    def __init__(self, control: _native.AsynchronousControl) -> None:
+    def __init__(self, control: _native.AsynchronousControl, reaches: bool) -> None:
         self._control: _native.AsynchronousControl | None = control
+        self._reaches = reaches
 
     @staticmethod
     def configure(robot: Robot, configuration: Configuration, /) -> ConfigurationResult:
@@ -90,11 +94,16 @@ class AsyncPositionControlHandler(metaclass=NoConstructor):
         result = AsyncPositionControlHandler.ConfigurationResult
         _check("configuration", configuration, AsyncPositionControlHandler.Configuration)
         begin = robot._robot.asynchronous_joint_positions
+        tolerance, distance = configuration.goal_tolerance, configuration.goal_tolerance
+        if tolerance is not None:
+            # The original takes any number. At 0 and below, and with NaN, no target is ever reached.
+            distance = min(tolerance, _FARTHEST) if tolerance > _NEAREST else _NEAREST
+        reaches = tolerance is None or tolerance > 0.0
         try:
-            control = wait(begin(configuration.maximum_joint_velocities, configuration.goal_tolerance))
+            control = wait(begin(configuration.maximum_joint_velocities, distance))
         except (errors.FrankaError, ValueError) as error:
             return result(None, str(error))
-        return result(made(AsyncPositionControlHandler, control), None)
+        return result(made(AsyncPositionControlHandler, control, reaches), None)
 
     def set_joint_position_target(self, target: JointPositionTarget, /) -> CommandResult:
         """Sends the robot to a target, wherever it was going before."""
@@ -116,6 +125,8 @@ class AsyncPositionControlHandler(metaclass=NoConstructor):
         if self._control is None:
             return result(TargetStatus.kAborted, _ABORTED)
         status, reason = self._control.status()
+        if status == "target_reached" and not self._reaches:
+            status = "executing"
         return result(_STATUS[status], reason)
 
     def stop_control(self) -> None:
