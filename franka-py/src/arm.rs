@@ -208,7 +208,9 @@ impl Arm {
     /// positions `(N, 7)`, rad; or a `Chunk`, whose fields are the other arguments. `dt` is the
     /// time between two points, s, or `times` that of each. `velocities` are twists `(N, 6)` or
     /// joint velocities `(N, 7)`. `observed_at` is the `RobotState` that the policy saw: times
-    /// count from it. `blend` is the time to fade over from the chunk before, 0.1 s by default.
+    /// count from it. `blend` is the time to fade over from the chunk before, 0.1 s by default. A
+    /// chunk has 1024 points and 60 s at most: the rest is the next chunk, with the same
+    /// `observed_at`, and waits for its first point.
     ///
     /// Raises `ValueError` for arrays that are no chunk, and `MotionError` when it is awaited: for
     /// one that comes too late or ends out of reach, and then the chunk before goes on; and of the

@@ -10,7 +10,10 @@ pub enum ChunkError {
     #[error("a chunk needs at least one point")]
     Empty,
     /// There are more points than a chunk may have.
-    #[error("more than {most} points")]
+    #[error(
+        "more than {most} points: send the rest as the next chunk, with times from the same \
+         origin"
+    )]
     TooMany {
         /// The most that a chunk may have, [`Chunk::POINTS_MAX`](super::Chunk::POINTS_MAX).
         most: usize,

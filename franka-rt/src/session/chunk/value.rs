@@ -451,7 +451,8 @@ mod tests {
             ),
             (
                 (0..1025).map(|k| at(k, 0.0)).collect(),
-                "more than 1024 points",
+                "more than 1024 points: send the rest as the next chunk, with times from the same \
+                 origin",
             ),
         ] {
             assert_eq!(refused(points), expected);

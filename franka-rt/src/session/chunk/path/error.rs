@@ -12,7 +12,10 @@ pub enum PathError {
     #[error("a path needs at least one waypoint")]
     Empty,
     /// There are more waypoints than a path may have.
-    #[error("more than {} waypoints", Waypoint::COUNT_MAX)]
+    #[error(
+        "more than {} waypoints: move through the rest as the next path",
+        Waypoint::COUNT_MAX
+    )]
     TooMany,
     /// A waypoint is neither a pose nor joint positions, or not what the first one is.
     #[error(
