@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import PATIENT, until
-from sync_stub import PACKAGE, STUB, stub
+from stubs import NATIVE, SYNC, native, sync as sync_stub
 
 import franka_async
 from franka_async import ControlError, FrankaError, Joints, Latest, MotionError, Sim, _native, sync
@@ -97,12 +97,26 @@ def test_ctrl_c_ends_what_waits(live: Sim) -> None:
         assert robot.pose()[2, 3] < height + 0.15
 
 
-def test_the_stub_is_that_of_the_native_classes() -> None:
-    assert STUB.read_text() == stub(), "run tests/sync_stub.py"
+def test_stubs_are_made_of_the_native_module() -> None:
+    """Docstrings, and the classes that wait."""
+    assert native(NATIVE.read_text()) == NATIVE.read_text(), "run tests/stubs.py"
+    assert SYNC.read_text() == sync_stub(), "run tests/stubs.py"
+
+
+def test_every_public_method_has_a_docstring() -> None:
+    """In the stub, which is what editors show."""
+    without = []
+    classes = (node for node in ast.parse(NATIVE.read_text()).body if isinstance(node, ast.ClassDef))
+    for node in classes:
+        for member in node.body:
+            is_setter = isinstance(member, ast.FunctionDef) and any("setter" in ast.unparse(one) for one in member.decorator_list)
+            if isinstance(member, ast.FunctionDef) and not member.name.startswith("_") and not is_setter:
+                without += [f"{node.name}.{member.name}"] if ast.get_docstring(member) is None else []
+    assert without == []
 
 
 def test_whatever_waits_has_a_twin_with_every_name() -> None:
-    tree = ast.parse((PACKAGE / "_native.pyi").read_text())
+    tree = ast.parse(NATIVE.read_text())
     awaitables = {"Operation", "Motion", "Follow", "Engagement"}
     checked = []
     for node in (node for node in tree.body if isinstance(node, ast.ClassDef)):
