@@ -38,6 +38,7 @@ pub struct Builder {
     pub(crate) connect_timeout: Duration,
     pub(crate) link_timeout: Duration,
     pub(crate) nominal_model: bool,
+    pub(crate) accept_geometry_error: bool,
     pub(crate) log_size: usize,
     pub(crate) known: Option<Box<Identified>>,
     pub(crate) policy: Option<Policy>,
@@ -71,6 +72,7 @@ impl Builder {
             connect_timeout: TCP_TIMEOUT,
             link_timeout: franka_rt::driver::LINK_TIMEOUT,
             nominal_model: false,
+            accept_geometry_error: false,
             log_size: ControlLog::DEFAULT_CAPACITY,
             known: None,
             policy: None,
@@ -120,7 +122,8 @@ impl Builder {
     }
 
     /// Time that each step of connecting may take: finding the host, the TCP connection to each of
-    /// its addresses, the handshake, the first state, the description. 1 s by default.
+    /// its addresses, the handshake, the first state, the description, the states whose poses are
+    /// compared with the model. 1 s by default.
     pub fn connect_timeout(mut self, timeout: Duration) -> Self {
         self.connect_timeout = timeout;
         self
@@ -160,6 +163,17 @@ impl Builder {
     /// its arm is that of the constants. A Franka Emika Robot has no description.
     pub fn nominal_model(mut self, nominal: bool) -> Self {
         self.nominal_model = nominal;
+        self
+    }
+
+    /// Connects to a robot whose reported poses disagree with its model, for any of the known
+    /// [lengths](crate::model::geometry::Lengths::KNOWN). Off by default: such a robot is refused
+    /// as [`ConnectError::Geometry`](crate::error::ConnectError::Geometry). Goals lead to poses as
+    /// the robot reports them. In simulation they do with errors of up to 1 mm and 3 mrad. Inverse
+    /// kinematics, clearances and previews are off by the error. [`Robot::geometry_check`] returns
+    /// it, and a warning (`tracing`) states it.
+    pub fn accept_geometry_error(mut self, accept: bool) -> Self {
+        self.accept_geometry_error = accept;
         self
     }
 

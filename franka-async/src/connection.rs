@@ -9,5 +9,6 @@ pub mod lease;
 
 pub use crate::builder::{Builder, VersionPolicy};
 pub use crate::endpoint::Endpoint;
+pub use crate::geometry_check::GeometryCheck;
 pub use franka_proto::Version;
 pub use tokio_util::sync::CancellationToken;

@@ -400,6 +400,7 @@ pub mod error;
 pub use franka_record::{cassette, explain, export};
 mod follow;
 mod franka_hand;
+mod geometry_check;
 pub mod goal;
 pub mod gripper;
 mod handshake;

@@ -10,6 +10,7 @@ use franka_rt::stats::Stats;
 use franka_rt::thread::{CycleFeed, Lender};
 
 use crate::command_channel::Channel;
+use crate::geometry_check::GeometryCheck;
 use crate::input::{BridgeHandle, Input};
 use crate::newest_state::Newest;
 use crate::progress::Course;
@@ -22,6 +23,7 @@ pub(crate) struct Link {
     pub(crate) address: SocketAddr,
     /// Stands for what the robot says of itself, if it does.
     pub(crate) description: Option<u64>,
+    pub(crate) geometry: GeometryCheck,
     pub(crate) bridge: BridgeHandle,
     pub(crate) channel: Channel,
     pub(crate) newest: Newest,

@@ -15,7 +15,7 @@ use franka_rt::thread::{self, Handle, Notice, ThreadConfig};
 use tokio::io::unix::AsyncFd;
 use tokio::net::TcpStream;
 use tokio::sync::watch;
-use tokio::time::timeout;
+use tokio::time::{Instant, timeout, timeout_at};
 use tokio_util::codec::Framed;
 
 use crate::bridge::{self, Bridge, Prepared};
@@ -25,6 +25,7 @@ use crate::command_channel::Channel;
 use crate::connected_model;
 use crate::dial::{dial, dial_one, resolve};
 use crate::error::ConnectError;
+use crate::geometry_check::{Comparison, GeometryCheck};
 use crate::handshake::shake_hands;
 use crate::link::Link;
 use crate::newest_state::Newest;
@@ -56,7 +57,7 @@ pub(crate) async fn open(
     let limit = builder.connect_timeout;
     let addresses = resolve(&builder.endpoint, Version::TCP_PORT, limit).await?;
     let (tcp, address) = dial(&addresses, limit).await?;
-    let session = negotiate(tcp, address, builder).await?;
+    let mut session = negotiate(tcp, address, builder).await?;
     let (reader, state_wakeups) = (&session.handle.states, &session.handle.state_wakeups);
     let newest = Newest::new(
         (session.first, reader.clone()),
@@ -74,6 +75,8 @@ pub(crate) async fn open(
     let lender = session.handle.lender.clone();
     let cycles = session.handle.cycles.clone();
     let (model, description) = connected_model::of(session.version, &channel, builder).await?;
+    let newer = (&mut session.handle, &session.wake);
+    let (model, geometry) = check_geometry(model, &session.first, newer, builder).await?;
     let model = Arc::new(model);
     let mut lifecycle = Lifecycle::new(model.clone(), session.version)
         .with_log_size(builder.log_size)
@@ -98,6 +101,7 @@ pub(crate) async fn open(
         link: Link {
             address,
             description,
+            geometry,
             bridge,
             channel,
             newest,
@@ -177,7 +181,7 @@ async fn open_with(
     let start = move || thread::spawn(config, driver, udp, address.ip(), version);
     let mut handle = off_worker(start).await??;
     let wake = bridge::attach(handle.event_fd.clone())?;
-    let first = timeout(builder.connect_timeout, first_state(&mut handle, &wake))
+    let first = timeout(builder.connect_timeout, newer_state(&mut handle, &wake))
         .await
         .map_err(|_| ConnectError::NoState { address })??;
     Ok(Negotiated {
@@ -200,8 +204,28 @@ async fn off_worker<T: Send + 'static>(
     done.map_err(std::io::Error::other)
 }
 
-/// Waits for the first state: without one there is nothing to control.
-async fn first_state(
+/// Compares the model with the poses of this state, and of newer ones until it agrees, and returns
+/// the model to use.
+async fn check_geometry(
+    model: Model,
+    first: &RobotState,
+    (handle, wake): (&mut Handle, &AsyncFd<EventFd>),
+    builder: &Builder,
+) -> Result<(Model, GeometryCheck), ConnectError> {
+    let mut comparison = Comparison::new(model, first);
+    let deadline = Instant::now() + builder.connect_timeout;
+    while comparison.needs_more() {
+        // The states so far count if no more arrive.
+        let Ok(state) = timeout_at(deadline, newer_state(handle, wake)).await else {
+            break;
+        };
+        comparison.look_at(&state?);
+    }
+    comparison.conclude(builder.accept_geometry_error)
+}
+
+/// Waits for a state that was not read: without a first one there is nothing to control.
+async fn newer_state(
     handle: &mut Handle,
     wake: &AsyncFd<EventFd>,
 ) -> Result<RobotState, ConnectError> {

@@ -23,6 +23,7 @@ use tokio_util::sync::DropGuard;
 
 use crate::command_channel::Channel;
 use crate::end_effector_pose::{pose_at, pose_of};
+use crate::geometry_check::GeometryCheck;
 use crate::input::{Beginning, EndReply, Input, Replies};
 use crate::lease::Lease;
 use crate::link::Link;
@@ -177,9 +178,16 @@ impl Robot {
     /// feature `urdf` is off or
     /// [`Builder::nominal_model`](crate::connection::Builder::nominal_model) is chosen. A Franka
     /// Emika Robot does not: it has the constants that its own library is known to compute with,
-    /// [`Model::fer`].
+    /// [`Model::fer`]. Of either, the lengths of upper arm and forearm are those that the robot
+    /// computes its poses with: see [`Self::geometry_check`].
     pub fn model(&self) -> &Model {
         &self.shared.model
+    }
+
+    /// How the model agreed with the poses that the robot reported when this connection was made,
+    /// and the lengths that it therefore has.
+    pub fn geometry_check(&self) -> GeometryCheck {
+        self.link().geometry
     }
 
     /// [`Self::model`] as control functions ask it: by states, each with its end effector and load.

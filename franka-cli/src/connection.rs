@@ -13,6 +13,7 @@ use franka_async::state::{RobotMode, RobotState};
 use franka_async::{Error, Robot};
 
 use crate::ending::{Ending, Failure};
+use crate::output::say;
 use crate::robots_file::{Realtime, RobotsFile, check_name};
 
 /// What a [`ConnectError`] of any device shows.
@@ -128,11 +129,14 @@ impl Which {
         })
     }
 
-    /// Connects for commands that move nothing, which need no real-time scheduling.
+    /// Connects for commands that move nothing, which need no real-time scheduling and bear any
+    /// geometry.
     pub(crate) async fn connect(&self) -> anyhow::Result<(Robot, Place)> {
         let place = self.place()?;
         let robot = place
-            .connect(Some(Realtime::Ignore), |builder| builder)
+            .connect(Some(Realtime::Ignore), |builder| {
+                builder.accept_geometry_error(true)
+            })
             .await?;
         Ok((robot, place))
     }
@@ -179,6 +183,11 @@ impl Place {
         };
         let builder = Robot::builder(self.address.clone()).realtime(realtime);
         let robot = options(builder).connect().await;
+        if let Ok(robot) = &robot
+            && !robot.geometry_check().is_as_described()
+        {
+            say(&format!("note: {}", robot.geometry_check()));
+        }
         robot.map_err(|error| {
             let seen = seen!(error);
             let robot = ("robot", self.to_string());

@@ -39,6 +39,9 @@ pub(crate) struct MoverOptions {
     /// the file, or enforce]
     #[arg(long, value_enum)]
     realtime: Option<Realtime>,
+    /// Move a robot that reports its poses with another geometry than its model has
+    #[arg(long)]
+    accept_geometry_error: bool,
     /// Move without asking, for scripts
     #[arg(short, long)]
     pub(crate) yes: bool,
@@ -78,7 +81,10 @@ impl MoverOptions {
     ) -> anyhow::Result<Moving> {
         let place = which.place()?;
         // An error then carries the last second.
-        let robot = place.connect(self.realtime, |builder| builder.log_size(1000));
+        let accepts = self.accept_geometry_error;
+        let robot = place.connect(self.realtime, |builder| {
+            builder.log_size(1000).accept_geometry_error(accepts)
+        });
         let robot = robot.await?;
         check_ready(&robot.state(), &place)?;
         let recorder = match &self.record {

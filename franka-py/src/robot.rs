@@ -32,7 +32,9 @@ use crate::supervision::supervise_by;
 /// step of connecting, and `link_timeout` the silence of the robot after which a motion fails with
 /// `link_lost`, 0.02 to 10 s, 1 s by default; more than that is for simulated robots on busy hosts.
 /// `log_size` is how many cycles an error carries, 10000 at most. `nominal_model` computes with the
-/// vendor's constants whatever the robot says of itself. `known` is an `Identified` of this arm.
+/// vendor's constants whatever the robot says of itself. `accept_geometry_error` connects to a
+/// robot whose poses have another geometry than its model; `geometry_residual` is by how much.
+/// `known` is an `Identified` of this arm.
 /// `supervise` is a `Policy`, or `True` for the default one: lost connections are made again, and
 /// the robot is recovered as the policy says. `ask_before_recovery` is called with the `Reflex`
 /// before each recovery, on a thread of its own, and has to return whether it may be; it implies
@@ -50,8 +52,8 @@ impl Robot {
     #[new]
     #[pyo3(signature = (
         address, *, realtime = None, priority = None, cpu = None, version = None, connect_timeout = None,
-        link_timeout = None, log_size = None, nominal_model = false, known = None, supervise = None,
-        ask_before_recovery = None,
+        link_timeout = None, log_size = None, nominal_model = false, accept_geometry_error = false,
+        known = None, supervise = None, ask_before_recovery = None,
     ))]
     #[expect(clippy::too_many_arguments, reason = "keywords")]
     fn new(
@@ -64,6 +66,7 @@ impl Robot {
         link_timeout: Option<f64>,
         log_size: Option<usize>,
         nominal_model: bool,
+        accept_geometry_error: bool,
         known: Option<&PyIdentified>,
         supervise: Option<&Bound<'_, PyAny>>,
         ask_before_recovery: Option<Py<PyAny>>,
@@ -71,6 +74,7 @@ impl Robot {
         let mut builder = franka_async::Robot::builder(&address)
             .realtime(self::realtime(realtime)?)
             .nominal_model(nominal_model)
+            .accept_geometry_error(accept_geometry_error)
             .cancellation(exit::cancellation());
         if let Some(priority) = priority {
             builder = builder.priority(priority);
@@ -159,6 +163,15 @@ impl Robot {
     #[getter]
     fn fci_version(&self) -> PyResult<u16> {
         Ok(self.connected()?.version().number())
+    }
+
+    /// How far the pose that the robot reported at connect was from that of `model()` at the same
+    /// joint positions, m, or a tenth of a metre times the largest difference of an element of
+    /// their rotation matrices, whichever is greater: at most 2e-6, or an error that was accepted.
+    /// `None` if the robot reported no pose.
+    #[getter]
+    fn geometry_residual(&self) -> PyResult<Option<f64>> {
+        Ok(self.connected()?.geometry_check().residual)
     }
 
     /// The newest state, without waiting, however old it is: once the link is gone the last one

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import connection, outcome, until
 
-from franka_async import ControlError, FrankaError, Gripper, MotionError, Network, Robot, Sim, VacuumGripper, sync
+from franka_async import ConnectError, ControlError, FrankaError, Gripper, MotionError, Network, Robot, Sim, VacuumGripper, sync
 
 
 def test_it_runs_in_both_kinds_of_blocks() -> None:
@@ -71,6 +71,17 @@ def test_a_robot_may_compute_its_poses_with_other_lengths() -> None:
     with Sim.fr3(virtual_time=True, ideal=True, state_geometry="recorded") as sim, sync.Robot(sim.address, realtime="ignore") as robot:
         state = robot.state()
         np.testing.assert_allclose(robot.model().pose("ee", state.q, state.F_T_EE), state.O_T_EE, atol=2e-6)
+
+
+def test_a_robot_with_an_unknown_geometry_is_refused_unless_that_is_accepted() -> None:
+    with Sim.fr3(virtual_time=True, ideal=True, state_geometry="random", seed=3) as sim:
+        with pytest.raises(ConnectError, match=r"µm from that of its model .*: expected 2 µm") as refused:
+            sync.Robot(sim.address, realtime="ignore").connect()
+        assert refused.value.entry == "connect-geometry"
+        with sync.Robot(sim.address, realtime="ignore", accept_geometry_error=True) as robot:
+            assert robot.geometry_residual is not None and robot.geometry_residual > 1e-5
+    with Sim.fr3(virtual_time=True, ideal=True) as sim, sync.Robot(sim.address, realtime="ignore") as robot:
+        assert robot.geometry_residual is not None and robot.geometry_residual < 2e-6
 
 
 def test_options_that_make_no_sense_are_refused() -> None:

@@ -2,12 +2,14 @@
 
 use std::time::Duration;
 
+use franka_async::connection::Builder;
 use franka_async::control::{Finish, JointVelocities};
 use franka_async::error::{ConnectError, GoalError, ModelError, UrdfError};
 use franka_async::{MotionError, Realtime, Robot};
+use franka_model::geometry::Lengths;
 use franka_model::limits::JointLimits;
 use franka_model::{Model, READY, RobotKind};
-use franka_sim::arm::{Arm, SystemLimits};
+use franka_sim::arm::{Arm, StateGeometry, SystemLimits};
 use franka_sim::{Config, Sim};
 
 use crate::connected;
@@ -186,5 +188,67 @@ async fn an_fer_has_the_constants_of_its_library() {
     let (robot, _sim) = connected(Sim::fer().ideal()).await;
     assert_eq!(robot.model().kind(), RobotKind::Fer);
     assert_eq!(robot.model(), Model::fer());
+    robot.shutdown().await;
+}
+
+#[tokio::test]
+async fn the_geometry_is_that_of_the_poses_that_the_robot_reports() {
+    let [described, recorded] = Lengths::KNOWN;
+    let connect = async |geometry: StateGeometry, options: fn(Builder) -> Builder| {
+        let sim = Sim::fr3().ideal().state_geometry(geometry);
+        let sim = sim.start().await.expect("it starts");
+        let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+        (options(builder).connect().await, sim)
+    };
+    for nominal in [false, true] {
+        let options: fn(Builder) -> Builder = match nominal {
+            true => |builder| builder.nominal_model(true),
+            false => |builder| builder,
+        };
+        let (robot, _sim) = connect(StateGeometry::RECORDED_FR3, options).await;
+        let robot = robot.expect("these lengths are known");
+        let check = robot.geometry_check();
+        let served = if nominal { described } else { recorded };
+        assert_eq!((check.described, check.used), (served, recorded));
+        assert_eq!(robot.model().lengths(), &recorded);
+        assert!(check.agrees() && check.residual.is_some(), "{check:?}");
+        robot.shutdown().await;
+    }
+    let random = StateGeometry::random(5);
+    let (refused, _sim) = connect(random, |builder| builder).await;
+    let error = refused.expect_err("an unknown geometry");
+    let ConnectError::Geometry { residual } = error else {
+        panic!("{error}")
+    };
+    assert!((1e-4..5e-3).contains(&residual), "{residual:e} m");
+    let got = format!("{:.1} µm", residual * 1e6);
+    let text = error.to_string();
+    assert!(
+        text.contains(&got) && text.contains("expected 2 µm"),
+        "{text}"
+    );
+
+    let (robot, _sim) = connect(random, |builder| builder.accept_geometry_error(true)).await;
+    let robot = robot.expect("it is accepted");
+    let check = robot.geometry_check();
+    assert_eq!((check.described, check.used), (described, described));
+    assert!(!check.agrees(), "{check:?}");
+    robot.shutdown().await;
+}
+
+#[tokio::test]
+async fn the_geometry_of_an_fer_is_checked_too() {
+    let sim = Sim::fer().ideal().state_geometry(StateGeometry::random(5));
+    let sim = sim.start().await.expect("it starts");
+    let builder = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
+    let error = builder.connect().await.expect_err("an unknown geometry");
+    assert!(matches!(error, ConnectError::Geometry { .. }), "{error}");
+    let (robot, _sim) = connected(Sim::fer().ideal()).await;
+    assert!(
+        robot
+            .geometry_check()
+            .residual
+            .is_some_and(|residual| residual < 1e-9)
+    );
     robot.shutdown().await;
 }

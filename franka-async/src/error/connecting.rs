@@ -11,6 +11,7 @@ use franka_rt::driver::{ControlLog, LinkTimeoutError};
 use franka_rt::identify::KnownError;
 use franka_rt::lifecycle::{CloseReason, Party};
 use franka_rt::sched::SchedError;
+use franka_rt::session::geometry::RESIDUAL_MAX;
 use franka_rt::thread::{LinkFault, StartError};
 
 #[cfg(feature = "urdf")]
@@ -127,6 +128,19 @@ pub enum ConnectError<P: Protocol = Version> {
         /// Where the handshake succeeded.
         address: SocketAddr,
     },
+    /// Robot: it computes the poses that it reports with another geometry than its description, or
+    /// the constants of its kind, and with no other that is known. See
+    /// [`Builder::accept_geometry_error`](crate::connection::Builder::accept_geometry_error).
+    #[error(
+        "the robot reports a pose {:.1} µm from that of its model at the same joint positions: expected {:.0} µm at most (accept_geometry_error connects all the same)",
+        .residual * 1e6,
+        RESIDUAL_MAX * 1e6
+    )]
+    Geometry {
+        /// Distance, `[m]`, or the largest difference of an element of the rotation matrices times
+        /// 0.1 m, whichever is greater.
+        residual: f64,
+    },
     /// Robot, link or peer: there is no model of the arm. See
     /// [`Builder::nominal_model`](crate::connection::Builder::nominal_model).
     #[cfg(feature = "urdf")]
@@ -156,6 +170,7 @@ impl<P: Protocol> ConnectError<P> {
             Self::Frame(_) => "connect-frame",
             Self::HandshakeTimeout { .. } => "connect-handshake-timeout",
             Self::NoState { .. } => "connect-no-state",
+            Self::Geometry { .. } => "connect-geometry",
             #[cfg(feature = "urdf")]
             Self::Model(error) => error.entry(),
         }
@@ -177,7 +192,7 @@ impl<P: Protocol> ConnectError<P> {
                 .unwrap_or(Party::Link),
             Self::Realtime(error) if error.is_misuse() => Party::Caller,
             Self::Realtime(_) | Self::System(_) => Party::Host,
-            Self::Refused { .. } => Party::Robot,
+            Self::Refused { .. } | Self::Geometry { .. } => Party::Robot,
             Self::Timeout { .. }
             | Self::Network { .. }
             | Self::Datagram { .. }

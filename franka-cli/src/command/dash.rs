@@ -35,6 +35,10 @@ pub(crate) struct Dash {
     /// that of the robot in the file, or enforce]
     #[arg(long, value_enum)]
     realtime: Option<Realtime>,
+    /// Move robots with --allow-motion that report their poses with another geometry than their
+    /// models have
+    #[arg(long)]
+    accept_geometry_error: bool,
     /// Show the robot's Franka Hand as well and, with --allow-motion, let its fingers be moved. The
     /// Hand serves no other program meanwhile
     #[arg(long)]
@@ -111,6 +115,7 @@ impl Dash {
             true => self.realtime,
             false => Some(Realtime::Ignore),
         };
+        let accepts = self.accept_geometry_error || !self.allow_motion;
         let mut places = Vec::new();
         for robot in named {
             let place = Which::of(robot).place()?;
@@ -123,7 +128,9 @@ impl Dash {
         let mut robots = Vec::new();
         for place in places {
             // Events are explained by the last second.
-            let robot = place.connect(realtime, |builder| builder.log_size(1000));
+            let robot = place.connect(realtime, |builder| {
+                builder.log_size(1000).accept_geometry_error(accepts)
+            });
             let robot = robot.await?;
             let options = match self.gripper {
                 true => options.clone().gripper(place.connect_hand().await?),

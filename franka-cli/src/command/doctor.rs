@@ -225,7 +225,9 @@ impl Doctor {
         #[cfg(feature = "desk")]
         found.extend(self.desk(address).await?);
         let connected = place
-            .attempt(Some(Realtime::Ignore), |builder| builder)
+            .attempt(Some(Realtime::Ignore), |builder| {
+                builder.accept_geometry_error(true)
+            })
             .await;
         let (answered, states_arrive, state) = match connected {
             Ok(robot) => {

@@ -925,7 +925,9 @@ class Robot:
     step of connecting, and `link_timeout` the silence of the robot after which a motion fails with
     `link_lost`, 0.02 to 10 s, 1 s by default; more than that is for simulated robots on busy hosts.
     `log_size` is how many cycles an error carries, 10000 at most. `nominal_model` computes with the
-    vendor's constants whatever the robot says of itself. `known` is an `Identified` of this arm.
+    vendor's constants whatever the robot says of itself. `accept_geometry_error` connects to a
+    robot whose poses have another geometry than its model; `geometry_residual` is by how much.
+    `known` is an `Identified` of this arm.
     `supervise` is a `Policy`, or `True` for the default one: lost connections are made again, and
     the robot is recovered as the policy says. `ask_before_recovery` is called with the `Reflex`
     before each recovery, on a thread of its own, and has to return whether it may be; it implies
@@ -944,6 +946,7 @@ class Robot:
         link_timeout: float | None = None,
         log_size: int | None = None,
         nominal_model: bool = False,
+        accept_geometry_error: bool = False,
         known: Identified | None = None,
         supervise: Policy | bool | None = None,
         ask_before_recovery: Callable[[Reflex], bool] | None = None,
@@ -968,6 +971,13 @@ class Robot:
     def fci_version(self) -> int:
         """The protocol version that the robot speaks: 10 for a Franka Research 3, 5 for a Franka Emika
         Robot.
+        """
+    @property
+    def geometry_residual(self) -> float | None:
+        """How far the pose that the robot reported at connect was from that of `model()` at the same
+        joint positions, m, or a tenth of a metre times the largest difference of an element of
+        their rotation matrices, whichever is greater: at most 2e-6, or an error that was accepted.
+        `None` if the robot reported no pose.
         """
     def state(self) -> RobotState:
         """The newest state, without waiting, however old it is: once the link is gone the last one

@@ -85,7 +85,7 @@ impl Look {
     /// Looks for so long, by the robot's clock.
     pub(super) async fn over(robot: &Robot, duration: Duration) -> Result<Self, ReadError> {
         let mut look = Self::new();
-        let sets = sets(robot.model());
+        let sets = sets(&described(robot));
         let duration = duration.as_millis() as u64;
         robot
             .read(|state| {
@@ -148,6 +148,12 @@ impl Look {
             )
         })
     }
+}
+
+/// The model with the lengths in the robot's description.
+pub(super) fn described(robot: &Robot) -> Model {
+    let described = robot.geometry_check().described;
+    robot.model().clone().with_lengths(described)
 }
 
 /// The model as it is, and with each set of lengths that robots are known to have.

@@ -12,7 +12,7 @@ use franka_async::{Arm, Engage, Error, MotionReport, Pose};
 use serde_json::json;
 use tokio::sync::watch;
 
-use super::look::{Look, Mean, SPARSE, apart};
+use super::look::{Look, Mean, SPARSE, apart, described};
 use super::report::{Report, Verdict};
 use super::{FORCE, PACE, limits};
 use crate::motion::Moving;
@@ -58,7 +58,7 @@ impl Steps<'_> {
 
     /// The reported pose against that of the joint positions.
     fn geometry(&mut self, look: &Look) -> anyhow::Result<()> {
-        let sets = look.geometry(self.moving.robot.model());
+        let sets = look.geometry(&described(&self.moving.robot));
         let [(own, gap), known @ ..] = sets;
         let um = gap * 1e6;
         let of_own = format!(

@@ -1,0 +1,238 @@
+//! The model of a connected robot against the poses that the robot reports.
+
+use std::fmt;
+
+use franka_model::Model;
+use franka_model::geometry::Lengths;
+use franka_proto::RobotState;
+use franka_rt::session::geometry::{RESIDUAL_MAX, residual};
+
+use crate::error::ConnectError;
+
+/// States that are tried until one has the poses of a known geometry: a robot that is guided by
+/// hand may report a pose and joint positions of different moments.
+const STATES: usize = 10;
+
+/// How the model of a robot agrees with the poses that the robot reports, found at connect: see
+/// [`Robot::geometry_check`](crate::Robot::geometry_check).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct GeometryCheck {
+    /// Lengths in the robot's description, or in the constants of its kind.
+    pub described: Lengths,
+    /// Lengths that the model computes with. They differ from the described ones where the robot's
+    /// poses have other [known](Lengths::KNOWN) lengths.
+    pub used: Lengths,
+    /// Distance of the reported pose from that of the model at the same joint positions, `[m]`, or
+    /// the largest difference of an element of their rotation matrices times 0.1 m, whichever is
+    /// greater. `None` if the robot reported no pose.
+    pub residual: Option<f64>,
+}
+
+impl GeometryCheck {
+    /// Greatest residual that counts as agreement, `[m]`.
+    pub const RESIDUAL_MAX: f64 = RESIDUAL_MAX;
+
+    /// True unless the poses were compared and disagree.
+    pub fn agrees(&self) -> bool {
+        self.residual
+            .is_none_or(|residual| residual <= RESIDUAL_MAX)
+    }
+
+    /// True if the poses were compared, and agree with the lengths in the description.
+    pub fn is_as_described(&self) -> bool {
+        self.agrees() && self.residual.is_some() && self.used == self.described
+    }
+
+    /// Compares this state with `model`, and with the known lengths if that disagrees.
+    fn of(model: &Model, state: &RobotState) -> Self {
+        let described = *model.lengths();
+        let with = |used: Lengths| Self {
+            described,
+            used,
+            residual: residual(&model.clone().with_lengths(used), state),
+        };
+        let found = with(described);
+        if found.agrees() {
+            return found;
+        }
+        let mut others = Lengths::KNOWN.into_iter().map(with);
+        others.find(Self::agrees).unwrap_or(found)
+    }
+}
+
+/// One sentence for a person.
+impl fmt::Display for GeometryCheck {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            described, used, ..
+        } = self;
+        let Some(residual) = self.residual else {
+            return f.write_str("the robot reports no pose: its geometry was not checked");
+        };
+        let um = residual * 1e6;
+        let most = RESIDUAL_MAX * 1e6;
+        if !self.agrees() {
+            return write!(
+                f,
+                "the robot reports a pose {um:.1} µm from that of its model, more than {most:.0} µm: this was accepted"
+            );
+        }
+        write!(
+            f,
+            "the robot reports a pose within {most:.0} µm of its model"
+        )?;
+        if used != described {
+            write!(
+                f,
+                " with an upper arm of {} m and a forearm of {} m, which the model now has: described are {} m and {} m",
+                used.upper_arm, used.forearm, described.upper_arm, described.forearm
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// A model that is compared with states until one has the pose of a known geometry.
+#[derive(Debug)]
+pub(crate) struct Comparison {
+    model: Model,
+    best: GeometryCheck,
+    /// States that may still be tried.
+    left: usize,
+}
+
+impl Comparison {
+    /// Begins with the first state.
+    pub(crate) fn new(model: Model, first: &RobotState) -> Self {
+        Self {
+            best: GeometryCheck::of(&model, first),
+            model,
+            left: STATES - 1,
+        }
+    }
+
+    /// True if another state may change the result.
+    pub(crate) fn needs_more(&self) -> bool {
+        self.left > 0 && !self.best.agrees()
+    }
+
+    /// Compares one more state.
+    pub(crate) fn look_at(&mut self, state: &RobotState) {
+        self.left = self.left.saturating_sub(1);
+        let newer = GeometryCheck::of(&self.model, state);
+        if newer.residual.is_some() && newer.residual < self.best.residual {
+            self.best = newer;
+        }
+    }
+
+    /// The model with the lengths that the robot computes its poses with, and what was found.
+    ///
+    /// # Errors
+    /// [`ConnectError::Geometry`] if no known lengths agree, unless any geometry is `accepted`.
+    pub(crate) fn conclude(self, accepted: bool) -> Result<(Model, GeometryCheck), ConnectError> {
+        let Self { model, best, .. } = self;
+        if let Some(residual) = best.residual
+            && !best.agrees()
+            && !accepted
+        {
+            return Err(ConnectError::Geometry { residual });
+        }
+        if best.is_as_described() {
+            return Ok((model, best));
+        }
+        tracing::warn!("{best}");
+        let model = match best.used == best.described {
+            true => model,
+            false => model.with_lengths(best.used),
+        };
+        Ok((model, best))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use franka_model::{EndEffector, Frame, READY, transform};
+
+    use super::*;
+
+    fn state_of(model: &Model, off: f64) -> RobotState {
+        let pose = model.pose(Frame::EndEffector, &READY, &EndEffector::default());
+        let mut pose = transform::isometry(&pose).expect("rigid");
+        pose.translation.x += off;
+        RobotState {
+            q: READY.into(),
+            O_T_EE: transform::array(&pose),
+            ..RobotState::default()
+        }
+    }
+
+    fn checked(
+        model: &Model,
+        states: &[RobotState],
+        accepted: bool,
+    ) -> Result<(Model, GeometryCheck), ConnectError> {
+        let [first, newer @ ..] = states else {
+            panic!("one at least")
+        };
+        let mut comparison = Comparison::new(model.clone(), first);
+        for state in newer {
+            if comparison.needs_more() {
+                comparison.look_at(state);
+            }
+        }
+        comparison.conclude(accepted)
+    }
+
+    #[test]
+    fn the_lengths_are_those_that_the_poses_have() {
+        let all = Lengths::KNOWN.map(|lengths| Model::fr3().clone().with_lengths(lengths));
+        for described in &all {
+            for robots in &all {
+                let (model, found) = checked(described, &[state_of(robots, 0.0)], false)
+                    .expect("one of the known ones");
+                assert_eq!(&model, robots);
+                assert_eq!(
+                    (found.described, found.used),
+                    (*described.lengths(), *robots.lengths())
+                );
+                assert!(found.agrees() && found.residual.is_some());
+                assert_eq!(found.is_as_described(), described == robots);
+                let lengths = "0.3162 m and a forearm of 0.3842 m, which the model now has";
+                let is_told = found.to_string().contains(lengths);
+                assert_eq!(is_told, described != robots && robots == &all[1], "{found}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_unknown_geometry_is_refused_unless_it_is_accepted() {
+        let model = Model::fer();
+        let off = [state_of(model, 1.2e-4), state_of(model, 1e-4)];
+        let error = checked(model, &off, false).expect_err("100 µm off");
+        assert!(error.to_string().contains("100.0 µm"), "{error}");
+        let (kept, found) = checked(model, &off, true).expect("accepted");
+        assert_eq!((&kept, found.used), (model, found.described));
+        assert!(!found.agrees(), "{found:?}");
+        assert!(found.to_string().contains("100.0 µm"), "{found}");
+    }
+
+    #[test]
+    fn one_state_that_agrees_is_enough() {
+        let model = Model::fr3();
+        let states = [
+            state_of(model, 1e-3),
+            state_of(model, 1e-6),
+            state_of(model, 1e-3),
+        ];
+        let (_, found) = checked(model, &states, false).expect("the second");
+        let residual = found.residual.expect("compared");
+        assert!((residual - 1e-6).abs() < 1e-9, "{residual:e}");
+        let none = RobotState {
+            O_T_EE: [0.0; 16],
+            ..states[0]
+        };
+        let (_, found) = checked(model, &[none], false).expect("nothing to compare");
+        assert_eq!((found.residual, found.is_as_described()), (None, false));
+    }
+}
