@@ -9,8 +9,8 @@ const BUFFERED_MAX = 4096;
 /** The secret in the fragment of the page's address; empty if there is none. */
 export const token = () => location.hash.slice(1);
 
-/** Asks the server for something other than a file of the page. */
-export const ask = (url) => fetch(url, token() ? { headers: { Authorization: `Bearer ${token()}` } } : {});
+/** Asks the server for something other than a file of the page. Null if the server cannot be reached. */
+export const ask = (url) => fetch(url, token() ? { headers: { Authorization: `Bearer ${token()}` } } : {}).catch(() => null);
 
 // With another token, everything begins anew.
 addEventListener("hashchange", () => location.reload());
@@ -49,7 +49,7 @@ export class Connection extends EventTarget {
     const wasOpen = this.#socket !== null;
     this.#socket = null;
     if (!wasOpen) {
-      const answer = await ask(this.access).catch(() => null);
+      const answer = await ask(this.access);
       if (answer && [401, 403].includes(answer.status)) {
         this.#refuse(answer.status === 403 ? await answer.text() : undefined);
         return;

@@ -1,7 +1,8 @@
 // All robots of the server side by side: what they do, and one button that stops them all.
 
-import { ask, Connection } from "./connection.js";
+import { Connection } from "./connection.js";
 import { endEffector, MODES, MODE_CLASSES } from "./frame.js";
+import { listed } from "./robots.js";
 import { Scene } from "./scene.js";
 import { Stop, stopControls } from "./stop.js";
 import { tabs } from "./tabs.js";
@@ -87,7 +88,8 @@ class Card {
 }
 
 export async function overview() {
-  const answer = await ask("robots.json");
+  const answer = await listed(() => tell("No connection to the server. The page asks again each second."));
+  document.getElementById("notice").hidden = true;
   if (!answer.ok) {
     const denied = document.createElement("p");
     denied.setAttribute("role", "alert");

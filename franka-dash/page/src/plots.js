@@ -3,6 +3,8 @@
 import uPlot from "uplot";
 
 const COLOURS = ["#2f7de1", "#d8662a", "#2e9e5b", "#b0479c", "#8a7a1f", "#1aa3a8", "#d8433f"];
+// Colour is not the only difference: lines have patterns, too.
+const DASHES = [[], [8, 4], [2, 3], [8, 3, 2, 3], [14, 4], [4, 4], [2, 6]];
 const SPREAD = ["shortest", "median", "longest"];
 const QUANTITIES = {
   "q, rad": { field: "q", names: ["1", "2", "3", "4", "5", "6", "7"] },
@@ -41,7 +43,7 @@ export function plots(history) {
       scales: { x: { time: false } },
       axes: [{ ...axis, values: (_, ticks) => ticks.map((t) => `${t} s`) }, { ...axis, size: 46 }],
       series: [{ label: "s" }, ...QUANTITIES[choice.value].names.map((label, i) => ({
-        label, stroke: COLOURS[i], width: 1.5, points: { show: false },
+        label, stroke: COLOURS[i], dash: DASHES[i], width: 1.5, points: { show: false },
       }))],
       legend: { live: false },
     }, data(), place);
