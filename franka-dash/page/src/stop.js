@@ -83,16 +83,14 @@ export function stopControls(stops) {
   for (const stop of stops) stop.addEventListener("changed", show);
   const press = () => { for (const stop of stops) stop.press(); };
   document.getElementById("stop").addEventListener("click", press);
-  // A checkbox that was clicked gives the space bar back; a click by a key has no count.
-  addEventListener("click", ({ target, detail }) => {
-    if (detail > 0 && target.matches?.("input[type=checkbox]")) target.blur();
-  });
   addEventListener("keydown", (event) => {
-    // A checkbox that was reached by Tab has no other key.
-    const checks = event.key === " " && event.target?.matches?.("input[type=checkbox]:focus-visible");
-    if ((event.key !== "Escape" && event.key !== " ") || checks) return;
-    // Also on a focused button, which a space would press.
+    // Checkboxes have this key, as the space bar stops.
+    if (event.key === "Enter" && !event.repeat && event.target?.matches?.("input[type=checkbox]")) event.target.click();
+    if (event.key !== "Escape" && event.key !== " ") return;
+    // The space bar neither presses nor switches what has the focus.
     event.preventDefault();
     press();
   }, { capture: true });
+  // Some browsers press a button when the key is released.
+  addEventListener("keyup", (event) => { if (event.key === " ") event.preventDefault(); }, { capture: true });
 }
