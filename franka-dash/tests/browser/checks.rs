@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, ensure};
+use franka_async::MotionError;
 use franka_async::state::RobotMode;
 use serde_json::{Value, json};
 
@@ -16,11 +17,12 @@ type Check = fn(&Browser, &Served) -> anyhow::Result<()>;
 
 /// All checks, one after the other.
 pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    let checks: [(&str, Check); 20] = [
+    let checks: [(&str, Check); 21] = [
         ("load", load),
         ("shows the robot", shows_the_robot),
         ("looks", looks),
         ("second viewer", second_viewer),
+        ("space bar", space_bar),
         ("jog", jog),
         ("step", step),
         ("look back", look_back),
@@ -272,31 +274,73 @@ fn lose_the_hold(page: &Browser, served: &Served) -> anyhow::Result<()> {
     page.pointer(&[up()])
 }
 
-/// Tab and the space bar switch the compensation, and nothing is stopped by that; after a click the
-/// space bar stops.
+/// Enter switches the compensation where Tab has reached it.
 fn checkbox(page: &Browser, _: &Served) -> anyhow::Result<()> {
     take(page)?;
     let compensates = || anyhow::Ok(page.state()?["status"]["tuning"]["compensation"] == true);
-    let press = |key: &str| page.key("keyDown", key).and(page.key("keyUp", key));
-    let tab = "\u{e004}";
     let sliders = "const it = [...document.querySelectorAll('#tuning input[type=range]')].at(-1);";
     page.run(&format!("{sliders} it.focus()"))?;
-    press(tab)?;
+    press(page, TAB)?;
     for on in [false, true] {
         ensure!(compensates()? != on, "it is switched already");
-        press(" ")?;
+        press(page, ENTER)?;
         wait("the compensation", || Ok(compensates()? == on))?;
     }
-    let stops = || {
-        page.run("return [...document.querySelectorAll('#events li')].filter((it) => it.textContent.includes('Stopped by a viewer')).length")
-    };
-    let before = stops()?;
-    page.click("#tuning input[type=checkbox]")?;
-    wait("the compensation", || Ok(!compensates()?))?;
-    press(" ")?;
-    wait("a stop", || Ok(stops()? != before))?;
-    ensure!(!compensates()?, "the space bar of a stop has switched it");
-    page.click("[data-tuning='default']")
+    Ok(())
+}
+
+/// The space bar stops a motion with the focus on an element of each kind, as Tab reaches it, and
+/// does nothing else there.
+fn space_bar(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    take(page)?;
+    press(page, TAB)?;
+    let kinds = page.run(
+        "const kinds = window.__kinds = {nothing: document.body}; \
+         const all = 'a[href], button, input, select, textarea, summary, [tabindex]'; \
+         for (const it of document.querySelectorAll(all)) { \
+           if (!it.disabled && it.checkVisibility()) kinds[`${it.localName} ${it.type ?? ''}`] ??= it; \
+         } \
+         window.__effects = 0; \
+         for (const type of ['click', 'input', 'change']) \
+           addEventListener(type, () => { window.__effects += 1; }, {capture: true}); \
+         return Object.keys(kinds)",
+    )?;
+    let kinds: Vec<String> = serde_json::from_value(kinds)?;
+    for kind in [
+        "button button",
+        "input checkbox",
+        "input range",
+        "select select-one",
+    ] {
+        ensure!(kinds.iter().any(|it| it == kind), "no {kind} in {kinds:?}");
+    }
+    for kind in kinds {
+        let motion = served.turn();
+        wait("a motion", || {
+            Ok(served.robot.state().motion_running() || motion.is_finished())
+        })?;
+        let focus = page.run(&format!(
+            "const it = window.__kinds[{kind:?}]; document.activeElement.blur(); it.focus(); \
+             return document.activeElement === it && (it === document.body || it.matches(':focus-visible'))"
+        ))?;
+        ensure!(focus == true, "{kind} has not got the focus of a keyboard");
+        press(page, " ")?;
+        let outcome = served.outcome(motion)?;
+        let is_stopped = matches!(outcome, Err(MotionError::Stopped));
+        ensure!(is_stopped, "the focus on {kind}: {outcome:?}");
+        let effects = page.run("return window.__effects")?;
+        ensure!(
+            effects == 0,
+            "the space bar has done {effects} things in {kind}"
+        );
+    }
+    page.run("document.activeElement.blur()").map(drop)
+}
+
+/// Presses a key, and releases it.
+fn press(page: &Browser, key: &str) -> anyhow::Result<()> {
+    page.key("keyDown", key)?;
+    page.key("keyUp", key)
 }
 
 /// Enter holds a button that has the focus; the space bar stops.
@@ -436,5 +480,6 @@ const HANGS: u128 = PATIENCE.as_millis() + 500;
 /// Until a hold begins, on a machine where the page answers late.
 const LONGEST: Duration = Duration::from_secs(60);
 
-/// The key, as WebDriver writes it.
+/// Keys, as WebDriver writes them.
 pub(crate) const ENTER: &str = "\u{e007}";
+const TAB: &str = "\u{e004}";
