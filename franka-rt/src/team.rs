@@ -295,11 +295,22 @@ impl Member {
         (stop != own).then_some(stop)
     }
 
-    /// Stops `round` for a fault of this member in it. Without effect on a round that has stopped,
-    /// and on one that is not the newest.
+    /// Stops `round` for a fault of this member in it. Without effect on a round that has stopped.
+    ///
+    /// An arm that failed under way also stops the newer round that has begun in the meantime: the
+    /// others may still pursue their goals of `round`, unless this member has seen that it stopped.
+    /// A goal that was taken back, was refused or has waited too long stops its own round only.
     pub fn give_up(&self, round: Round, fault: MemberFault) {
         let cause = Cause::Member(fault);
-        self.shared.stop_round(round, self.number, cause);
+        match fault {
+            MemberFault::TakenBack | MemberFault::Refused | MemberFault::TimedOut => {
+                self.shared.stop_round(round, self.number, cause);
+            }
+            _ if Word::of(round).is_newer_than(self.seen) => {
+                self.shared.stop_newest(self.number, cause);
+            }
+            _ => {}
+        }
     }
 
     /// Stops whatever the other members do, in a round or not.
@@ -384,6 +395,14 @@ impl Shared {
         self.change(|word| word.is_going(round).then(|| word.stopped(member, cause)));
     }
 
+    /// Stops the newest round, unless it has stopped.
+    fn stop_newest(&self, member: u8, cause: Cause) {
+        self.change(|word| {
+            let going = word.round().is_some_and(|round| word.is_going(round));
+            going.then(|| word.stopped(member, cause))
+        });
+    }
+
     /// The newest stop, unless it is the one that was `seen`, with its word.
     fn stop_after(&self, seen: Word) -> Option<(Word, TeamStop)> {
         let word = self.look();
@@ -451,6 +470,10 @@ enum Cause {
 struct Word(u64);
 
 impl Word {
+    fn of(round: Round) -> Self {
+        Self(Round::to_word(Some(round)) << 32)
+    }
+
     fn round(self) -> Option<Round> {
         Round::from_word(self.0 >> 32)
     }

@@ -107,10 +107,14 @@ impl Membership {
                 pursued.goal = goal.id;
                 return false;
             }
-            let Pursued { round, held, .. } = *pursued;
-            self.pursued = None;
-            if held.is_none() {
-                self.member.give_up(round, MemberFault::TakenBack);
+            // Pursued until all goals of the next round are there.
+            let waits = goal.round.is_some_and(|next| next != pursued.round);
+            if !waits {
+                let Pursued { round, held, .. } = *pursued;
+                self.pursued = None;
+                if held.is_none() {
+                    self.member.give_up(round, MemberFault::TakenBack);
+                }
             }
         }
         let Some(round) = goal.round else {

@@ -35,7 +35,9 @@ fn the_first_fault_of_a_round_stays_and_is_seen_once() {
     assert_eq!(first.take_stop(), Some(stop));
     assert_eq!(first.take_stop(), None);
     assert_eq!(first.pass(round, 1), Passage::Stopped(stop));
-    // The next round is a new beginning; faults of the one before are no longer of interest.
+    // The next round is a new beginning: an arm that fails while it brakes for the stop of the
+    // round before does not stop it.
+    assert_eq!(second.take_stop(), Some(stop));
     let next = coordinator.begin();
     second.give_up(round, MemberFault::NotReached);
     assert_eq!((first.take_stop(), coordinator.stopped()), (None, None));
@@ -147,6 +149,24 @@ fn what_is_taken_back_stops_if_it_is_the_newest_round_and_goes_on() {
     assert_eq!(first.pass(round, 1), requested);
     coordinator.refuse(round, 0);
     assert_eq!(first.pass(round, 2), requested, "the first stays");
+}
+
+#[test]
+fn fault_under_way_stops_the_round_that_waits() {
+    for fault in FAULTS {
+        let (coordinator, [mut first, mut second]) = team();
+        let round = coordinator.begin();
+        assert_eq!(first.pass(round, 0), Passage::Waiting);
+        assert_eq!(second.pass(round, 0), Passage::Open);
+        let next = coordinator.begin();
+        first.give_up(round, fault);
+        use MemberFault::{Refused, TakenBack, TimedOut};
+        let own = [TakenBack, Refused, TimedOut].contains(&fault);
+        let stop = (!own).then(|| stop_of(0, fault));
+        assert_eq!(second.take_stop(), stop, "{fault}");
+        let passage = stop.map_or(Passage::Waiting, Passage::Stopped);
+        assert_eq!(second.pass(next, 1), passage, "{fault}");
+    }
 }
 
 #[test]

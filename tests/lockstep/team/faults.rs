@@ -176,6 +176,35 @@ fn a_fault_of_one_brakes_the_other_within_two_cycles() {
     }
 }
 
+/// The arms pursue their goals of a round until all goals of the next one are there.
+#[test]
+fn a_fault_in_a_round_brakes_the_other_while_the_next_one_waits() {
+    for early in [None, Some(0), Some(1)] {
+        for swapped in [false, true] {
+            let case = format!("early: {early:?}, swapped: {swapped}");
+            let mut pair = Pair::new(swapped);
+            let [_, pursued] = pair.both([1.0, 1.0]);
+            pair.run(600);
+            let next = Some(pair.coordinator.begin());
+            let waiting = early.map(|member| (member, pair.submit(member, next, turned(0.0))));
+            pair.run(50);
+            let speed = pair.robots[1].client.record.dq_ref[0];
+            assert!(speed > 0.2, "{case}: under way, {speed} rad/s");
+            assert_eq!(pair.stopped, None, "{case}");
+            let happened = pair.ticks;
+            pair.deadman = None;
+            pair.run(3);
+            let braked = pair.braked[1].unwrap_or_else(|| panic!("{case}: it moves on"));
+            assert!(braked <= happened + 3, "{case}: {}", braked - happened);
+            let waits = waiting.filter(|(member, _)| *member == 1);
+            let goal = waits.map_or(pursued, |(_, goal)| goal);
+            let outcome = pair.until_one_resolved(1, goal, 3000);
+            assert_eq!(outcome, stopped_by(MemberFault::GivenUp), "{case}");
+            assert!(pair.moved(1) < 0.9, "{case}: {}", pair.moved(1));
+        }
+    }
+}
+
 #[test]
 fn each_silence_of_one_brakes_the_other_anew() {
     let mut pair = Pair::of(team_tolerating(Duration::from_millis(5)), false);
