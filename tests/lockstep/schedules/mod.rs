@@ -57,6 +57,8 @@ struct OutcomeCounts {
     outcomes: BTreeMap<&'static str, u64>,
     /// `[ms]`
     robot_time: u64,
+    /// From a stop until it resolved, `[ms]`.
+    longest_stop: u64,
 }
 
 impl OutcomeCounts {
@@ -84,14 +86,14 @@ fn every_schedule_of_a_session_ends_with_all_goals_resolved_and_the_arm_at_rest(
 #[test]
 fn schedules_of_sessions_also_end_on_arms_that_stick() {
     run(SESSIONS / 2, |seed, counts| {
-        let arm = |kind: RobotKind| {
-            Lockstep::new(Config {
-                arm: Some(Arm::sample(kind, seed, &Family::realistic())),
-                seed,
-                ..Lockstep::config_of(kind)
-            })
-        };
-        Sessions::play(seed, arm, counts);
+        Sessions::play(seed, |kind| sticking(kind, seed), counts);
+    });
+}
+
+#[test]
+fn an_arm_that_was_stopped_rests_until_the_next_request() {
+    run(SESSIONS / 2, |seed, counts| {
+        Sessions::play_with_stops(seed, |kind| sticking(kind, seed), counts);
     });
 }
 
@@ -109,6 +111,15 @@ fn schedules_of_sessions_also_end_with_the_mujoco_plant() {
         };
         Sessions::play(seed, arm, counts);
     });
+}
+
+/// A robot whose arm sticks, drawn by this seed.
+fn sticking(kind: RobotKind, seed: u64) -> Lockstep {
+    Lockstep::new(Config {
+        arm: Some(Arm::sample(kind, seed, &Family::realistic())),
+        seed,
+        ..Lockstep::config_of(kind)
+    })
 }
 
 /// Runs `count` schedules, or `FRANKA_SCHEDULES` of them from seed `FRANKA_SCHEDULE_SEED` on.
@@ -130,9 +141,13 @@ fn run(count: u64, mut play: impl FnMut(u64, &mut OutcomeCounts)) {
             let OutcomeCounts {
                 outcomes,
                 robot_time,
+                longest_stop,
             } = &counts;
             let seconds = robot_time / 1000;
-            println!("seeds {first} to {seed}: {seconds} s of robot time, {outcomes:?}");
+            println!(
+                "seeds {first} to {seed}: {seconds} s of robot time, {outcomes:?}, \
+                 longest stop {longest_stop} ms"
+            );
         }
     }
     assert!(

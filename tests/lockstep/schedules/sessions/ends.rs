@@ -8,7 +8,7 @@ use franka_rt::session::{GoalId, Lapse, OnArrival, Target};
 use rand::Rng;
 
 use super::super::submission::{Submission, Work};
-use super::{Sessions, TIME_MAX};
+use super::{REFLEX_MAX, SETTLING, STOP_MAX, Sessions, TIME_MAX};
 
 impl Sessions<'_> {
     /// Ends the session in a random way.
@@ -20,18 +20,7 @@ impl Sessions<'_> {
         let way = self.random.random_range(0..3);
         session.over = true;
         if way == 2 {
-            if let Some(stop) = self.lockstep.stop() {
-                let now = self.lockstep.now();
-                for submission in &mut self.open {
-                    submission.stopped = true;
-                }
-                self.add(Submission::new(
-                    stop,
-                    Work::Stop,
-                    OnArrival::ReportAndFinish,
-                    now,
-                ));
-            }
+            self.end_by_stop();
             return;
         }
         if !over {
@@ -46,18 +35,49 @@ impl Sessions<'_> {
         }
     }
 
-    pub(super) fn end_by_stop(&mut self) {
+    /// Stops whatever the robot does, and returns the stop if it does anything.
+    pub(super) fn end_by_stop(&mut self) -> Option<GoalId> {
         let now = self.lockstep.now();
-        if let Some(stop) = self.lockstep.stop() {
-            for submission in &mut self.open {
-                submission.stopped = true;
-            }
-            self.add(Submission::new(
-                stop,
-                Work::Stop,
-                OnArrival::ReportAndFinish,
-                now,
-            ));
+        let stop = self.lockstep.stop()?;
+        for submission in &mut self.open {
+            submission.stopped = true;
+        }
+        let on_arrival = OnArrival::ReportAndFinish;
+        self.add(Submission::new(stop, Work::Stop, on_arrival, now));
+        Some(stop)
+    }
+
+    /// Stops the robot, and checks that the arm comes to rest in time and stays there.
+    pub(super) fn stop_and_rest(&mut self) {
+        let begin = self.lockstep.now();
+        let stop = self.end_by_stop();
+        if let Some(session) = &mut self.session {
+            session.over = true;
+        }
+        while !self.lockstep.client.lifecycle.is_idle() {
+            self.tick();
+            let waited = self.lockstep.now() - begin;
+            assert!(waited < STOP_MAX, "{:?}", self.lockstep.client.lifecycle);
+        }
+        self.counts.longest_stop = self.counts.longest_stop.max(self.lockstep.now() - begin);
+        let outcome = stop.and_then(|stop| self.lockstep.client.outcome(stop).cloned());
+        if !matches!(outcome, Some(Ok(_))) {
+            // The robot has stopped itself, and still brakes.
+            self.run(REFLEX_MAX);
+        }
+        let q = *self.lockstep.robot.q();
+        for _ in 0..300 {
+            self.tick();
+            let idle = self.lockstep.client.driver.is_watching();
+            assert!(idle, "a motion runs that nothing has requested");
+        }
+        let moved = (self.lockstep.robot.q() - q).amax();
+        assert!(
+            moved < SETTLING,
+            "after {outcome:?} the arm moved on by {moved} rad"
+        );
+        if self.lockstep.client.state.robot_mode == RobotMode::Reflex {
+            self.recover();
         }
     }
 

@@ -3,7 +3,7 @@
 use franka_lockstep::set_in_motion;
 use franka_rt::lifecycle::{MotionError, NewMotion, Tuning};
 use franka_rt::session::{
-    Backend, Budget, ForceCap, Free, Goal, GoalId, OnArrival, Target, Tolerance, Waypoint,
+    Backend, Budget, ForceCap, Free, Goal, GoalId, Lapse, OnArrival, Target, Tolerance, Waypoint,
 };
 use rand::Rng;
 
@@ -149,13 +149,21 @@ impl Sessions<'_> {
             Err(MotionError::Goal(_) | MotionError::Path(_)) => false,
             Err(error) => {
                 let ended = self.lockstep.client.outcome(session.id);
+                let of_session = |it: &&Submission| it.id == session.id;
+                let silent = self
+                    .open
+                    .iter()
+                    .find(of_session)
+                    .is_some_and(|it| it.deadman);
                 let fits = match ended {
                     Some(Err(ended)) => error == *ended,
                     Some(Ok(_)) => error == MotionError::Disengaged,
+                    None if error == MotionError::Held(Lapse::Deadman) => silent,
                     None => session.over && error == MotionError::Disengaged,
                 };
                 assert!(fits, "{error:?} of a session that ended as {ended:?}");
-                session.over = true;
+                // A deadman that is kept alive again lets the session go on.
+                session.over |= ended.is_some() || error != MotionError::Held(Lapse::Deadman);
                 false
             }
         }

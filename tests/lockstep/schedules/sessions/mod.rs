@@ -8,6 +8,7 @@ mod goals;
 mod mishaps;
 mod streams;
 
+use std::ops::Range;
 use std::time::Duration;
 
 use franka_lockstep::{Link, Lockstep};
@@ -30,6 +31,15 @@ const BEAT: u64 = 10;
 /// seconds.
 const TIME_MAX: u64 = 30_000;
 
+/// The longest time from a stop until it resolves, `[ms]`.
+const STOP_MAX: u64 = 3000;
+
+/// Joint motion when the robot's own controller takes over an arm that sticks, `[rad]`.
+const SETTLING: f64 = 1e-2;
+
+/// Time in which an arm brakes after a reflex, `[ms]`.
+const REFLEX_MAX: u64 = 500;
+
 /// One schedule.
 pub(super) struct Sessions<'a> {
     lockstep: Lockstep,
@@ -38,6 +48,8 @@ pub(super) struct Sessions<'a> {
     home: Isometry3<f64>,
     /// Whether there are no disturbances from outside.
     calm: bool,
+    /// True if the disturbances may move the arm or end a motion by themselves.
+    forceful: bool,
     causes: Causes,
     session: Option<Session>,
     /// Unresolved work, the oldest first.
@@ -75,6 +87,34 @@ impl<'a> Sessions<'a> {
         robot: impl FnOnce(RobotKind) -> Lockstep,
         counts: &'a mut OutcomeCounts,
     ) {
+        let mut this = Self::new(seed, robot, counts);
+        this.engage();
+        this.act_often(3..9);
+        this.finish();
+    }
+
+    /// Runs the schedule of this seed, in which each session is stopped in the middle of its
+    /// actions. Only datagrams are lost.
+    pub(super) fn play_with_stops(
+        seed: u64,
+        robot: impl FnOnce(RobotKind) -> Lockstep,
+        counts: &'a mut OutcomeCounts,
+    ) {
+        let mut this = Self::new(seed, robot, counts);
+        this.forceful = false;
+        for _ in 0..this.random.random_range(1..4) {
+            this.engage();
+            this.act_often(1..4);
+            this.stop_and_rest();
+        }
+        this.finish();
+    }
+
+    fn new(
+        seed: u64,
+        robot: impl FnOnce(RobotKind) -> Lockstep,
+        counts: &'a mut OutcomeCounts,
+    ) -> Self {
         let mut random = SmallRng::seed_from_u64(seed);
         let kind = RobotKind::ALL[random.random_range(0..RobotKind::ALL.len())];
         let mut lockstep = robot(kind);
@@ -89,29 +129,31 @@ impl<'a> Sessions<'a> {
             let [states, commands] = [0, 1].map(|_| random.random_range(0.0..0.02));
             lockstep.link = Link::lossy(seed, states, commands);
         }
-        let mut this = Self {
+        Self {
             home: lockstep.arm_pose(),
             lockstep,
             random,
             counts,
             calm,
+            forceful: true,
             causes: Causes::default(),
             session: None,
             open: Vec::new(),
             submitted: 0,
             chunks: Vec::new(),
-        };
-        this.engage();
-        for _ in 0..this.random.random_range(3..9) {
-            this.act();
-            let pause = match this.random.random_range(0..4) {
-                0 => this.random.random_range(0..4),
-                1 => this.random.random_range(0..60),
-                _ => this.random.random_range(0..350),
-            };
-            this.run(pause);
         }
-        this.finish();
+    }
+
+    fn act_often(&mut self, times: Range<u32>) {
+        for _ in 0..self.random.random_range(times) {
+            self.act();
+            let pause = match self.random.random_range(0..4) {
+                0 => self.random.random_range(0..4),
+                1 => self.random.random_range(0..60),
+                _ => self.random.random_range(0..350),
+            };
+            self.run(pause);
+        }
     }
 
     fn engage(&mut self) {
@@ -157,7 +199,12 @@ impl<'a> Sessions<'a> {
 
     fn act(&mut self) {
         self.begin_anew();
-        match self.random.random_range(0..if self.calm { 20 } else { 27 }) {
+        let kinds = match (self.calm, self.forceful) {
+            (true, _) => 20,
+            (false, false) => 23,
+            (false, true) => 27,
+        };
+        match self.random.random_range(0..kinds) {
             0..=3 => self.give(),
             4 => {
                 // The first of them is superseded before it takes effect.
