@@ -181,7 +181,7 @@ impl Connection {
         if self.address.is_none() || self.yes {
             return Ok(());
         }
-        println!("The arm {what}. Clear its way, and keep the user stop at hand.");
+        println!("The arm {what}. Clear the path of the arm, and keep the user stop within reach.");
         print!("Enter to continue, Ctrl-C to cancel: ");
         std::io::stdout().flush()?;
         let read = std::io::stdin().lock().read_line(&mut String::new())?;

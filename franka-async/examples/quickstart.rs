@@ -55,7 +55,9 @@ async fn connect(address: Option<String>) -> anyhow::Result<(Robot, Option<Runni
     let robot = Robot::connect(address.as_str()).await;
     let robot = robot.with_context(|| format!("connecting to {address}"))?;
     println!("The arm moves its hand 5 cm up and back, then joints 1 and 7 by up to 0.3 rad.");
-    println!("Clear its way, and keep the user stop at hand. Enter to continue, Ctrl-C to cancel.");
+    println!(
+        "Clear the path of the arm, and keep the user stop within reach. Enter to continue, Ctrl-C to cancel."
+    );
     let read = std::io::stdin().read_line(&mut String::new())?;
     ensure!(
         read > 0,

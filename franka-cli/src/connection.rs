@@ -43,7 +43,7 @@ macro_rules! seen {
 /// The robot of a command.
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct Which {
-    /// Name of a robot, or its address [default: FRANKA_ROBOT, or the only robot in the file]
+    /// Name or address of the robot [default: FRANKA_ROBOT, or the only robot with a name]
     #[arg(value_name = "ROBOT")]
     pub(crate) robot: Option<String>,
 }
@@ -109,8 +109,8 @@ impl Which {
                 0 => format!("{} has none", file.path.display()),
                 count => format!("{} has {count}", file.path.display()),
             };
-            Failure::usage(format!("no robot was named, and {known}"))
-                .advice("Name one or give an address, or: franka robots add NAME ADDRESS")
+            Failure::usage(format!("no robot was given, and {known}"))
+                .advice("Give a name or an address, or add one: franka robots add NAME ADDRESS")
         })?;
         let Some(entry) = file.robots.get(&name) else {
             return unlisted(name);
@@ -219,7 +219,7 @@ impl Place {
                 Ending::NoRobot,
                 format!("no {device} answers at {at}"),
             )
-            .advice("Look at the cable, at the address, and at the network settings of this computer."),
+            .advice("Check the cable, the address, and the network settings of this computer."),
             Seen::Closed => Failure::new(
                 Ending::Taken,
                 format!(
@@ -227,22 +227,22 @@ impl Place {
                 ),
             )
             .advice(
-                "A robot takes one client at a time. End the other program, then try again. Press the user stop if the arm has to stop now.",
+                "A robot accepts one client at a time. End the other program, then try again. Press the user stop if the arm must stop now.",
             ),
             Seen::NoState => Failure::new(
                 Ending::NoRobot,
-                format!("the {device} at {at} answers, but no state of it arrives"),
+                format!("the {device} at {at} answers, but its states do not arrive"),
             )
-            .advice("A firewall that stops UDP is the usual cause."),
+            .advice("The usual cause is a firewall that blocks UDP."),
             Seen::Realtime => Failure::new(Ending::Host, error.to_string()).advice(
-                "For a simulator, --realtime ignore does. For a robot: franka doctor says what is missing.",
+                "For a simulator, use --realtime ignore. For a robot, franka doctor shows what is missing.",
             ),
             Seen::Caller => Failure::usage(error.to_string()),
             Seen::Other if self.listed.is_none() && !host.contains(['.', ':']) => Failure::new(
                 Ending::NoRobot,
                 format!("no {device} at `{host}`: {error}"),
             )
-            .advice(format!("No robot is called `{host}` either: see franka robots.")),
+            .advice(format!("No robot has the name `{host}` either: see franka robots list.")),
             Seen::Other => {
                 let message = format!("no connection to the {device} at {at}: {error}");
                 Failure::new(Ending::NoRobot, message)
@@ -272,23 +272,23 @@ pub(crate) fn check_ready(state: &RobotState, place: &Place) -> Result<(), Failu
         RobotMode::Idle => Ok(()),
         RobotMode::Move => refused(
             Ending::Taken,
-            format!("the robot at {place} is in motion already"),
-            "Something else moves it: wait until it is done.",
+            format!("the robot at {place} is already in motion"),
+            "Something else moves it: wait until that motion has ended.",
         ),
         RobotMode::Guiding => refused(
             Ending::Taken,
             format!("the robot at {place} is guided by hand"),
-            "Let go of the guiding button, then try again.",
+            "Release the guiding button, then try again.",
         ),
         RobotMode::AutomaticErrorRecovery => refused(
             Ending::Taken,
             format!("the robot at {place} is being recovered"),
-            "Wait until it is done.",
+            "Wait until the recovery has ended.",
         ),
         RobotMode::Reflex => refused(
             Ending::Failed,
             format!("the robot at {place} has stopped itself: {}", state.errors),
-            "See to the cause, then: franka recover",
+            "Remove the cause, then: franka recover",
         ),
         RobotMode::UserStopped => refused(
             Ending::Person,

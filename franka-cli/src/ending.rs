@@ -23,7 +23,7 @@ pub(crate) enum Ending {
     Taken = 4,
     /// Nobody agreed to the motion.
     NotConfirmed = 5,
-    /// This computer does not give what it takes: rights, files, ports.
+    /// Local problem: rights, files, ports.
     Host = 6,
     /// The robot needs a person: at the user stop, or in Desk.
     Person = 7,
@@ -37,15 +37,15 @@ pub(crate) enum Ending {
 pub(crate) const TABLE: &str = "\
 Exit codes:
     0  done
-    1  the robot refused, or the motion ended short of its goal (a reflex, an obstacle)
+    1  the robot refused, or the motion ended before its goal (a reflex, an obstacle)
     2  wrong arguments
     3  no connection to the robot, or it was lost
     4  another client is connected to the robot
     5  not confirmed: declined, or no terminal to ask on and no --yes
-    6  this computer does not give what it takes: real-time rights, a file, a port
-    7  the robot needs a person: user stop, brakes, Desk
+    6  local problem: missing real-time rights, or a file or port is unavailable
+    7  someone must act at the robot: user stop, brakes, Desk
   130  interrupted by Ctrl-C; an arm that moved was braked
-  143  ended by SIGTERM, in the same way";
+  143  ended by SIGTERM; an arm that moved was braked";
 
 impl Ending {
     pub(crate) fn code(self) -> ExitCode {

@@ -39,14 +39,14 @@ use report::report_usage;
 
 /// Franka robots from the command line: state, motions, simulator, recordings.
 ///
-/// ROBOT is the name of a robot in the file of `franka robots`, or an address: a host name or an
-/// IP address, with a port if it is not the usual one. Without it, FRANKA_ROBOT counts, and then
-/// the only robot in the file. Whatever moves says so first and asks. Lengths are in metres, angles
-/// in radians unless said otherwise.
+/// ROBOT is a name from `franka robots`, or an address: a host name or an IP address, with a port
+/// unless it is the default. It defaults to FRANKA_ROBOT, then to the only robot with a name.
+/// Commands that move the robot describe the motion and ask first. Lengths are in metres and angles
+/// in radians, unless stated otherwise.
 #[derive(Debug, Parser)]
 #[command(name = "franka", version, after_help = ending::TABLE, subcommand_required = true, arg_required_else_help = true)]
 struct Program {
-    /// Log what the driver does, on standard error
+    /// Log the driver's actions to standard error
     #[arg(short, long, global = true)]
     verbose: bool,
     #[command(subcommand)]
@@ -77,8 +77,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Whether colours are wanted on this stream: by NO_COLOR, CLICOLOR_FORCE and others, as of all
-/// other output.
+/// True if this stream takes colours, by NO_COLOR, CLICOLOR_FORCE and the like, as for all other
+/// output.
 fn has_colours(stream: &impl anstream::stream::RawStream) -> bool {
     anstream::AutoStream::choice(stream) != anstream::ColorChoice::Never
 }
@@ -130,6 +130,37 @@ mod tests {
             let command = line.split(" #").next()?.trim_end_matches([' ', '&']);
             (in_shell && command.starts_with("franka ")).then_some(command)
         })
+    }
+
+    #[test]
+    fn every_help_has_an_example_that_is_understood() {
+        use clap::CommandFactory;
+        let mut commands = vec![(Program::command(), String::new())];
+        let mut count = 0;
+        while let Some((command, path)) = commands.pop() {
+            let path = format!("{path}{} ", command.get_name());
+            let inner = command.get_subcommands();
+            commands.extend(inner.map(|inner| (inner.clone(), path.clone())));
+            if command.has_subcommands() {
+                continue;
+            }
+            let help = command.get_after_help().expect(&path).to_string();
+            let lines = help
+                .lines()
+                .map(|line| line.trim_start_matches("Example: "));
+            let lines = lines.map(|line| line.trim_start().split("  ").next().unwrap_or_default());
+            let examples = lines.filter(|line| line.starts_with(path.trim_end()));
+            let mut missing = true;
+            for example in examples {
+                missing = false;
+                if let Err(error) = Program::try_parse_from(example.split(' ')) {
+                    panic!("{example}\n{error}");
+                }
+            }
+            assert!(!missing, "{path}: {help}");
+            count += 1;
+        }
+        assert!(count > 30, "{count} commands");
     }
 
     /// Commands that make a robot do something, or change it.

@@ -35,17 +35,16 @@ pub(crate) struct Mover {
 /// [`Mover`] without the robot.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct MoverOptions {
-    /// Whether the control thread has to have real-time scheduling [default: that of the robot in
-    /// the file, or enforce]
+    /// Real-time scheduling of the control thread [default: the robot's setting, or enforce]
     #[arg(long, value_enum)]
     realtime: Option<Realtime>,
-    /// Move a robot that reports its poses with another geometry than its model has
+    /// Also move a robot whose reported pose does not fit its model
     #[arg(long)]
     accept_geometry_error: bool,
     /// Move without asking, for scripts
     #[arg(short, long)]
     pub(crate) yes: bool,
-    /// Record everything to a new file meanwhile
+    /// Record every cycle to a new file
     #[arg(long, value_name = "FILE.mcap")]
     pub(crate) record: Option<PathBuf>,
     #[command(flatten)]
@@ -119,7 +118,7 @@ impl Moving {
             let stayed = (to - from).abs() < MOVED;
             if !stayed {
                 let message = format!(
-                    "joint {} has moved meanwhile, from {from:.3} to {to:.3} rad. Nothing was sent.",
+                    "joint {} has moved since the question, from {from:.3} to {to:.3} rad. Nothing was sent.",
                     i + 1
                 );
                 return Err(Failure::new(Ending::Taken, message).into());
@@ -179,15 +178,15 @@ impl Moving {
         match tokio::time::timeout(PATIENCE, self.robot.stop()).await {
             Ok(Ok(())) => {
                 let failure = match by {
-                    Some(by) => by.failure("interrupted: the arm was braked, and rests"),
-                    None => Failure::new(Ending::Failed, "the arm was braked, and rests"),
+                    Some(by) => by.failure("interrupted: the arm was braked and is at rest"),
+                    None => Failure::new(Ending::Failed, "the arm was braked and is at rest"),
                 };
                 failure.into()
             }
             Ok(Err(error)) => self.explain(error).await.context("braking"),
             Err(_) => {
                 let seconds = PATIENCE.as_secs();
-                let message = format!("the arm has not come to rest in {seconds} s of braking");
+                let message = format!("the arm still moves after {seconds} s of braking");
                 let failure = Failure::new(Ending::Failed, message);
                 failure.advice("Press the user stop.").into()
             }
@@ -211,7 +210,7 @@ impl Moving {
             None => error.diagnose().map(|diagnosis| diagnosis.to_string()),
         };
         let recover = match error.control().is_some_and(|error| error.is_reflex()) {
-            true => "When the cause is gone: franka recover",
+            true => "After you have removed the cause: franka recover",
             false => "",
         };
         let advice = advice.unwrap_or_default();

@@ -12,7 +12,7 @@ use crate::ending::{Ending, Failure};
 use crate::interrupt::interrupted;
 use crate::output::{BOLD, numbers, say};
 
-/// Says what will happen, and asks whether it may. `yes` agrees beforehand.
+/// Shows what will happen, and asks for consent. `yes` agrees in advance.
 pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
     say(what);
     if yes {
@@ -24,17 +24,17 @@ pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
             "cannot ask: the program has no terminal. Nothing has moved.",
         );
         return Err(failure
-            .advice("--yes agrees beforehand, for scripts.")
+            .advice("In scripts, --yes agrees in advance.")
             .into());
     }
     let interrupt = interrupted()?;
     let mut terminal = anstream::stderr();
     write!(
         terminal,
-        "Clear its way, and keep the user stop at hand. {BOLD}Go ahead? [y/N]{BOLD:#} "
+        "Clear the path of the arm, and keep the user stop within reach. {BOLD}Continue? [y/N]{BOLD:#} "
     )?;
     terminal.flush()?;
-    // On a thread of its own, which is left behind by Ctrl-C.
+    // On a separate thread, which Ctrl-C leaves behind.
     let (answer, answered) = oneshot::channel();
     std::thread::spawn(move || {
         let mut line = String::new();
@@ -54,7 +54,7 @@ pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
     }
 }
 
-/// Where a motion leads.
+/// Target of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Target {
     Joints([f64; 7]),
@@ -62,8 +62,7 @@ pub(crate) enum Target {
 }
 
 impl Target {
-    /// What the motion of an arm to this target is: how far each joint and the hand go, and how
-    /// fast at most.
+    /// Describes the motion to this target: how far each joint and the hand move, and the top speed.
     pub(crate) fn describe(&self, robot: &Robot, speed: f64) -> anyhow::Result<String> {
         let (state, start) = (robot.state(), robot.pose());
         let model = robot.model();
@@ -84,13 +83,8 @@ impl Target {
                 }
                 let fastest = budget.joints.map(|axis| axis.velocity.to_degrees());
                 let fastest = fastest.into_iter().fold(0.0, f64::max);
-                let pace = format!("joints at {fastest:.0} deg/s at most");
-                (
-                    "its joints, all at the same time",
-                    *q,
-                    robot.pose_at(*q),
-                    pace,
-                )
+                let pace = format!("{fastest:.0} deg/s of any joint");
+                ("all joints at the same time", *q, robot.pose_at(*q), pace)
             }
             Self::Pose(pose) => {
                 let seed = state.q.into();
@@ -101,15 +95,15 @@ impl Target {
                     &seed,
                 );
                 let q = q.map_err(|error| {
-                    let message = format!("the arm cannot go there: {error}");
+                    let message = format!("the arm cannot reach the target: {error}");
                     Failure::new(Ending::Failed, message)
                 })?;
                 let pace = format!(
-                    "the hand at {:.0} mm/s and {:.0} deg/s at most",
+                    "{:.0} mm/s and {:.0} deg/s of the hand",
                     budget.translation.velocity * 1e3,
                     budget.rotation.velocity.to_degrees()
                 );
-                ("its hand, on a straight line", q.into(), *pose, pace)
+                ("the hand in a straight line", q.into(), *pose, pace)
             }
         };
         let degrees = |q: [f64; 7]| numbers(&q.map(f64::to_degrees), 1);
@@ -125,8 +119,8 @@ impl Target {
         Ok(format!(
             "The arm moves {way}.\n\
              joint {joints}\nfrom  {}  deg\nto    {}  {about}\nby    {}  {about}\n\
-             hand  {:.0} mm away (x {x:+}, y {y:+}, z {z:+}), turned by {turn:.0} deg\n\
-             speed {pace}",
+             hand  {:.0} mm away (x {x:+}, y {y:+}, z {z:+}), rotated by {turn:.0} deg\n\
+             speed at most {pace}",
             degrees(state.q),
             degrees(q),
             degrees(by),
@@ -135,7 +129,7 @@ impl Target {
     }
 }
 
-/// What a robot is called in a question.
+/// Title of a question about a robot.
 pub(crate) fn title(what: &str, kind: RobotKind, place: &impl std::fmt::Display) -> String {
     let kind = crate::connection::kind_name(kind);
     format!("{BOLD}{what}: {kind}, {place}{BOLD:#}")

@@ -21,13 +21,13 @@ use toml_edit::{DocumentMut, Item, Table, Value, de};
 use crate::ending::{Ending, Failure};
 use crate::fields::fields;
 
-/// Whether the control thread has to have real-time scheduling.
+/// Real-time scheduling of the control thread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Realtime {
-    /// Do not connect without
+    /// Required: fail without it
     Enforce,
-    /// Connect all the same: enough for a simulator
+    /// Optional: enough for a simulator
     Ignore,
 }
 
@@ -62,7 +62,7 @@ impl RobotsFile {
         };
         let (robots, document) = parse(&text).map_err(|error| {
             let message = format!("{}: {error}", path.display());
-            Failure::usage(message.trim_end()).advice("Mend the file, or delete it.")
+            Failure::usage(message.trim_end()).advice("Fix the file, or delete it.")
         })?;
         Ok(Self {
             path,
@@ -145,12 +145,12 @@ pub(crate) fn check_name(name: &str) -> Result<(), String> {
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if name.is_empty() || !name.chars().all(is_word) {
         return Err(format!(
-            "`{name}` is no name for a robot: expected letters, digits, `-` and `_`"
+            "`{name}` is not a valid robot name: expected letters, digits, `-` and `_`"
         ));
     }
     if fields().contains_key(name) {
         return Err(format!(
-            "`{name}` is a field of the state, so no name for a robot"
+            "`{name}` is a field of the state, so it cannot be a robot name"
         ));
     }
     Ok(())
@@ -185,7 +185,7 @@ mod tests {
         for (text, expected) in [
             ("[left]\n", "address"),
             ("[left]\naddress = 'a b'\n", "robot `left`"),
-            ("['a.b']\naddress = 'x'\n", "no name for a robot"),
+            ("['a.b']\naddress = 'x'\n", "not a valid robot name"),
             ("[q]\naddress = 'x'\n", "a field of the state"),
             ("[left]\naddress = 'x'\nrealtime = 'maybe'\n", "maybe"),
             ("[left]\naddress = 'x'\nport = 1\n", "port"),

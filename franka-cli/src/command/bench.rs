@@ -21,24 +21,26 @@ use crate::values::seconds;
 /// Measure this computer
 #[derive(Debug, Subcommand)]
 pub(crate) enum Bench {
+    #[command(after_help = "Example: franka bench wake --seconds 60")]
     Wake(Wake),
+    #[command(after_help = "Example: franka bench loop --seconds 60")]
     Loop(Loop),
 }
 
-/// How late a thread wakes up that sleeps until each millisecond
+/// Measure how late a thread wakes up that sleeps until each millisecond
 #[derive(Debug, Args)]
 pub(crate) struct Wake {
-    /// How long
+    /// Duration of the measurement
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "10")]
     seconds: Duration,
     #[command(flatten)]
     output: Output,
 }
 
-/// How long the control loop takes, against a simulated robot in this process
+/// Measure the control loop against a simulated robot in this process
 #[derive(Debug, Args)]
 pub(crate) struct Loop {
-    /// How long
+    /// Duration of the measurement
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "10")]
     seconds: Duration,
     #[command(flatten)]

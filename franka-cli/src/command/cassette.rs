@@ -17,36 +17,39 @@ use crate::ending::{Ending, Failure};
 use crate::output::{Output, say};
 use crate::values::seconds;
 
-/// Play what a tap has recorded, or convert it
+/// Play or convert the cassette of `franka tap`
 #[derive(Debug, Subcommand)]
 pub(crate) enum Cassette {
-    /// Say what is in a cassette
+    /// Summarise a cassette
+    #[command(after_help = "Example: franka cassette info wire.mcap")]
     Info {
         /// The cassette
         file: PathBuf,
         #[command(flatten)]
         output: Output,
     },
-    /// Be the recorded robot, until the session has been played
+    /// Serve as the recorded robot until the session has been played
+    #[command(after_help = "Example: franka cassette play wire.mcap --port 1337")]
     Play {
         /// The cassette
         file: PathBuf,
         #[command(flatten)]
         listening: Listening,
-        /// Accept nothing but the recorded bytes
+        /// Accept only the recorded bytes
         #[arg(long)]
         strict: bool,
-        /// How long clients may take altogether
+        /// Time limit for the whole session
         #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "600")]
         patience: Duration,
         #[command(flatten)]
         output: Output,
     },
     /// Convert a cassette to a capture for Wireshark, or a capture (pcap, pcapng) to a cassette
+    #[command(after_help = "Example: franka cassette convert wire.mcap wire.pcap")]
     Convert {
-        /// The file; a cassette ends in .mcap
+        /// File to convert; a cassette ends in .mcap
         from: PathBuf,
-        /// The new file
+        /// New file
         to: PathBuf,
     },
 }

@@ -8,12 +8,12 @@ use crate::connection::{Which, check_ready};
 use crate::ending::Ending;
 use crate::output::Output;
 
-/// Set the forces at which the robot stops itself
+/// Set the collision thresholds, at which the robot stops itself
 ///
-/// They hold until they are set again, or the robot is restarted.
+/// They apply until they are set again or the robot restarts.
 #[derive(Debug, Args)]
 pub(crate) struct Collision {
-    /// Which
+    /// Threshold preset
     #[arg(value_enum)]
     preset: Preset,
     #[command(flatten)]
@@ -26,7 +26,7 @@ pub(crate) struct Collision {
 enum Preset {
     /// Stops at a light push: 10 N and 10 N m, 20 while the arm accelerates
     Careful,
-    /// Lets a hand push a compliant arm: stops at 60 N and 60 N m
+    /// Lets you push a compliant arm: stops at 60 N and 60 N m
     Compliant,
     /// Stops at 100 N and 100 N m
     Insensitive,

@@ -10,10 +10,10 @@ use crate::Program;
 use crate::ending::Ending;
 use crate::output::line;
 
-/// Print the completions for a shell
+/// Print shell completions
 #[derive(Debug, Args)]
 pub(crate) struct Completions {
-    /// The shell
+    /// Shell
     shell: Shell,
 }
 
@@ -30,8 +30,8 @@ impl Completions {
     }
 }
 
-/// The lines for fish that `clap_complete` leaves out: values of positional arguments, and no files
-/// where none is taken.
+/// The lines for fish that `clap_complete` leaves out: values of positional arguments, and no file
+/// names where none are accepted.
 fn positionals(program: &Command) -> Result<String, std::fmt::Error> {
     let mut lines = String::new();
     for command in program.get_subcommands() {

@@ -18,32 +18,31 @@ use crate::robots_file::Realtime;
 
 /// Show robots in the browser; with --allow-motion, move them while a button is held
 ///
-/// Until Ctrl-C. Several robots have a page each, and one that shows all of them. A page in a
-/// browser is neither an emergency stop nor an enabling device.
+/// Runs until Ctrl-C. Each robot has a page, and an overview shows all of them. A browser page is
+/// neither an emergency stop nor an enabling device.
 #[derive(Debug, Args)]
 pub(crate) struct Dash {
-    /// Names of robots, or their addresses [default: FRANKA_ROBOT, or the only robot in the file]
+    /// Names or addresses of the robots [default: FRANKA_ROBOT, or the only robot with a name]
     #[arg(value_name = "ROBOT")]
     robots: Vec<String>,
-    /// Where to listen. Addresses that other computers reach need a token
+    /// Address to listen on. A token is required if other computers can reach it
     #[arg(long, value_name = "ADDRESS:PORT", default_value_t = PAGE)]
     listen: SocketAddr,
-    /// Let the viewer that takes command move the arm and recover the robot
+    /// Allow the viewer in command to move the arm and recover the robot
     #[arg(long)]
     allow_motion: bool,
-    /// Whether the control thread has to have real-time scheduling with --allow-motion [default:
-    /// that of the robot in the file, or enforce]
+    /// Real-time scheduling of the control thread, with --allow-motion [default: the robot's
+    /// setting, or enforce]
     #[arg(long, value_enum)]
     realtime: Option<Realtime>,
-    /// Move robots with --allow-motion that report their poses with another geometry than their
-    /// models have
+    /// With --allow-motion, also move robots whose reported pose does not fit their model
     #[arg(long)]
     accept_geometry_error: bool,
-    /// Show the robot's Franka Hand as well and, with --allow-motion, let its fingers be moved. The
-    /// Hand serves no other program meanwhile
+    /// Show the Franka Hand too and, with --allow-motion, move its fingers. No other program can use
+    /// the Hand in the meantime
     #[arg(long)]
     gripper: bool,
-    /// Let the viewer that takes command record to new files in this folder
+    /// Allow the viewer in command to record to new files in this folder
     #[arg(long, value_name = "FOLDER")]
     record: Option<PathBuf>,
     #[command(flatten)]
@@ -54,11 +53,11 @@ pub(crate) struct Dash {
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 struct Access {
-    /// Require the token in this file from each page: http://ADDRESS:PORT/#TOKEN [default:
+    /// Require the token in this file: pages open as http://ADDRESS:PORT/#TOKEN [default:
     /// FRANKA_ACCESS_TOKEN, if it is set]
     #[arg(long, value_name = "FILE")]
     token_file: Option<PathBuf>,
-    /// Require a new random token from each page, and print the addresses with it
+    /// Generate a random token, require it, and print the addresses with it
     #[arg(long)]
     new_token: bool,
 }

@@ -25,41 +25,41 @@ use crate::motion::{progress_bar, shown};
 use crate::output::{Output, line, say};
 use crate::robots_file::Realtime;
 
-/// Check this computer, and the way to a robot
+/// Check this computer, and the connection to a robot
 ///
-/// Changes nothing. With a robot, its states are counted while it rests, its ports tried and echo
-/// requests sent, unless another client is connected to it; it is not moved. Exit code 1: a check
-/// failed that the purpose needs.
+/// Changes nothing and moves nothing. With a robot, unless another client is connected to it, it
+/// counts the states of the robot at rest, tries its ports and sends pings. Exit code 1: a check
+/// failed that the purpose requires.
 #[derive(Debug, Args)]
 pub(crate) struct Doctor {
-    /// Name of a robot, or its address; without it, only this computer is checked
+    /// Name or address of a robot; without it, only this computer is checked
     #[arg(value_name = "ROBOT")]
     robot: Option<String>,
-    /// What this computer is to do
+    /// Purpose of this computer
     #[arg(long = "for", value_enum, default_value_t = For::Move)]
     purpose: For,
-    /// Print a script with the commands that fix what was found, for reading before running
+    /// Print a script that fixes the findings, to read before you run it
     #[arg(long, conflicts_with = "json")]
     fix: bool,
-    /// Measure for a minute each, instead of ten seconds
+    /// Thorough: one-minute measurements instead of ten seconds
     #[arg(long)]
     long: bool,
-    /// Measure for a second, and neither wake-ups nor loopback nor round trips
+    /// Quick: one-second measurements; skip wake-up, loopback and ping tests
     #[arg(long, conflicts_with = "long")]
     quick: bool,
-    /// Say what is good, too, and why and by which source
+    /// Show passed checks too, with reasons and sources
     #[arg(long, conflicts_with_all = ["json", "fix"])]
     all: bool,
-    /// Run only these checks: ids, or their beginnings up to a dot, as in `nic,timing.wake_up`
+    /// Run only these checks, by id or by group, as in `nic,timing.wake_up`
     #[arg(long, value_name = "ID,...", value_delimiter = ',')]
     only: Vec<String>,
-    /// Leave these checks out
+    /// Skip these checks
     #[arg(long, value_name = "ID,...", value_delimiter = ',')]
     skip: Vec<String>,
-    /// Show names of people, hardware addresses, UUIDs and serial numbers
+    /// Show user names, hardware addresses, UUIDs and serial numbers
     #[arg(long)]
     unredacted: bool,
-    /// Where Desk is, if not on the robot's address, port 443; asked without a login
+    /// Address of Desk [default: the robot's, port 443]; queried without a login
     #[arg(long, value_name = "ADDRESS", requires = "robot")]
     desk: Option<Endpoint>,
     #[command(flatten)]

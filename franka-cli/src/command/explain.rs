@@ -20,25 +20,25 @@ use crate::ending::{Ending, Failure};
 use crate::motion::while_turning;
 use crate::output::{Output, say};
 
-/// Say why a motion ended, and where the arm was touched
+/// Explain why a motion ended, and where the arm was touched
 ///
 /// FILE is a recording, a table of libfranka's logToCSV, or a text with the message of a
-/// ControlException; a text may hold both message and table. Of several motions the newest that the
-/// robot stopped, a guard gave up or a lost link ended.
+/// ControlException; a text may contain both. If there are several motions, the newest one is
+/// explained that the robot or a guard stopped, or that ended with a lost link.
 #[derive(Debug, Args)]
 pub(crate) struct Explain {
     #[command(flatten)]
     recorded: Recorded,
-    /// Explain an earlier end of a motion: 1 is the one before the newest
+    /// Explain an earlier stop; 1 is the last but one
     #[arg(long, value_name = "N", default_value_t = 0)]
     earlier: u64,
-    /// Draw the last second to a new file
+    /// Plot the last second to a new file
     #[arg(long, value_name = "FILE.svg")]
     figure: Option<PathBuf>,
-    /// Kind of the robot, for a log of libfranka, which does not say
+    /// Kind of the robot, for a log of libfranka, which does not contain it
     #[arg(long, value_enum)]
     kind: Option<Kind>,
-    /// Errors of the motion, by the robot's names, for a table without the message
+    /// Errors of the motion, by the vendor's names, for a table without a message
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', value_parser = error_of)]
     errors: Vec<RobotError>,
     #[command(flatten)]
@@ -53,10 +53,10 @@ fn error_of(name: &str) -> Result<RobotError, String> {
 /// A robot of a recording, or a log of libfranka.
 #[derive(Debug, Args)]
 pub(crate) struct Recorded {
-    /// A recording, or a text with a log of libfranka
+    /// Recording, or text with a log of libfranka
     #[arg(value_name = "FILE")]
     pub(super) file: PathBuf,
-    /// Which robot of the recording; needed if it has several
+    /// Robot of the recording; required if it has several
     #[arg(long, value_name = "NAME")]
     of: Option<String>,
 }
@@ -151,7 +151,7 @@ impl Explain {
         let newest = explain(HostTime::from_nanos(u64::MAX));
         if self.earlier > newest.earlier {
             let message = format!(
-                "--earlier {}: of the ends before the newest there are {}",
+                "--earlier {}: expected at most {}, the number of earlier stops in this recording",
                 self.earlier, newest.earlier
             );
             return Err(Failure::usage(message).into());

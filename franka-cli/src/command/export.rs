@@ -29,36 +29,36 @@ use crate::output::Output;
 
 /// Export a recording as tables, or as a dataset for training
 ///
-/// FILE is a recording, or a table of libfranka's logToCSV. Tables have a row per cycle; a dataset
-/// has the episodes of the recording, in the layout of LeRobot. A file that exists is never
-/// replaced; Ctrl-C deletes what is not complete.
+/// FILE is a recording, or a table of libfranka's logToCSV. Tables have one row per cycle. A
+/// dataset has the episodes of the recording, in LeRobot's layout. Existing files are never
+/// replaced. Ctrl-C deletes incomplete output.
 #[derive(Debug, Args)]
 #[group(id = "to", required = true, multiple = true, args = ["csv", "parquet", "lerobot"])]
 pub(crate) struct Export {
     #[command(flatten)]
     recorded: Recorded,
-    /// Write a table as comma-separated text, with a line of units
+    /// Write a CSV table, with a line of units
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
-    /// Write a table as Parquet
+    /// Write a Parquet table
     #[arg(long, value_name = "FILE.parquet")]
     parquet: Option<PathBuf>,
-    /// Columns of the tables; all by default
+    /// Columns of the tables [default: all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     columns: Vec<String>,
-    /// Add the episodes to a dataset, a new one if there is none
+    /// Add the episodes to this dataset; it is created if missing
     #[arg(long, value_name = "FOLDER")]
     lerobot: Option<PathBuf>,
-    /// Episodes of the dataset, by their names; all by default
+    /// Names of the episodes to add [default: all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     episodes: Vec<String>,
     /// Frames per second of the dataset
     #[arg(long, value_name = "HZ", default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=1000))]
     fps: u16,
-    /// Leave the gripper out of the dataset
+    /// Omit the gripper from the dataset
     #[arg(long)]
     no_gripper: bool,
-    /// Take where the arm was for its actions: for demonstrations by hand
+    /// Use measured positions as actions (for hand-guided demonstrations)
     #[arg(long)]
     measured: bool,
     #[command(flatten)]

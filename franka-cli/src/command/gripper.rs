@@ -17,10 +17,11 @@ use crate::values::positive;
 
 /// Move the fingers of the Franka Hand
 ///
-/// ROBOT is the robot whose Hand it is; a port in an address is that of the Hand.
+/// ROBOT is the robot with the Hand; a port in an address is the port of the Hand.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Gripper {
-    /// Show the width of the fingers, and whether they hold something
+    /// Show the width between the fingers, and if they hold something
+    #[command(after_help = "Example: franka gripper state left")]
     State {
         #[command(flatten)]
         which: Which,
@@ -28,50 +29,55 @@ pub(crate) enum Gripper {
         output: Output,
     },
     /// Open the fingers
+    #[command(after_help = "Example: franka gripper open left --width 0.06")]
     Open {
         #[command(flatten)]
         fingers: Fingers,
-        /// How wide, metres; as wide as they go by default
+        /// Width in metres [default: the largest]
         #[arg(long, value_name = "M", value_parser = positive)]
         width: Option<f64>,
     },
-    /// Close the fingers, without holding anything
+    /// Close the fingers without gripping
+    #[command(after_help = "Example: franka gripper close left")]
     Close {
         #[command(flatten)]
         fingers: Fingers,
     },
-    /// Close the fingers on an object and hold it
+    /// Grasp an object and hold it
+    #[command(after_help = "Example: franka gripper grasp left --width 0.03 --force 20")]
     Grasp {
         #[command(flatten)]
         fingers: Fingers,
-        /// Width of the object, metres
+        /// Width of the object in metres
         #[arg(long, value_name = "M", value_parser = positive)]
         width: f64,
-        /// How much wider or narrower it may be, metres
+        /// Accepted deviation of the width in metres
         #[arg(long, value_name = "M", value_parser = positive, default_value = "0.005")]
         within: f64,
-        /// Force, newtons
+        /// Force in newtons
         #[arg(long, value_name = "N", value_parser = positive, default_value = "20")]
         force: f64,
     },
-    /// Find how wide the fingers open: once after power-on
+    /// Calibrate the width of the fingers; required once after power-on
+    #[command(after_help = "Example: franka gripper home left")]
     Home {
         #[command(flatten)]
         fingers: Fingers,
     },
-    /// Stop the fingers, and let go of what they hold
+    /// Stop the fingers and release the object
+    #[command(after_help = "Example: franka gripper stop left")]
     Stop {
         #[command(flatten)]
         fingers: Fingers,
     },
 }
 
-/// Options of whatever moves the fingers.
+/// Options of commands that move the fingers.
 #[derive(Debug, Args)]
 pub(crate) struct Fingers {
     #[command(flatten)]
     which: Which,
-    /// Speed of the fingers, metres per second
+    /// Speed of the fingers in m/s
     #[arg(long, value_name = "M/S", value_parser = positive, default_value = "0.1")]
     speed: f64,
     /// Move without asking, for scripts
@@ -92,11 +98,10 @@ impl Gripper {
                 let hand = fingers.connect().await?;
                 let width = width.unwrap_or(hand.state().max_width);
                 if width <= 0.0 {
-                    let failure =
-                        Failure::new(Ending::Failed, "the Hand does not know how wide it opens");
+                    let failure = Failure::new(Ending::Failed, "the Hand has not been homed");
                     return Err(failure.advice("First: franka gripper home").into());
                 }
-                let not = "the fingers did not open so far";
+                let not = "the fingers did not open to this width";
                 let motion = moved(&hand, width, fingers.speed);
                 fingers
                     .act(&hand, &fingers.way(&hand, width), motion, not)
@@ -123,20 +128,20 @@ impl Gripper {
                 let way = fingers.way(&hand, width);
                 let what = format!("{way}, then press with {force:.0} N");
                 let (width, within) = (width * 1e3, within * 1e3);
-                let not = format!("nothing of {width:.1} mm is held (within {within:.1} mm)");
+                let not = format!("no object of {width:.1} mm is held (within {within:.1} mm)");
                 fingers.act(&hand, &what, hand.grasp(grasp), &not).await
             }
             Self::Home { fingers } => {
                 let hand = fingers.connect().await?;
-                let what = "The fingers close, and open as wide as they go";
-                let not = "the fingers did not find their ends";
+                let what = "The fingers close, then open fully";
+                let not = "the fingers did not reach both ends";
                 fingers.act(&hand, what, hand.homing(), not).await
             }
             Self::Stop { mut fingers } => {
                 // Stopping is never asked about.
                 fingers.yes = true;
                 let hand = fingers.connect().await?;
-                let what = "The fingers stop, and let go of what they hold";
+                let what = "The fingers stop and release the object";
                 let not = "the fingers were not stopped";
                 fingers.act(&hand, what, hand.stop(), not).await
             }
@@ -151,7 +156,7 @@ impl Fingers {
 
     fn way(&self, hand: &Hand, width: f64) -> String {
         format!(
-            "The fingers go from {:.1} to {:.1} mm, at {:.0} mm/s",
+            "The fingers move from {:.1} to {:.1} mm, at {:.0} mm/s",
             hand.state().width * 1e3,
             width * 1e3,
             self.speed * 1e3
@@ -189,7 +194,7 @@ async fn stopped(hand: &Hand, by: Interruption) -> Failure {
     say(&format!("{by}: stopping the fingers"));
     let why = match timeout(PATIENCE, hand.stop()).await {
         Ok(Ok(true)) => {
-            let message = "interrupted: the fingers were stopped, and hold nothing";
+            let message = "interrupted: the fingers were stopped and hold nothing";
             return by.failure(message);
         }
         Ok(Ok(false)) => "the Hand refused".to_owned(),

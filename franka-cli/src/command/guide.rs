@@ -14,18 +14,18 @@ use crate::motion::{Mover, Moving};
 use crate::output::say;
 use crate::values::seconds;
 
-/// Let a hand guide the arm
+/// Guide the arm by hand
 ///
-/// Until Ctrl-C; a second one brakes at once. A load at the flange has to be declared before, or it
-/// pulls the arm down.
+/// Runs until Ctrl-C; a second Ctrl-C brakes at once. Declare a load at the flange first, or its
+/// weight pulls the arm down.
 #[derive(Debug, Args)]
 pub(crate) struct Guide {
     #[command(flatten)]
     mover: Mover,
-    /// What the hand may move
+    /// Directions that are free
     #[arg(long, value_enum, default_value_t = What::All)]
     free: What,
-    /// End after so many seconds
+    /// End after this many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     seconds: Option<Duration>,
 }
@@ -33,13 +33,13 @@ pub(crate) struct Guide {
 /// What is free.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum What {
-    /// Everything
+    /// Position, orientation and elbow
     All,
-    /// The position of the hand
+    /// Position of the hand
     Position,
-    /// The orientation of the hand
+    /// Orientation of the hand
     Orientation,
-    /// The elbow, while the hand stays
+    /// Elbow only; the hand stays in place
     Elbow,
 }
 
@@ -68,10 +68,10 @@ impl What {
 
     fn text(self) -> &'static str {
         match self {
-            Self::All => "wherever",
-            Self::Position => "anywhere with the same orientation,",
-            Self::Orientation => "to any orientation at the same place",
-            Self::Elbow => "by its elbow, while the hand stays, wherever",
+            Self::All => "the arm freely",
+            Self::Position => "the hand anywhere; it keeps its orientation",
+            Self::Orientation => "the hand to any orientation; it stays in place",
+            Self::Elbow => "the elbow; the hand stays in place",
         }
     }
 }
@@ -91,8 +91,8 @@ impl Guide {
         let robot = &moving.robot;
         let load = robot.state().m_load;
         let what = format!(
-            "The arm goes {} a hand pushes it; the declared load is {load:.2} kg.\n\
-             speed as it is pushed, up to the limits of the joints",
+            "You can push {}. The declared load is {load:.2} kg.\n\
+             speed as fast as you push, within the joint limits",
             self.free.text()
         );
         moving.ask("guide", &what).await?;
@@ -101,7 +101,7 @@ impl Guide {
         let guided = async {
             let arm = robot.engage(Engage::default()).await?;
             arm.guide(self.free.free()).await?;
-            say("The arm can be guided. Ctrl-C ends.");
+            say("Guide the arm. Ctrl-C ends.");
             let end = async {
                 match self.seconds {
                     Some(seconds) => tokio::time::sleep(seconds).await,
@@ -119,7 +119,7 @@ impl Guide {
                 arm.at_rest().await?;
                 arm.disengage().await
             };
-            // A hand that pushes on keeps the arm from resting.
+            // A hand that keeps pushing keeps the arm from resting.
             tokio::select! {
                 held = timeout(PATIENCE, held) => match held {
                     Ok(held) => Ok(held.map(drop)?),
@@ -132,7 +132,7 @@ impl Guide {
         match guided {
             Ok(()) => Ok(robot.state().q),
             Err(Guiding::NotAtRest(by)) => {
-                say("The arm does not rest: it is pushed.");
+                say("The arm is still being pushed and does not rest.");
                 Err(moving.brake(by).await)
             }
             Err(Guiding::Failed(error)) => Err(moving.explain(error).await),
@@ -141,7 +141,7 @@ impl Guide {
     }
 }
 
-/// Why the arm was not guided to its end.
+/// Reasons why guiding failed.
 enum Guiding {
     Failed(MotionError),
     /// It was held, and did not come to rest.

@@ -12,12 +12,12 @@ use crate::output::{BOLD, Output};
 
 /// Print the limits of the arm
 ///
-/// Those that the robot tells, or with --kind those that the vendor has published.
+/// The robot reports them; with --kind, they are the vendor's published limits.
 #[derive(Debug, Args)]
 pub(crate) struct Limits {
     #[command(flatten)]
     which: Which,
-    /// Of this kind of robot, without a connection
+    /// Print the published limits of this kind of robot, without a connection
     #[arg(long, value_enum, conflicts_with = "robot")]
     kind: Option<Kind>,
     #[command(flatten)]

@@ -13,7 +13,7 @@ use crate::output::line;
 /// Write the man pages
 #[derive(Debug, Args)]
 pub(crate) struct Man {
-    /// The folder for them
+    /// Folder for the pages
     folder: PathBuf,
 }
 

@@ -34,30 +34,45 @@ use crate::ending::Ending;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    #[command(after_help = "Example: franka doctor 172.16.0.2 --quick")]
     Doctor(doctor::Doctor),
+    #[command(after_help = "Example: franka state left --watch")]
     State(state::State),
+    #[command(after_help = "Example: franka read left q O_T_EE")]
     Read(read::Read),
     #[command(subcommand)]
     Model(model::Model),
+    #[command(after_help = "Example: franka limits --kind fr3")]
     Limits(limits::Limits),
+    #[command(after_help = "Example: franka move left --by 0,0,0.05")]
     Move(move_to::Move),
+    #[command(after_help = "Example: franka guide left --free position")]
     Guide(guide::Guide),
+    #[command(after_help = "Example: franka stop left")]
     Stop(stop::Stop),
+    #[command(after_help = "Example: franka recover left")]
     Recover(recover::Recover),
     #[command(subcommand)]
     Gripper(gripper::Gripper),
     #[command(subcommand)]
     Tool(tool::Tool),
+    #[command(after_help = "Example: franka collision compliant left")]
     Collision(collision::Collision),
     #[command(subcommand)]
     Robots(robots::Robots),
-    #[command(about = "Be a simulated robot", after_help = sim::EXAMPLES)]
+    #[command(about = "Run the simulator", after_help = sim::EXAMPLES)]
     Sim(sim::Sim),
+    #[command(after_help = "Example: franka dash left right --allow-motion")]
     Dash(dash::Dash),
+    #[command(after_help = "Example: franka record day.mcap left --seconds 60")]
     Record(record::Record),
+    #[command(after_help = "Example: franka explain day.mcap --figure stop.svg")]
     Explain(explain::Explain),
+    #[command(after_help = "Example: franka replay day.mcap left --speed 0.5")]
     Replay(replay::Replay),
+    #[command(after_help = "Example: franka export day.mcap --csv day.csv --columns q,dq")]
     Export(export::Export),
+    #[command(after_help = "Example: franka tap wire.mcap left --port 1340")]
     Tap(tap::Tap),
     #[command(subcommand)]
     Cassette(cassette::Cassette),
@@ -67,17 +82,19 @@ pub(crate) enum Command {
     Trial(trial::Trial),
     #[command(subcommand)]
     Bench(bench::Bench),
+    #[command(after_help = "Example: franka completions fish")]
     Completions(completions::Completions),
+    #[command(after_help = "Example: franka man man1")]
     Man(man::Man),
 }
 
 impl Command {
-    /// Whether the command logs by itself.
+    /// True if the command sets up its own logging.
     pub(crate) fn logs(&self) -> bool {
         matches!(self, Self::Sim(_) | Self::Tap(_))
     }
 
-    /// Does what the command says.
+    /// Runs the command.
     pub(crate) fn run(self) -> anyhow::Result<Ending> {
         let runtime = tokio::runtime::Runtime::new()?;
         let outcome = runtime.block_on(async {
@@ -110,7 +127,7 @@ impl Command {
                 Self::Man(man) => man.run(),
             }
         });
-        // Whatever still runs has nothing to do with the robot: its connection is closed.
+        // Remaining tasks no longer concern the robot: its connection is closed.
         runtime.shutdown_background();
         outcome
     }

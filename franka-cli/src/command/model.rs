@@ -16,18 +16,20 @@ use crate::ending::{Ending, Failure};
 use crate::output::{Output, numbers as columns};
 use crate::values::{PartialPose, partial_pose};
 
-/// Compute with the model of the arm
+/// Query the model of the arm: kinematics and dynamics
 #[derive(Debug, Subcommand)]
 pub(crate) enum Model {
-    /// Where a frame of the arm is, in the base frame
+    /// Print the pose of a frame of the arm in the base frame
+    #[command(after_help = "Example: franka model pose --kind fr3 --frame flange")]
     Pose {
         #[command(flatten)]
         arm: Arm,
-        /// Which frame
+        /// Frame of the arm
         #[arg(long, value_parser = frame(), default_value = "end-effector")]
         frame: Frame,
     },
-    /// Joint positions that bring the end effector to a pose
+    /// Print joint positions for a pose of the end effector
+    #[command(after_help = "Example: franka model ik left --pose 0.4,0.1,0.5")]
     Ik {
         #[command(flatten)]
         arm: Arm,
@@ -35,15 +37,17 @@ pub(crate) enum Model {
         #[arg(long, value_parser = partial_pose, allow_hyphen_values = true)]
         pose: PartialPose,
     },
-    /// The Jacobian of a frame in the base frame: m/rad, then rad/rad
+    /// Print the Jacobian of a frame in the base frame: m/rad, then rad/rad
+    #[command(after_help = "Example: franka model jacobian --kind fer")]
     Jacobian {
         #[command(flatten)]
         arm: Arm,
-        /// Which frame
+        /// Frame of the arm
         #[arg(long, value_parser = frame(), default_value = "end-effector")]
         frame: Frame,
     },
-    /// The mass matrix, kg m2, with end effector and load
+    /// Print the mass matrix in kg m2, with end effector and load
+    #[command(after_help = "Example: franka model mass left")]
     Mass {
         #[command(flatten)]
         arm: Arm,
@@ -55,10 +59,10 @@ pub(crate) enum Model {
 pub(crate) struct Arm {
     #[command(flatten)]
     which: Which,
-    /// The arm of this kind with nothing on its flange, without a connection
+    /// Use an arm of this kind with an empty flange, without a connection
     #[arg(long, value_enum, conflicts_with = "robot")]
     kind: Option<Kind>,
-    /// Joint positions, radians; by default those of the robot, or of the ready pose
+    /// Joint positions in radians [default: the robot's, or the ready pose]
     #[arg(long, value_name = "Q1,...,Q7", value_parser = numbers::<7>, allow_hyphen_values = true)]
     q: Option<[f64; 7]>,
     #[command(flatten)]

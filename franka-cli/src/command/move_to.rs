@@ -14,21 +14,21 @@ use crate::values::{PartialPose, partial_pose, positive};
 
 /// Move the arm
 ///
-/// At a fifth of its limits, the hand at 300 mm/s at most. Says how far each joint and the hand go,
-/// and asks. Ctrl-C brakes.
+/// Uses a fifth of the limits, and at most 300 mm/s at the hand. Shows how far each joint and the
+/// hand will move, and asks. Ctrl-C brakes.
 #[derive(Debug, Args)]
 pub(crate) struct Move {
     #[command(flatten)]
     mover: Mover,
     #[command(flatten)]
     target: Aim,
-    /// Degrees in --joints
+    /// Interpret --joints as degrees
     #[arg(long, requires = "joints")]
     degrees: bool,
-    /// Along and about the axes of the end effector, with --by
+    /// Use the axes of the end effector for --by
     #[arg(long, requires = "by")]
     tool: bool,
-    /// So many times as fast
+    /// Speed, as a factor of the default
     #[arg(long, value_name = "FACTOR", value_parser = positive, default_value = "1")]
     speed: f64,
 }
@@ -37,17 +37,17 @@ pub(crate) struct Move {
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct Aim {
-    /// The end effector to a pose, on a straight line: x,y,z (m, same orientation),
+    /// Move the end effector to a pose in a straight line: x,y,z (m, same orientation),
     /// x,y,z,roll,pitch,yaw (degrees), or x,y,z,qx,qy,qz,qw
     #[arg(long, value_parser = partial_pose, allow_hyphen_values = true)]
     pose: Option<PartialPose>,
-    /// The joints to these positions, radians
+    /// Move the joints to these positions, in radians
     #[arg(long, value_name = "Q1,...,Q7", value_parser = numbers::<7>, allow_hyphen_values = true)]
     joints: Option<[f64; 7]>,
-    /// The joints to the ready pose
+    /// Move the joints to the ready pose
     #[arg(long)]
     ready: bool,
-    /// The end effector away from where it is: x,y,z (m), or x,y,z,roll,pitch,yaw (degrees)
+    /// Move the end effector by an offset: x,y,z (m), or x,y,z,roll,pitch,yaw (degrees)
     #[arg(long, value_name = "X,Y,Z", value_parser = partial_pose, allow_hyphen_values = true)]
     by: Option<PartialPose>,
 }

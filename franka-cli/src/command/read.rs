@@ -10,14 +10,14 @@ use crate::output::Output;
 
 /// Print fields of the robot's state
 ///
-/// By the vendor's names, as in `franka read q O_T_EE`. A first argument that is no field is the
-/// robot.
+/// Fields have the vendor's names, as in `franka read q O_T_EE`. A first argument that is not a
+/// field is the robot.
 #[derive(Debug, Args)]
 pub(crate) struct Read {
-    /// Name or address of the robot, then fields
+    /// Name or address of the robot (optional), then fields
     #[arg(value_name = "[ROBOT] FIELD", required_unless_present = "list")]
     words: Vec<String>,
-    /// List the fields instead
+    /// List the fields
     #[arg(long, conflicts_with = "words")]
     list: bool,
     #[command(flatten)]

@@ -18,24 +18,24 @@ use crate::motion::recorded;
 use crate::output::{Output, say};
 use crate::values::seconds;
 
-/// Record what happens to a robot
+/// Record a robot that this program does not move
 ///
-/// Every state of a robot that this program does not move, until Ctrl-C: what is done by hand, or
-/// from Desk. Commands that move have --record.
+/// Records every state until Ctrl-C, for instance while you guide the arm or use Desk. Commands
+/// that move the arm have --record.
 #[derive(Debug, Args)]
 pub(crate) struct Record {
-    /// The new file. Foxglove and Rerun open it, too
+    /// New file; Foxglove and Rerun can open it
     #[arg(value_name = "FILE.mcap")]
     file: PathBuf,
     #[command(flatten)]
     which: Which,
-    /// End after so many seconds
+    /// End after this many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     seconds: Option<Duration>,
-    /// A folder for the last seconds before each incident
+    /// Folder for the last seconds before each incident
     #[arg(long, value_name = "FOLDER")]
     black_box: Option<PathBuf>,
-    /// Have Foxglove watch meanwhile, at this address of this host: 127.0.0.1:8765 if none is given
+    /// Stream live to Foxglove on this local address [default: 127.0.0.1:8765]
     #[arg(long, value_name = "ADDRESS", num_args = 0..=1)]
     live: Option<Option<SocketAddr>>,
     #[command(flatten)]

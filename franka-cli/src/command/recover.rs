@@ -17,10 +17,10 @@ use crate::interrupt::interrupted;
 use crate::output::{Output, say};
 use crate::question::{self, title};
 
-/// Lead the robot out of a reflex
+/// Recover the robot from a reflex
 ///
-/// An automatic error recovery. Says why the robot stopped, and asks: what the arm presses against
-/// may give way.
+/// Shows why the robot stopped, asks, and runs an automatic error recovery. The arm may move if it
+/// presses against something that yields.
 #[derive(Debug, Args)]
 pub(crate) struct Recover {
     #[command(flatten)]
@@ -46,7 +46,7 @@ impl Recover {
         })
     }
 
-    /// Returns the state before.
+    /// Returns the state before the recovery.
     async fn recover(&self, robot: &Robot, place: &Place) -> anyhow::Result<RobotState> {
         let state = robot.state();
         if state.robot_mode != RobotMode::Reflex {
@@ -55,31 +55,30 @@ impl Recover {
         }
         say(diagnosis(&state, robot).trim_end());
         let title = title("recover", robot.model().kind(), place);
-        let what = "The robot frees itself. Where the arm presses against something, it may give way by some mm.";
+        let what = "The robot releases its joints from the reflex. If the arm presses against something, it may move by some mm.";
         question::ask(&format!("{title}\n{what}"), self.yes).await?;
         let interrupt = interrupted()?;
         let recovered = tokio::select! {
             recovered = robot.recover() => recovered,
             by = interrupt => {
-                let message = "interrupted: the robot may recover all the same";
+                let message = "interrupted: the robot may still recover";
                 return Err(by.failure(message).into());
             }
         };
         recovered.map_err(|error| {
             let message = format!("the robot was not recovered: {error}");
             Failure::new(Ending::Failed, message)
-                .advice("If it names a manual recovery, it takes a person at the robot, or Desk.")
+                .advice("A manual recovery must be done at the robot or in Desk.")
         })?;
         let mut states = robot.states();
         let idle = states.wait_for(|state| state.robot_mode == RobotMode::Idle);
         let idle = tokio::time::timeout(PATIENCE, idle).await;
-        idle.context("the robot does not become ready")??;
+        idle.context("the robot did not become ready")??;
         Ok(state)
     }
 }
 
-/// Why the robot stopped. The cycles before went to the program whose motion it was: the errors
-/// tell what they can.
+/// Explains why the robot stopped, from its errors only: the cycles before went to another program.
 fn diagnosis(state: &RobotState, robot: &Robot) -> String {
     let case = Case {
         commander: Commander::Goals,
@@ -90,5 +89,5 @@ fn diagnosis(state: &RobotState, robot: &Robot) -> String {
     Diagnosis::of(&case, robot.model()).to_string()
 }
 
-/// For a robot to become ready.
+/// Time for a robot to become ready.
 const PATIENCE: Duration = Duration::from_secs(10);

@@ -12,9 +12,9 @@ use crate::motion::{Length, MoverOptions, Moving};
 use crate::question::Target;
 use crate::values::positive;
 
-/// Move as recorded
+/// Repeat a recorded motion
 ///
-/// First to where the recorded motion began. Says how far that is, and asks. Ctrl-C brakes.
+/// Moves to the start of the recorded motion first. Shows how far that is, and asks. Ctrl-C brakes.
 #[derive(Debug, Args)]
 pub(crate) struct Replay {
     #[command(flatten)]
@@ -23,22 +23,22 @@ pub(crate) struct Replay {
     which: Which,
     #[command(flatten)]
     how: MoverOptions,
-    /// As a share of the recorded speed, 0.01 to 1
+    /// Speed, as a factor of the recorded speed, 0.01 to 1
     #[arg(long, value_name = "SHARE", value_parser = positive, default_value = "1")]
     speed: f64,
-    /// What the arm follows
+    /// Positions to follow
     #[arg(long, value_enum, default_value_t = Source::Reference)]
     source: Source,
-    /// Let the hand move as recorded, and the elbow as it can
+    /// Follow the recorded pose of the hand; the elbow may differ
     #[arg(long)]
     poses: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Source {
-    /// Where the recorded arm was to be
+    /// Commanded positions
     Reference,
-    /// Where it was: for arms that were moved by hand
+    /// Measured positions, for arms that were guided by hand
     Measured,
 }
 

@@ -8,27 +8,30 @@ use crate::ending::{Ending, Failure};
 use crate::output::{Output, line};
 use crate::robots_file::{Entry, Realtime, RobotsFile, check_name};
 
-/// Name robots
+/// Manage the names of robots
 #[derive(Debug, Subcommand)]
 pub(crate) enum Robots {
-    /// List the robots that have names
+    /// List the robots with names
+    #[command(after_help = "Example: franka robots list")]
     List(Output),
-    /// Give a robot a name, or change what is known of one
+    /// Add a robot, or change its settings
+    #[command(after_help = "Example: franka robots add left 172.16.0.2")]
     Add {
-        /// Letters, digits, `-` and `_`
+        /// Name: letters, digits, `-` and `_`
         name: String,
-        /// Where the robot is
+        /// Address of the robot
         address: Endpoint,
-        /// Whether moving it takes real-time scheduling; enforced unless given
+        /// Real-time scheduling for motions [default: enforce]
         #[arg(long, value_enum)]
         realtime: Option<Realtime>,
-        /// Where its Hand is, if not beside the robot
+        /// Address of the Hand [default: the robot's]
         #[arg(long, value_name = "ADDRESS")]
         hand: Option<Endpoint>,
     },
-    /// Forget a robot
+    /// Remove a robot
+    #[command(after_help = "Example: franka robots remove left")]
     Remove {
-        /// Its name
+        /// Name of the robot
         name: String,
     },
 }

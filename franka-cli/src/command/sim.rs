@@ -18,21 +18,20 @@ pub(super) const EXAMPLES: &str = "\
 Examples:
   franka sim                              a Franka Research 3 with a Hand's server, on 1337 and 1338
   franka sim --robot fer --hand           a Panda with its Hand
-  franka sim --arm bad --arm-seed 3       an arm that sticks, flexes and lags more than most
+  franka sim --arm bad --arm-seed 3       an arm with more friction, flexibility and delay than most
   franka sim --robot fer --network fer-stalls
-                                          a Panda that sends its states as late as a Panda does
-  franka sim --wait-for-commands          for a busy computer
-  franka sim --port 0                     on free ports, which it prints
-  franka sim --dash                       with a page that shows it and lets it be pushed";
+                                          a Panda with the delays of a real one
+  franka sim --wait-for-commands          waits for each command, for a busy computer
+  franka sim --port 0                     on free ports, which are printed
+  franka sim --dash                       with a page that shows and pushes it";
 
 /// The simulator, with or without the dashboard.
 #[derive(Debug, Args)]
 pub(crate) struct Sim {
     #[command(flatten)]
     arguments: Arguments,
-    /// Show the robot in the browser, where it can be pushed and disturbed, at this address:
-    /// 127.0.0.1:8080 if none is given. Addresses that other computers reach need the token in
-    /// FRANKA_ACCESS_TOKEN
+    /// Serve a page that shows, pushes and disturbs the robot, at this address [default:
+    /// 127.0.0.1:8080]. If other computers can reach it, FRANKA_ACCESS_TOKEN is required
     #[arg(long, value_name = "ADDRESS:PORT", num_args = 0..=1)]
     dash: Option<Option<SocketAddr>>,
 }

@@ -17,17 +17,15 @@ use crate::interrupt::interrupted;
 use crate::output::{Output, json_line};
 use crate::values::rate;
 
-/// Show what the robot says: mode, errors, joints, forces, link
-///
-/// --watch shows it again and again, until Ctrl-C.
+/// Show the state of the robot: mode, errors, joints, forces, link
 #[derive(Debug, Args)]
 pub(crate) struct State {
     #[command(flatten)]
     which: Which,
-    /// Go on showing the newest state; with --json a line for each
+    /// Update until Ctrl-C; with --json, one line for each state
     #[arg(short, long)]
     watch: bool,
-    /// How often a second
+    /// Updates per second
     #[arg(long, value_name = "HZ", value_parser = rate, default_value = "10", requires = "watch")]
     rate: f64,
     #[command(flatten)]

@@ -8,10 +8,10 @@ use crate::connection::Which;
 use crate::ending::{Ending, Failure};
 use crate::output::Output;
 
-/// Stop the robot, as far as this computer can
+/// Stop the robot (cannot stop a motion of another client)
 ///
-/// A robot takes one client at a time: one that another program moves is stopped by that program
-/// (Ctrl-C), or by the user stop.
+/// A robot accepts one client at a time. If another program moves the robot, stop that program
+/// (Ctrl-C) or press the user stop.
 #[derive(Debug, Args)]
 pub(crate) struct Stop {
     #[command(flatten)]
@@ -23,16 +23,19 @@ pub(crate) struct Stop {
 impl Stop {
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
         let (robot, place) = self.which.connect().await?;
-        // The motion of a client that has gone ended with its connection.
+        // A motion of an earlier client ended with its connection.
         let stopped = robot.stop().await;
         let state = robot.state();
         robot.shutdown().await;
         stopped?;
         if matches!(state.robot_mode, RobotMode::Move | RobotMode::Guiding) {
-            let message = format!("the robot at {place} goes on: mode {}", state.robot_mode);
+            let message = format!(
+                "the robot at {place} still moves: mode {}",
+                state.robot_mode
+            );
             let failure = Failure::new(Ending::Taken, message);
             return Err(failure
-                .advice("What moves it is not a client: press the user stop.")
+                .advice("It is not moved by a client: press the user stop.")
                 .into());
         }
         let mode = state.robot_mode.to_string();

@@ -12,13 +12,13 @@ use crate::ending::{Ending, Failure};
 use crate::interrupt::interrupted;
 use crate::output::{Output, say};
 
-/// Record what passes between clients and a robot, byte for byte
+/// Record the traffic between clients and a robot, byte for byte
 ///
-/// Until Ctrl-C. Clients connect to this computer instead of the robot, which is connected to when
-/// a client comes. For looking closely: commands reach the robot a little later.
+/// Runs until Ctrl-C. Clients connect to this computer instead of the robot; each connection is
+/// passed on. For debugging only: adds latency to every command.
 #[derive(Debug, Args)]
 pub(crate) struct Tap {
-    /// The new file
+    /// New file
     #[arg(value_name = "FILE.mcap")]
     file: PathBuf,
     #[command(flatten)]
@@ -32,11 +32,11 @@ pub(crate) struct Tap {
 /// Where clients connect to.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct Listening {
-    /// Where clients connect to
+    /// Address for clients
     #[arg(long, value_name = "IP", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
     listen: IpAddr,
-    /// Port for clients of the robot; those of the Hand and the vacuum gripper follow. 0 takes free
-    /// ones
+    /// Port for clients of the robot; the Hand and the vacuum gripper use the next two. 0 picks free
+    /// ports
     #[arg(long, default_value_t = 1337, value_parser = value_parser!(u16).range(..=65533))]
     port: u16,
 }

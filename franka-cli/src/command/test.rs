@@ -17,6 +17,7 @@ use crate::values::seconds;
 /// Test a robot's connection
 #[derive(Debug, Subcommand)]
 pub(crate) enum Test {
+    #[command(after_help = "Example: franka test communication left --seconds 10")]
     Communication(Communication),
 }
 
@@ -27,19 +28,19 @@ impl Test {
     }
 }
 
-/// Test network and computer for control at 1 kHz, of one robot or of two at the same time
+/// Test network and computer for control at 1 kHz, with one robot or two at the same time
 ///
-/// Commands zero torques for some seconds: the arm stays where it is, since the robot compensates
+/// Commands zero torques for some seconds. The arm stays in place, because the robot compensates
 /// gravity. Exit code 0: good (0.95 of the commands arrive in time) or usable (0.9); 1: not usable.
-/// Of two robots the worse one counts.
+/// With two robots, the worse one decides.
 #[derive(Debug, Args)]
 pub(crate) struct Communication {
     #[command(flatten)]
     mover: Mover,
-    /// Another robot, at the same time
+    /// Second robot, tested at the same time
     #[arg(long, value_name = "ROBOT", conflicts_with = "record")]
     two: Option<String>,
-    /// How long
+    /// Duration of the test
     #[arg(long, value_name = "SECONDS", value_parser = seconds, default_value = "10")]
     seconds: Duration,
 }

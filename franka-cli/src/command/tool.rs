@@ -17,46 +17,48 @@ use crate::motion::{Length, Mover, Moving};
 use crate::output::{Output, say};
 use crate::values::{PartialPose, partial_pose};
 
-/// Declare what is at the flange, or measure it
+/// Declare or measure the load at the flange
 #[derive(Debug, Subcommand)]
 pub(crate) enum Tool {
+    #[command(after_help = "Example: franka tool set left --mass 0.4 --com 0,0,0.05")]
     Set(Set),
+    #[command(after_help = "Example: franka tool identify left --save load.json")]
     Identify(Identify),
 }
 
-/// Declare the load, or where the end effector is
+/// Declare the load or the end effector
 ///
-/// Until they are declared again, or the robot is restarted.
+/// Applies until it is declared again or the robot restarts.
 #[derive(Debug, Args)]
 #[group(id = "what", required = true, multiple = true, args = ["mass", "frame"])]
 pub(crate) struct Set {
     #[command(flatten)]
     which: Which,
-    /// Mass of the load beyond the end effector, kg; 0 for none
+    /// Mass of the load beyond the end effector in kg; 0 for none
     #[arg(long, value_name = "KG", value_parser = not_negative, allow_hyphen_values = true)]
     mass: Option<f64>,
-    /// Its centre of mass in the flange frame, metres
+    /// Centre of mass in the flange frame, in metres
     #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, requires = "mass", allow_hyphen_values = true)]
     com: Option<[f64; 3]>,
-    /// Its inertia about the centre of mass, kg m2: xx,yy,zz,xy,xz,yz
+    /// Inertia about the centre of mass in kg m2: xx,yy,zz,xy,xz,yz
     #[arg(long, value_name = "I1,...,I6", value_parser = numbers::<6>, requires = "mass", allow_hyphen_values = true)]
     inertia: Option<[f64; 6]>,
-    /// The end effector in the frame of the nominal one: x,y,z, x,y,z,roll,pitch,yaw (degrees), or
-    /// x,y,z,qx,qy,qz,qw
+    /// Pose of the end effector in the nominal end-effector frame: x,y,z, x,y,z,roll,pitch,yaw
+    /// (degrees), or x,y,z,qx,qy,qz,qw
     #[arg(long, value_name = "POSE", value_parser = partial_pose, allow_hyphen_values = true)]
     frame: Option<PartialPose>,
     #[command(flatten)]
     output: Output,
 }
 
-/// Measure load, friction and bias by a minute of small motions
+/// Measure load, friction and sensor bias with a minute of small motions
 ///
-/// Around where the arm is. Says how far they go, and asks. Ctrl-C brakes.
+/// The arm moves around its present position. Shows how far, and asks. Ctrl-C brakes.
 #[derive(Debug, Args)]
 pub(crate) struct Identify {
     #[command(flatten)]
     mover: Mover,
-    /// Write what was found to a file, as JSON
+    /// Write the results to a JSON file
     #[arg(long, value_name = "FILE.json")]
     save: Option<PathBuf>,
 }
@@ -145,9 +147,9 @@ impl Identify {
         let identify = moving.robot.identify();
         let reach = identify.reach();
         let what = format!(
-            "{} motions of {:.0?} in all around where the arm is.\n\
+            "{} motions around the present position, {:.0?} in total.\n\
              hand  up to {:.0} mm away, {:.0} mm of it down\n\
-             speed joints at 12 deg/s at most",
+             speed at most 12 deg/s of any joint",
             identify.motions().len(),
             identify.duration(),
             reach.end_effector * 1e3,

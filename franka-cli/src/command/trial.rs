@@ -29,15 +29,15 @@ Examples:
 
 /// Make the first motions of an arm, with checks, and write a report
 ///
-/// First looks at the arm at rest. Then asks before each of five steps: hold, 1 cm and 5 cm up and
-/// back, joint 7, a stream of targets. Each is slow, and presses with 15 N at most. What is bad
-/// ends the trial. Ctrl-C brakes. The report is written in any case, and says if it is incomplete.
+/// Checks the arm at rest, then asks before each of five steps: hold, 1 cm up and back, 5 cm up and
+/// back, joint 7, a stream of targets. Each step is slow and limited to 15 N. A bad result ends the
+/// trial. Ctrl-C brakes. The report is always written, and states if it is incomplete.
 #[derive(Debug, Args)]
 pub(crate) struct Trial {
     #[command(flatten)]
     mover: Mover,
-    /// The new report, Markdown. The recording has its name with the ending .mcap, unless --record
-    /// names another
+    /// New report (Markdown). The recording gets the same name with .mcap, unless --record names
+    /// another
     #[arg(long, value_name = "FILE.md", default_value = "trial.md")]
     report: PathBuf,
 }

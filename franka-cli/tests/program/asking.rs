@@ -90,7 +90,10 @@ fn an_arm_that_moves_while_somebody_reads_is_not_moved_as_said() {
     terminal.types("y\n");
     let (code, shown) = terminal.ended();
     assert_eq!(code, Some(4), "{shown}");
-    assert!(shown.contains("joint 1 has moved meanwhile"), "{shown}");
+    assert!(
+        shown.contains("joint 1 has moved since the question"),
+        "{shown}"
+    );
 }
 
 /// Where an arm was, but for the noise of its sensors and its brakes.

@@ -210,7 +210,7 @@ impl Steps<'_> {
         let pace = PACE * 300.0;
         let what = format!(
             "The hand moves {:.0} mm up and back, on a straight line.\n\
-             speed the hand at {pace:.0} mm/s at most",
+             speed at most {pace:.0} mm/s of the hand",
             height * 1e3
         );
         let arm = self.begin(name, &what).await?;
@@ -273,7 +273,7 @@ impl Steps<'_> {
         let what = format!(
             "The hand follows targets that come every {EVERY} ms: {height:.0} mm up and back, \
              for {:.0} s.\n\
-             speed the hand at {fastest:.0} mm/s, and at {:.0} mm/s at most",
+             speed {fastest:.0} mm/s of the hand, at most {:.0} mm/s",
             WAVE.period,
             PACE * 300.0
         );
