@@ -301,8 +301,8 @@ impl Arm {
 
     /// Follows a chunk of points with times, as a policy predicts them, from now on; returns as
     /// soon as it is taken. A chunk that comes while another one runs goes on from it: see
-    /// [`Chunk::blend`]. What the observation is old that it was made from, [`Chunk::observed_at`]
-    /// makes up for. The limits are kept whatever the points are. The arm rests at the last one
+    /// [`Chunk::blend`]. Use [`Chunk::observed_at`] to compensate for
+    /// the age of the observation. The limits are kept for any points. The arm rests at the last one
     /// unless another chunk or goal comes.
     ///
     /// # Errors

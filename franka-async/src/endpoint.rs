@@ -87,8 +87,8 @@ pub enum EndpointError {
         /// What stands there.
         address: String,
     },
-    /// It has an opening bracket and goes on otherwise than that asks for.
-    #[error("`{text}` is not whole: expected [address] or [address]:port")]
+    /// Unclosed `[`, or text after `]` other than `:port`.
+    #[error("`{text}` is incomplete: expected [address] or [address]:port")]
     Brackets {
         /// All of it.
         text: String,
@@ -362,11 +362,11 @@ mod tests {
             ("[robot.lan]:1337", "`robot.lan` is not an IP address"),
             (
                 "[::1",
-                "`[::1` is not whole: expected [address] or [address]:port",
+                "`[::1` is incomplete: expected [address] or [address]:port",
             ),
             (
                 "[::1]1337",
-                "`[::1]1337` is not whole: expected [address] or [address]:port",
+                "`[::1]1337` is incomplete: expected [address] or [address]:port",
             ),
             ("fe80::1%", "there is no network interface ``"),
             (

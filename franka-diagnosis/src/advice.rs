@@ -46,17 +46,16 @@ impl Advice {
         use Commander::{Active, Asynchronous, Function, Goals};
         match (self, commander) {
             (Self::Smooth, Function) => {
-                "commands that go on in position, velocity and acceleration; limit_rate(true) takes up small steps of \
-                 joints, not of poses"
+                "commands continuous in position, velocity and acceleration; limit_rate(true) smooths small steps of joints, not of poses"
             }
             (Self::Smooth, Active) => {
-                "commands that go on in position, velocity and acceleration: nothing limits what is written"
+                "commands continuous in position, velocity and acceleration: nothing limits them here"
             }
             (Self::SmoothTorques, Function) => {
-                "torques without steps that begin and end at zero; limit_rate(true) makes ramps of steps"
+                "torques that start and end at zero and have no steps; limit_rate(true) turns steps into ramps"
             }
             (Self::SmoothTorques, Active) => {
-                "torques without steps that begin and end at zero: nothing limits what is written"
+                "torques that start and end at zero and have no steps: nothing limits them here"
             }
             (Self::Smooth | Self::SmoothTorques | Self::SlowDown, Goals) => {
                 "speed below 1 or limits with less velocity and acceleration, or softer gains"
@@ -65,49 +64,51 @@ impl Advice {
                 "lower maximum_joint_velocities"
             }
             (Self::SlowDown, Function | Active) => {
-                "less speed and acceleration; of a torque law, smaller torques or more damping"
+                "less speed and acceleration; in a torque law, smaller torques or more damping"
             }
             (Self::StartWhereItIs, Function | Active) => {
-                "begin with what the first state has: q_d, O_T_EE_c, elbow_c, and zero velocity and torque"
+                "start from the first state: q_d, O_T_EE_c, elbow_c, zero velocity and zero torque"
             }
             (Self::StartWhereItIs, Goals | Asynchronous) => {
-                "begin when the arm rests and nothing pushes it"
+                "start when the arm rests and nothing pushes it"
             }
             (Self::FinishAtRest, Function | Active) => {
-                "bring the command to rest, and the arm that your torques lead, before it says that it is finished"
+                "bring the command, and the arm that your torques move, to rest before the last command"
             }
             (Self::FinishAtRest, Goals | Asynchronous) => {
                 "end the motion when the arm rests and nothing pushes it"
             }
             (Self::Network, _) => {
-                "a direct cable to the robot, nothing else on it, and no power saving of the network card"
+                "a direct cable to the robot without other traffic, and no power saving of the network card"
             }
             (Self::Host, Function) => {
-                "less work in the control function, Realtime::Enforce, and a processor of its own for the control thread"
+                "less work in the control function, Realtime::Enforce, and a dedicated processor for the control thread"
             }
             (Self::Host, Active) => {
-                "less work between reading and writing, Realtime::Enforce, and a processor of its own for the thread that \
-                 writes"
+                "less work between reading and writing, Realtime::Enforce, and a dedicated processor for the writing thread"
             }
             (Self::Host, Goals | Asynchronous) => {
-                "Realtime::Enforce, and a processor of its own for the control thread"
+                "Realtime::Enforce, and a dedicated processor for the control thread"
             }
             (Self::Thresholds, Goals) => {
-                "set_collision_behavior or a lower force_cap if the contact is meant; set_load and less acceleration if \
-                 nothing was touched"
+                "set_collision_behavior or a lower force_cap if the contact is intended; set_load and less acceleration if nothing was touched"
             }
             (Self::Thresholds, _) => {
-                "set_collision_behavior if the contact is meant; set_load and less acceleration if nothing was touched"
+                "set_collision_behavior if the contact is intended; set_load and less acceleration if nothing was touched"
             }
             (Self::GiveWay, _) => {
-                "a clear way; softer gains have the arm give way, lower thresholds of set_collision_behavior stop it before"
+                "a clear path; softer gains, so that the arm yields, or lower thresholds of set_collision_behavior, so that it stops earlier"
             }
-            (Self::AvoidSingularity, _) => "go there by joint positions, or by another elbow",
+            (Self::AvoidSingularity, _) => {
+                "move there by joint positions, or with another elbow position"
+            }
             (Self::StayInRange, Function | Active) => {
-                "commands that keep the joint further inside its range, or another elbow"
+                "commands that keep the joint further inside its range, or another elbow position"
             }
-            (Self::StayInRange, _) => "a target further inside the joint's range, or another elbow",
-            (Self::StayClearOfItself, _) => "a way on which the links stay further apart",
+            (Self::StayInRange, _) => {
+                "a target further inside the joint's range, or another elbow position"
+            }
+            (Self::StayClearOfItself, _) => "a path on which the links stay further apart",
             (Self::LessEffort, _) => {
                 "less acceleration, less load, or the load declared by set_load"
             }
@@ -115,7 +116,7 @@ impl Advice {
                 "lower stiffness, other damping, or cutoff_frequency for the torques"
             }
             (Self::SofterGains, _) => "lower stiffness, or other damping",
-            (Self::Desk, _) => "walls, load and tasks in Desk",
+            (Self::Desk, _) => "the walls, load and tasks in Desk",
         }
     }
 }

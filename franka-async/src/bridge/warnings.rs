@@ -21,7 +21,7 @@ impl Bridge {
         }
     }
 
-    /// Says so if the robot stops itself at less than what the arm may be pushed with.
+    /// Warns if the collision threshold is below the force cap.
     pub(super) fn warn_of_thresholds(&self, goal: GoalId, force_cap: Option<ForceCap>) {
         if let Some((least, most)) = force_cap.and_then(|cap| self.thresholds.within(cap)) {
             tracing::warn!(

@@ -47,7 +47,7 @@ pub enum CommandError {
         deadline: Duration,
     },
     /// Link: no robot state comes, so it is unknown whether the command was carried out.
-    #[error("no answer that a state confirms: no robot state for {} ms", .silence.as_millis())]
+    #[error("the command may or may not have taken effect: no robot state for {} ms", .silence.as_millis())]
     LinkLost {
         /// The silence so far, at least.
         silence: Duration,

@@ -99,9 +99,9 @@ pub(crate) enum Effect {
 pub(crate) enum Lost {
     #[error("let go")]
     LetGo,
-    #[error("no hold message for 150 ms")]
+    #[error("no keep-alive for 150 ms")]
     Silent,
-    #[error("a hold message was missing, late or twice there: expected {expected}, got {got}")]
+    #[error("keep-alive out of sequence: got {got}, expected {expected}")]
     Sequence { expected: u32, got: u32 },
     #[error("the connection of the commander has closed")]
     Disconnected,

@@ -21,9 +21,9 @@ pub(crate) enum Refusal {
     Unmeasured,
     #[error("the round trip to the page takes {0:.0?}; motions need {ROUND_TRIP_MAX:?} or less")]
     Latency(Duration),
-    #[error("a hold goes on already; it has been ended")]
+    #[error("another motion was running and was stopped; press again")]
     Holding,
-    #[error("no hold goes on, or it has ended; begin one")]
+    #[error("no motion is running, or it has ended; press again")]
     NoHold,
     #[error("only a simulated robot can be disturbed")]
     NoSimulator,

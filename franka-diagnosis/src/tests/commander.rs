@@ -50,8 +50,11 @@ fn a_torque_step_is_advised_in_torques() {
             text.contains("limit 1000 N m/s (8 times as much)"),
             "{text}"
         );
-        assert!(text.contains("change: torques without steps"), "{text}");
-        let ramps = text.contains("limit_rate(true) makes ramps of steps");
+        assert!(
+            text.contains("change: torques that start and end at zero"),
+            "{text}"
+        );
+        let ramps = text.contains("limit_rate(true) turns steps into ramps");
         assert_eq!(ramps, commander == Commander::Function, "{text}");
         for of_positions in ["position", "acceleration", "steps of joints"] {
             assert!(!text.contains(of_positions), "{text}");

@@ -36,7 +36,7 @@ pub enum RecordingError {
     },
     /// A chunk is damaged. Those after it can be read.
     #[error(
-        "the chunk at byte {offset} is damaged: {reason}; `Recording::recover` makes a copy without it"
+        "the chunk at byte {offset} is damaged: {reason}; `Recording::recover` writes a copy without it"
     )]
     Chunk {
         /// Where it begins.

@@ -52,8 +52,8 @@ pub enum ReplayError {
     },
     /// Nothing controlled the joints.
     #[error(
-        "nothing told the arm where to be at {time} ms of the robot's clock: engage it for the \
-         whole motion, or follow where it was (the source `measured`)"
+        "no commanded position at {time} ms (robot clock): engage the arm for the whole \
+         motion, or follow measured positions (the source `measured`)"
     )]
     Uncontrolled {
         /// `message_id` of the cycle.

@@ -250,7 +250,7 @@ fn what_makes_no_episode_or_no_dataset_is_refused_with_what_was_expected() {
         samples
     };
     assert!(add(without(|it| it.width = None)).contains("before the first state of a Hand"));
-    assert!(add(without(|it| it.q_ref = None)).contains("told the arm where to be at 5050 ms"));
+    assert!(add(without(|it| it.q_ref = None)).contains("no commanded position at 5050 ms"));
     let free = |it: Sample| Sample { q_ref: None, ..it };
     assert!(add(vec![free(sample(3))]).contains("at 5003 ms"));
     assert!(refused(dataset.add_episode(" ", None, [sample(0)])).contains("needs a text"));

@@ -192,7 +192,7 @@ impl Driver {
         }
     }
 
-    /// Tells that so many states came with the next one, and were skipped for it.
+    /// Reports how many older states were skipped for the next one.
     pub fn on_skipped(&mut self, states: u64) {
         self.skipped = states;
     }

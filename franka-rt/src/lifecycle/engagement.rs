@@ -212,7 +212,7 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Changes how the session `engaged` goes about the goal that it has, without a step in torque.
+    /// Tunes the current goal of the session `engaged`. Torques do not step.
     ///
     /// # Errors
     /// As [`Self::begin`]; everything stays as it was then.

@@ -124,8 +124,8 @@ impl Effort {
         self.compensated
     }
 
-    /// With what the torques of the last cycle pull at the end effector of an arm at rest: the
-    /// wrench that comes nearest to them, `[N, N m]`.
+    /// Returns the end-effector wrench that best matches the last torques, for an arm at rest,
+    /// `[N, N m]`.
     pub(super) fn pull(&self, jacobian: &Jacobian) -> Wrench {
         let damped = jacobian * jacobian.transpose() + Matrix6::identity() * SINGULAR;
         let pull = jacobian * self.interaction;

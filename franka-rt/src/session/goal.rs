@@ -210,8 +210,7 @@ pub struct Goal {
     /// Whether the arm is to stop on its way, within the budget, and to stay there until this is
     /// taken back.
     pub paused: bool,
-    /// Until what it is pursued, if not only until the arrival. A goal keeps the one that it began
-    /// with.
+    /// Condition that ends the motion early. A goal keeps the condition that it began with.
     pub reaction: Option<Reaction>,
     /// The joint motion of a team that it is part of: it begins with the goals of the other
     /// members, and is given up for a fault of one. Only for sessions with a [`Member`].

@@ -126,7 +126,7 @@ pub enum GoalError {
     },
     /// The times of a chunk count from one that the robot does not come to for long: of another
     /// clock.
-    #[error("the chunk counts from {} ms after the robot's newest state, expected {} ms at most, by the robot's clock", .by.as_millis(), Chunk::OFFSET_MAX.as_millis())]
+    #[error("the chunk's time origin is {} ms after the robot's newest state, expected {} ms at most, by the robot's clock", .by.as_millis(), Chunk::OFFSET_MAX.as_millis())]
     Ahead {
         /// How far ahead of that state.
         by: Duration,
@@ -172,7 +172,7 @@ pub enum GoalError {
     Grasp,
     /// The robot's state names an end effector that is not a rigid transformation, or a load that
     /// is not finite.
-    #[error("the robot's state names an end effector or a load that cannot be")]
+    #[error("the robot reports an invalid end effector or load: mass or inertia is not physical")]
     Tool,
 }
 

@@ -87,9 +87,8 @@ impl PoseError {
 pub struct Shortfall {
     /// How far it is from there.
     pub error: PoseError,
-    /// With what it pulls towards its target at the end effector, base axes, `[N, N m]`: what holds
-    /// it does so with the opposite. `None` where the robot's controller turns setpoints into
-    /// torques.
+    /// Wrench towards the target at the end effector, base axes, `[N, N m]`; an obstacle exerts the
+    /// opposite. `None` if the robot's controller turns setpoints into torques.
     pub pull: Option<[f64; 6]>,
     /// Where a torque limit of its goal keeps it from pulling harder.
     pub limited: Option<LimitedTorque>,

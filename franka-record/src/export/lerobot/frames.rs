@@ -80,8 +80,8 @@ fn measured(sample: &Sample) -> Result<Moment, String> {
 fn uncontrolled(sample: &Sample) -> String {
     let time = sample.time;
     format!(
-        "nothing told the arm where to be at {time} ms of the robot's clock: engage it for the \
-         whole episode, or take where it was (the action `measured`)"
+        "no commanded position at {time} ms (robot clock): engage the arm for the whole \
+         episode, or use measured positions (the action `measured`)"
     )
 }
 
