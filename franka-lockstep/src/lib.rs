@@ -70,6 +70,8 @@ pub struct Lockstep {
     model: Model,
     /// Absent once a test's own program has run, which may command anything.
     guard: Option<CommandGuard>,
+    /// Whether the arm was ever frozen.
+    frozen: bool,
     milliseconds: u64,
     heard: u64,
 }
@@ -99,6 +101,7 @@ impl Lockstep {
             client: DriverStack::new(&model, version),
             model,
             guard: Some(CommandGuard::new(limits)),
+            frozen: false,
             milliseconds: 0,
             heard: 0,
         };
@@ -163,6 +166,7 @@ impl Lockstep {
             }
         }
         let now = self.client.now;
+        self.frozen |= self.robot.is_frozen();
         if let Some(state) = self.robot.tick() {
             self.link.network.to_client.send(now, state.bytes);
         }
@@ -296,6 +300,10 @@ impl Lockstep {
         assert!(
             !record.bindings.contains(Guard::PlanFailure),
             "a goal that is accepted can be planned"
+        );
+        assert!(
+            self.frozen || !record.bindings.contains(Guard::Unresponsive),
+            "an arm that obeys is not taken for one that ignores its commands"
         );
         if let Some(guard) = &mut self.guard {
             guard.check(&decoded, state, record);

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use franka_async::model::Frame;
 use franka_async::nalgebra::{UnitVector3, Vector3};
 use franka_async::state::RobotError;
-use franka_sim::TouchId;
+use franka_sim::{Freeze, TouchId};
 use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -221,6 +221,24 @@ impl Sim {
             true => robot.close_brakes(),
             false => robot.open_brakes(),
         })
+    }
+
+    /// Lets the arm ignore its commands while the robot reports the motion and no error: its
+    /// `"joints"` stand still, or its `"controllers"` take nothing over; `None` lets it obey again.
+    #[pyo3(signature = (what = Some("joints")))]
+    fn freeze(&self, py: Python<'_>, what: Option<&str>) -> PyResult<()> {
+        let freeze = match what {
+            None => None,
+            Some("joints") => Some(Freeze::Joints),
+            Some("controllers") => Some(Freeze::Controllers),
+            Some(other) => {
+                let expected = "expected 'joints', 'controllers' or None";
+                return Err(PyValueError::new_err(format!(
+                    "what is {other:?}, {expected}"
+                )));
+            }
+        };
+        self.robot(py, move |robot| robot.freeze(freeze))
     }
 
     /// Raises an error of the robot, by the vendor's name, such as `cartesian_reflex`: it stops

@@ -163,7 +163,8 @@ names! {
         Watchdog: "watchdog", Deadman: "deadman", Backstop: "backstop",
         JointVelocity: "joint_velocity", PositionEnvelope: "position_envelope",
         Clearance: "clearance", Deviation: "deviation", Lead: "lead", PlanFailure: "plan_failure",
-        Reaction: "reaction", Team: "team", SpeedCap: "speed_cap", _: "other",
+        Reaction: "reaction", Team: "team", SpeedCap: "speed_cap",
+        Unresponsive: "unresponsive", _: "other",
     }
     Phase => {
         Arrival: "arrival", Answer: "answer", Orders: "orders", Decode: "decode",

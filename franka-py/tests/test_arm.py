@@ -396,6 +396,19 @@ def test_regions_are_kept_out_of(sim: Sim) -> None:
     run(sim, main)
 
 
+def test_an_arm_that_ignores_its_commands_is_named(sim: Sim) -> None:
+    async def main(robot: Robot) -> None:
+        sim.freeze()
+        with pytest.raises(MotionError, match="ignored its commands"):
+            await robot.move_by([0.0, 0.1, 0.0])
+        sim.freeze(None)
+        await robot.move_by([0.0, 0.05, 0.0])
+        with pytest.raises(ValueError, match="controllers"):
+            sim.freeze("hand")  # type: ignore[arg-type]
+
+    run(sim, main)
+
+
 def test_a_session_is_no_faster_than_its_cap(sim: Sim) -> None:
     async def main(robot: Robot) -> None:
         async with robot.engage(speed_cap=0.15) as arm:

@@ -100,6 +100,6 @@ pub use arm::Arm;
 pub use config::{Config, Tool, Unpublished};
 pub use end_effector::{Fingers, Hand, Suction, VacuumGripper};
 pub use network::Network;
-pub use robot::{Datagram, Robot, SessionError, Touch, TouchId};
+pub use robot::{Datagram, Freeze, Robot, SessionError, Touch, TouchId};
 #[cfg(unix)]
 pub use serve::{Pace, Running, Service, Sim, SpeedError, Stopped};

@@ -13,6 +13,7 @@ mod engaged;
 mod explaining;
 mod faults;
 mod force;
+mod frozen;
 mod goal_options;
 mod goals;
 mod guards;

@@ -127,6 +127,7 @@ fn guard(lapse: Lapse) -> Option<Guard> {
         Lapse::Blocked { .. } => Some(Guard::Clearance),
         Lapse::Team(_) => Some(Guard::Team),
         Lapse::TooFast => Some(Guard::SpeedCap),
+        Lapse::Unresponsive => Some(Guard::Unresponsive),
         _ => None,
     }
 }

@@ -1913,6 +1913,10 @@ class Sim:
         """Presses the guiding buttons, or lets go of them. Returns whether the arm is guided then."""
     def lock(self, closed: bool = True) -> None:
         """Closes the brakes of the joints, or opens them: as Desk locks and unlocks a robot."""
+    def freeze(self, what: Literal["joints", "controllers"] | None = "joints") -> None:
+        """Lets the arm ignore its commands while the robot reports the motion and no error: its
+        `"joints"` stand still, or its `"controllers"` take nothing over; `None` lets it obey again.
+        """
     def trip(self, error: str, *, once_moving: bool = False) -> None:
         """Raises an error of the robot, by the vendor's name, such as `cartesian_reflex`: it stops
         itself. `once_moving` as of `push`.

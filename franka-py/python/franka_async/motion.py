@@ -193,6 +193,7 @@ Guard = Literal[
     "reaction",
     "team",
     "speed_cap",
+    "unresponsive",
 ]
 """What may hold an arm back: see guards.md of the book."""
 

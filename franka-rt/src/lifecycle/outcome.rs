@@ -337,7 +337,9 @@ impl MotionError {
     pub fn party(&self) -> Party {
         match self {
             // A person at the robot pushed the arm.
-            Self::Held(Lapse::Displaced) | Self::Braked(Lapse::Displaced) => Party::Robot,
+            Self::Held(Lapse::Displaced) | Self::Braked(Lapse::Displaced | Lapse::Unresponsive) => {
+                Party::Robot
+            }
             Self::Goal(_)
             | Self::Path(_)
             | Self::Superseded

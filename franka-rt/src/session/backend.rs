@@ -196,6 +196,7 @@ impl Backend {
             | Guard::PositionEnvelope
             | Guard::Clearance
             | Guard::SpeedCap
+            | Guard::Unresponsive
             | Guard::Lead
             | Guard::Watchdog
             | Guard::Deadman

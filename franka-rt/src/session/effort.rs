@@ -38,6 +38,8 @@ pub(super) struct Effort {
     interaction: JointVector,
     /// Torques of springs and compensation in the last cycle, before the clamp, `[N m]`.
     asked: JointVector,
+    /// Torques that the law demanded in the last cycle, before low-pass and rate limit, `[N m]`.
+    demanded: JointVector,
     /// Whether clamp or force cap bound in the last cycle.
     bound: bool,
 }
@@ -105,6 +107,7 @@ impl Effort {
             compensated: JointVector::zeros(),
             interaction: JointVector::zeros(),
             asked: JointVector::zeros(),
+            demanded: JointVector::zeros(),
             bound: false,
         }
     }
@@ -122,6 +125,11 @@ impl Effort {
     /// What friction and bias were compensated by in the last cycle, `[N m]`.
     pub(super) fn compensated(&self) -> JointVector {
         self.compensated
+    }
+
+    /// Torques that the law demanded in the last cycle, before they were smoothed, `[N m]`.
+    pub(super) fn demanded(&self) -> &JointVector {
+        &self.demanded
     }
 
     /// Returns the end-effector wrench that best matches the last torques, for an arm at rest,
@@ -210,6 +218,7 @@ impl Effort {
         let (tau, full) = clamp(&(tau + dynamics.coriolis + inertial), &most);
         let brake = JointVector::from(Gains::TORQUE_LIMITS);
         let (tau, braked) = velocity_barrier::brake(&tau, &dq, &limits.velocity, &brake);
+        self.demanded = tau;
         let filtered = low_pass(tuning.torque_share, &tau, &last);
         let (tau, slowed) = limit_rate(&filtered, &last, &limits.torque_rate);
 

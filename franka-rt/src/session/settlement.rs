@@ -84,6 +84,9 @@ pub enum Lapse {
     Team(TeamStop),
     /// The arm was faster than the speed cap of its session.
     TooFast,
+    /// The arm stood still under commands that should have moved it, and the robot reported no
+    /// error: its brakes are closed, or its controller has stopped.
+    Unresponsive,
 }
 
 impl Lapse {
@@ -96,7 +99,8 @@ impl Lapse {
             | Self::Blocked { .. }
             | Self::OutOfReach { .. }
             | Self::Team(_)
-            | Self::TooFast => true,
+            | Self::TooFast
+            | Self::Unresponsive => true,
         }
     }
 }
@@ -112,6 +116,7 @@ impl Lapse {
             Self::OutOfReach { .. } => "lapse-out-of-reach",
             Self::Team(_) => "lapse-team",
             Self::TooFast => "lapse-too-fast",
+            Self::Unresponsive => "lapse-unresponsive",
         }
     }
 }
@@ -137,6 +142,10 @@ impl core::fmt::Display for Lapse {
             }
             Self::Team(stop) => stop.fmt(f),
             Self::TooFast => write!(f, "the arm moved faster than its speed cap"),
+            Self::Unresponsive => write!(
+                f,
+                "the arm ignored its commands: it stood still, and the robot reported no error"
+            ),
         }
     }
 }

@@ -19,7 +19,7 @@ use super::watch::Sight;
 use super::{Activity, Robot};
 use crate::brake::Brake;
 use crate::config::ErrorBits;
-use crate::generator::ArmModel;
+use crate::generator::{ArmModel, Desired};
 use crate::signal::halves;
 
 impl Robot {
@@ -190,6 +190,7 @@ impl Robot {
     /// The motion's part of a cycle.
     pub(super) fn run_motion(&mut self) {
         let command = self.command.take();
+        let takes_none = self.takes_no_commands();
         let Activity::Moving(motion) = &mut self.activity else {
             return;
         };
@@ -201,6 +202,16 @@ impl Robot {
             finish_velocity: self.config.unpublished.finish_velocity,
         };
         let dq = &self.measurement.dq;
+        if takes_none {
+            // The command counts as received, and changes nothing.
+            let mut desired = self.desired;
+            let verdict = motion.cycle(command.as_ref(), &mut desired, dq, &arm, rules);
+            self.desired = Desired::resting(&arm, self.desired.joints.q);
+            if verdict == Verdict::Finished {
+                self.end_motion(MoveStatus::Success);
+            }
+            return;
+        }
         match motion.cycle(command.as_ref(), &mut self.desired, dq, &arm, rules) {
             Verdict::Continues => {}
             Verdict::Finished if self.misses_goal() => {

@@ -92,7 +92,7 @@ impl Robot {
             false => self.model.joint_limits().torque,
         };
         let is_external = match &self.activity {
-            Activity::Moving(motion) => motion.is_external(),
+            Activity::Moving(motion) => motion.is_external() && self.frozen.is_none(),
             _ => false,
         };
         if !is_external {
@@ -165,7 +165,8 @@ impl Robot {
 
     /// Whether the brakes stand between motors and links: they close when the arm has come to rest.
     fn are_brakes_holding(&self) -> bool {
-        self.lock.brakes_closed && matches!(self.activity, Activity::Holding)
+        self.frozen.is_some()
+            || self.lock.brakes_closed && matches!(self.activity, Activity::Holding)
     }
 
     /// Recomputes what depends on frames and load.
@@ -181,6 +182,10 @@ impl Robot {
 
     fn law(&self) -> Law {
         let armature = self.train.felt_inertia();
+        if let Some(frozen) = &self.frozen {
+            let stands = JointSignal::resting(frozen.q);
+            return joint_impedance(&BRAKE_STIFFNESS, &stands, &self.dynamics, armature);
+        }
         let desired = self.attainable();
         let joint = |stiffness: &JointVector| {
             joint_impedance(stiffness, &desired, &self.dynamics, armature)

@@ -29,6 +29,7 @@ mod touch;
 mod watch;
 
 pub use crate::connection::{Datagram, SessionError};
+pub use operation::Freeze;
 pub(crate) use session::next_request;
 pub use touch::{Touch, TouchId};
 
@@ -55,7 +56,7 @@ use control::Measurement;
 use interface::TorqueInterface;
 use motion::ActiveMotion;
 pub(crate) use motion::Awaited;
-use operation::{Guidance, Lock};
+use operation::{Frozen, Guidance, Lock};
 use recovery::Recovery;
 use touch::Touches;
 use watch::Watch;
@@ -92,6 +93,7 @@ pub struct Robot {
     stops: Vec<CommandId>,
     recovery: Option<Recovery>,
     lock: Lock,
+    frozen: Option<Frozen>,
     errors: Errors,
     reflex_reason: Errors,
 
@@ -164,6 +166,7 @@ impl Robot {
             stops: Vec::new(),
             recovery: None,
             lock: Lock::default(),
+            frozen: None,
             errors: Errors::NONE,
             reflex_reason: Errors::NONE,
             desired,

@@ -30,7 +30,43 @@ pub(super) struct Lock {
     pub(super) brakes_closed: bool,
 }
 
+/// How an arm ignores its commands, while its robot reports the motion and no error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Freeze {
+    /// As with closed brakes: the robot takes torques and setpoints, and the joints stand still.
+    Joints,
+    /// As with controllers that have stopped: the torques are zero, and setpoints and joints stand
+    /// still.
+    Controllers,
+}
+
+/// A frozen arm.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frozen {
+    pub(super) freeze: Freeze,
+    /// Where the joints stand, `[rad]`.
+    pub(super) q: JointVector,
+}
+
 impl Robot {
+    /// Lets the arm ignore its commands from now on, or with `None` obey them again. No manual of
+    /// the vendor describes this; users have reported robots that did it.
+    pub fn freeze(&mut self, freeze: Option<Freeze>) {
+        let q = *self.plant.q();
+        self.frozen = freeze.map(|freeze| Frozen { freeze, q });
+    }
+
+    /// True if the arm ignores its commands.
+    pub fn is_frozen(&self) -> bool {
+        self.frozen.is_some()
+    }
+
+    /// True if the robot takes no torques and setpoints.
+    pub(super) fn takes_no_commands(&self) -> bool {
+        let frozen = self.frozen.map(|frozen| frozen.freeze);
+        frozen == Some(Freeze::Controllers)
+    }
+
     /// Presses or releases the user stop. Pressed, it ends any motion and recovery, and allows no
     /// other; the arm can be guided.
     pub fn press_user_stop(&mut self, pressed: bool) {

@@ -15,9 +15,11 @@ impl Robot {
         let elasticity = self.train.stiffness().unwrap_or(rigid);
         let (mode, (generator, controller)) = (self.robot_mode(), self.modes());
         let zero_fields = self.config.unpublished.zero_fields;
+        let takes_none = self.takes_no_commands();
         let (desired_torque, success_rate) = match &self.activity {
             Activity::Moving(motion) => {
                 let torque = match motion.is_external() {
+                    true if takes_none => JointVector::zeros(),
                     true => *motion.torque(),
                     false if zero_fields => JointVector::zeros(),
                     false => *torque,

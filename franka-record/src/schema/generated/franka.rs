@@ -808,6 +808,7 @@ pub enum Guard {
     Reaction = 16,
     Team = 17,
     SpeedCap = 18,
+    Unresponsive = 19,
 }
 impl Guard {
     /// String value of the enum field names used in the ProtoBuf definition.
@@ -835,6 +836,7 @@ impl Guard {
             Self::Reaction => "REACTION",
             Self::Team => "TEAM",
             Self::SpeedCap => "SPEED_CAP",
+            Self::Unresponsive => "UNRESPONSIVE",
         }
     }
     /// Creates an enum from field names used in the ProtoBuf definition.
@@ -859,6 +861,7 @@ impl Guard {
             "REACTION" => Some(Self::Reaction),
             "TEAM" => Some(Self::Team),
             "SPEED_CAP" => Some(Self::SpeedCap),
+            "UNRESPONSIVE" => Some(Self::Unresponsive),
             _ => None,
         }
     }

@@ -48,6 +48,9 @@ pub enum Guard {
     /// On the way to a pose a point of the arm came to the session's speed cap and the joints were
     /// slowed; or the arm was faster, and its goal given up for that.
     SpeedCap,
+    /// The arm stood still under commands that should have moved it, without an error, and its goal
+    /// was given up for that.
+    Unresponsive,
 }
 
 /// A set of guards.
@@ -62,7 +65,7 @@ impl core::fmt::Debug for Bindings {
 
 impl Guard {
     /// All guards.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 19] = [
         Self::Leash,
         Self::InverseKinematics,
         Self::TorqueClamp,
@@ -81,6 +84,7 @@ impl Guard {
         Self::Reaction,
         Self::Team,
         Self::SpeedCap,
+        Self::Unresponsive,
     ];
 }
 
@@ -106,6 +110,7 @@ impl core::fmt::Display for Guard {
             Self::Reaction => "reaction",
             Self::Team => "team",
             Self::SpeedCap => "speed cap",
+            Self::Unresponsive => "no response",
         })
     }
 }

@@ -15,6 +15,7 @@
 //! | watchdog | `watchdog` |
 //! | deadman | `deadman` |
 //! | backstop: the limiter of setpoints | `backstop` |
+//! | response: an arm that ignores its commands | `unresponsive` |
 //!
 //! `binding` names them, for the record of each cycle.
 
@@ -30,6 +31,7 @@ pub(super) mod leash;
 pub(super) mod speed_cap;
 pub(super) mod torque_clamp;
 pub(super) mod torque_rate;
+pub(super) mod unresponsive;
 pub(super) mod velocity_barrier;
 pub(super) mod watchdog;
 

@@ -33,6 +33,7 @@ use super::guard::clearance::{Clearance, KeepOut};
 use super::guard::deviation::Displacement;
 use super::guard::leash::{self, Held, Leash};
 use super::guard::speed_cap::SpeedCap;
+use super::guard::unresponsive::{Commanded, Unresponsive};
 use super::guard::watchdog::OnTimeout;
 use super::guard::{Bindings, Guard};
 use super::kinematics::Posture;
@@ -80,6 +81,9 @@ pub(super) struct RunningSession {
     reference: Reference,
     drive: Drive,
     displacement: Displacement,
+    response: Unresponsive,
+    /// Whether the arm ignores its commands, by the last answer.
+    ignores: bool,
     /// What follows a goal that is held and has to be given up.
     afterwards: OnArrival,
     stage: GoalStage,
@@ -198,6 +202,8 @@ impl RunningSession {
                 goal.budget,
             ),
             displacement: Displacement::at(q),
+            response: Unresponsive::default(),
+            ignores: false,
             afterwards,
             stage: GoalStage::UnderWay,
             held_back: 0,
@@ -295,6 +301,7 @@ impl RunningSession {
         bindings.set(Guard::PlanFailure, moved.is_err());
         bindings.set(Guard::Deviation, self.watch_deviation(model, leashed));
         bindings.set(Guard::SpeedCap, self.watch_speed(model));
+        bindings.set(Guard::Unresponsive, self.watch_response());
         self.react();
         if let Some(goal) = newer {
             self.take_up(goal, now);
@@ -443,6 +450,8 @@ impl RunningSession {
                     (resistance, met),
                     &mut bindings,
                 );
+                let demanded = Commanded::Torques(effort.demanded());
+                self.ignores = self.response.watch(state, demanded);
                 SessionCommand::Torques(Torques(tau.into()))
             }
             Drive::Setpoints(stream) => {
@@ -450,6 +459,12 @@ impl RunningSession {
                 let (command, changed) =
                     stream.command(model, &self.ee, &self.reference, last, state);
                 bindings.set(Guard::Backstop, changed);
+                let setpoint = Commanded::Setpoint {
+                    controller: stream.controller(),
+                    differs: anchored,
+                    changed,
+                };
+                self.ignores = self.response.watch(state, setpoint);
                 SessionCommand::Setpoint(command)
             }
         };

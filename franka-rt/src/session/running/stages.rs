@@ -58,6 +58,7 @@ impl RunningSession {
                     !self.obstructed && landing.is_short_at(&reference, &self.arm.pose);
                 if self.goal.on_arrival == OnArrival::ReportAndFinish
                     && self.reference.dq.amax() > REFERENCE_REST
+                    && !self.response.refuses()
                 {
                     if self.aim != Target::Rest {
                         self.turn_to(Target::Rest);
@@ -127,20 +128,21 @@ impl RunningSession {
     /// Lets the goal land once the reference has arrived, or has been held back for too long.
     fn end_way(&mut self, model: &Model) {
         let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
-        if !stalled && !self.route.is_done() {
+        let heading = self.heading();
+        let pursued = heading != Target::Rest && !self.is_given_up();
+        let done = self.route.is_done() || !pursued && self.response.refuses();
+        if !stalled && !done {
             return;
         }
-        let heading = self.heading();
         if self.has_braked_before(&heading) {
             return self.turn_to(heading);
         }
-        let pursued = heading != Target::Rest && !self.is_given_up();
         // The hand may have come to its target before the elbow has.
         let turns =
             self.goal.posture.is_some() && self.reference.dq.amax() > landing::REST_VELOCITY;
         // A reference that halts on its way rests, too. An arm that others wait for gives
         // up when it has been held back for too long.
-        let arrived = self.route.is_done() && !turns && !(pursued && self.waits);
+        let arrived = done && !turns && !(pursued && self.waits);
         let stalled = stalled && !(pursued && self.waits && !self.lags);
         let paused = pursued && self.goal.paused;
         if arrived && !paused && self.refine(&heading) {

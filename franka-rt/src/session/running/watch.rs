@@ -1,11 +1,11 @@
 //! The guards that draw a goal's target nearer or give the goal up: lead, deviation, speed cap,
-//! watchdog and deadman.
+//! response, watchdog and deadman.
 
 use core::time::Duration;
 
 use franka_model::Model;
 
-use super::{GoalStage, RunningSession, Standing};
+use super::{Drive, GoalStage, RunningSession, Standing};
 use crate::session::course::Course;
 use crate::session::guard::lead::Lead;
 use crate::session::{Lapse, OnArrival, OnTimeout, Target};
@@ -124,6 +124,33 @@ impl RunningSession {
         too_fast
     }
 
+    /// Gives up a goal whose arm ignores its commands. Returns true if it does.
+    pub(super) fn watch_response(&mut self) -> bool {
+        let over = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_));
+        if self.ignores && !over && !self.is_given_up() && self.heading() != Target::Rest {
+            self.give_up(Lapse::Unresponsive);
+            // A reference that follows the setpoint of a robot that refuses others goes nowhere.
+            if !self.response.refuses() {
+                self.return_to_arm();
+            }
+        }
+        self.ignores
+    }
+
+    /// Moves a reference that is ahead of a still arm back to it. Otherwise an arm that comes free
+    /// would leap.
+    fn return_to_arm(&mut self) {
+        if (self.reference.q - self.arm.q).amax() < NEAR {
+            return;
+        }
+        let back = match &self.drive {
+            Drive::Setpoints(stream) if stream.is_cartesian() => Target::Pose(self.arm.object),
+            Drive::Setpoints(_) | Drive::Torques(_) => Target::Joints(self.arm.q.into()),
+        };
+        self.goal.target = back;
+        self.turn_to(back);
+    }
+
     /// Gives the goal up if the team has just stopped and the arm goes anywhere. One that was given
     /// up before keeps its own cause.
     pub(super) fn stop_with_team(&mut self, stop: Option<TeamStop>) {
@@ -187,3 +214,6 @@ impl RunningSession {
         }
     }
 }
+
+/// Distance of a reference from which an arm that comes free does not leap, `[rad]`.
+const NEAR: f64 = 2e-3;
