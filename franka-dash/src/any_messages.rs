@@ -128,6 +128,8 @@ pub(crate) const REQUESTS: &[&str] = &[
     r#"{"type":"gripper","action":{"kind":"move","width":0.08,"speed":0.1}}"#,
     r#"{"type":"gripper","action":{"kind":"grasp","width":0.03,"tolerance":0.01,"speed":0.1,"force":40}}"#,
     r#"{"type":"gripper","action":{"kind":"stop"}}"#,
+    r#"{"type":"tare","on":true}"#,
+    r#"{"type":"tare","on":false}"#,
     r#"{"type":"record","on":true}"#,
     r#"{"type":"record","on":false}"#,
     r#"{"type":"release"}"#,

@@ -1,5 +1,6 @@
 //! What viewers are told, as JSON. State frames are binary: [`frame`](crate::frame).
 
+use franka_async::state::WrenchTare;
 use serde::Serialize;
 
 use crate::authority;
@@ -52,6 +53,32 @@ pub(crate) enum Reply {
     Heading { way: Option<Plan> },
     /// Where something touches the arm, as far as its torques tell; nothing if nothing seems to.
     Contact { contact: Option<Contact> },
+    /// What is taken off the wrench of a frame; nothing without a tare.
+    Tare { tare: Option<TareShown> },
+}
+
+/// What is taken off the wrench, and where it holds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct TareShown {
+    /// Force, then torque about the stiffness frame, in base axes, `[N, N m]`.
+    wrench: [f64; 6],
+    /// Standard deviation of each of its numbers.
+    deviation: [f64; 6],
+    /// Joint positions in which it was taken, `[rad]`.
+    q: [f64; 7],
+    /// It is taken to hold within so much of them, `[rad]` of any joint.
+    near: f64,
+}
+
+impl From<WrenchTare> for TareShown {
+    fn from(tare: WrenchTare) -> Self {
+        Self {
+            wrench: tare.wrench,
+            deviation: tare.deviation,
+            q: tare.q,
+            near: WrenchTare::NEAR,
+        }
+    }
 }
 
 impl Reply {

@@ -184,11 +184,14 @@ async fn write(
     let mut status = hub.status.subscribe();
     let mut heading = hub.heading.subscribe();
     let mut contact = hub.contact.subscribe();
+    let mut tared = hub.tare.subscribe();
     send(&mut sink, text(&Hello::new(hub, viewer))).await?;
     let first = status.borrow_and_update().clone();
     send(&mut sink, text(&link.status(first))).await?;
     let way = heading.borrow_and_update().clone();
     send(&mut sink, text(&Reply::heading(way))).await?;
+    let tare = tared.borrow_and_update().tare.map(Into::into);
+    send(&mut sink, text(&Reply::Tare { tare })).await?;
     let mut frames = interval(FRAME);
     let mut before = Counts::default();
     let mut slow = interval(STATISTICS);
@@ -212,6 +215,11 @@ async fn write(
                 changed.ok()?;
                 let contact = *contact.borrow_and_update();
                 text(&Reply::Contact { contact })
+            }
+            changed = tared.changed() => {
+                changed.ok()?;
+                let tare = tared.borrow_and_update().tare.map(Into::into);
+                text(&Reply::Tare { tare })
             }
             news = news.recv() => match news {
                 Ok(news) => text(&Reply::Event(news)),

@@ -20,6 +20,7 @@ import { Strip } from "./strip.js";
 import { here, tabs } from "./tabs.js";
 import { timeline } from "./timeline.js";
 import { tuning } from "./tuning.js";
+import { Wrench } from "./wrench.js";
 
 export function dashboard() {
   const byId = (id) => document.getElementById(id);
@@ -42,6 +43,7 @@ export function dashboard() {
   const goal = new Goal({ scene, hold, preview, speed });
   byId("looks").addEventListener("change", ({ target }) => scene.show3d(target.value));
   tuning(connection);
+  const wrench = new Wrench(connection);
   gripper(connection);
   record(connection);
   events(connection);
@@ -87,6 +89,7 @@ export function dashboard() {
       scene.show(shown, history.behind(shown), lit);
       guards.show(lit);
       joints.show(shown);
+      wrench.show(shown);
       strip.show(shown);
       goal.at(endEffector(history.newest));
       preview.at(history.newest.q);
@@ -105,6 +108,7 @@ export function dashboard() {
     guards: byId("guards").textContent,
     said: byId("goal-said").textContent,
     jointsSaid: byId("joints-said").textContent,
+    ...wrench.state(),
     holding: hold.active,
     commands: strip.commands,
     status: strip.status,

@@ -86,6 +86,8 @@ pub(crate) enum Effect {
     Recover,
     /// Hold the arm so, in this hold and those to come.
     Tune(Tuning),
+    /// Take a tare of the wrench, or forget it.
+    Tare(bool),
     /// Go on at this speed, `[m/s]`.
     Speed(f64),
     Gripper(GripperAction),
@@ -350,6 +352,7 @@ impl Authority {
             Request::Preview { .. }
             | Request::Recover {}
             | Request::Tune { .. }
+            | Request::Tare { .. }
             | Request::Gripper { .. }
                 if !may.motion =>
             {
@@ -366,6 +369,7 @@ impl Authority {
             }),
             Request::Recover {} => effect(Effect::Recover),
             Request::Tune { tuning } => effect(Effect::Tune(tuning)),
+            Request::Tare { on } => effect(Effect::Tare(on)),
             Request::Gripper { action } => effect(Effect::Gripper(action)),
             Request::Alive {} | Request::Seen { .. } | Request::Take { .. } | Request::Stop {} => {
                 Step::default()

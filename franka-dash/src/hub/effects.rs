@@ -48,6 +48,7 @@ impl Hub {
                 command.hold = self.begin(hold, motion, command.settings.subscribe());
             }
             Effect::Tune(tuning) => command.settings.send_modify(|it| it.tuning = tuning),
+            Effect::Tare(on) => self.tare(on),
             Effect::Speed(speed) => command.settings.send_modify(|it| it.speed = speed),
             Effect::Gripper(action) => self.move_fingers(viewer, action),
             Effect::Record(on) => self.record(on),

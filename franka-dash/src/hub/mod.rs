@@ -1,6 +1,7 @@
 //! What all viewers share: the robot, who may command it, and what happened.
 
 mod effects;
+mod taring;
 mod watching;
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -21,6 +22,7 @@ use crate::reply::{Level, News, Status};
 use crate::request::{Request, Tuning};
 use crate::simulated::Simulated;
 use crate::source::Source;
+use taring::Tared;
 
 /// What all viewers share.
 pub(crate) struct Hub {
@@ -32,6 +34,8 @@ pub(crate) struct Hub {
     pub(crate) heading: watch::Sender<Option<(u64, Plan)>>,
     /// Where something touches the arm.
     pub(crate) contact: watch::Sender<Option<Contact>>,
+    /// What is taken off the wrench.
+    pub(crate) tare: watch::Sender<Tared>,
     /// Regions that the arm is kept out of.
     pub(crate) keep_out: Vec<Obstacle>,
     /// The names of all robots of the server, if there are several.
@@ -88,6 +92,7 @@ impl Hub {
             status: watch::Sender::default(),
             heading: watch::Sender::default(),
             contact: watch::Sender::default(),
+            tare: watch::Sender::default(),
             keep_out,
             siblings,
             seats: Arc::new(Semaphore::new(VIEWERS_MAX)),

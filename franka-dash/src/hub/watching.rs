@@ -70,6 +70,7 @@ async fn watch_contacts(hub: Weak<Hub>) {
 async fn tell_events(mut events: franka_async::supervision::Events, hub: Weak<Hub>) {
     while let Some(notification) = events.next().await {
         let Some(hub) = hub.upgrade() else { return };
+        hub.check_tare(&notification.event.kind);
         if let Some((level, text, detail)) = news::of_event(&notification.event.kind) {
             hub.tell(level, text, detail);
         }

@@ -51,6 +51,8 @@ pub(crate) enum Request {
     Recover {},
     /// Sets how stiff the arm is, in the hold that goes on and in those to come.
     Tune { tuning: Tuning },
+    /// Takes what the robot shows of forces at rest for zero, or no longer; moves nothing.
+    Tare { on: bool },
     /// Sets the greatest speed of any point of the arm in the hold that goes on, `[m/s]`.
     Speed { speed: f64 },
     /// Has the fingers do something.
@@ -85,6 +87,7 @@ impl Request {
             | Self::End {}
             | Self::Stop {}
             | Self::Recover {}
+            | Self::Tare { .. }
             | Self::Record { .. } => Ok(()),
         }
     }
@@ -150,6 +153,8 @@ mod tests {
             r#"{"type":"fly"}"#,
             r#"{"type":"record"}"#,
             r#"{"type":"record","on":true,"file":"/etc/passwd"}"#,
+            r#"{"type":"tare"}"#,
+            r#"{"type":"tare","on":true,"wrench":[0,0,0,0,0,0]}"#,
             r#"{"type":"gripper","action":{"kind":"home","width":0.1}}"#,
             r#"{"type":"gripper","action":{"kind":"crush"}}"#,
             r#"{"type":"tune","tuning":{"end_effector":1}}"#,

@@ -17,7 +17,7 @@ type Check = fn(&Browser, &Served) -> anyhow::Result<()>;
 
 /// All checks, one after the other.
 pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    let checks: [(&str, Check); 21] = [
+    let checks: [(&str, Check); 22] = [
         ("load", load),
         ("shows the robot", shows_the_robot),
         ("looks", looks),
@@ -36,6 +36,7 @@ pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
         ("push", push),
         ("bend", bend),
         ("tune", panels::tune),
+        ("tare", panels::tare),
         ("network cut", panels::cut),
         ("reflex and recovery", reflex_and_recovery),
         ("leave", leave),

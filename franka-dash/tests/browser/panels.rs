@@ -33,6 +33,24 @@ pub(crate) fn tune(page: &Browser, _: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// A tare is shown with where it holds, until it is cleared.
+pub(crate) fn tare(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    served.check_rest()?;
+    take(page)?;
+    for (button, tared, said) in [
+        ("#tare", true, "Tare holds here"),
+        ("#tare-clear", false, ""),
+    ] {
+        page.click(button)?;
+        wait(button, || {
+            let state = page.state()?;
+            let text = state["wrenchSaid"].as_str().unwrap_or("?").to_owned();
+            Ok(state["tared"] == tared && text.starts_with(said))
+        })?;
+    }
+    Ok(())
+}
+
 /// Every quantity draws a line in colour, and the table has a row per frame, the newest joints in
 /// the last.
 pub(crate) fn plots_and_export(page: &Browser, served: &Served) -> anyhow::Result<()> {

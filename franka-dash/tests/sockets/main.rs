@@ -8,5 +8,6 @@ mod holding;
 mod malice;
 mod previewing;
 mod several;
+mod taring;
 mod viewer;
 mod watching;

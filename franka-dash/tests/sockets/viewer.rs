@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use axum::extract::ConnectInfo;
 use axum::{Extension, Router};
 use franka_async::gripper::Gripper;
+use franka_async::settings::Load;
 use franka_async::{Realtime, Robot};
 use franka_dash::Options;
 use franka_sim::{Fingers, Running, Sim, Tool};
@@ -92,6 +93,17 @@ impl Served {
         done.expect("it runs")
     }
 
+    /// Declares a load of this mass, `[kg]`.
+    pub(crate) fn set_load(&self, m_load: f64) {
+        let load = Load {
+            m_load,
+            F_x_Cload: [0.0; 3],
+            I_load: [1e-3, 0.0, 0.0, 0.0, 1e-3, 0.0, 0.0, 0.0, 1e-3],
+        };
+        let set = self.runtime.block_on(self.robot.set_load(load));
+        set.expect("the robot takes it");
+    }
+
     /// Ends the connection, and waits for what is written then.
     pub(crate) fn shut_down(&self) {
         self.runtime.block_on(self.robot.shutdown());
@@ -157,6 +169,15 @@ impl Viewer {
 
     /// Connects to the socket at this path.
     pub(crate) fn connect_to(address: SocketAddr, path: &str) -> Self {
+        let mut viewer = Self::greeted(address, path);
+        // The first frame, so that a round trip has been measured.
+        viewer.wait_for("frame");
+        viewer.wait_for("frame");
+        viewer
+    }
+
+    /// Connects, and reads the greeting and nothing else.
+    pub(crate) fn greeted(address: SocketAddr, path: &str) -> Self {
         let stream = TcpStream::connect(address).expect("a connection");
         let timeout = Some(Duration::from_secs(10));
         stream.set_read_timeout(timeout).expect("a timeout");
@@ -175,9 +196,6 @@ impl Viewer {
         };
         viewer.hello = viewer.wait_for("hello");
         viewer.number = viewer.hello["viewer"].as_u64().expect("a number");
-        // The first frame, so that a round trip has been measured.
-        viewer.wait_for("frame");
-        viewer.wait_for("frame");
         viewer
     }
 
@@ -244,11 +262,16 @@ impl Viewer {
 
     /// Reads on until something has happened whose line has this text.
     pub(crate) fn event(&mut self, text: &str) {
+        let begin = Instant::now();
         loop {
-            let event = self.wait_for("event");
-            if event["text"].as_str().is_some_and(|it| it.contains(text)) {
+            let message = self.read().expect("the server has closed");
+            let told = message["text"]
+                .as_str()
+                .filter(|_| message["type"] == "event");
+            if told.is_some_and(|it| it.contains(text)) {
                 return;
             }
+            assert!(begin.elapsed() < LONGEST, "nothing is told of: {text}");
         }
     }
 

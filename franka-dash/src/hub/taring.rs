@@ -1,0 +1,71 @@
+//! What is taken off the wrench that the robot shows.
+
+use std::sync::Arc;
+
+use franka_async::state::WrenchTare;
+use franka_async::supervision::EventKind;
+
+use super::Hub;
+use crate::reply::Level;
+
+/// What is taken off the wrench, and of which request it is.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Tared {
+    /// How often it was asked for or forgotten.
+    number: u64,
+    pub(crate) tare: Option<WrenchTare>,
+}
+
+impl Hub {
+    /// Takes a tare of the wrench, or forgets it. The newest request counts.
+    pub(super) fn tare(self: &Arc<Self>, on: bool) {
+        let Some(robot) = self.source.robot() else {
+            return;
+        };
+        let mut number = 0;
+        self.tare.send_modify(|tared| {
+            tared.number += 1;
+            number = tared.number;
+            tared.tare = tared.tare.filter(|_| on);
+        });
+        if !on {
+            return;
+        }
+        let (robot, hub) = (robot.clone(), self.clone());
+        tokio::spawn(async move {
+            let taken = robot.tare().await;
+            let newest = hub.tare.send_if_modified(|tared| {
+                let newest = tared.number == number;
+                if let (true, Ok(tare)) = (newest, &taken) {
+                    tared.tare = Some(*tare);
+                }
+                newest
+            });
+            match taken {
+                _ if !newest => {}
+                Ok(_) => hub.tell(Level::Info, "The wrench is tared".into(), None),
+                Err(error) => hub.tell(Level::Warning, format!("Tare: {error}"), None),
+            }
+        });
+    }
+
+    /// Forgets a tare, and one that is being taken, if the robot computes its wrench otherwise
+    /// since this event.
+    pub(super) fn check_tare(&self, event: &EventKind) {
+        let why = match event {
+            EventKind::LoadChanged { .. } => "the load has changed",
+            EventKind::Unrecognised { .. } => "the robot is not recognised",
+            _ => return,
+        };
+        let mut was_tared = false;
+        self.tare.send_if_modified(|tared| {
+            tared.number += 1;
+            was_tared = tared.tare.take().is_some();
+            was_tared
+        });
+        if was_tared {
+            let text = format!("The tare is cleared: {why}. Take a new one");
+            self.tell(Level::Warning, text, None);
+        }
+    }
+}
