@@ -103,7 +103,6 @@ macro_rules! goal_options {
         /// springs at the end effector, and gains without any are refused under it.
         pub fn gains(mut self, gains: crate::goal::Gains) -> Self {
             self.options.tuning.gains = Some(gains);
-            self.options.stiffness = None;
             self
         }
 
@@ -119,9 +118,11 @@ macro_rules! goal_options {
             self
         }
 
-        /// Removes the force cap. The reach of the springs still bounds their force.
+        /// Removes the force cap, unless [`Self::force_cap`] sets one, before or after. The reach
+        /// of the springs still bounds their force.
         pub fn without_force_cap(mut self) -> Self {
-            self.options.tuning.force_cap = Some(crate::goal::ForceCap::Off);
+            let cap = &mut self.options.tuning.force_cap;
+            *cap = cap.or(Some(crate::goal::ForceCap::Off));
             self
         }
 
@@ -159,7 +160,8 @@ macro_rules! goal_options {
         goal_options!();
 
         /// Sets the stiffness at the end effector, x y z `[N/m]` and about x y z `[N m/rad]`, base
-        /// axes; dampings keep their ratio.
+        /// axes, in the place of that of the gains, whether those are set before or after;
+        /// dampings keep their ratio.
         pub fn stiffness(mut self, stiffness: [f64; 6]) -> Self {
             self.options.stiffness = Some(stiffness);
             self
@@ -249,6 +251,67 @@ mod tests {
         options.stiffness = Some(stiffness);
         let soft = options.apply(plain, model).unwrap().gains;
         assert_eq!(soft, Gains::droid().with_cartesian_stiffness(stiffness));
+    }
+
+    /// Something with options.
+    #[derive(Clone, Copy, Debug, Default, PartialEq)]
+    struct Built {
+        options: GoalOptions,
+    }
+
+    #[expect(unreachable_pub, reason = "as in the types for users")]
+    impl Built {
+        goal_options!(target);
+    }
+
+    /// Two setters, in both orders.
+    fn both(first: fn(Built) -> Built, second: fn(Built) -> Built) -> GoalOptions {
+        let built = second(first(Built::default()));
+        assert_eq!(built, first(second(Built::default())));
+        built.options
+    }
+
+    const SOFT: [f64; 6] = [200.0, 200.0, 200.0, 10.0, 10.0, 10.0];
+
+    #[test]
+    fn order_of_setters_changes_nothing() {
+        let setters: [fn(Built) -> Built; 12] = [
+            |it| it.speed(0.4),
+            |it| it.limits(Budget::of(Model::fr3().joint_limits()).scaled(0.5)),
+            |it| it.gains(Gains::droid()),
+            |it| it.stiffness(SOFT),
+            |it| it.force_cap(20.0),
+            Built::without_force_cap,
+            |it| it.leash(crate::goal::Leash::LEAST),
+            |it| it.deviation(crate::goal::Deviation::default()),
+            |it| it.posture(franka_model::READY),
+            |it| it.tolerance(Tolerance::MOST),
+            |it| it.settling(Settling::default()),
+            |it| it.until(crate::condition::contact()),
+        ];
+        for (i, first) in setters.iter().enumerate() {
+            for second in &setters[i + 1..] {
+                both(*first, *second);
+            }
+        }
+    }
+
+    #[test]
+    fn stiffness_counts_over_gains() {
+        let model = Model::fr3();
+        let joints = Target::Joints(franka_model::READY.into());
+        let plain = Goal::new(GoalId(7), joints, OnArrival::Hold, model.joint_limits());
+        let options = both(|it| it.stiffness(SOFT), |it| it.gains(Gains::droid()));
+        let gains = options.apply(plain, model).unwrap().gains;
+        assert_eq!(gains, Gains::droid().with_cartesian_stiffness(SOFT));
+    }
+
+    #[test]
+    fn force_cap_counts_over_its_removal() {
+        let options = both(|it| it.force_cap(20.0), Built::without_force_cap);
+        assert_eq!(options.tuning.force_cap, Some(ForceCap::Newtons(20.0)));
+        let off = Built::default().without_force_cap().options;
+        assert_eq!(off.tuning.force_cap, Some(ForceCap::Off));
     }
 
     #[test]

@@ -93,7 +93,7 @@ impl Seen {
 impl Silent {
     /// When the connection is to be given up, if it is.
     pub(super) fn deadline(&self, policy: Option<&Policy>) -> Option<Duration> {
-        let policy = policy.filter(|policy| policy.reconnect.is_some() && !self.is_given_up)?;
+        let policy = policy.filter(|policy| policy.reconnects && !self.is_given_up)?;
         Some(self.since.saturating_add(policy.silence))
     }
 }

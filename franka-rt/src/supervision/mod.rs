@@ -121,7 +121,7 @@ impl Supervision {
     /// Returns the supervision of a robot that is about to be connected to. Without a policy it
     /// only watches: it neither reconnects nor recovers, and lets every motion begin.
     pub fn new(policy: Option<Policy>) -> Self {
-        let backoff = policy.and_then(|policy| policy.reconnect);
+        let pauses = policy.map(|policy| policy.pauses).unwrap_or_default();
         let seed = policy.and_then(|policy| policy.seed).unwrap_or_default();
         Self {
             policy,
@@ -131,7 +131,7 @@ impl Supervision {
             identity: None,
             reflexes: 0,
             recoveries: Attempts::default(),
-            pauses: Pauses::new(backoff.unwrap_or_default(), seed),
+            pauses: Pauses::new(pauses, seed),
             unshown: None,
             motions: BTreeSet::new(),
             waiting: None,

@@ -16,7 +16,9 @@ pub struct Policy {
     /// A reflex with any other error is left alone.
     pub(super) only: Option<Errors>,
     pub(super) agreement: bool,
-    pub(super) reconnect: Option<Backoff>,
+    pub(super) reconnects: bool,
+    /// Pauses between attempts to connect, and to recover.
+    pub(super) pauses: Backoff,
     pub(super) give_up_after: Option<Duration>,
     pub(super) silence: Duration,
     pub(super) motions_wait: Option<Duration>,
@@ -60,7 +62,8 @@ impl Default for Policy {
             recovery: None,
             only: None,
             agreement: false,
-            reconnect: Some(Backoff::default()),
+            reconnects: true,
+            pauses: Backoff::default(),
             give_up_after: None,
             silence: SILENCE,
             motions_wait: None,
@@ -91,15 +94,15 @@ impl Policy {
     }
 
     /// Replaces the pauses between two attempts to connect. Recoveries that fail are repeated after
-    /// the same pauses.
+    /// the same pauses, also [without reconnecting](Self::without_reconnecting).
     pub fn reconnect(mut self, backoff: Backoff) -> Self {
-        self.reconnect = Some(backoff);
+        self.pauses = backoff;
         self
     }
 
-    /// Makes no new connection when one is lost.
+    /// Makes no new connection when one is lost, whatever pauses [`Self::reconnect`] sets.
     pub fn without_reconnecting(mut self) -> Self {
-        self.reconnect = None;
+        self.reconnects = false;
         self
     }
 
@@ -144,3 +147,38 @@ impl Policy {
 
 /// Silence after which a connection is given up, from when it is noticed.
 const SILENCE: Duration = Duration::from_secs(3);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn order_of_setters_changes_nothing() {
+        const SECOND: Duration = Duration::from_secs(1);
+        let pauses = Backoff {
+            first: SECOND,
+            ..Backoff::default()
+        };
+        let setters: [&dyn Fn(Policy) -> Policy; 9] = [
+            &|it| it.recover(3, SECOND),
+            &|it| it.only([RobotError::CartesianReflex]),
+            &Policy::ask_first,
+            &|it| it.reconnect(pauses),
+            &Policy::without_reconnecting,
+            &|it| it.give_up_after(SECOND),
+            &|it| it.silence(SECOND),
+            &|it| it.motions_wait(SECOND),
+            &|it| it.seed(1).or_seed(2),
+        ];
+        for (i, first) in setters.iter().enumerate() {
+            for second in &setters[i + 1..] {
+                let (policy, other) = (Policy::default(), Policy::default());
+                assert_eq!(second(first(policy)), first(second(other)), "{i}");
+            }
+        }
+        let policy = Policy::default().reconnect(pauses).without_reconnecting();
+        assert!(!policy.reconnects && policy.pauses == pauses);
+        let policy = Policy::default().or_seed(2).seed(1);
+        assert_eq!(policy.seed, Some(1));
+    }
+}

@@ -169,8 +169,7 @@ impl Supervision {
             return;
         };
         let was_silent = up.silent.is_some();
-        let is_final =
-            reason.is_ours() || self.policy.is_none_or(|policy| policy.reconnect.is_none());
+        let is_final = reason.is_ours() || self.policy.is_none_or(|policy| !policy.reconnects);
         let loss = Loss {
             since: up.silent.as_ref().map_or(now, |silent| silent.since),
             reason: reason.clone(),

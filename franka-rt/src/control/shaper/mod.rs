@@ -31,6 +31,8 @@ use crate::shaping::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shaper {
     bounds: Bounds,
+    /// Of the robot, for bounds that depend on position.
+    limits: Option<JointLimits>,
     limit_rate: bool,
     cutoff_frequency: f64,
     start: FirstReference,
@@ -97,6 +99,7 @@ impl Shaper {
         } = Conventions::of(version);
         Self {
             bounds,
+            limits: None,
             limit_rate,
             cutoff_frequency,
             start,
@@ -121,15 +124,23 @@ impl Shaper {
     #[must_use]
     pub fn with_bounds(mut self, bounds: Bounds) -> Self {
         self.bounds = bounds;
-        self
+        self.limited()
     }
 
     /// Replaces the velocities of the joints where the robot's depend on position and it says
-    /// itself how: those of `joints`, from its description. Without effect on a robot whose
+    /// itself how: those of `joints`, from its description, also with other
+    /// [bounds](Self::with_bounds). Without effect on a robot whose
     /// velocities are the same everywhere.
     #[must_use]
     pub fn with_limits_of(mut self, joints: &JointLimits) -> Self {
-        if matches!(self.bounds.joint_velocity, VelocityBounds::Envelope { .. }) {
+        self.limits = Some(*joints);
+        self.limited()
+    }
+
+    fn limited(mut self) -> Self {
+        if let (Some(joints), VelocityBounds::Envelope { .. }) =
+            (&self.limits, &self.bounds.joint_velocity)
+        {
             self.bounds = self.bounds.with_envelope_of(joints);
         }
         self

@@ -155,7 +155,13 @@ fn positions_near_the_end_of_the_range_are_held_by_the_envelope_of_the_fr3() {
     };
     joints.hard_upper[0] = 2.9;
     let shaper = Shaper::new(Version::V10, true, OFF);
-    assert!(moved(&shaper.with_bounds(bounds.with_envelope_of(&joints))) > held);
+    let other = moved(&shaper.with_bounds(bounds.with_envelope_of(&joints)));
+    assert!(other > held);
+    // In either order.
+    let described = shaper.with_limits_of(&joints);
+    assert_eq!(moved(&described.with_bounds(bounds)), other);
+    let bounded = shaper.with_bounds(bounds);
+    assert_eq!(moved(&bounded.with_limits_of(&joints)), other);
 }
 
 #[test]

@@ -231,7 +231,8 @@ impl Condition {
     }
 
     /// Takes a tare off the forces, moments and joint torques of this condition; what else it
-    /// compares stays as it is. The moment is then about the origin of the stiffness frame.
+    /// compares stays as it is, and so do changes: what is [`relative`](Self::relative), made so
+    /// before or after, has no tare. The moment is then about the origin of the stiffness frame.
     ///
     /// A tare belongs to the posture in which it was taken: see [`tare`](crate::tare). Where the
     /// robot has no estimate, near a singularity, no tared comparison of the wrench is true, and no
@@ -243,6 +244,7 @@ impl Condition {
                 quantity, since, ..
             } = node
                 && quantity.is_estimate()
+                && *since != Since::Beginning
             {
                 *since = Since::Tare;
             }

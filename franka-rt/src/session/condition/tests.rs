@@ -460,6 +460,10 @@ fn tared_comparisons_are_of_what_has_changed_since_the_tare() {
         tared.store(&mut words);
         assert_eq!(Condition::load(&words), tared);
     }
+    // A change has no tare, whichever is said first.
+    let (change, tared) = (force_z(1.0).relative(), force_z(1.0).tared(&tare));
+    assert_eq!(change.tared(&tare), tared.relative());
+    assert!(arm.meets(tared) && !arm.meets(tared.relative()));
     // Joined with others, which see the whole wrench.
     let both = force_z(4.9).tared(&tare) & force_z(3.9) & !force_z(4.1);
     assert!(arm.meets(both));
