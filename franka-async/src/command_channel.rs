@@ -161,7 +161,20 @@ impl Channel {
         request: Request,
         deadline: Duration,
     ) -> Result<Response, CommandError> {
-        let answered = self.ask(request, deadline).await;
+        self.call_in_turn(request, deadline, ()).await
+    }
+
+    /// As [`Self::call`], and drops `turn` once the request has its place among all that are sent.
+    ///
+    /// # Cancel safety
+    /// As [`Self::call`].
+    pub(crate) async fn call_in_turn<T>(
+        &self,
+        request: Request,
+        deadline: Duration,
+        turn: T,
+    ) -> Result<Response, CommandError> {
+        let answered = self.ask(request, deadline, turn).await;
         #[cfg(feature = "record")]
         self.journal.write(|| {
             let error = answered.as_ref().err().map(ToString::to_string);
@@ -171,7 +184,12 @@ impl Channel {
         answered
     }
 
-    async fn ask(&self, request: Request, deadline: Duration) -> Result<Response, CommandError> {
+    async fn ask<T>(
+        &self,
+        request: Request,
+        deadline: Duration,
+        turn: T,
+    ) -> Result<Response, CommandError> {
         let (answer, answered) = oneshot::channel();
         let call = QueuedRequest {
             request,
@@ -180,6 +198,7 @@ impl Channel {
         if self.calls.send(call).await.is_err() {
             return Err(self.closed());
         }
+        drop(turn);
         answered.await.unwrap_or_else(|_| Err(self.closed()))
     }
 

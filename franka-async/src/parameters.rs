@@ -2,6 +2,8 @@
 //!
 //! The robot takes parameters between motions and refuses them during one.
 
+use std::fmt::Debug;
+use std::sync::Arc;
 use std::time::Duration;
 
 use franka_model::transform;
@@ -9,11 +11,17 @@ use franka_proto::{
     CollisionBehavior, Command, Filters, Load, Refusal, Request, RobotState, SetterStatus, Status,
     VirtualWall,
 };
+use franka_rt::supervision::{Answer, SettingId};
 use nalgebra::Matrix3;
+use tokio::sync::Mutex;
+use tokio::time::timeout;
 
 use crate::command_channel::{Channel, Response};
 use crate::error::CommandError;
+use crate::newest_state::Newest;
 use crate::robot::{Pose, Robot};
+use crate::supervisor::Supervisor;
+use crate::thresholds::Thresholds;
 
 /// Time for an answer that the robot gives at once.
 const ANSWER: Duration = Duration::from_secs(5);
@@ -30,6 +38,9 @@ const PAYLOAD: f64 = 3.0;
 /// How many milliseconds after the answer states are looked through for what was set.
 const SHOWN_MS: u64 = 200;
 
+/// Time for these states, if they come at all.
+const SHOWN_WITHIN: Duration = Duration::from_secs(5);
+
 impl Robot {
     /// Sets the torques and forces at which the robot reports contact (lower) and stops itself
     /// (upper): [`CollisionBehavior::careful`], [`compliant`](CollisionBehavior::compliant),
@@ -43,15 +54,13 @@ impl Robot {
     /// [`CommandError`].
     ///
     /// # Cancel safety
-    /// Once polled the request may be carried out all the same.
+    /// Once polled the request may be carried out all the same, and a robot that is
+    /// [supervised](crate::connection::Builder::supervise) counts it as set.
     pub async fn set_collision_behavior(
         &self,
         behavior: CollisionBehavior,
     ) -> Result<(), CommandError> {
-        let link = self.link();
-        self.set(Request::SetCollisionBehavior(behavior)).await?;
-        link.thresholds.note(behavior);
-        Ok(())
+        self.set(Request::SetCollisionBehavior(behavior)).await
     }
 
     /// Sets the stiffness of the robot's own joint impedance controller, `[N m/rad]`, each in [0,
@@ -105,8 +114,7 @@ impl Robot {
     /// See [`Self::set_collision_behavior`].
     pub async fn set_k(&self, ee_t_k: Pose) -> Result<(), CommandError> {
         let frame = transform::array(&ee_t_k);
-        let shows = |state: &RobotState| is_near(&state.EE_T_K, &frame);
-        self.set_shown(Request::SetEEToK(frame), shows).await
+        self.set(Request::SetEEToK(frame)).await
     }
 
     /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`. Its range, and when it
@@ -119,8 +127,7 @@ impl Robot {
     /// See [`Self::set_collision_behavior`].
     pub async fn set_ee(&self, ne_t_ee: Pose) -> Result<(), CommandError> {
         let frame = transform::array(&ne_t_ee);
-        let shows = |state: &RobotState| is_near(&state.NE_T_EE, &frame);
-        self.set_shown(Request::SetNEToEE(frame), shows).await
+        self.set(Request::SetNEToEE(frame)).await
     }
 
     /// Declares the load beyond the end effector: mass `[kg]`, centre of mass in the flange frame
@@ -145,12 +152,7 @@ impl Robot {
             let refusal = Refusal::new(Command::SetLoad, status, mode).expect("no success");
             return Err(CommandError::InvalidArgument { refusal, why });
         }
-        let shows = |state: &RobotState| {
-            is_near(&[state.m_load], &[load.m_load])
-                && is_near(&state.F_x_Cload, &load.F_x_Cload)
-                && is_near(&state.I_load, &load.I_load)
-        };
-        self.set_shown(request, shows).await
+        self.set(request).await
     }
 
     /// Recovers from a reflex (`AutomaticErrorRecovery`) and resolves when the robot takes motions
@@ -216,32 +218,141 @@ impl Robot {
         }
     }
 
+    /// Sets something at the robot, and waits for a state that shows it, if states do. The answer
+    /// comes by another way than states: a motion that begins before would take the new tool for
+    /// the old one.
     async fn set(&self, request: Request) -> Result<(), CommandError> {
         check_finite(&request)?;
-        match self.channel().call(request, ANSWER).await {
-            Ok(_) => Ok(()),
-            Err(error) => Err(explained(error, &request)),
+        let turn = self.setting().lock().await;
+        let supervisor = self.supervisor();
+        let (link, id) = supervisor.declare(request, || self.link());
+        let mut declared = Declared {
+            supervisor,
+            id,
+            answer: Answer::Unknown {
+                text: String::from("its answer was not awaited"),
+            },
+        };
+        let answer = link.channel.call_in_turn(request, ANSWER, turn);
+        if let Err(error) = answer.await {
+            let error = explained(error, &request);
+            declared.answer = answer_of(&error);
+            return Err(error);
+        }
+        note(&link.thresholds, &request);
+        // Closed: whatever is next says so.
+        tokio::select! {
+            biased;
+            answer = shown(&link.newest, &request) => declared.answer = answer,
+            _ = link.ended() => {}
+            silence = link.stays_silent(Duration::ZERO) => {
+                return Err(CommandError::LinkLost { silence });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A setting that is with the robot. The supervisor has its answer when this is dropped, also with
+/// the future of the call.
+struct Declared<'a> {
+    supervisor: &'a Supervisor,
+    id: SettingId,
+    answer: Answer,
+}
+
+impl Drop for Declared<'_> {
+    fn drop(&mut self) {
+        self.supervisor.on_set(self.id, &self.answer);
+    }
+}
+
+/// What settings are set again with, over one connection. The last handle of the robot closes the
+/// connection, whatever is under way.
+pub(crate) struct Again {
+    supervisor: Arc<Supervisor>,
+    setting: Arc<Mutex<()>>,
+    channel: Channel,
+    newest: Newest,
+    thresholds: Thresholds,
+}
+
+impl Again {
+    pub(crate) fn at(robot: &Robot) -> Self {
+        let link = robot.link();
+        Self {
+            supervisor: robot.supervisor().clone(),
+            setting: robot.setting().clone(),
+            channel: link.channel.clone(),
+            newest: link.newest.clone(),
+            thresholds: link.thresholds.clone(),
         }
     }
 
-    /// Sets what motions compute with, and waits for a state that shows it. The answer comes by
-    /// another way than states: a motion that begins before would take the new tool for the old
-    /// one.
-    async fn set_shown(
-        &self,
-        request: Request,
-        shows: impl Fn(&RobotState) -> bool,
-    ) -> Result<(), CommandError> {
-        self.set(request).await?;
-        let link = self.link();
-        let mut states = link.newest.changes();
-        let answered = states.borrow().message_id;
-        // A robot that rounds the numbers never shows them. Closed: whatever is next says so.
-        let shown = states.wait_for(|state| shows(state) || state.message_id > answered + SHOWN_MS);
-        tokio::select! {
-            _ = shown => Ok(()),
-            silence = link.stays_silent(Duration::ZERO) => Err(CommandError::LinkLost { silence }),
+    /// Sets everything again that this program has set and that does not hold.
+    pub(crate) async fn run(self) {
+        loop {
+            let turn = self.setting.lock().await;
+            let Some((id, request)) = self.supervisor.next_setting() else {
+                return;
+            };
+            let answer = self.channel.call_in_turn(request, ANSWER, turn).await;
+            let answer = match answer {
+                Ok(_) => {
+                    note(&self.thresholds, &request);
+                    shown(&self.newest, &request).await
+                }
+                // The supervisor is told of its end.
+                Err(CommandError::ConnectionClosed { .. }) => return,
+                Err(error) => answer_of(&explained(error, &request)),
+            };
+            if answer != Answer::Taken {
+                tracing::warn!(command = %request.command(), ?answer, "set again");
+            }
+            self.supervisor.on_set_again(id, answer);
         }
+    }
+}
+
+/// What an error means for a setting.
+fn answer_of(error: &CommandError) -> Answer {
+    let text = error.to_string();
+    match error {
+        CommandError::Refused(_)
+        | CommandError::InvalidArgument { .. }
+        | CommandError::Request(_)
+        | CommandError::NotFinite { .. } => Answer::Refused { text },
+        CommandError::Timeout { .. }
+        | CommandError::LinkLost { .. }
+        | CommandError::Violation(_)
+        | CommandError::ConnectionClosed { .. } => Answer::Unknown { text },
+    }
+}
+
+fn note(thresholds: &Thresholds, request: &Request) {
+    if let Request::SetCollisionBehavior(behavior) = request {
+        thresholds.note(*behavior);
+    }
+}
+
+/// Waits for a state that shows what the robot has taken, or for so many that none will.
+async fn shown(newest: &Newest, request: &Request) -> Answer {
+    if difference(request, &newest.state()).is_none() {
+        return Answer::Taken;
+    }
+    let mut states = newest.changes();
+    let answered = states.borrow().message_id;
+    let is_last = |state: &RobotState| {
+        difference(request, state).is_none() || state.message_id > answered + SHOWN_MS
+    };
+    // A robot that rounds the numbers never shows them.
+    let last = match timeout(SHOWN_WITHIN, states.wait_for(is_last)).await {
+        Ok(Ok(state)) => *state,
+        _ => newest.state(),
+    };
+    match difference(request, &last) {
+        None => Answer::Taken,
+        Some(text) => Answer::NotShown { text },
     }
 }
 
@@ -381,6 +492,33 @@ fn explained(error: CommandError, request: &Request) -> CommandError {
         _ => return CommandError::Refused(refusal),
     };
     CommandError::InvalidArgument { refusal, why }
+}
+
+/// What a state shows in the place of what was set. Of what no state shows: nothing.
+fn difference(request: &Request, state: &RobotState) -> Option<String> {
+    let text = |got: &dyn Debug, set: &dyn Debug| {
+        format!("the robot has taken it, and its states show {got:?}, expected {set:?}")
+    };
+    match request {
+        Request::SetEEToK(frame) if !is_near(&state.EE_T_K, frame) => {
+            Some(text(&state.EE_T_K, frame))
+        }
+        Request::SetNEToEE(frame) if !is_near(&state.NE_T_EE, frame) => {
+            Some(text(&state.NE_T_EE, frame))
+        }
+        Request::SetLoad(load) => {
+            let shown = Load {
+                m_load: state.m_load,
+                F_x_Cload: state.F_x_Cload,
+                I_load: state.I_load,
+            };
+            let is_shown = is_near(&[shown.m_load], &[load.m_load])
+                && is_near(&shown.F_x_Cload, &load.F_x_Cload)
+                && is_near(&shown.I_load, &load.I_load);
+            (!is_shown).then(|| text(&shown, load))
+        }
+        _ => None,
+    }
 }
 
 /// Whether a state, which may be of single precision, shows these numbers.

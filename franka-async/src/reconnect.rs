@@ -30,6 +30,7 @@ pub(crate) struct Reconnector {
     states: Arc<watch::Sender<RobotState>>,
     connecting: OptionFuture<BoxFuture<'static, Result<Opened, ConnectError>>>,
     recovering: OptionFuture<BoxFuture<'static, (u64, Result<(), CommandError>)>>,
+    configuring: OptionFuture<BoxFuture<'static, ()>>,
     /// Whether this program closes the connection.
     is_closing: bool,
 }
@@ -48,6 +49,7 @@ impl Reconnector {
             states,
             connecting: None.into(),
             recovering: None.into(),
+            configuring: None.into(),
             is_closing: false,
         }
     }
@@ -84,6 +86,7 @@ impl Reconnector {
                     self.recovering = None.into();
                     self.on_answer(reflex, answer);
                 }
+                Some(()) = &mut self.configuring => self.configuring = None.into(),
                 Some(ended) = shutdowns.recv() => {
                     done.push(ended);
                     self.close();
@@ -114,11 +117,22 @@ impl Reconnector {
                 }
             }
             Job::Recover { reflex } => self.recover(reflex),
+            Job::Configure => self.configure(),
             Job::Ask(reflex) => self.ask(reflex),
         }
     }
 
+    /// Has everything set again that this program has set.
+    fn configure(&mut self) {
+        if let Some(robot) = self.robot.upgrade() {
+            let setting = parameters::Again::at(&robot).run();
+            self.configuring = Some(setting.boxed()).into();
+        }
+    }
+
     fn connect(&mut self) {
+        // Of the connection before.
+        self.configuring = None.into();
         let span = tracing::info_span!("reconnect");
         let (builder, states) = (self.builder.clone(), self.states.clone());
         let supervisor = self.supervisor.clone();

@@ -17,7 +17,7 @@ use franka_rt::stats::Stats;
 use franka_rt::supervision::{Condition, Health};
 use franka_rt::thread::{AttachError, CycleReader};
 use tokio::runtime::Handle;
-use tokio::sync::{broadcast, mpsc, oneshot};
+use tokio::sync::{Mutex, broadcast, mpsc, oneshot};
 use tokio::time::{Instant, timeout_at};
 use tokio_util::sync::DropGuard;
 
@@ -62,6 +62,8 @@ struct Shared {
     /// The newest connection.
     link: RwLock<Arc<Link>>,
     supervisor: Arc<Supervisor>,
+    /// Held until a setting has its place among the requests: none is overtaken by an older one.
+    setting: Arc<Mutex<()>>,
     /// The way into the task that reconnects; `None` if there is none. Closed when it has ended.
     shutdowns: Option<mpsc::UnboundedSender<oneshot::Sender<()>>>,
     /// Where that task runs, and the bridges.
@@ -95,6 +97,7 @@ impl Robot {
                 version,
                 link: RwLock::new(link),
                 supervisor,
+                setting: Arc::default(),
                 shutdowns,
                 runtime: Handle::current(),
                 _handles: handles,
@@ -386,6 +389,10 @@ impl Robot {
 
     pub(crate) fn supervisor(&self) -> &Arc<Supervisor> {
         &self.shared.supervisor
+    }
+
+    pub(crate) fn setting(&self) -> &Arc<Mutex<()>> {
+        &self.shared.setting
     }
 
     pub(crate) fn downgrade(&self) -> WeakRobot {

@@ -13,6 +13,7 @@ pub(crate) fn of_event(kind: &EventKind) -> Option<(Level, String, Option<String
         EventKind::Lost { .. }
         | EventKind::Silent { .. }
         | EventKind::Reflex(_)
+        | EventKind::NotConfigured { .. }
         | EventKind::Closed { .. } => Level::Error,
         EventKind::RealtimeRefused { .. }
         | EventKind::Unrecognised { .. }

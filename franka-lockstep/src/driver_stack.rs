@@ -8,7 +8,8 @@ use franka_model::Model;
 use franka_proto::client::{Event, Session};
 use franka_proto::framing::next_message;
 use franka_proto::{
-    CommandId, MoveRequest, RecoveryStatus, Reply, Request, RobotState, Version, Violation,
+    CommandId, MoveRequest, RecoveryStatus, Reply, Request, RobotState, SetterStatus, Version,
+    Violation,
 };
 use franka_rt::driver::{Driver, MotionId, Program, Record};
 use franka_rt::lifecycle::{CloseReason, Lifecycle, MotionError, NewMotion, Outcome, Output};
@@ -46,6 +47,8 @@ pub struct DriverStack {
     pub(super) goals: u64,
     /// Answers to requests to recover, the oldest first.
     pub(super) recoveries: VecDeque<RecoveryStatus>,
+    /// The newest answer to a setting, until it is taken.
+    pub(super) setting: Option<SetterStatus>,
     /// Whether the command connection has ended.
     closed: bool,
 }
@@ -71,6 +74,7 @@ impl DriverStack {
             outcomes: BTreeMap::new(),
             goals: 0,
             recoveries: VecDeque::new(),
+            setting: None,
             closed: false,
         }
     }
@@ -146,6 +150,10 @@ impl DriverStack {
                     reply: Reply::Recovery(status),
                     ..
                 }) => self.recoveries.push_back(status),
+                Ok(Event::Reply {
+                    reply: Reply::Setter(status),
+                    ..
+                }) => self.setting = Some(status),
                 Ok(_) => {}
                 Err(violation) if violation.is_fatal() => {
                     return self.close(violated(&violation));

@@ -42,7 +42,7 @@ pub use guarded::{Guarded, Workload};
 pub use link::Link;
 pub use poses::{force_of, pose_of, self_distance, set_in_motion};
 pub use several::{outcomes_of, turned};
-pub use supervised::{Asked, Supervised};
+pub use supervised::{Asked, Supervised, shows};
 pub use wander::Wander;
 
 use guard::CommandGuard;

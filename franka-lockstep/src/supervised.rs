@@ -3,6 +3,8 @@
 //!
 //! It stands for what `franka-async` has around them: tasks, sockets and futures.
 
+mod setting;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
@@ -12,18 +14,24 @@ use franka_rt::driver::LINK_TIMEOUT;
 use franka_rt::lifecycle::{CloseReason, MotionError, NewMotion, Outcome};
 use franka_rt::session::{Goal, GoalId, OnArrival, Target};
 use franka_rt::supervision::{
-    Admission, ConnectFailure, Event, Health, Output, Policy, RecoveryFailure, Reflex, Supervision,
+    Admission, Answer, ConnectFailure, Event, Health, Output, Policy, RecoveryFailure, Reflex,
+    Supervision,
 };
 use franka_sim::{Config, Robot};
 
 use super::guard::CommandGuard;
 use super::{DriverStack, Link, Lockstep};
+use setting::Sender;
+
+pub use setting::shows;
 
 /// A supervised robot, one millisecond at a time.
 pub struct Supervised {
     lockstep: Lockstep,
-    config: Config,
+    /// Of the robot, when it is started again.
+    pub config: Config,
     supervision: Supervision,
+    sender: Sender,
     /// Whether the robot's computer runs.
     is_up: bool,
     connection: Connection,
@@ -37,6 +45,8 @@ pub struct Supervised {
     pub events: Vec<Event>,
     /// What was asked for since it was taken.
     pub requests: Vec<Asked>,
+    /// What the program has set, and the answers, since they were taken.
+    pub answers: Vec<(Request, Answer)>,
     /// How each motion that was submitted has ended.
     pub outcomes: BTreeMap<GoalId, Outcome>,
 }
@@ -94,6 +104,8 @@ impl Supervised {
             goals: 0,
             events: Vec::new(),
             requests: Vec::new(),
+            sender: Sender::default(),
+            answers: Vec::new(),
             outcomes: BTreeMap::new(),
         };
         this.connected();
@@ -120,6 +132,11 @@ impl Supervised {
         self.is_up && self.connection == Connection::Up && !self.lockstep.link.delayed
     }
 
+    /// There is a connection, which may be silent.
+    fn is_up_or_silent(&self) -> bool {
+        self.connection == Connection::Up
+    }
+
     /// The newest state that has arrived.
     pub fn state(&self) -> &RobotState {
         &self.lockstep.client.state
@@ -143,6 +160,7 @@ impl Supervised {
             self.lockstep.silence(1);
         }
         self.look();
+        self.send_settings();
         let now = self.time();
         if self.supervision.deadline().is_some_and(|due| now >= due) {
             self.supervision.on_time(now);
@@ -242,6 +260,7 @@ impl Supervised {
                     self.requests.push(asked);
                     self.lockstep.request(&Request::AutomaticErrorRecovery);
                 }
+                Output::Configure => self.configure(),
                 Output::Ask(reflex) => self.requests.push(Asked::Agreement(reflex)),
                 Output::Begin { goal } => {
                     self.requests.push(Asked::Begin(goal));
@@ -379,6 +398,9 @@ impl Supervised {
         let (goal, now) = (motion.id(), self.time());
         self.supervision.on_begun(goal, now);
         self.under_way.insert(goal);
+        if self.connection == Connection::Up {
+            self.check_settings();
+        }
         let begun = match self.connection {
             Connection::Up => self.lockstep.client.begin(motion).map(drop),
             _ => Err(MotionError::ConnectionClosed {

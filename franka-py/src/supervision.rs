@@ -274,6 +274,10 @@ fn event(py: Python<'_>, notification: Notification) -> PyResult<Bound<'_, PyAny
         EventKind::Unrecognised { differences } => {
             fields.set_item("differences", differences.to_string())?;
         }
+        EventKind::NotConfigured { command, text } => {
+            fields.set_item("command", command.to_string())?;
+            fields.set_item("text", text)?;
+        }
         EventKind::Lost { reason } | EventKind::Closed { reason } => set_reason(reason.clone())?,
         EventKind::Silent { silence } => fields.set_item("silence", silence.as_secs_f64())?,
         EventKind::Resumed { after } => fields.set_item("after", after.as_secs_f64())?,

@@ -10,13 +10,13 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::Duration;
 
-use franka_proto::RobotState;
+use franka_proto::{Request, RobotState};
 use franka_rt::lifecycle::{CloseReason, MotionError, NewMotion, Outcome};
 use franka_rt::sched::SchedError;
 use franka_rt::session::GoalId;
 use franka_rt::supervision::{
-    Admission, Condition, ConnectFailure, Event, EventKind, Health, Output, Policy,
-    RecoveryFailure, Reflex, Supervision,
+    Admission, Answer, Condition, ConnectFailure, Event, EventKind, Health, Output, Policy,
+    RecoveryFailure, Reflex, SettingId, Supervision,
 };
 use tokio::sync::{Notify, broadcast, watch};
 use tokio::time::Instant;
@@ -37,6 +37,7 @@ pub(crate) enum Job {
     Connect,
     Disconnect { reason: CloseReason },
     Recover { reflex: u64 },
+    Configure,
     Ask(Reflex),
 }
 
@@ -196,6 +197,28 @@ impl Supervisor {
 
     pub(crate) fn on_recovery(&self, reflex: u64, answer: Result<(), RecoveryFailure>) {
         self.with(|inner, now| inner.core.on_recovery(reflex, answer, now));
+    }
+
+    /// Takes note of a setting that is about to be sent over the connection that `newest` looks up.
+    /// Returns that connection, and the name for [`Self::on_set`].
+    pub(crate) fn declare(
+        &self,
+        request: Request,
+        newest: impl FnOnce() -> Arc<Link>,
+    ) -> (Arc<Link>, SettingId) {
+        self.with(|inner, _| (newest(), inner.core.declare(request)))
+    }
+
+    pub(crate) fn on_set(&self, id: SettingId, answer: &Answer) {
+        self.with(|inner, now| inner.core.on_set(id, answer, now));
+    }
+
+    pub(crate) fn next_setting(&self) -> Option<(SettingId, Request)> {
+        self.with(|inner, now| inner.core.next_setting(now))
+    }
+
+    pub(crate) fn on_set_again(&self, id: SettingId, answer: Answer) {
+        self.with(|inner, _| inner.core.on_set_again(id, answer));
     }
 
     pub(crate) fn on_ended(&self, goal: GoalId, outcome: &Outcome) {
@@ -478,6 +501,7 @@ impl Inner {
                 Output::Connect => self.jobs.push_back(Job::Connect),
                 Output::Disconnect { reason } => self.jobs.push_back(Job::Disconnect { reason }),
                 Output::Recover { reflex } => self.jobs.push_back(Job::Recover { reflex }),
+                Output::Configure => self.jobs.push_back(Job::Configure),
                 Output::Ask(reflex) => self.jobs.push_back(Job::Ask(reflex)),
                 Output::Begin { goal } => self.begin_waiting(goal, now),
                 Output::Refuse { goal, error } => {

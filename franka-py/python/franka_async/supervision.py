@@ -17,6 +17,8 @@ Condition = Literal[
     "recovering",
     "agreement_awaited",
     "unrecognised",
+    "configuring",
+    "not_configured",
     "reflex",
     "user_stopped",
     "guided",
@@ -29,6 +31,7 @@ EventKind = Literal[
     "connected",
     "realtime_refused",
     "unrecognised",
+    "not_configured",
     "lost",
     "silent",
     "resumed",
@@ -146,6 +149,7 @@ class Event:
     connected           ``attempts``; ``after``: seconds since the loss, ``None`` for the first connection
     realtime_refused    ``refusals``: what the operating system refused the control thread, as texts
     unrecognised        ``differences`` from the robot of before the connection was lost, as a text
+    not_configured      ``command`` that is not set again, and the ``text`` of why
     lost                ``reason``: a ``CloseReason``
     silent              ``silence``: seconds without a state, on a connection that still stands
     resumed             ``after``: seconds since the silence was noticed

@@ -1,5 +1,7 @@
 //! Why a robot takes no motion.
 
+use franka_proto::Command;
+
 use super::{Differences, Party};
 
 /// Why a robot takes no motion now. One that is not supervised refuses motions itself, but for a
@@ -24,6 +26,12 @@ pub enum Unready {
     /// from a reflex waits for somebody to agree, and a motion that waited does not begin.
     #[error("the robot is not recognised: {0}")]
     Unrecognised(Differences),
+    /// Robot: what this program had set at it before a connection was lost is being set again.
+    #[error("what was set at the robot is being set again")]
+    Configuring,
+    /// Robot: it has not taken again what this program had set at it.
+    #[error("\"{0}\" of this program does not hold at the robot any more")]
+    NotConfigured(Command),
     /// Robot: a reflex, which somebody has to recover it from.
     #[error("a reflex holds the robot")]
     Reflex,
@@ -51,6 +59,7 @@ impl Unready {
                 | Self::Recovering
                 | Self::AgreementAwaited
                 | Self::Unrecognised(_)
+                | Self::Configuring
         )
     }
 
@@ -62,6 +71,8 @@ impl Unready {
             Self::Recovering => "unready-recovering",
             Self::AgreementAwaited => "unready-agreement-awaited",
             Self::Unrecognised(_) => "unready-unrecognised",
+            Self::Configuring => "unready-configuring",
+            Self::NotConfigured(_) => "unready-not-configured",
             Self::Reflex => "unready-reflex",
             Self::UserStopped => "unready-user-stopped",
             Self::Guided => "unready-guided",
@@ -77,6 +88,8 @@ impl Unready {
             Self::Recovering
             | Self::AgreementAwaited
             | Self::Unrecognised(_)
+            | Self::Configuring
+            | Self::NotConfigured(_)
             | Self::Reflex
             | Self::UserStopped
             | Self::Guided

@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use franka_proto::{Errors, Load, RobotMode, RobotState};
+use franka_proto::{Command, Errors, Load, RobotMode, RobotState};
 
 use super::policy::Policy;
 use super::reflex::ReflexCase;
@@ -44,6 +44,45 @@ pub(super) struct Up {
     /// What differs from the robot of the connection before, until somebody has agreed to a
     /// recovery or a motion was asked for.
     pub(super) differences: Option<Differences>,
+    /// Whether what this program has set at the robot holds.
+    pub(super) configuration: Configuration,
+}
+
+/// Whether what this program has set at the robot holds on a connection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Configuration {
+    /// It does, or nothing was set.
+    Done,
+    /// To be set again once the robot is idle.
+    Due,
+    /// That was asked for. What fails of it is tried again at once if the robot has been idle anew
+    /// since.
+    Requested { is_idle_anew: bool },
+    /// The robot has not taken this; it is tried again when it is idle anew.
+    Failed(Command),
+}
+
+impl Configuration {
+    /// Has what failed tried again, since the robot is idle anew. Returns whether something had.
+    pub(super) fn retry(&mut self) -> bool {
+        match self {
+            Self::Requested { is_idle_anew } => *is_idle_anew = true,
+            Self::Failed(_) => {
+                *self = Self::Due;
+                return true;
+            }
+            Self::Done | Self::Due => {}
+        }
+        false
+    }
+
+    fn unready(self) -> Option<Unready> {
+        match self {
+            Self::Done => None,
+            Self::Due | Self::Requested { .. } => Some(Unready::Configuring),
+            Self::Failed(command) => Some(Unready::NotConfigured(command)),
+        }
+    }
 }
 
 /// A robot that sends no states.
@@ -109,6 +148,7 @@ impl Up {
             told: RobotMode::Idle,
             reflex: None,
             differences,
+            configuration: Configuration::Done,
         }
     }
 
@@ -124,7 +164,7 @@ impl Up {
         }
         let mode = self.seen.map_or(RobotMode::Other, |seen| seen.mode);
         match (mode, &self.reflex) {
-            (RobotMode::Idle | RobotMode::Move, None) => None,
+            (RobotMode::Idle | RobotMode::Move, None) => self.configuration.unready(),
             (RobotMode::UserStopped, _) => Some(Unready::UserStopped),
             (RobotMode::Guiding, _) => Some(Unready::Guided),
             (RobotMode::Other, _) => Some(Unready::Braked),
@@ -148,6 +188,14 @@ impl Connection {
                 Some(Unready::Disconnected)
             }
             Self::Closed => None,
+        }
+    }
+
+    /// Whether what this program has set at the robot holds, if there is a connection.
+    pub(super) fn is_configured(&self) -> bool {
+        match self {
+            Self::Up(up) => up.configuration == Configuration::Done,
+            _ => true,
         }
     }
 

@@ -4,7 +4,7 @@ use core::fmt;
 use core::time::Duration;
 use std::sync::Arc;
 
-use franka_proto::{Errors, Load};
+use franka_proto::{Command, Errors, Load};
 
 use crate::lifecycle::{CloseReason, ControlError, Differences, Outcome, Unready};
 use crate::sched::SchedError;
@@ -46,6 +46,14 @@ pub enum EventKind {
     Unrecognised {
         /// What differs.
         differences: Differences,
+    },
+    /// What this program had set at the robot before a connection was lost is not set again, and
+    /// motions are refused: a setting was refused, or a state shows another one.
+    NotConfigured {
+        /// The command that sets it.
+        command: Command,
+        /// What the robot answered or shows.
+        text: String,
     },
     /// The connection has ended. Motions end with it.
     Lost {
@@ -143,6 +151,9 @@ impl fmt::Display for EventKind {
             }
             Self::Unrecognised { differences } => {
                 write!(f, "not recognised as the robot of before: {differences}")
+            }
+            Self::NotConfigured { command, text } => {
+                write!(f, "\"{command}\" is not set again: {text}")
             }
             Self::Lost { reason } => write!(f, "connection lost: {reason}"),
             Self::Silent { silence } => write!(f, "no state for {silence:.1?}"),

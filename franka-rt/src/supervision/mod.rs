@@ -29,6 +29,7 @@ mod identity;
 mod policy;
 mod reflex;
 mod reports;
+mod settings;
 #[cfg(test)]
 mod tests;
 mod waiting;
@@ -36,15 +37,16 @@ mod waiting;
 use core::time::Duration;
 use std::collections::{BTreeSet, VecDeque};
 
-use franka_proto::{Load, RobotMode};
+use franka_proto::{Load, Request, RobotMode};
 
 use crate::lifecycle::{CloseReason, ControlError, MotionError, NewMotion, Unready};
 use crate::session::GoalId;
 
 use attempts::{Attempts, Pauses};
-use connection::{Connection, Loss};
+use connection::{Configuration, Connection, Loss};
 use identity::Identity;
 use reflex::Step;
+use settings::Settings;
 use waiting::Waiting;
 
 pub use connection::Seen;
@@ -52,6 +54,7 @@ pub use event::{Condition, Event, EventKind, Health, NotRecovered, Reflex};
 pub use policy::{Backoff, Policy};
 pub use reflex::RecoveryFailure;
 pub use reports::ConnectFailure;
+pub use settings::{Answer, SettingId};
 pub use waiting::Admission;
 
 /// Something to carry out, in the order given.
@@ -73,6 +76,9 @@ pub enum Output {
         /// Number of the reflex.
         reflex: u64,
     },
+    /// Set again what this program has set at the robot: [`Supervision::next_setting`], one at a
+    /// time, until it returns nothing. A connection that has ended may be left alone.
+    Configure,
     /// Ask somebody to agree to the recovery from this reflex. Comes back as
     /// [`Supervision::agree`], if at all.
     Ask(Reflex),
@@ -111,6 +117,10 @@ pub struct Supervision {
     /// Motions that have begun and not ended.
     motions: BTreeSet<GoalId>,
     waiting: Option<Waiting>,
+    /// What this program has set at the robot.
+    settings: Settings,
+    /// Connections made so far.
+    connections: u64,
     /// Whether a stop is latched, which outlives connections.
     stop_latched: bool,
     health: Health,
@@ -135,6 +145,8 @@ impl Supervision {
             unshown: None,
             motions: BTreeSet::new(),
             waiting: None,
+            settings: Settings::default(),
+            connections: 0,
             stop_latched: false,
             health: Health {
                 condition: Condition::Unready(Unready::Disconnected),
@@ -171,7 +183,13 @@ impl Supervision {
             return Admission::Refuse(error);
         }
         let why = match self.connection.unready() {
-            Some(why) if why.is_passing() && !motion.is_within_a_session() => why,
+            Some(_) if motion.is_within_a_session() => return Admission::Begin,
+            Some(why) if why.is_passing() => why,
+            // What holds the robot now may be gone before it has the motion.
+            Some(why) if !self.connection.is_configured() => {
+                let waited = Duration::ZERO;
+                return Admission::Refuse(MotionError::NotReady { why, waited });
+            }
             _ => return Admission::Begin,
         };
         let Some(policy) = &self.policy else {
@@ -237,6 +255,70 @@ impl Supervision {
         }
         self.go_on(now);
         before
+    }
+
+    /// Takes note of a setting that this program is about to send over the newest connection, in
+    /// this order. It is to hold on every connection to come, unless the robot refuses it. Its
+    /// answer goes to [`Self::on_set`].
+    pub fn declare(&mut self, request: Request) -> SettingId {
+        self.settings.declare(request, self.connections)
+    }
+
+    /// Takes the answer to a setting of the program.
+    pub fn on_set(&mut self, id: SettingId, answer: &Answer, now: Duration) {
+        self.settings.on_answer(id, answer, self.connections);
+        if self.policy.is_some()
+            && let Connection::Up(up) = &mut self.connection
+            && !matches!(up.configuration, Configuration::Requested { .. })
+        {
+            if self.settings.all_hold() {
+                up.configuration = Configuration::Done;
+            } else if !matches!(answer, Answer::Refused { .. }) {
+                self.settings.retry();
+                up.configuration = Configuration::Due;
+            }
+        }
+        self.go_on(now);
+    }
+
+    /// The next of the settings to send after [`Output::Configure`]. Its answer goes to
+    /// [`Self::on_set_again`].
+    pub fn next_setting(&mut self, now: Duration) -> Option<(SettingId, Request)> {
+        let Connection::Up(up) = &mut self.connection else {
+            return None;
+        };
+        let Configuration::Requested { is_idle_anew } = up.configuration else {
+            return None;
+        };
+        if let Some(next) = self.settings.next() {
+            return Some(next);
+        }
+        let failures = self.settings.failures();
+        let failures: Vec<_> = failures.map(|(it, text)| (it, text.clone())).collect();
+        up.configuration = match failures.first() {
+            None => Configuration::Done,
+            Some(_) if is_idle_anew => {
+                self.settings.retry();
+                Configuration::Due
+            }
+            Some(&(command, _)) => Configuration::Failed(command),
+        };
+        if let Configuration::Failed(_) = up.configuration {
+            for (command, text) in failures {
+                self.tell(EventKind::NotConfigured { command, text }, now);
+            }
+        }
+        self.go_on(now);
+        None
+    }
+
+    /// Takes the answer to a setting of [`Self::next_setting`].
+    pub fn on_set_again(&mut self, id: SettingId, answer: Answer) {
+        if let Connection::Up(up) = &self.connection
+            && matches!(up.configuration, Configuration::Requested { .. })
+        {
+            self.settings.on_answer_again(id, answer);
+        }
     }
 
     /// Says whether the robot may be recovered from the reflex of this number. Returns whether that
@@ -345,6 +427,16 @@ impl Supervision {
             self.take(step, now);
         }
         self.end_reflex(now);
+        if let Connection::Up(up) = &mut self.connection
+            && up.configuration == Configuration::Due
+            && up.reflex.is_none()
+            && up.seen.is_some_and(|seen| seen.mode == RobotMode::Idle)
+        {
+            up.configuration = Configuration::Requested {
+                is_idle_anew: false,
+            };
+            self.outputs.push_back(Output::Configure);
+        }
         if let Some(waiting) = self.waiting {
             match self.connection.unready() {
                 None => {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use franka_proto::{Errors, RobotMode, RobotState};
 
 use super::Supervision;
-use super::connection::{Connection, Loss, Seen, Silent, Up};
+use super::connection::{Configuration, Connection, Loss, Seen, Silent, Up};
 use super::event::EventKind;
 use super::identity::Identity;
 use super::reflex::{RecoveryFailure, ReflexCase};
@@ -53,7 +53,13 @@ impl Supervision {
         let differences = before.map(|before| before.differences(&identity));
         let differences = differences.filter(|differences| !differences.is_empty());
         self.identity = Some(identity);
-        self.connection = Connection::Up(Up::new(attempts, differences, now));
+        let mut up = Up::new(attempts, differences, now);
+        self.settings.on_connected();
+        self.connections += 1;
+        if !self.settings.is_empty() {
+            up.configuration = Configuration::Due;
+        }
+        self.connection = Connection::Up(up);
         self.robot_time = Some(state.message_id);
         self.health.reconnects += u64::from(after.is_some());
         self.health.last_reconnect = after.or(self.health.last_reconnect);
@@ -89,6 +95,10 @@ impl Supervision {
         let seen = Seen::of(state);
         let is_first = up.seen.replace(seen).is_none();
         let told = core::mem::replace(&mut up.told, seen.mode);
+        let is_anew = told != seen.mode || up.silent.is_some();
+        if is_anew && seen.mode == RobotMode::Idle && up.configuration.retry() {
+            self.settings.retry();
+        }
         if let Some(silent) = up.silent.take() {
             let after = now - silent.since;
             self.tell(EventKind::Resumed { after }, now);

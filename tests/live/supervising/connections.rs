@@ -5,10 +5,13 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use franka_async::error::{CloseReason, Unready};
+use franka_async::settings::{CollisionBehavior, Load};
 use franka_async::state::RobotMode;
 use franka_async::supervision::{Condition, EventKind};
 use franka_async::{Engage, MotionError, Pose, Realtime, Robot};
+use franka_proto::Command;
 use franka_sim::{Sim, Tool};
+use franka_tests::PATIENCE;
 use tokio::time::{sleep, timeout};
 
 use super::{condition, connected, policy, restart, small_motion, start, supervised, told};
@@ -119,6 +122,87 @@ async fn a_network_that_is_cut_is_told_and_the_connection_given_up_for_it() {
     assert!(after > silence, "{after:?}");
     condition(&robot, Condition::Ready).await;
     robot.shutdown().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn what_was_set_holds_at_a_robot_that_was_restarted() {
+    let _alone = alone();
+    let sim = start(Sim::fr3()).await;
+    let address = sim.addr();
+    let robot = supervised(&sim, policy()).await;
+    let load = Load {
+        m_load: 0.05,
+        F_x_Cload: [0.0, 0.0, 0.05],
+        I_load: [1e-3, 0.0, 0.0, 0.0, 1e-3, 0.0, 0.0, 0.0, 1e-3],
+    };
+    let tool = Pose::translation(0.0, 0.0, 0.05);
+    robot
+        .set_load(Load {
+            m_load: 0.02,
+            ..load
+        })
+        .await
+        .unwrap();
+    robot.set_load(load).await.unwrap();
+    robot.set_ee(tool).await.unwrap();
+    let thresholds = CollisionBehavior::careful();
+    robot.set_collision_behavior(thresholds).await.unwrap();
+    sim.stop().await;
+    condition(&robot, Condition::Unready(Unready::Disconnected)).await;
+    let sim = restart(address).await;
+    condition(&robot, Condition::Ready).await;
+    let state = sim.state().await.unwrap();
+    assert_eq!((state.m_load, state.F_x_Cload), (0.05, load.F_x_Cload));
+    assert!(
+        (state.NE_T_EE[14] - 0.05).abs() < 1e-6,
+        "{:?}",
+        state.NE_T_EE
+    );
+    small_motion(&robot).await.expect("it begins");
+
+    // One that does not take the load gets no motion until it is told of another one.
+    let mut events = robot.events();
+    sim.stop().await;
+    let sim = timeout(SOON, async {
+        loop {
+            let light = |config: &mut franka_sim::Config| {
+                config.unpublished.setter_bounds.mass = 0.03;
+            };
+            let sim = Sim::fr3().ideal().tool(Tool::hand()).configure(light);
+            match sim.virtual_time(PATIENCE).bind(address).start().await {
+                Ok(sim) => return sim,
+                Err(_) => sleep(Duration::from_millis(5)).await,
+            }
+        }
+    });
+    let sim = sim.await.expect("the port is free again");
+    let not_set = |kind: &EventKind| match kind {
+        EventKind::NotConfigured { command, .. } => Some(*command),
+        _ => None,
+    };
+    assert_eq!(told(&mut events, not_set).await, Command::SetLoad);
+    let why = Unready::NotConfigured(Command::SetLoad);
+    condition(&robot, Condition::Unready(why)).await;
+    let waited = Duration::ZERO;
+    let refused = small_motion(&robot).await.unwrap_err();
+    assert_eq!(refused, MotionError::NotReady { why, waited });
+    robot
+        .set_load(Load {
+            m_load: 0.02,
+            ..load
+        })
+        .await
+        .unwrap();
+    condition(&robot, Condition::Ready).await;
+    let state = sim.state().await.unwrap();
+    assert!(
+        (state.NE_T_EE[14] - 0.05).abs() < 1e-6,
+        "{:?}",
+        state.NE_T_EE
+    );
+    small_motion(&robot).await.expect("it begins");
+    robot.shutdown().await;
+    sim.stop().await;
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]

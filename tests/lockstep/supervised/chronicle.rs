@@ -113,6 +113,14 @@ impl Chronicle {
                     "brakes opened"
                 }
             }
+            EventKind::LoadChanged { .. } => {
+                assert!(self.is_connected);
+                "load changed"
+            }
+            EventKind::NotConfigured { .. } => {
+                assert!(self.is_connected);
+                "not configured"
+            }
             EventKind::MotionBegun { goal } => {
                 assert!(self.motions.insert(*goal));
                 "motion begun"

@@ -10,8 +10,10 @@
 //!
 //! * `trial`: one robot, what happens to it, and the rules that it keeps.
 //! * `chronicle`: what may follow on what.
+//! * `settings`: what a program has set holds on every connection.
 
 mod chronicle;
+mod settings;
 mod trial;
 
 use rand::rngs::SmallRng;

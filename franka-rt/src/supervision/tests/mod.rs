@@ -3,6 +3,7 @@
 mod connections;
 mod motions;
 mod reflexes;
+mod settings;
 
 use std::sync::Arc;
 

@@ -1,0 +1,197 @@
+//! What this program has set at the robot: it is to hold on every connection.
+
+use franka_proto::{Command, Request};
+
+/// What became of a setting that was sent to the robot.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// The robot has taken it, and its states show it if they show such a setting.
+    Taken,
+    /// The robot has taken it, and its states show another value.
+    NotShown {
+        /// What they show and what was set, for a person.
+        text: String,
+    },
+    /// The robot has refused it, or it was not sent: the setting of before holds.
+    Refused {
+        /// What the robot has answered and what was set, for a person.
+        text: String,
+    },
+    /// There was no answer: the robot may have taken it.
+    Unknown {
+        /// What is missing, for a person.
+        text: String,
+    },
+}
+
+/// The name of a setting, from [`Supervision::declare`](super::Supervision::declare).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SettingId(u64);
+
+/// The newest setting of each kind, in the order in which they were made.
+#[derive(Debug, Default)]
+pub(super) struct Settings {
+    newest: Vec<Setting>,
+    /// Settings so far.
+    count: u64,
+}
+
+#[derive(Debug)]
+struct Setting {
+    id: SettingId,
+    request: Request,
+    /// The number of the connection over which the program has sent it.
+    connection: u64,
+    standing: Standing,
+    /// Whether states have shown it.
+    was_shown: bool,
+    /// The setting of this kind that counts again if the robot refuses this one; until it has
+    /// answered.
+    before: Option<Box<Setting>>,
+}
+
+/// Whether a setting holds on the newest connection.
+#[derive(Debug)]
+enum Standing {
+    /// It has not been set, as far as known.
+    Open,
+    Holds,
+    /// It could not be set, for this reason.
+    Failed {
+        text: String,
+    },
+}
+
+impl Settings {
+    pub(super) fn is_empty(&self) -> bool {
+        self.newest.is_empty()
+    }
+
+    /// Whether everything holds on the newest connection.
+    pub(super) fn all_hold(&self) -> bool {
+        let holds = |setting: &Setting| matches!(setting.standing, Standing::Holds);
+        self.newest.iter().all(holds)
+    }
+
+    /// Takes note of a setting that the program is about to send over the connection of this
+    /// number. It counts unless it is refused.
+    pub(super) fn declare(&mut self, request: Request, connection: u64) -> SettingId {
+        let is_same = |setting: &Setting| setting.request.command() == request.command();
+        let before = self.newest.iter().position(is_same);
+        let before = before.map(|place| Box::new(self.newest.remove(place)));
+        self.count += 1;
+        let id = SettingId(self.count);
+        self.newest.push(Setting {
+            id,
+            request,
+            connection,
+            standing: Standing::Open,
+            was_shown: false,
+            before,
+        });
+        id
+    }
+
+    /// Takes the answer to a setting that the program has sent; `connection` is the number of the
+    /// newest one.
+    pub(super) fn on_answer(&mut self, id: SettingId, answer: &Answer, connection: u64) {
+        if let Answer::Refused { .. } = answer {
+            return self.remove(id);
+        }
+        let Some(setting) = self.find(id) else {
+            return;
+        };
+        setting.before = None;
+        if let Answer::Taken | Answer::NotShown { .. } = answer {
+            setting.was_shown = *answer == Answer::Taken;
+            if setting.connection == connection {
+                setting.standing = Standing::Holds;
+            }
+        }
+    }
+
+    /// Takes the answer to [`Self::next`].
+    pub(super) fn on_answer_again(&mut self, id: SettingId, answer: Answer) {
+        let Some(setting) = self.find(id) else {
+            return;
+        };
+        setting.standing = match answer {
+            // A robot that rounds the numbers never shows them.
+            Answer::NotShown { .. } if !setting.was_shown => Standing::Holds,
+            Answer::Taken => {
+                setting.was_shown = true;
+                Standing::Holds
+            }
+            Answer::NotShown { text } | Answer::Refused { text } | Answer::Unknown { text } => {
+                Standing::Failed { text }
+            }
+        };
+    }
+
+    /// The next setting that is to be set on the newest connection.
+    pub(super) fn next(&self) -> Option<(SettingId, Request)> {
+        let is_open = |setting: &&Setting| matches!(setting.standing, Standing::Open);
+        let open = self.newest.iter().find(is_open)?;
+        Some((open.id, open.request))
+    }
+
+    /// The settings that could not be set, and why.
+    pub(super) fn failures(&self) -> impl Iterator<Item = (Command, &String)> {
+        self.newest
+            .iter()
+            .filter_map(|setting| match &setting.standing {
+                Standing::Failed { text } => Some((setting.request.command(), text)),
+                _ => None,
+            })
+    }
+
+    /// Has what could not be set tried again.
+    pub(super) fn retry(&mut self) {
+        for setting in &mut self.newest {
+            if let Standing::Failed { .. } = setting.standing {
+                setting.standing = Standing::Open;
+            }
+        }
+    }
+
+    /// Takes note of a new connection, on which nothing is set.
+    pub(super) fn on_connected(&mut self) {
+        for newest in &mut self.newest {
+            let mut setting = Some(newest);
+            while let Some(it) = setting {
+                it.standing = Standing::Open;
+                setting = it.before.as_deref_mut();
+            }
+        }
+    }
+
+    fn find(&mut self, id: SettingId) -> Option<&mut Setting> {
+        self.newest.iter_mut().find_map(|newest| {
+            let mut setting = newest;
+            while setting.id != id {
+                setting = setting.before.as_deref_mut()?;
+            }
+            Some(setting)
+        })
+    }
+
+    /// Removes a setting: the one before it counts again.
+    fn remove(&mut self, id: SettingId) {
+        if let Some(place) = self.newest.iter().position(|newest| newest.id == id) {
+            match self.newest[place].before.take() {
+                Some(before) => self.newest[place] = *before,
+                None => drop(self.newest.remove(place)),
+            }
+            return;
+        }
+        for newest in &mut self.newest {
+            let mut link = &mut newest.before;
+            while link.as_ref().is_some_and(|setting| setting.id != id) {
+                link = &mut link.as_mut().expect("it was looked at").before;
+            }
+            if let Some(setting) = link {
+                *link = setting.before.take();
+            }
+        }
+    }
+}
