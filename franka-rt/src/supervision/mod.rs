@@ -269,14 +269,19 @@ impl Supervision {
         self.settings.on_answer(id, answer, self.connections);
         if self.policy.is_some()
             && let Connection::Up(up) = &mut self.connection
-            && !matches!(up.configuration, Configuration::Requested { .. })
         {
-            if self.settings.all_hold() {
-                up.configuration = Configuration::Done;
-            } else if !matches!(answer, Answer::Refused { .. }) {
-                self.settings.retry();
-                up.configuration = Configuration::Due;
-            }
+            let is_refused = matches!(answer, Answer::Refused { .. });
+            up.configuration = match up.configuration {
+                // It is being set again, or will be.
+                before @ (Configuration::Requested { .. } | Configuration::Due) => before,
+                _ if self.settings.all_hold() => Configuration::Done,
+                Configuration::Done if self.settings.any_open() => Configuration::Due,
+                Configuration::Failed(_) if !is_refused => {
+                    self.settings.retry();
+                    Configuration::Due
+                }
+                before => before,
+            };
         }
         self.go_on(now);
     }
@@ -292,6 +297,10 @@ impl Supervision {
         };
         if let Some(next) = self.settings.next() {
             return Some(next);
+        }
+        if self.settings.any_sent() {
+            up.configuration = Configuration::Due;
+            return None;
         }
         let failures = self.settings.failures();
         let failures: Vec<_> = failures.map(|(it, text)| (it, text.clone())).collect();
@@ -429,6 +438,7 @@ impl Supervision {
         self.end_reflex(now);
         if let Connection::Up(up) = &mut self.connection
             && up.configuration == Configuration::Due
+            && !self.settings.any_sent()
             && up.reflex.is_none()
             && up.seen.is_some_and(|seen| seen.mode == RobotMode::Idle)
         {

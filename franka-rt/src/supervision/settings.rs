@@ -53,6 +53,8 @@ struct Setting {
 /// Whether a setting holds on the newest connection.
 #[derive(Debug)]
 enum Standing {
+    /// The program has sent it, and has no answer yet.
+    Sent,
     /// It has not been set, as far as known.
     Open,
     Holds,
@@ -73,6 +75,17 @@ impl Settings {
         self.newest.iter().all(holds)
     }
 
+    /// Whether something has to be set again.
+    pub(super) fn any_open(&self) -> bool {
+        self.next().is_some()
+    }
+
+    /// Whether the program waits for an answer. Until it has come it is unknown which value counts.
+    pub(super) fn any_sent(&self) -> bool {
+        let is_sent = |setting: &Setting| matches!(setting.standing, Standing::Sent);
+        self.newest.iter().any(is_sent)
+    }
+
     /// Takes note of a setting that the program is about to send over the connection of this
     /// number. It counts unless it is refused.
     pub(super) fn declare(&mut self, request: Request, connection: u64) -> SettingId {
@@ -85,7 +98,7 @@ impl Settings {
             id,
             request,
             connection,
-            standing: Standing::Open,
+            standing: Standing::Sent,
             was_shown: false,
             before,
         });
@@ -107,6 +120,9 @@ impl Settings {
             if setting.connection == connection {
                 setting.standing = Standing::Holds;
             }
+        }
+        if let Standing::Sent = setting.standing {
+            setting.standing = Standing::Open;
         }
     }
 

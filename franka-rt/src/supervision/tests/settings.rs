@@ -254,6 +254,30 @@ fn answers_of_settings_sent_together_count_each_for_its_own() {
 }
 
 #[test]
+fn setting_of_the_program_is_awaited_before_motions_begin() {
+    for (answered, newest) in [(Answer::Taken, SOFT), (refusal(), STIFF)] {
+        let mut robot = waiting();
+        set(&mut robot, STIFF, &Answer::Taken);
+        set(&mut robot, FREE, &Answer::Taken);
+        reconnect(&mut robot);
+        assert_eq!(configures(&mut robot), 1);
+        // It is sent while the others are set again.
+        let id = robot.supervision.declare(SOFT);
+        again(&mut robot, FREE, Answer::Taken);
+        assert_eq!(next(&mut robot), None);
+        assert_eq!(robot.condition(), CONFIGURING);
+        assert_eq!(configures(&mut robot), 0);
+        answer(&mut robot, id, &answered);
+        assert_eq!(configures(&mut robot), 1);
+        if newest == STIFF {
+            again(&mut robot, STIFF, Answer::Taken);
+        }
+        assert_eq!(next(&mut robot), None);
+        assert_eq!(robot.condition(), Condition::Ready);
+    }
+}
+
+#[test]
 fn setting_that_states_no_longer_show_refuses_motions() {
     let text = String::from("got 0 kg, expected 0.5 kg");
     let other = Answer::NotShown { text };
