@@ -62,7 +62,8 @@ names! {
         Refused: "refused", Timeout: "timeout", Network: "network", NoAddress: "no_address",
         IncompatibleVersion: "incompatible_version", ConnectionClosed: "connection_closed",
         Datagram: "datagram", Violation: "violation", Frame: "frame",
-        HandshakeTimeout: "handshake_timeout", NoState: "no_state", Model: "model", _: "other",
+        HandshakeTimeout: "handshake_timeout", NoState: "no_state", Model: "model",
+        Geometry: "geometry", _: "other",
     }
     CommandError => {
         Refused: "refused", InvalidArgument: "invalid_argument", Request: "request",

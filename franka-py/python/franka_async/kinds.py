@@ -58,6 +58,7 @@ ConnectErrorKind: TypeAlias = Literal[
     "datagram",
     "endpoint",
     "frame",
+    "geometry",
     "handshake_timeout",
     "incompatible_version",
     "known",
