@@ -375,6 +375,7 @@ fn keyboard(page: &Browser, served: &Served) -> anyhow::Result<()> {
 
 /// Drags link 6: the robot feels it, and the page draws the force.
 fn push(page: &Browser, served: &Served) -> anyhow::Result<()> {
+    served.make_ready()?;
     drag_until(page, (0.0, -150.0), || {
         let force = served.robot.state().O_F_ext_hat_K;
         let newtons = force[..3].iter().map(|f| f * f).sum::<f64>().sqrt();

@@ -11,7 +11,7 @@ use franka_async::gripper::Gripper;
 use franka_async::model::collision::Obstacle;
 use franka_async::motion::Outcome;
 use franka_async::nalgebra::Vector3;
-use franka_async::{Pose, Realtime, Robot};
+use franka_async::{Pose, READY, Realtime, Robot};
 use franka_dash::Options;
 use franka_sim::{Fingers, Running, Sim, Tool};
 use tokio::runtime::Runtime;
@@ -112,6 +112,13 @@ impl Served {
         there[0] -= 0.5 * there[0].signum();
         self.runtime
             .spawn(async move { robot.move_joints(there).speed(0.2).await })
+    }
+
+    /// Moves to the ready pose: robots estimate no external forces near a singularity.
+    pub(crate) fn make_ready(&self) -> anyhow::Result<()> {
+        let motion = async { self.robot.move_joints(READY).await };
+        self.runtime.block_on(motion)?;
+        Ok(())
     }
 
     /// What has become of a motion.
