@@ -463,6 +463,11 @@ pub use franka_rt::sched::Realtime;
 /// The library that [`Pose`] and [`model::JointVector`] come from.
 pub use nalgebra;
 
+// The program in the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 /// What programs build on: handles go anywhere, futures go to any worker.
 const _: () = {
     const fn shared<T: Clone + Send + Sync + 'static>() {}

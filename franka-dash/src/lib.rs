@@ -115,6 +115,11 @@ pub use options::Options;
 pub use several::{NameError, several};
 use source::{Source, Watched};
 
+// The program in the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 /// Why a server cannot listen.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

@@ -94,6 +94,11 @@ pub use cause::Cause;
 pub use finding::{Axis, Bound, Finding, Origin, Quantity, Subject};
 pub use franka_rt::driver::Commander;
 
+// The program in the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 /// Errors that carry the log of the motion that they ended.
 pub trait Diagnose {
     /// Why the robot stopped itself, as far as the log shows; `None` for any other end of a motion.

@@ -77,6 +77,11 @@ pub use selection::Selection;
 pub use system::System;
 pub use timing::{Received, arrivals, firewall};
 
+// The program in the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 /// Runs the checks.
 #[derive(Clone, Debug)]
 pub struct Doctor {

@@ -127,6 +127,11 @@ pub use operational_space::OperationalSpace;
 
 use nalgebra::{ArrayStorage, SMatrix, SVector, Vector3};
 
+// The program in the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 /// One number per joint, base to flange.
 pub type JointVector = SVector<f64, 7>;
 

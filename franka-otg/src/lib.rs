@@ -170,5 +170,10 @@ pub use limits::{AxisLimits, Limits};
 pub use plan::Synchronisation;
 pub use state::{AxisState, State};
 
+// The program in the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 #[cfg(test)]
 mod tests;

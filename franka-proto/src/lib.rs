@@ -107,3 +107,8 @@ pub use robot::{
     TotalLoad, VirtualWall,
 };
 pub use version::Version;
+
+// The program in the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

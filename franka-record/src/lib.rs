@@ -26,3 +26,8 @@ pub use event::{Event, EventKind, GripperState};
 pub use recorder::Recorder;
 pub use recording::Recording;
 pub use sample::Sample;
+
+// The program in the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

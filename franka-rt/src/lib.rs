@@ -56,3 +56,8 @@ pub mod team;
 #[cfg(unix)]
 pub mod thread;
 pub mod together;
+
+// The program in the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

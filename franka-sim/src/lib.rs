@@ -103,3 +103,8 @@ pub use network::Network;
 pub use robot::{Datagram, Freeze, Robot, SessionError, Touch, TouchId};
 #[cfg(unix)]
 pub use serve::{Pace, Running, Service, Sim, SpeedError, Stopped};
+
+// The program in the README compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
