@@ -52,7 +52,7 @@ pub enum GoalError {
     #[error(
         "the arm cannot go to {} on a straight line{}: {}",
         place([*x, *y, *z]),
-        at_end_of_range(*joint),
+        on_the_way(*joint, *near_itself),
         way_on(posture.as_ref())
     )]
     NoLine {
@@ -63,7 +63,9 @@ pub enum GoalError {
         /// See `x`.
         z: f64,
         /// The joint, from 1, that comes to the end of its range with the elbow where it is.
-        joint: Option<usize>,
+        joint: Option<u8>,
+        /// True if the arm comes too near itself on the way.
+        near_itself: bool,
         /// Joint positions that reach the pose, `[rad]`, and to which the joints can move; regions
         /// to keep out of are not considered. `None` if none were found.
         posture: Option<[f64; 7]>,
@@ -216,10 +218,12 @@ fn place(position: [f64; 3]) -> String {
     format!("({x:.4}, {y:.4}, {z:.4}) m")
 }
 
-fn at_end_of_range(joint: Option<usize>) -> String {
-    joint.map_or(String::new(), |joint| {
-        format!(", joint {joint} comes to the end of its range on the way")
-    })
+fn on_the_way(joint: Option<u8>, near_itself: bool) -> String {
+    match joint {
+        Some(joint) => format!(", joint {joint} comes to the end of its range on the way"),
+        None if near_itself => ", it comes too near itself on the way".to_owned(),
+        None => String::new(),
+    }
 }
 
 /// What to do instead of a straight line.

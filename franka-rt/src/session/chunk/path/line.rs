@@ -11,10 +11,10 @@ use franka_model::{EndEffector, Frame, JointVector, Model, analytic_ik, rotation
 use franka_proto::RobotState;
 use nalgebra::{Isometry3, Translation3};
 
+use super::Waypoint;
 use super::fastest::Timed;
 use super::poses::through_poses;
 use super::reach::Arm;
-use super::{Preview, Waypoint};
 use crate::session::chunk::value::TURN_MAX;
 use crate::session::geometry::reported_end_effector;
 use crate::session::guard::clearance::{Clearance, KeepOut};
@@ -29,13 +29,11 @@ impl Goal {
     /// `kept`, `[rad]`, but can with its elbow drawn to another posture, the goal asks for that
     /// [posture](Self::posture) from then on.
     ///
-    /// A goal that the arm gets to off the line is left as it is, and one on whose way it comes too
-    /// near itself: it is braked there. So are goals that end elsewhere than at a pose, on their
-    /// way by a [reaction](Self::reaction), or with an object in the hand, and goals that
-    /// [`check`](Self::check) refuses.
+    /// A goal that the arm gets to off the line is left as it is. So are goals that end elsewhere
+    /// than at a pose, on their way by a [reaction](Self::reaction), or with an object in the hand,
+    /// and goals that [`check`](Self::check) refuses. Regions to keep out of are not considered.
     ///
-    /// It takes about half a millisecond, some where the elbow has to be led, and up to 15 for a
-    /// refusal. It is not for the control thread.
+    /// It takes a millisecond as a rule, and up to ten. It is not for the control thread.
     ///
     /// # Errors
     /// [`GoalError::NoLine`] if the arm gets there with none of these postures.
@@ -63,41 +61,46 @@ impl Goal {
             Some(posture) => Posture::asked(posture.into()),
             None => Posture::kept((*kept).into()),
         };
-        let Err(hindrance) = line.follow(&own) else {
+        let Err(hindrance) = line.follow(&own, 1.0) else {
             return Ok(());
         };
         let postures = postures(model, &there, &line.ee, &q);
         if self.posture.is_none() {
-            let leads = |q: &&JointVector| line.follow(&Posture::asked(**q)).is_ok();
+            let leads = |q: &&JointVector| {
+                let posture = Posture::asked(**q);
+                line.follow(&posture, GLANCE).is_ok() && line.follow(&posture, 1.0).is_ok()
+            };
             if let Some(posture) = postures.iter().take(LED).find(leads) {
                 self.posture = Some((*posture).into());
                 return Ok(());
             }
         }
-        let Hindrance::Range(joint) = hindrance else {
-            return Ok(());
+        let (joint, near_itself) = match hindrance {
+            Hindrance::Range(_) if line.ends_there(&own) => return Ok(()),
+            Hindrance::Range(joint) => (joint.map(|joint| joint as u8), false),
+            Hindrance::Itself => (None, true),
         };
-        if line.ends_there(&own) {
-            return Ok(());
-        }
-        let over_joints = |to: &&JointVector| {
-            let way = [Waypoint::new(Target::Joints((**to).into()))];
-            let preview = Preview::of(&way, &q.into(), self, model, state);
-            preview.is_ok_and(|preview| matches!(preview.blocked(model, state, &[]), Ok(None)))
-        };
+        let reached = |to: &&JointVector| line.is_clear_over_joints(to);
         let p = there.translation.vector;
         Err(GoalError::NoLine {
             x: p.x,
             y: p.y,
             z: p.z,
             joint,
-            posture: postures.iter().find(over_joints).map(|q| (*q).into()),
+            near_itself,
+            posture: postures.iter().find(reached).map(|q| (*q).into()),
         })
     }
 }
 
 /// Postures towards which the elbow is led before a line is given up: the nearest ones.
 const LED: usize = 8;
+
+/// Steps along a line that a first look takes at once.
+const GLANCE: f64 = 4.0;
+
+/// The most that a joint turns between two looks at how near the arm is to itself, `[rad]`.
+const TURN: f64 = 0.03;
 
 /// A straight line and a turn about one axis.
 struct Line<'a> {
@@ -150,39 +153,59 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// Follows the line to its end.
-    fn follow(&self, posture: &Posture) -> Result<(), Hindrance> {
+    /// Follows the line to its end, in steps `stride` times as long as those of a check.
+    fn follow(&self, posture: &Posture, stride: f64) -> Result<(), Hindrance> {
         let mut last = self.q;
-        let way = self.arm(posture).along(&self.way, self.q, |step| {
+        let way = self.arm(posture, stride).along(&self.way, self.q, |step| {
             let before = core::mem::replace(&mut last, step.q);
             if step.off.size() > 1.0 {
                 let joint = joint_bounds::at_end(self.model.joint_limits(), &step.q);
                 return ControlFlow::Break(Hindrance::Range(joint));
             }
-            match self.clearance.too_near(&before, &step.q) {
-                Some(_) => ControlFlow::Break(Hindrance::Itself),
-                None => ControlFlow::Continue(()),
+            match self.is_clear(&before, &step.q) {
+                true => ControlFlow::Continue(()),
+                false => ControlFlow::Break(Hindrance::Itself),
             }
         });
         way.break_value().map_or(Ok(()), Err)
     }
 
-    /// Whether the arm comes to the end of the line, if it may leave it.
+    /// True if the arm comes to the end of the line, clear of itself, when it may leave the line.
     fn ends_there(&self, posture: &Posture) -> bool {
-        let mut off = 0.0;
-        let _: ControlFlow<()> = self.arm(posture).along(&self.way, self.q, |step| {
+        let (mut last, mut off) = (self.q, 0.0);
+        let way = self.arm(posture, 1.0).along(&self.way, self.q, |step| {
+            let before = core::mem::replace(&mut last, step.q);
             off = step.off.size();
-            ControlFlow::Continue(())
+            match self.is_clear(&before, &step.q) {
+                true => ControlFlow::Continue(()),
+                false => ControlFlow::Break(()),
+            }
         });
-        off <= 1.0
+        way.is_continue() && off <= 1.0
     }
 
-    fn arm<'b>(&'b self, posture: &'b Posture) -> Arm<'b> {
+    /// True if the arm keeps clear of itself while its joints move to `to` together.
+    fn is_clear_over_joints(&self, to: &JointVector) -> bool {
+        let turns = ((to - self.q).amax() / TURN).ceil().max(1.0);
+        let mut last = self.q;
+        (1..=turns as u32).all(|turn| {
+            let next = self.q.lerp(to, f64::from(turn) / turns);
+            self.is_clear(&core::mem::replace(&mut last, next), &next)
+        })
+    }
+
+    /// True if the arm is not too near itself at `next`, or no nearer than at `now`.
+    fn is_clear(&self, now: &JointVector, next: &JointVector) -> bool {
+        self.clearance.too_near(now, next).is_none()
+    }
+
+    fn arm<'b>(&'b self, posture: &'b Posture, stride: f64) -> Arm<'b> {
         Arm {
             posture,
             budget: self.budget,
             model: self.model,
             ee: &self.ee,
+            stride,
         }
     }
 }

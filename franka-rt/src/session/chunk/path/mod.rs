@@ -146,6 +146,7 @@ impl Chunk {
                 posture: &posture,
                 budget,
                 model,
+                stride: 1.0,
                 ee: &ee,
             };
             reach::check(&way, q, &arm, &mut pass)?;

@@ -38,7 +38,7 @@ const STEP_ROTATION: f64 = 0.02;
 /// Distance, in units of what it may be off, that counts as none.
 const THERE: f64 = 0.02;
 
-/// Attempts to come nearer to one place of the way.
+/// Attempts to come nearer to one place of the way, as long as the last ones may get there.
 const ATTEMPTS: usize = 60;
 
 /// Most steps between two states of a way: it has no more at the steps above, unless its numbers
@@ -124,6 +124,8 @@ pub(super) struct Arm<'a> {
     pub(super) budget: &'a Budget,
     pub(super) model: &'a Model,
     pub(super) ee: &'a EndEffector,
+    /// How many of the steps below are taken at once: 1 for a check, more for a first look.
+    pub(super) stride: f64,
 }
 
 impl Arm<'_> {
@@ -147,7 +149,7 @@ impl Arm<'_> {
                 })
                 .into_iter()
                 .fold([0.0_f64; 2], |[v, omega], [a, b]| [v.max(a), omega.max(b)]);
-            let steps = duration * (v / STEP_TRANSLATION).max(omega / STEP_ROTATION);
+            let steps = duration * (v / STEP_TRANSLATION).max(omega / STEP_ROTATION) / self.stride;
             let steps = steps.ceil().clamp(1.0, STEPS_MAX);
             for step in 1..=steps as usize {
                 let at = way.between(k, step as f64 / steps);
@@ -171,12 +173,16 @@ impl Arm<'_> {
         let speed = at.twist.fixed_rows::<3>(0).norm();
         let mut q = q;
         let mut attempt = 0;
+        let mut last = f64::INFINITY;
         loop {
             let (now, jacobian) = self
                 .model
                 .pose_and_jacobian(Frame::EndEffector, &q, self.ee);
             let off = Off::between(&at.pose, &rigid(&now));
-            if attempt > 0 && off.size() < THERE || attempt == ATTEMPTS {
+            let left = ATTEMPTS - attempt;
+            let gain = off.size() / core::mem::replace(&mut last, off.size());
+            let stuck = attempt > 3 && off.size() * gain.powi(left as i32) > 1.0;
+            if attempt > 0 && off.size() < THERE || left == 0 || stuck {
                 return (q, off);
             }
             let free = if attempt == 0 {

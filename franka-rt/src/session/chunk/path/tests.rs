@@ -399,6 +399,7 @@ fn ways_are_accepted_where_the_control_cycle_gets_along_them() {
                 posture: &Posture::kept(q),
                 budget: &budget,
                 model,
+                stride: 1.0,
                 ee: &ee,
             };
             let verdict = reach::check(&way, q, &arm, &mut |_, _| {});
