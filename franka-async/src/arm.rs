@@ -468,6 +468,7 @@ impl Arm {
             destination: Some(Box::new(destination)),
             path: None,
             refused: None,
+            joint_fallback: None,
         }
     }
 

@@ -2,12 +2,14 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use franka_model::Model;
 use franka_rt::lifecycle::{CloseReason, MotionError, NewMotion, Outcome, Tuning};
 use franka_rt::session::{Chunk, Goal, GoalError, GoalId, Target, Waypoint};
 use tokio::sync::{mpsc, oneshot, watch};
 
 use crate::destination::Destination;
 use crate::kept_tuning::KeptTuning;
+use crate::options::GoalOptions;
 use crate::publish::Subscriptions;
 
 /// What handles and motions ask of the bridge.
@@ -92,6 +94,8 @@ pub(crate) struct Beginning {
     pub(crate) path: Option<Arc<[Waypoint]>>,
     /// Why it is not to begin: the arm cannot go to its target on a straight line.
     pub(crate) refused: Option<GoalError>,
+    /// The options of a motion of the joints that takes its place in that case.
+    pub(crate) joint_fallback: Option<Box<GoalOptions>>,
 }
 
 impl Beginning {
@@ -99,6 +103,23 @@ impl Beginning {
     pub(crate) fn lead(&mut self, posture: Option<[f64; 7]>) {
         if let NewMotion::Goal { goal, .. } = &mut self.motion {
             goal.posture = posture;
+        }
+    }
+
+    /// Takes a motion of the joints to `q`, `[rad]`, in place of its straight line, if it may.
+    /// Otherwise it is refused for `error`.
+    pub(crate) fn lead_joints(&mut self, q: [f64; 7], error: GoalError, model: &Model) {
+        let (NewMotion::Goal { goal, .. }, Some(options)) =
+            (&mut self.motion, &self.joint_fallback)
+        else {
+            self.refused = Some(error);
+            return;
+        };
+        let limits = model.joint_limits();
+        let joints = Goal::new(goal.id, Target::Joints(q), goal.on_arrival, limits);
+        match options.apply(joints, model) {
+            Ok(joints) => (**goal, self.destination) = (joints, None),
+            Err(error) => self.refused = Some(error),
         }
     }
 }
@@ -110,6 +131,7 @@ impl From<NewMotion> for Beginning {
             destination: None,
             path: None,
             refused: None,
+            joint_fallback: None,
         }
     }
 }

@@ -287,6 +287,7 @@ impl Given {
             destination,
             path,
             refused: _,
+            joint_fallback: _,
         } = motion;
         let (kind, goal) = match motion {
             NewMotion::Goal { goal, .. } => {

@@ -40,6 +40,7 @@ pub struct Motion {
     path: Option<Arc<[Waypoint]>>,
     on_arrival: OnArrival,
     options: GoalOptions,
+    joint_fallback: bool,
     ticket: Option<StartTicket>,
 }
 
@@ -49,10 +50,11 @@ impl Robot {
     /// is compliant on the way, see [`Motion::stiffness`]; of joints all arrive together.
     ///
     /// The line to a pose is planned by the task that awaits the motion, in a millisecond as a
-    /// rule. If joints would come to the ends of their ranges on it, the elbow is led to a posture
-    /// with which they do not. If there is none, the motion is refused as
-    /// [`GoalError::NoLine`](crate::error::GoalError::NoLine), which names joint positions that
-    /// reach the pose, and nothing moves.
+    /// rule. If joints would come to the ends of their ranges on it, or the arm too near itself,
+    /// the elbow is led to a posture with which they do not. If there is none, the motion is
+    /// refused as [`GoalError::NoLine`](crate::error::GoalError::NoLine), which names joint
+    /// positions that reach the pose, and nothing moves; with [`Motion::joint_fallback`] the joints
+    /// go there instead.
     pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
         Motion::of_robot(self, destination.into())
     }
@@ -106,6 +108,7 @@ impl Motion {
             path: None,
             on_arrival: OnArrival::ReportAndFinish,
             options: GoalOptions::default(),
+            joint_fallback: false,
             ticket: None,
         }
     }
@@ -131,6 +134,21 @@ impl Motion {
     }
 
     goal_options!(target);
+
+    /// Moves the joints to the pose, as [`Robot::move_joints`] does, where the arm cannot follow
+    /// the straight line of [`Robot::move_to`]. The end effector then goes there on a curve: mind
+    /// what stands beside the line. [`Self::preview`] shows the way that is taken. A motion that
+    /// has no such way either is refused as
+    /// [`GoalError::NoLine`](crate::error::GoalError::NoLine), and one in a session that commands
+    /// poses to the robot's own controller as
+    /// [`GoalError::Backend`](crate::error::GoalError::Backend).
+    ///
+    /// Without effect on motions that are not planned: through waypoints, of joints, and with a
+    /// [condition](Self::until).
+    pub fn joint_fallback(mut self) -> Self {
+        self.joint_fallback = true;
+        self
+    }
 
     /// Begins together with the motions of other robots: the robot starts the motion, and holds the
     /// arm until all that have a ticket of the same [`StartBarrier`](crate::motion::StartBarrier)
@@ -204,14 +222,19 @@ impl Motion {
             model.joint_limits(),
         );
         let mut goal = self.pursued().apply(goal, model)?;
-        let one = [Waypoint::new(target)];
-        let path = self.path.as_deref().unwrap_or(&one);
+        let mut one = [Waypoint::new(target)];
         let q = reference.unwrap_or(state.q);
         if self.path.is_none() {
             let session = self.session.as_deref();
             let kept = session.and_then(Session::posture).unwrap_or(q);
-            goal.plan_line(&q, &kept, model, &state)?;
+            match goal.plan_line(&q, &kept, model, &state) {
+                Err(GoalError::NoLine {
+                    posture: Some(q), ..
+                }) if self.joint_fallback => one = [Waypoint::new(Target::Joints(q))],
+                planned => planned?,
+            }
         }
+        let path = self.path.as_deref().unwrap_or(&one);
         Ok(Preview::of(path, &q, &goal, model, &state)?)
     }
 
@@ -236,6 +259,7 @@ impl Motion {
             destination,
             path: self.path.clone(),
             refused: None,
+            joint_fallback: self.joint_fallback.then(|| Box::new(self.pursued())),
         })
     }
 }
@@ -264,6 +288,11 @@ fn plan_line(motion: &mut Beginning, robot: &Robot, session: Option<&Session>) {
     let kept = session.and_then(Session::posture).unwrap_or(q);
     match goal.plan_line(&q, &kept, model, &state) {
         Ok(()) => motion.lead(goal.posture),
+        Err(
+            error @ GoalError::NoLine {
+                posture: Some(q), ..
+            },
+        ) => motion.lead_joints(q, error, model),
         Err(error) => motion.refused = Some(error),
     }
 }
@@ -275,6 +304,7 @@ impl Clone for Motion {
             path: self.path.clone(),
             on_arrival: self.on_arrival,
             options: self.options,
+            joint_fallback: self.joint_fallback,
             ..Self::of_robot(&self.robot, self.destination)
         }
     }

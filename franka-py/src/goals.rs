@@ -23,8 +23,12 @@ pub(crate) fn motion(
     let mut keywords = Keywords::new(name, options)?;
     let options = Options::of_goal(&mut keywords, robot.model())?;
     let ticket = keywords.take("start_with")?;
+    let joint_fallback = keywords.value("joint_fallback")?.unwrap_or(false);
     keywords.end()?;
-    let begun = with_options!(begun, options);
+    let mut begun = with_options!(begun, options);
+    if joint_fallback {
+        begun = begun.joint_fallback();
+    }
     let begun = match ticket {
         Some(ticket) => begun.start_with(ticket.cast::<StartTicket>()?.get().take()?),
         None => begun,
@@ -42,8 +46,9 @@ impl Robot {
     /// Options of every motion: `speed`, a factor; `limits`, a `Budget`; `gains`, `Gains`;
     /// `stiffness` at the end effector, 6 numbers; `force_cap`, N, or `None` for off; `leash`,
     /// `deviation`, `tolerance`, `settling`; `posture`, 7 joint positions; `until`, a
-    /// condition; and `start_with`, a `StartTicket`. Raises `ValueError` for arguments
-    /// that make no sense, and `MotionError` when it is awaited.
+    /// condition; `start_with`, a `StartTicket`; and `joint_fallback`, whether the joints go there
+    /// where the arm cannot follow the line. Raises `ValueError` for arguments that make no sense,
+    /// and `MotionError` when it is awaited.
     #[pyo3(signature = (target, **options))]
     fn move_to(
         &self,

@@ -146,6 +146,15 @@ def test_a_target_out_of_reach_raises_and_nothing_moves(robot: Robot) -> None:
     np.testing.assert_allclose(robot.state().q, before, atol=1e-3)
 
 
+def test_the_joints_go_where_there_is_no_straight_line(robot: Robot) -> None:
+    target = robot.pose()
+    target[:3, 3] -= [2.0 * target[0, 3], 0.0, 0.2]  # the line leads into the arm itself
+    with pytest.raises(MotionError, match="too near itself"):
+        robot.move_to(target).wait()
+    robot.move_to(target, joint_fallback=True).wait()
+    np.testing.assert_allclose(robot.pose(), target, atol=3e-3)
+
+
 def test_options_change_the_motion(robot: Robot) -> None:
     plain = robot.move_by([0.0, 0.0, 0.04]).wait()
     slow = robot.move_by([0.0, 0.0, -0.04], speed=0.2).wait()

@@ -1,9 +1,9 @@
 //! The Franka Emika Robot: the same programs, over the protocol that negotiation finds.
 
 use franka_async::connection::{Version, VersionPolicy};
-use franka_async::error::{CommandError, ConnectError, Party, PoseError};
+use franka_async::error::{CommandError, ConnectError, GoalError, Party, PoseError};
 use franka_async::settings::Filters;
-use franka_async::{Pose, Realtime, Robot};
+use franka_async::{Engage, MotionError, Pose, Realtime, Robot};
 use franka_model::RobotKind;
 use franka_proto::RequestError;
 use franka_sim::{Running, Sim, Tool};
@@ -37,6 +37,31 @@ async fn the_version_is_negotiated_and_a_pose_and_joints_are_reached() {
     q[6] -= 0.3;
     robot.move_joints(q).await.unwrap();
     assert_near(&robot, &robot.pose_at(q));
+    robot.shutdown().await;
+}
+
+/// The straight line to the pose on the other side of the base leads into the arm itself.
+#[tokio::test(flavor = "multi_thread")]
+async fn the_joints_of_an_engaged_arm_go_where_it_has_no_line() {
+    let _alone = alone();
+    let (robot, _sim) = fer().await;
+    let arm = robot.engage(Engage::default()).await.unwrap();
+    let start = robot.pose();
+    let there = Pose::translation(-2.0 * start.translation.x, 0.0, -0.2) * start;
+    let refused = arm.move_to(there).await.unwrap_err();
+    assert!(
+        matches!(
+            refused,
+            MotionError::Goal(GoalError::NoLine {
+                near_itself: true,
+                ..
+            })
+        ),
+        "{refused}"
+    );
+    arm.move_to(there).joint_fallback().await.unwrap();
+    assert_near(&robot, &there);
+    arm.disengage().await.unwrap();
     robot.shutdown().await;
 }
 

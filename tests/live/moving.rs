@@ -7,6 +7,7 @@ use franka_async::control::{Finish, Torques};
 use franka_async::error::{CommandError, GoalError, PoseError};
 use franka_async::settings::{CollisionBehavior, Load};
 use franka_async::{Engage, MotionError, Pose, pose};
+use franka_model::JointVector;
 use franka_proto::{SetterStatus, Status};
 use tokio::sync::watch;
 
@@ -54,9 +55,16 @@ async fn a_line_that_the_arm_cannot_follow_is_refused_at_rest() {
     assert!(!robot.state().motion_running());
     let previewed = robot.move_to(there).preview().unwrap_err();
     assert_eq!(previewed, refused);
-    robot.move_joints(posture.unwrap()).await.unwrap();
+
+    let fallback = || robot.move_to(there).speed(0.8).joint_fallback();
+    let previewed = fallback().preview().unwrap();
+    fallback().await.unwrap();
     let error = PoseError::between(&robot.pose(), &there);
     assert!(error.translation < 1e-3, "{error:?}");
+    for q in [previewed.end(), robot.state().q] {
+        let off = JointVector::from(q) - JointVector::from(posture.unwrap());
+        assert!(off.amax() < 0.01, "{off}");
+    }
     robot.shutdown().await;
 }
 

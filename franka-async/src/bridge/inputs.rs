@@ -149,6 +149,7 @@ impl Bridge {
             destination,
             path: _,
             refused,
+            joint_fallback: _,
         } = beginning;
         if let Some(error) = refused {
             return Err(error.into());

@@ -373,6 +373,7 @@ impl Inner {
                             destination,
                             path,
                             refused,
+                            joint_fallback: _,
                         },
                     ..
                 }) if waiting.id == goal => {

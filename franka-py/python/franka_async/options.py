@@ -77,6 +77,9 @@ class MotionOptions(GoalOptions, total=False):
     start_with: StartTicket | None
     """Begins together with the motions that have the other tickets of ``start_tickets``."""
 
+    joint_fallback: bool | None
+    """Moves the joints to the pose where the arm cannot follow the straight line of ``move_to``."""
+
 
 class FollowOptions(GoalOptions, total=False):
     """Options of following targets."""
