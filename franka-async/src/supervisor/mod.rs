@@ -340,7 +340,18 @@ impl Inner {
             return;
         };
         let input = match input {
-            Input::Begin { motion, replies } => {
+            Input::Begin {
+                mut motion,
+                replies,
+            } => {
+                // What has no line does not wait, in the place of another one.
+                let unready = matches!(self.core.health().condition, Condition::Unready(_));
+                if let Some(error) = motion.refused.take_if(|_| unready) {
+                    let latched = self.core.check_latch().err();
+                    let error = latched.unwrap_or_else(|| error.into());
+                    self.refuse(motion, replies, error);
+                    return;
+                }
                 match self.core.submit(&motion.motion, now) {
                     Admission::Begin => return self.begin(motion, replies, link, now),
                     Admission::Wait => {
@@ -372,13 +383,12 @@ impl Inner {
                             motion: NewMotion::Goal { goal: waiting, .. },
                             destination,
                             path,
-                            refused,
+                            refused: _,
                             joint_fallback: _,
                         },
                     ..
                 }) if waiting.id == goal => {
                     (waiting.target, *destination, *path) = (target, None, None);
-                    *refused = None;
                     // Its receiver may have been dropped.
                     let _ = taken.send(Ok(true));
                     return;

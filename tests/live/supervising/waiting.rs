@@ -4,10 +4,10 @@ use std::future::{Future as _, IntoFuture as _, poll_fn};
 use std::pin::Pin;
 use std::task::Poll;
 
-use franka_async::error::Unready;
+use franka_async::error::{GoalError, Unready};
 use franka_async::state::RobotMode;
 use franka_async::supervision::Condition;
-use franka_async::{Engage, Motion, MotionError, MotionReport};
+use franka_async::{Engage, Motion, MotionError, MotionReport, Pose};
 use franka_sim::Sim;
 use tokio::task::JoinHandle;
 use tokio::time::timeout;
@@ -144,6 +144,32 @@ async fn motion_that_waits_does_not_begin_with_a_robot_that_was_restarted() {
     condition(&robot, Condition::Ready).await;
     // Whoever asks now takes it as it is.
     small_motion(&robot).await.expect("motions are admitted");
+    robot.shutdown().await;
+    sim.stop().await;
+}
+
+/// The straight line to the other side of the base leads into the arm itself.
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_line_that_is_refused_leaves_the_motion_that_waits() {
+    let _alone = alone();
+    let (sim, mut way) = relayed(Sim::fr3()).await;
+    let robot = supervised_at(way.addr(), policy().motions_wait(SOON)).await;
+    let (mut q, start) = (robot.state().q, robot.pose());
+    q[5] += 0.05;
+    way.cut().await;
+    condition(&robot, Condition::Unready(Unready::Disconnected)).await;
+    let waiting = asked_for(robot.move_joints(q)).await;
+    let there = Pose::translation(-2.0 * start.translation.x, 0.0, -0.2) * start;
+    let refused = timeout(SOON, robot.move_to(there).into_future()).await;
+    let refused = refused.expect("it does not wait");
+    assert!(
+        matches!(refused, Err(MotionError::Goal(GoalError::NoLine { .. }))),
+        "{refused:?}"
+    );
+    assert!(!waiting.is_finished());
+    way.mend().await;
+    let outcome = timeout(SOON, waiting).await.expect("no hang").unwrap();
+    outcome.expect("it arrives");
     robot.shutdown().await;
     sim.stop().await;
 }
