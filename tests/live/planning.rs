@@ -5,6 +5,7 @@ use std::future::IntoFuture;
 use std::sync::mpsc;
 use std::time::Duration;
 
+use franka_async::error::GoalError;
 use franka_async::goal::{Budget, Deviation, Tuning};
 use franka_async::state::RobotMode;
 use franka_async::{Engage, MotionError, MotionReport, Pose, Robot};
@@ -94,15 +95,68 @@ fn stop_and_cancel_are_served_while_a_path_is_planned() {
         dropped.abort();
         let superseded = scene.planned().await;
         let moving = scene.planned().await;
-        assert_eq!(superseded.await.unwrap(), Err(MotionError::Superseded));
         let engaged = robot.engage(Engage::default()).await.map(drop);
         assert_eq!(engaged, Err(MotionError::Busy));
 
         drop(release);
+        assert_eq!(superseded.await.unwrap(), Err(MotionError::Superseded));
         moving.await.unwrap().expect("it arrives");
         let end = scene.way[1].translation.vector;
         assert!((robot.pose().translation.vector - end).norm() < 1e-3);
         robot.shutdown().await;
+    });
+}
+
+/// What is refused, or taken back before it begins, has superseded nothing.
+#[test]
+fn path_that_is_planned_begins_after_newer_ones_that_do_not() {
+    let _alone = alone();
+    runtime().block_on(async {
+        let scene = Scene::new().await;
+        let robot = &scene.robot;
+        let release = hold();
+        let moving = scene.planned().await;
+        let beyond = Pose::translation(2.0, 0.0, 0.0) * robot.pose();
+        let refused = tokio::spawn(robot.move_through([scene.way[0], beyond]).into_future());
+        robot_time(robot, 100).await;
+        // The line through the axis of the base leads into the arm itself.
+        let across = Pose::translation(-2.0 * robot.pose().translation.x, 0.0, -0.2);
+        let no_line = robot.move_to(across * robot.pose()).await.unwrap_err();
+        assert!(
+            matches!(no_line, MotionError::Goal(GoalError::NoLine { .. })),
+            "{no_line}"
+        );
+        let dropped = scene.planned().await;
+        dropped.abort();
+        assert!(dropped.await.unwrap_err().is_cancelled());
+        assert!(!moving.is_finished() && !refused.is_finished());
+
+        drop(release);
+        let refused = refused.await.unwrap().unwrap_err();
+        assert!(matches!(refused, MotionError::Path(_)), "{refused}");
+        moving.await.unwrap().expect("it arrives");
+        let end = scene.way[1].translation.vector;
+        assert!((robot.pose().translation.vector - end).norm() < 1e-3);
+
+        // Of very many, the oldest ones end at once.
+        let release = hold();
+        let mut back = Vec::new();
+        for _ in 0..6 {
+            back.push(tokio::spawn(
+                robot.move_through([scene.way[0]]).into_future(),
+            ));
+            robot_time(robot, 20).await;
+        }
+        for superseded in back.drain(..2) {
+            assert_eq!(superseded.await.unwrap(), Err(MotionError::Superseded));
+        }
+        drop(release);
+        let last = back.pop().unwrap();
+        last.await.unwrap().expect("it arrives");
+        for superseded in back {
+            assert_eq!(superseded.await.unwrap(), Err(MotionError::Superseded));
+        }
+        scene.robot.shutdown().await;
     });
 }
 

@@ -28,7 +28,7 @@ const ENDING_TIMEOUT: Duration = Duration::from_secs(2);
 impl Bridge {
     /// Brakes what moves. Returns when to give up on it.
     pub(super) fn begin_closing(&mut self) -> Instant {
-        self.drop_plan(MotionError::Stopped);
+        self.drop_plans(MotionError::Stopped);
         let now = self.now();
         self.lifecycle.stop(CLOSING, &self.publisher.state(), now);
         Instant::now() + CLOSING_TIMEOUT
@@ -42,7 +42,7 @@ impl Bridge {
         // Before the motions resolve: what comes next finds a connection that is lost.
         self.supervisor.on_lost(reason.clone());
         self.lifecycle.on_connection_closed(reason.clone());
-        self.drop_plan(MotionError::ConnectionClosed { reason });
+        self.drop_plans(MotionError::ConnectionClosed { reason });
         self.lost = true;
     }
 
@@ -58,7 +58,7 @@ impl Bridge {
         self.supervisor.on_lost(reason.clone());
         self.lifecycle.on_connection_closed(reason.clone());
         let closed = reason.clone();
-        self.drop_plan(MotionError::ConnectionClosed { reason: closed });
+        self.drop_plans(MotionError::ConnectionClosed { reason: closed });
         self.carry_out();
         while let Some(input) = inbox.recv().await {
             match input {

@@ -18,10 +18,7 @@ impl Bridge {
                 replies,
             } => match (self.check_turn_of_plan(&motion.motion), motion.path.take()) {
                 (Err(error), _) => self.refuse(motion.motion.id(), replies, error),
-                (Ok(()), Some(waypoints)) => {
-                    self.drop_plan(MotionError::Superseded);
-                    self.plan(motion, waypoints, replies, PLANS);
-                }
+                (Ok(()), Some(waypoints)) => self.plan(motion, waypoints, replies, PLANS),
                 (Ok(()), None) => self.take_up(motion, None, replies),
             },
             Input::Update {
@@ -57,7 +54,7 @@ impl Bridge {
                 let (state, number) = (*self.publisher.state(), goal.id);
                 let sent = self.lifecycle.chunk(id, *goal, *chunk, &state);
                 if sent.is_ok() {
-                    self.supersede_plan(Some(id));
+                    self.supersede_plans(Some(id));
                 }
                 self.course.head_for(self.lifecycle.heading());
                 self.note_refusal(number, &sent);
@@ -73,7 +70,7 @@ impl Bridge {
                 let tuned = self.lifecycle.tune(id, *tuning, &state);
                 if tuned.is_ok() {
                     kept.change(*tuning);
-                    self.tune_plan(id, &tuning);
+                    self.tune_plans(id, &tuning);
                     self.warn_of_margin(id, tuning.gains, &state);
                     self.warn_of_thresholds(id, tuning.force_cap);
                 }
@@ -82,7 +79,7 @@ impl Bridge {
             // The future that waits may have been dropped.
             Input::Await { taken } => drop(taken.send(Ok(()))),
             Input::Disengage { id } => {
-                self.end_plan_of(id);
+                self.end_plans_of(id);
                 self.lifecycle.disengage(id);
             }
             Input::Close { goal } => self.lifecycle.close(goal),
@@ -99,7 +96,7 @@ impl Bridge {
                 self.lifecycle.cancel(goal, now);
             }
             Input::Stop { goal, ended, .. } => {
-                self.drop_plan(MotionError::Stopped);
+                self.drop_plans(MotionError::Stopped);
                 let stops = self.lifecycle.stop(goal, &self.publisher.state(), now);
                 if stops {
                     let ended = EndReply::One(ended);
@@ -172,7 +169,7 @@ impl Bridge {
         *chunk = path.map(Box::new);
         let session = *session;
         self.lifecycle.begin(motion, &state, now)?;
-        self.supersede_plan(session);
+        self.supersede_plans(session);
         Ok(())
     }
 

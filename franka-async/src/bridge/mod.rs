@@ -62,8 +62,8 @@ pub(crate) struct Bridge {
     supervisor: Arc<Supervisor>,
     /// The goal that is taken back for a target that was refused.
     refused: Option<(GoalId, GoalError)>,
-    /// The motion whose path is being planned.
-    planning: Option<Planning>,
+    /// The motions whose paths are being planned, the newest last.
+    planning: Vec<Planning>,
     /// What the supervisor was last shown.
     seen: Option<Seen>,
     /// `message_id` of the newest state when a silence was noticed, until one comes.
@@ -137,7 +137,7 @@ impl Bridge {
             stalled: false,
             supervisor,
             refused: None,
-            planning: None,
+            planning: Vec::new(),
             seen: None,
             silent_since: None,
             awaited: None,

@@ -1,6 +1,6 @@
-//! Paths, which are planned before they begin: on a thread for work that blocks, as it takes up to
-//! a hundred milliseconds, in which the bridge serves stops. One at most; a newer goal supersedes
-//! it.
+//! Paths, which are planned before they begin: on threads for work that blocks, as it takes up to a
+//! hundred milliseconds, in which the bridge serves stops. A newer goal supersedes them once it
+//! begins, a path thus when it is planned: if it is refused, those before it are as they were.
 
 use std::panic::resume_unwind;
 use std::sync::Arc;
@@ -34,12 +34,15 @@ const LEFT_START: f64 = 0.1;
 /// Plans of a path beyond the first until it is refused, because the arm moves on too fast.
 pub(super) const PLANS: u32 = 4;
 
-/// The path that is being planned, once it is. Without one, it waits forever.
+/// Most paths that are being planned. One more supersedes the oldest.
+const PENDING_MAX: usize = 4;
+
+/// The newest path, once it is planned. Without one, it waits forever.
 ///
 /// # Cancel safety
 /// Nothing is lost if it is dropped.
-pub(super) async fn planned(planning: &mut Option<Planning>) -> Result<Chunk, PathError> {
-    let Some(planning) = planning else {
+pub(super) async fn planned(pending: &mut [Planning]) -> Result<Chunk, PathError> {
+    let Some(planning) = pending.last_mut() else {
         return std::future::pending().await;
     };
     match (&mut planning.task).await {
@@ -85,7 +88,11 @@ impl Bridge {
         let (model, start) = (self.lifecycle.model().clone(), self.start_of_a_path());
         let path = waypoints.clone();
         let plan = move || plan_path(&path, &start, &goal, &model, &state);
-        self.planning = Some(Planning {
+        if self.planning.len() == PENDING_MAX {
+            let oldest = self.planning[0].id();
+            self.take_back_plans(MotionError::Superseded, |plan| plan.id() == oldest);
+        }
+        self.planning.push(Planning {
             motion,
             waypoints,
             replies,
@@ -95,9 +102,9 @@ impl Bridge {
         });
     }
 
-    /// Begins the motion whose path has been planned, or refuses it.
+    /// Begins the motion whose path has been planned, the newest, or refuses it.
     pub(super) fn on_planned(&mut self, planned: Result<Chunk, PathError>) {
-        let Some(planning) = self.planning.take() else {
+        let Some(planning) = self.planning.pop() else {
             return;
         };
         let Planning {
@@ -131,78 +138,83 @@ impl Bridge {
         reference.unwrap_or_else(|| self.publisher.state().q)
     }
 
-    /// Checks that `motion` may supersede the pending path, by the rules for a path under way.
+    /// Checks that `motion` may supersede pending paths, by the rules for a path under way.
     pub(super) fn check_turn_of_plan(&self, motion: &NewMotion) -> Result<(), MotionError> {
         let supersedes = matches!(motion, NewMotion::Goal { ticket: None, .. });
-        match &self.planning {
-            Some(_) if !supersedes => Err(MotionError::Busy),
-            _ => Ok(()),
+        match self.planning.is_empty() || supersedes {
+            true => Ok(()),
+            false => Err(MotionError::Busy),
         }
     }
 
     /// Takes note that a goal of this session, or outside of one, was taken.
-    pub(super) fn supersede_plan(&mut self, session: Option<GoalId>) {
-        self.take_back_plan(MotionError::Superseded, |plan| plan.session() == session);
+    pub(super) fn supersede_plans(&mut self, session: Option<GoalId>) {
+        self.take_back_plans(MotionError::Superseded, |plan| plan.session() == session);
     }
 
     /// Takes back the path of this goal. Returns whether there is one.
     pub(super) fn cancel_plan(&mut self, goal: GoalId) -> bool {
-        self.take_back_plan(MotionError::Stopped, |plan| plan.id() == goal)
+        self.take_back_plans(MotionError::Stopped, |plan| plan.id() == goal)
     }
 
-    /// Takes back the path that a session is to go along.
-    pub(super) fn end_plan_of(&mut self, session: GoalId) {
-        self.take_back_plan(MotionError::Stopped, |plan| plan.session() == Some(session));
+    /// Takes back the paths that a session is to go along.
+    pub(super) fn end_plans_of(&mut self, session: GoalId) {
+        self.take_back_plans(MotionError::Stopped, |plan| plan.session() == Some(session));
     }
 
-    /// Takes back the pending path, for `reason`.
-    pub(super) fn drop_plan(&mut self, reason: MotionError) {
-        self.take_back_plan(reason, |_| true);
+    /// Takes back all pending paths, for `reason`.
+    pub(super) fn drop_plans(&mut self, reason: MotionError) {
+        self.take_back_plans(reason, |_| true);
     }
 
-    fn take_back_plan(&mut self, reason: MotionError, of: impl Fn(&Planning) -> bool) -> bool {
-        let Some(planning) = self.planning.take_if(|planning| of(planning)) else {
-            return false;
-        };
-        // What was asked of it is over, whatever the thread still computes.
-        planning.task.abort();
-        self.refuse(planning.motion.motion.id(), planning.replies, reason);
-        true
+    fn take_back_plans(&mut self, reason: MotionError, of: impl Fn(&Planning) -> bool) -> bool {
+        let taken: Vec<_> = self.planning.extract_if(.., |plan| of(plan)).collect();
+        let any = !taken.is_empty();
+        for planning in taken {
+            // What was asked of it is over, whatever the thread still computes.
+            planning.task.abort();
+            self.refuse(planning.id(), planning.replies, reason.clone());
+        }
+        any
     }
 
     /// Pauses the path of this goal, which then begins paused, or lets it go on.
     pub(super) fn pause_plan(&mut self, id: GoalId, paused: bool) {
-        if let Some(Planning { motion, .. }) = &mut self.planning
-            && let NewMotion::Goal { goal, .. } = &mut motion.motion
-            && goal.id == id
-        {
-            goal.paused = paused;
+        for planning in &mut self.planning {
+            if let NewMotion::Goal { goal, .. } = &mut planning.motion.motion
+                && goal.id == id
+            {
+                goal.paused = paused;
+            }
         }
     }
 
-    /// Changes how the path of a session will be pursued; plans it anew if its limits or posture
+    /// Changes how the paths of a session will be pursued; plans them anew if its limits or posture
     /// change.
-    pub(super) fn tune_plan(&mut self, session: GoalId, tuning: &Tuning) {
-        let of_session = |plan: &mut Planning| plan.session() == Some(session);
-        let Some(mut planning) = self.planning.take_if(of_session) else {
-            return;
-        };
-        if let NewMotion::Goal { goal, .. } = &mut planning.motion.motion {
-            **goal = tuning.apply(**goal);
+    pub(super) fn tune_plans(&mut self, session: GoalId, tuning: &Tuning) {
+        let is_planned_anew = tuning.budget.is_some() || tuning.posture.is_some();
+        for mut planning in std::mem::take(&mut self.planning) {
+            if planning.session() != Some(session) {
+                self.planning.push(planning);
+                continue;
+            }
+            if let NewMotion::Goal { goal, .. } = &mut planning.motion.motion {
+                **goal = tuning.apply(**goal);
+            }
+            if !is_planned_anew {
+                self.planning.push(planning);
+                continue;
+            }
+            planning.task.abort();
+            let Planning {
+                motion,
+                waypoints,
+                replies,
+                plans_left,
+                ..
+            } = planning;
+            self.plan(motion, waypoints, replies, plans_left);
         }
-        if tuning.budget.is_none() && tuning.posture.is_none() {
-            self.planning = Some(planning);
-            return;
-        }
-        planning.task.abort();
-        let Planning {
-            motion,
-            waypoints,
-            replies,
-            plans_left,
-            ..
-        } = planning;
-        self.plan(motion, waypoints, replies, plans_left);
     }
 }
 
