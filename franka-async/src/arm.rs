@@ -302,8 +302,8 @@ impl Arm {
     /// Follows a chunk of points with times, as a policy predicts them, from now on; returns as
     /// soon as it is taken. A chunk that comes while another one runs goes on from it: see
     /// [`Chunk::blend`]. Use [`Chunk::observed_at`] to compensate for
-    /// the age of the observation. The limits are kept for any points. The arm rests at the last one
-    /// unless another chunk or goal comes.
+    /// the age of the observation. The limits are kept for any points. The arm rests at the last
+    /// one unless another chunk or goal comes.
     ///
     /// # Errors
     /// As [`Self::set`]; once, why a guard gave up the chunk before, as [`MotionError::Held`] or

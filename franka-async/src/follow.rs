@@ -139,7 +139,7 @@ impl Follow {
         let (id, model) = (robot.next_goal(), robot.model());
         let towards = |target| {
             let goal = Goal::new(id, target, OnArrival::Hold, model.joint_limits());
-            let options = options.within(session.as_deref());
+            let options = options.within(session.as_ref().map(|session| session.tuning().get()));
             let goal = options.apply(goal, model)?;
             Ok::<_, MotionError>(Goal {
                 lead,

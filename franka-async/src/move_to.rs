@@ -240,7 +240,9 @@ impl Motion {
 
     /// Its options and those of its session.
     fn pursued(&self) -> GoalOptions {
-        self.options.within(self.session.as_deref())
+        let session = self.session.as_ref();
+        self.options
+            .within(session.map(|session| session.tuning().get()))
     }
 
     fn begin(&mut self) -> Result<Beginning, GoalError> {

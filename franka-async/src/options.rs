@@ -6,8 +6,6 @@ use franka_rt::session::{Budget, Goal, GoalError, Reaction, Settling, Tolerance}
 use franka_rt::team::Round;
 use nalgebra::Isometry3;
 
-use crate::session::Session;
-
 /// Options of one goal or of many. What is `None` is left to the goal, whose kind decides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct GoalOptions {
@@ -24,11 +22,10 @@ pub(crate) struct GoalOptions {
 }
 
 impl GoalOptions {
-    /// These options, and the tuning of a session where there are none.
-    pub(crate) fn within(self, session: Option<&Session>) -> Self {
-        let kept = session.map(|session| session.tuning().get());
+    /// These options, and the tuning of a session for all others.
+    pub(crate) fn within(self, session: Option<Tuning>) -> Self {
         Self {
-            tuning: self.tuning.or(kept.unwrap_or_default()),
+            tuning: self.tuning.or(session.unwrap_or_default()),
             ..self
         }
     }

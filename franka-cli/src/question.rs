@@ -62,7 +62,8 @@ pub(crate) enum Target {
 }
 
 impl Target {
-    /// Describes the motion to this target: how far each joint and the hand move, and the top speed.
+    /// Describes the motion to this target: how far each joint and the hand move, and the top
+    /// speed.
     pub(crate) fn describe(&self, robot: &Robot, speed: f64) -> anyhow::Result<String> {
         let (state, start) = (robot.state(), robot.pose());
         let model = robot.model();

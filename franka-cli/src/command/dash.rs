@@ -38,8 +38,8 @@ pub(crate) struct Dash {
     /// With --allow-motion, also move robots whose reported pose does not fit their model
     #[arg(long)]
     accept_geometry_error: bool,
-    /// Show the Franka Hand too and, with --allow-motion, move its fingers. No other program can use
-    /// the Hand in the meantime
+    /// Show the Franka Hand too and, with --allow-motion, move its fingers. No other program can
+    /// use the Hand in the meantime
     #[arg(long)]
     gripper: bool,
     /// Allow the viewer in command to record to new files in this folder

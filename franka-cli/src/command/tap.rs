@@ -35,8 +35,8 @@ pub(crate) struct Listening {
     /// Address for clients
     #[arg(long, value_name = "IP", default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
     listen: IpAddr,
-    /// Port for clients of the robot; the Hand and the vacuum gripper use the next two. 0 picks free
-    /// ports
+    /// Port for clients of the robot; the Hand and the vacuum gripper use the next two. 0 picks
+    /// free ports
     #[arg(long, default_value_t = 1337, value_parser = value_parser!(u16).range(..=65533))]
     port: u16,
 }
