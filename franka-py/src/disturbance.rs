@@ -225,7 +225,7 @@ impl Sim {
 
     /// Lets the arm ignore its commands while the robot reports the motion and no error: its
     /// `"joints"` stand still, or its `"controllers"` take nothing over; `None` lets it obey again.
-    #[pyo3(signature = (what = Some("joints")))]
+    #[pyo3(signature = (what = Some("joints")), text_signature = "($self, what='joints')")]
     fn freeze(&self, py: Python<'_>, what: Option<&str>) -> PyResult<()> {
         let freeze = match what {
             None => None,

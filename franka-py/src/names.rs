@@ -183,10 +183,12 @@ names! {
         Disconnected: "disconnected", Silent: "silent", Recovering: "recovering",
         AgreementAwaited: "agreement_awaited", Unrecognised: "unrecognised", Reflex: "reflex",
         UserStopped: "user_stopped", Guided: "guided", Braked: "braked",
-        StopLatched: "stop_latched", _: "other",
+        StopLatched: "stop_latched", Configuring: "configuring",
+        NotConfigured: "not_configured", _: "other",
     }
     EventKind => {
         Connected: "connected", RealtimeRefused: "realtime_refused", Unrecognised: "unrecognised",
+        NotConfigured: "not_configured",
         Lost: "lost", Silent: "silent", Resumed: "resumed", Reflex: "reflex",
         NotRecovered: "not_recovered", Recovered: "recovered", UserStop: "user_stop",
         Guiding: "guiding", Brakes: "brakes", StopLatch: "stop_latch",

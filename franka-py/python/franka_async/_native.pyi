@@ -1042,8 +1042,9 @@ class Robot:
         Options of every motion: `speed`, a factor; `limits`, a `Budget`; `gains`, `Gains`;
         `stiffness` at the end effector, 6 numbers; `force_cap`, N, or `None` for off; `leash`,
         `deviation`, `tolerance`, `settling`; `posture`, 7 joint positions; `until`, a
-        condition; and `start_with`, a `StartTicket`. Raises `ValueError` for arguments
-        that make no sense, and `MotionError` when it is awaited.
+        condition; `start_with`, a `StartTicket`; and `joint_fallback`, whether the joints go there
+        where the arm cannot follow the line. Raises `ValueError` for arguments that make no sense,
+        and `MotionError` when it is awaited.
         """
     def replay(
         self,
