@@ -78,7 +78,11 @@ impl Membership {
                         held: None,
                     });
                 }
-                Passage::Stopped(reason) => stop = Some(reason),
+                Passage::Stopped(reason) => {
+                    // The arm does not pursue its goal of an older round any longer either.
+                    self.pursued = None;
+                    stop = Some(reason);
+                }
             }
             self.waiting = None;
             taken = Some(goal);

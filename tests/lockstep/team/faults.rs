@@ -205,6 +205,23 @@ fn a_fault_in_a_round_brakes_the_other_while_the_next_one_waits() {
     }
 }
 
+/// The arms hold what they have arrived at meanwhile, as part of an older round.
+#[test]
+fn a_goal_of_a_round_that_was_replaced_stops_no_other() {
+    for cycles in 0..4 {
+        let mut pair = Pair::new(false);
+        let goals = pair.both([0.02, 0.02]);
+        assert_eq!(pair.until_resolved(goals, 3000), [Ok(()), Ok(())]);
+        let late = pair.coordinator.begin();
+        let next = pair.coordinator.begin();
+        pair.submit(0, Some(late), turned(0.3));
+        pair.run(cycles);
+        let goals = [0, 1].map(|i| pair.submit(i, Some(next), turned(0.1)));
+        let ended = pair.until_resolved(goals, 20_000);
+        assert_eq!(ended, [Ok(()), Ok(())], "after {cycles} cycles");
+    }
+}
+
 #[test]
 fn each_silence_of_one_brakes_the_other_anew() {
     let mut pair = Pair::of(team_tolerating(Duration::from_millis(5)), false);
