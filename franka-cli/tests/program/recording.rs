@@ -133,7 +133,7 @@ fn an_earlier_end_of_a_motion_is_explained() {
     assert!(first.1.contains("joint_reflex"), "{first:?}");
     let none = [&explain[..], &["--earlier", "2"]].concat();
     home.run(&none)
-        .failed(2, &["--earlier 2", "before the newest there are 1"]);
+        .failed(2, &["--earlier 2", "expected at most 1"]);
 }
 
 #[test]
