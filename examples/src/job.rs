@@ -102,7 +102,7 @@ impl Job {
 }
 
 impl Stage {
-    /// Whether nothing comes after it.
+    /// True if nothing comes after it.
     pub fn is_last(&self) -> bool {
         matches!(self, Self::Arrived { .. } | Self::Failed(_))
     }

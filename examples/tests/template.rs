@@ -32,7 +32,7 @@ async fn disturbed(job: impl FnMut(&mut franka_sim::Robot) + Send + 'static) -> 
 /// For how long robot and driver wait for each other on a machine that is busy.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Whether the arm is on its way. At rest the noise of a joint stays below 0.01 rad/s.
+/// True if the arm is on its way. At rest the noise of a joint stays below 0.01 rad/s.
 fn moves(robot: &franka_sim::Robot) -> bool {
     robot.dq().amax() > 0.05
 }

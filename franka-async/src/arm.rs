@@ -421,7 +421,7 @@ impl Arm {
         self.session.ended()
     }
 
-    /// Whether the session of a motion is that of this arm.
+    /// True if the session of a motion is that of this arm.
     pub(crate) fn owns(&self, session: Option<&Arc<Session>>) -> bool {
         session.is_some_and(|session| Arc::ptr_eq(session, &self.session))
     }

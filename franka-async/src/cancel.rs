@@ -26,7 +26,7 @@ pub struct Canceller {
     robot: WeakRobot,
     id: GoalId,
     cancelled: CancellationToken,
-    /// Whether it is to pause; locked while that is sent.
+    /// True if it is to pause; locked while that is sent.
     paused: Arc<Mutex<bool>>,
 }
 

@@ -70,7 +70,7 @@ pub(crate) enum Input {
     },
     Stop {
         goal: GoalId,
-        /// Whether no motion is admitted after it until it is released.
+        /// True if no motion is admitted after it until it is released.
         latches: bool,
         ended: oneshot::Sender<Outcome>,
     },
@@ -193,7 +193,7 @@ pub(crate) enum EndReply {
 }
 
 impl EndReply {
-    /// Whether nobody waits for it.
+    /// True if nobody waits for it.
     pub(crate) fn is_closed(&self) -> bool {
         match self {
             Self::One(ended) => ended.is_closed(),

@@ -127,7 +127,7 @@ pub(crate) enum What {
 }
 
 impl What {
-    /// Whether it is lost where no room is left. A connection is not, since its cycles would be
+    /// True if it is lost where no room is left. A connection is not, since its cycles would be
     /// lost with it, and neither is the end; both are rare.
     fn needs_room(&self) -> bool {
         !matches!(self, Self::Connected(_) | Self::End)
@@ -162,7 +162,7 @@ impl Journal {
         self.with(|readers| readers.push(reader));
     }
 
-    /// Whether a reader with this queue reads it for this track.
+    /// True if a reader with this queue reads it for this track.
     pub(crate) fn is_read(&self, track: usize, entries: &EntrySender) -> bool {
         let same = |reader: &Reader| {
             reader.track == track && Arc::ptr_eq(&reader.entries.counts, &entries.counts)

@@ -55,7 +55,7 @@ impl Link {
         &self.bridge.subscriptions
     }
 
-    /// Whether the bridge takes nothing any more.
+    /// True if the bridge takes nothing any more.
     pub(crate) fn has_ended(&self) -> bool {
         self.bridge.inbox.is_closed()
     }

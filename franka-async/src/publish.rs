@@ -32,7 +32,7 @@ pub(crate) struct Publisher {
     pub(crate) queue: Receiver<Record>,
     state_wakeups: StateWakeups,
     silent: Arc<Mutex<Option<Silent>>>,
-    /// Whether the bridge itself looks at every state.
+    /// True if the bridge itself looks at every state.
     is_watched: bool,
     listeners: Listeners,
 }

@@ -31,7 +31,7 @@ pub(crate) struct Reconnector {
     connecting: OptionFuture<BoxFuture<'static, Result<Opened, ConnectError>>>,
     recovering: OptionFuture<BoxFuture<'static, (u64, Result<(), CommandError>)>>,
     configuring: OptionFuture<BoxFuture<'static, ()>>,
-    /// Whether this program closes the connection.
+    /// True if this program closes the connection.
     is_closing: bool,
 }
 

@@ -188,7 +188,7 @@ struct BrakeOnDrop<'a> {
     arm: &'a Arm,
     /// The goal of its chunks; `None` before the first one, and once there is nothing to brake.
     goal: Option<GoalId>,
-    /// Whether the first chunk is known to have been taken.
+    /// True if the first chunk is known to have been taken.
     is_taken: bool,
 }
 

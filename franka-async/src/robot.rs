@@ -285,7 +285,7 @@ impl Robot {
         self.shared.supervisor.release_stop()
     }
 
-    /// Whether a stop is [latched](Self::latch_stop).
+    /// True if a stop is [latched](Self::latch_stop).
     pub fn is_stop_latched(&self) -> bool {
         self.shared.supervisor.is_stop_latched()
     }

@@ -25,7 +25,7 @@ struct Backoff {
 }
 
 impl Backoff {
-    /// Whether a warning is due now, which it is taken for.
+    /// True if a warning is due now, which it is taken for.
     fn take(&mut self, now: Instant) -> bool {
         let since = self.last.map(|last| now.duration_since(last));
         self.interval = match since {

@@ -156,7 +156,7 @@ impl Place {
         &self.name
     }
 
-    /// Whether the robot has a name.
+    /// True if the robot has a name.
     pub(crate) fn is_listed(&self) -> bool {
         self.listed.is_some()
     }

@@ -22,14 +22,14 @@ pub(crate) struct Hello {
     /// When the server began, `[ms]` since 1970. Its frames have times that count from then.
     server: u64,
     robot: &'static str,
-    /// Whether it is simulated, and may be disturbed.
+    /// True if it is simulated, and may be disturbed.
     simulated: bool,
-    /// Whether it is simulated with a Hand.
+    /// True if it is simulated with a Hand.
     simulated_hand: bool,
-    /// Whether it is simulated in virtual time, whose speed can be set.
+    /// True if it is simulated in virtual time, whose speed can be set.
     virtual_time: bool,
     motion_allowed: bool,
-    /// Whether anything takes command.
+    /// True if anything takes command.
     may_command: bool,
     gripper: bool,
     records: bool,

@@ -37,7 +37,7 @@ pub(crate) struct FingerState {
     max_width: f64,
     is_grasped: bool,
     temperature: u16,
-    /// Whether an action is under way.
+    /// True if an action is under way.
     acting: bool,
 }
 

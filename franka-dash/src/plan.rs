@@ -24,7 +24,7 @@ pub(crate) struct Question {
     pub(crate) speed: f64,
 }
 
-/// Whether a motion has an end that its viewer has chosen, so that there is something to plan.
+/// True if a motion has an end that its viewer has chosen, so that there is something to plan.
 pub(crate) fn has_end(motion: &Motion) -> bool {
     matches!(
         motion,

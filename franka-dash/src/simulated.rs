@@ -44,12 +44,12 @@ impl Simulated {
         }
     }
 
-    /// Whether it has a Hand, which an object can be put into.
+    /// True if it has a Hand, which an object can be put into.
     pub(crate) fn has_hand(&self) -> bool {
         self.running.hand().is_some()
     }
 
-    /// Whether the speed of its time can be set.
+    /// True if the speed of its time can be set.
     pub(crate) fn is_in_virtual_time(&self) -> bool {
         self.running.is_in_virtual_time()
     }

@@ -7,7 +7,7 @@ use franka_model::CYCLE;
 
 use super::finding::{Digits, Quantity, Subject};
 
-/// Whether the answer to a state took longer than a cycle.
+/// True if the answer to a state took longer than a cycle.
 pub(super) fn is_slow(turnaround: Duration) -> bool {
     turnaround.as_secs_f64() > CYCLE
 }
@@ -99,7 +99,7 @@ pub enum Cause {
     Limit {
         /// 1 to 7.
         joint: u8,
-        /// Whether it is the upper end.
+        /// True if it is the upper end.
         upper: bool,
         /// What is left, `[rad]`; negative beyond it.
         distance: f64,

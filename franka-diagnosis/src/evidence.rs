@@ -24,7 +24,7 @@ pub(super) struct Evidence<'a> {
 pub(super) struct Sample<'a> {
     pub(super) before: &'a RobotState,
     pub(super) command: &'a RobotCommand,
-    /// Whether it is the first of the motion.
+    /// True if it is the first of the motion.
     pub(super) first: bool,
 }
 
@@ -66,7 +66,7 @@ impl<'a> Evidence<'a> {
             })
     }
 
-    /// Whether the motion was commanded in poses or twists.
+    /// True if the motion was commanded in poses or twists.
     pub(super) fn is_cartesian(&self) -> bool {
         matches!(
             self.generator(),
@@ -168,7 +168,7 @@ impl Reading {
     }
 }
 
-/// Whether the command between two states did not reach the robot in time, by the success rate that
+/// True if the command between two states did not reach the robot in time, by the success rate that
 /// it reports, where only the `skipped` states between them were not answered. The state that shows
 /// the end of the motion does not tell.
 pub(super) fn is_lost(before: &RobotState, after: &RobotState, skipped: u64) -> bool {
@@ -272,7 +272,7 @@ fn since_first(error: RobotError, worst: &Reading, readings: &[Reading]) -> Find
 }
 
 impl Subject {
-    /// Whether both are the same, whichever component of a vector is its largest.
+    /// True if both are the same, whichever component of a vector is its largest.
     fn is_like(self, other: Self) -> bool {
         match (self, other) {
             (Self::Translation(_), Self::Translation(_))

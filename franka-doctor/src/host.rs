@@ -32,7 +32,7 @@ pub trait Host {
     fn own_address(&self, robot: Ipv4Addr) -> Result<Ipv4Addr, Unread>;
     /// What the driver of `interface` answers: the bytes of a structure of `linux/ethtool.h`.
     fn ethtool(&self, interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread>;
-    /// Whether `interface` has `own` for good, set by hand; false if it was lent for a time, as by
+    /// True if `interface` has `own` for good, set by hand; false if it was lent for a time, as by
     /// DHCP.
     fn is_lasting(&self, interface: &str, own: Ipv4Addr) -> Result<bool, Unread>;
     /// Free bytes for files in the current directory.

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use socket2::{Domain, Protocol, Socket, Type};
 
-/// Whether the host has `address` for good; `None` if it does not have it. Asks the kernel for all
+/// True if the host has `address` for good; `None` if it does not have it. Asks the kernel for all
 /// its IPv4 addresses (`RTM_GETADDR`), which changes nothing and takes no privilege.
 pub(crate) fn is_lasting(address: Ipv4Addr) -> io::Result<Option<bool>> {
     let protocol = Protocol::from(libc::NETLINK_ROUTE);
@@ -73,8 +73,8 @@ fn found(mut part: &[u8], address: Ipv4Addr) -> Answer {
     Answer::More
 }
 
-/// Whether this message (`struct ifaddrmsg`, then attributes) is of `address`, and whether that is
-/// there for good.
+/// True if the address is permanent; `None` if this message (`struct ifaddrmsg`, then attributes)
+/// is about another address.
 fn lasting(message: &[u8], address: Ipv4Addr) -> Option<bool> {
     // Eight bits of the flags are here, all of them in an attribute.
     let mut flags = u32::from(*message.get(2)?);

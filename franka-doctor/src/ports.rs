@@ -25,7 +25,7 @@ struct Port {
     id: &'static str,
     number: u16,
     what: &'static str,
-    /// Whether every robot has it.
+    /// True if every robot has it.
     always: bool,
 }
 

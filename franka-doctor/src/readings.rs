@@ -13,7 +13,7 @@ pub struct Readings<'a> {
     pub(crate) robot: Option<Ipv4Addr>,
     /// The processor that the control thread is pinned to, if it is.
     pub(crate) cpu: Option<usize>,
-    /// Whether processors may be kept busy for a second.
+    /// True if processors may be kept busy for a second.
     pub(crate) may_load: bool,
     raw: RefCell<BTreeMap<String, String>>,
 }

@@ -14,7 +14,7 @@ impl Selection {
         Self { only, skip }
     }
 
-    /// Whether the check with this id is run.
+    /// True if the check with this id is run.
     pub fn takes(&self, id: &str) -> bool {
         let names = |names: &[String]| {
             names.iter().any(|name| {

@@ -34,7 +34,7 @@ pub struct DriverStack {
     pub(crate) heard: Duration,
     /// The time from a state to its answer. The client is then ready for the next state.
     pub turnaround: Duration,
-    /// Whether events of the driver do not reach the lifecycle, as if its task were not scheduled.
+    /// True if events of the driver do not reach the lifecycle, as if its task were not scheduled.
     pub lifecycle_is_paused: bool,
     /// The time at which the newest state is answered.
     pub(super) free: Duration,
@@ -49,7 +49,7 @@ pub struct DriverStack {
     pub(super) recoveries: VecDeque<RecoveryStatus>,
     /// The newest answer to a setting, until it is taken.
     pub(super) setting: Option<SetterStatus>,
-    /// Whether the command connection has ended.
+    /// True if the command connection has ended.
     closed: bool,
 }
 
@@ -91,7 +91,7 @@ impl DriverStack {
         self.session.version()
     }
 
-    /// Whether the handshake is done.
+    /// True if the handshake is done.
     pub fn is_connected(&self) -> bool {
         self.session.is_connected()
     }

@@ -70,7 +70,7 @@ pub struct Lockstep {
     model: Model,
     /// Absent once a test's own program has run, which may command anything.
     guard: Option<CommandGuard>,
-    /// Whether the arm was ever frozen.
+    /// True if the arm was ever frozen.
     frozen: bool,
     milliseconds: u64,
     heard: u64,

@@ -12,11 +12,11 @@ pub struct Link {
     pub network: Network,
     /// The number of finishing commands to lose next.
     drop_finishing: u64,
-    /// Whether requests reach the robot; they are lost otherwise.
+    /// True if requests reach the robot; they are lost otherwise.
     pub requests: bool,
-    /// Whether the robot's replies arrive.
+    /// True if the robot's replies arrive.
     pub replies: bool,
-    /// Whether requests and replies wait: the command connection repeats them when the network is
+    /// True if requests and replies wait: the command connection repeats them when the network is
     /// back.
     pub delayed: bool,
 }

@@ -32,7 +32,7 @@ pub struct Supervised {
     pub config: Config,
     supervision: Supervision,
     sender: Sender,
-    /// Whether the robot's computer runs.
+    /// True if the robot's computer runs.
     is_up: bool,
     connection: Connection,
     /// `message_id` of the newest state that the supervision has seen.
@@ -122,7 +122,7 @@ impl Supervised {
         &mut self.lockstep.robot
     }
 
-    /// Whether the robot's computer runs.
+    /// True if the robot's computer runs.
     pub fn is_up(&self) -> bool {
         self.is_up
     }

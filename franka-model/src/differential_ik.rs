@@ -77,7 +77,7 @@ impl Default for Damping {
 pub struct DifferentialIk {
     /// Metres of position error that count as much as one radian of orientation error; positive.
     pub orientation_weight: f64,
-    /// Whether the position's residual is added to the target once; see the module.
+    /// True if the position's residual is added to the target once; see the module.
     pub position_first: bool,
     /// How `λ` is chosen.
     pub damping: Damping,

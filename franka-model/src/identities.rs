@@ -28,7 +28,7 @@ fn models() -> [&'static Model; 3] {
     ]
 }
 
-/// Whether a load is a rigid body more.
+/// True if a load is a rigid body more.
 fn loads_add_up(model: &Model) -> bool {
     !core::ptr::eq(model, Model::fer())
 }

@@ -76,7 +76,7 @@ impl JointLimits {
         )
     }
 
-    /// Whether every position is within `lower` and `upper`; false for NaN.
+    /// True if every position is within `lower` and `upper`; false for NaN.
     pub fn contains(&self, q: &JointVector) -> bool {
         (0..7).all(|i| self.lower[i] <= q[i] && q[i] <= self.upper[i])
     }

@@ -114,7 +114,7 @@ impl Axis {
         Some(self.unit * (self.braking + earlier))
     }
 
-    /// Whether it can be at its target after `duration`, but for rounding.
+    /// True if it can be at its target after `duration`, but for rounding.
     pub(crate) fn can_take(&self, duration: f64) -> bool {
         let left = duration / self.unit - self.braking;
         match &self.motion {
@@ -215,7 +215,7 @@ fn earlier(least: &LeastTime, duration: f64) -> Option<LeastTime> {
     })
 }
 
-/// Whether the numbers are close enough together to plan from `start`.
+/// True if the numbers are close enough together to plan from `start`.
 pub(crate) fn can_stop(start: AxisState, limits: AxisLimits) -> bool {
     Task::new(start, start.position, limits).is_some()
 }

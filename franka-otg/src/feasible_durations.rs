@@ -34,7 +34,7 @@ impl FeasibleDurations {
         }
     }
 
-    /// Whether an axis that is at its target after `other` is there after `t`, too, but for
+    /// True if an axis that is at its target after `other` is there after `t`, too, but for
     /// rounding of its position and velocity.
     pub(crate) fn are_same(&self, t: f64, other: f64) -> bool {
         let apart = (t - other).abs();
@@ -49,12 +49,12 @@ impl FeasibleDurations {
         DRIFT * self.size.at(t, self.vf)
     }
 
-    /// Whether a motion of duration `t` ends at the target but for rounding.
+    /// True if a motion of duration `t` ends at the target but for rounding.
     pub(crate) fn meets(&self, reach: &ExtremalProfile, t: f64) -> bool {
         reach.beyond <= TIGHT * self.size.at(t, reach.w)
     }
 
-    /// Whether the axis can be at its target after `t`.
+    /// True if the axis can be at its target after `t`.
     pub(crate) fn is_feasible(&self, t: f64) -> bool {
         self.change.is_feasible(t) && {
             let (up, down) = (self.up.profile(t), self.down.profile(t));

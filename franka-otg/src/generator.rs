@@ -339,7 +339,7 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// Whether the present state is at rest at the end of the motion.
+    /// True if the present state is at rest at the end of the motion.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.state.position == *self.plan.end() && self.state.is_at_rest()

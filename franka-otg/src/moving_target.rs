@@ -92,7 +92,7 @@ impl MovingTarget {
         self.candidates.iter().filter(|&earlier| earlier < t).last()
     }
 
-    /// Whether the axis can be at its target after `t`, but for rounding.
+    /// True if the axis can be at its target after `t`, but for rounding.
     pub(crate) fn can_take(&self, t: f64) -> bool {
         let feasible = self.feasible();
         feasible.is_feasible(t) || self.same(&feasible, t).is_some()

@@ -40,7 +40,7 @@ impl AxisState {
         }
     }
 
-    /// Whether nothing moves: velocity and acceleration are exactly zero.
+    /// True if nothing moves: velocity and acceleration are exactly zero.
     pub(crate) fn is_at_rest(self) -> bool {
         self.velocity == 0.0 && self.acceleration == 0.0
     }
@@ -81,7 +81,7 @@ impl<const N: usize> State<N> {
         }
     }
 
-    /// Whether nothing moves: all velocities and accelerations are exactly zero.
+    /// True if nothing moves: all velocities and accelerations are exactly zero.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         (0..N).all(|i| self.axis(i).is_at_rest())

@@ -39,7 +39,7 @@ impl VelocityChange {
         self.size
     }
 
-    /// Whether the change can take `t`.
+    /// True if the change can take `t`.
     pub(crate) fn is_feasible(&self, t: f64) -> bool {
         self.is_feasible_within(t, TIGHT * self.size)
     }

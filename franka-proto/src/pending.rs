@@ -13,7 +13,7 @@ pub(crate) const LIMIT: usize = 32;
 pub(crate) struct Entry<C> {
     pub(crate) id: CommandId,
     pub(crate) command: C,
-    /// Whether the first of two answers has been given.
+    /// True if the first of two answers has been given.
     pub(crate) started: bool,
 }
 

@@ -16,7 +16,7 @@ pub struct Episode {
     pub name: String,
     /// What was to be done, in words.
     pub task: String,
-    /// Whether it was done; `None` if nobody judged it.
+    /// True if it was done; `None` if nobody judged it.
     pub success: Option<bool>,
     /// When it began.
     pub begin: HostTime,

@@ -67,7 +67,7 @@ pub enum EventKind {
     },
     /// The episode ends.
     EpisodeEnd {
-        /// Whether the task was done; `None` if nobody judged it.
+        /// True if the task was done; `None` if nobody judged it.
         success: Option<bool>,
     },
     /// A remark of the program, the user or the recorder.
@@ -309,7 +309,7 @@ impl EventKind {
         }
     }
 
-    /// Whether the black box is written for it.
+    /// True if the black box is written for it.
     pub fn is_incident(&self) -> bool {
         match self {
             Self::Outcome(outcome) => outcome.ending.is_incident(),
@@ -317,7 +317,7 @@ impl EventKind {
         }
     }
 
-    /// Whether the cycles around it are kept at the full rate where others are thinned out.
+    /// True if the cycles around it are kept at the full rate where others are thinned out.
     pub(crate) fn is_notable(&self) -> bool {
         match self {
             Self::LinkRestored { .. } | Self::Dropped { .. } | Self::Errors { .. } => true,

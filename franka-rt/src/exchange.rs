@@ -60,14 +60,14 @@ pub struct Exchange {
     reply_to: Option<SockAddr>,
     /// How long each receive waits for a datagram.
     wait: Duration,
-    /// Whether the last receive failed, rather than found nothing.
+    /// True if the last receive failed, rather than found nothing.
     failed: bool,
 }
 
 /// What one call of [`Exchange::receive`] found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reception {
-    /// Whether there is a newer state than before; [`Exchange::state`] has it.
+    /// True if there is a newer state than before; [`Exchange::state`] has it.
     pub fresh: bool,
     /// States that were newer than before and gave way to a still newer one.
     pub skipped: u64,

@@ -73,7 +73,7 @@ impl<T> Sender<T> {
         }
     }
 
-    /// Whether the receiver has been dropped.
+    /// True if the receiver has been dropped.
     pub fn is_abandoned(&self) -> bool {
         self.0.is_abandoned()
     }

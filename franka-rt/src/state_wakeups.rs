@@ -16,7 +16,7 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-/// Whether any subscriber wants a wake-up per state; initially true. Clones are the same one.
+/// True if any subscriber wants a wake-up per state; initially true. Clones are the same one.
 ///
 /// The subscribers are counted elsewhere, by a channel for instance: this is only what the thread
 /// reads.
@@ -48,7 +48,7 @@ impl StateWakeups {
         }
     }
 
-    /// Whether to send a wake-up for every state.
+    /// True to send a wake-up for every state.
     pub fn are_wanted(&self) -> bool {
         // Relaxed: nothing else is read on the strength of it. A request takes effect one state
         // later at worst.

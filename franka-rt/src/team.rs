@@ -138,7 +138,7 @@ pub struct Coordinator {
 pub struct Carrying {
     /// The way that its reference has to go, `[m]`, turns included.
     pub remaining: f64,
-    /// Whether its arm is held back from its reference.
+    /// True if its arm is held back from its reference.
     pub lags: bool,
 }
 
@@ -418,7 +418,7 @@ impl Shared {
         self.seen[usize::from(member)].store(word.0, Ordering::Relaxed);
     }
 
-    /// Whether all members that are left have seen this stop, which is the newest.
+    /// True if all members that are left have seen this stop, which is the newest.
     fn have_all_seen(&self, stop: Word) -> bool {
         let seen = |by: &AtomicU64| [stop, GONE].contains(&Word(by.load(Ordering::Relaxed)));
         self.seen.iter().all(seen)
@@ -482,7 +482,7 @@ impl Word {
         self.0 as u8
     }
 
-    /// Whether this is the newest round, and it has not stopped.
+    /// True if this is the newest round, and it has not stopped.
     fn is_going(self, round: Round) -> bool {
         self.round() == Some(round) && self.stop().is_none()
     }
@@ -503,7 +503,7 @@ impl Word {
         Self(u64::from(round) << 32)
     }
 
-    /// Whether its round comes after that of `other`, also where the numbers begin anew.
+    /// True if its round comes after that of `other`, also where the numbers begin anew.
     fn is_newer_than(self, other: Self) -> bool {
         let ahead = ((self.0 >> 32) as u32).wrapping_sub((other.0 >> 32) as u32);
         other.round().is_none() || 0 < ahead as i32

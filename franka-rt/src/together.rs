@@ -244,7 +244,7 @@ impl StartTicket {
         gate
     }
 
-    /// Whether it is still to be decided whether the motion begins.
+    /// True until it is decided whether the motion begins.
     pub fn is_undecided(&self) -> bool {
         !matches!(self.state, MemberState::Decided(_))
     }

@@ -43,7 +43,7 @@ impl Brake {
         signal
     }
 
-    /// Whether all joints have stopped.
+    /// True if all joints have stopped.
     pub(crate) fn is_over(&self) -> bool {
         self.axes.iter().all(|axis| self.elapsed >= axis.duration())
     }

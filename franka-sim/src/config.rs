@@ -34,13 +34,13 @@ pub struct Config {
     pub seed: u64,
     /// `message_id` of the last cycle before the first: milliseconds since the robot started.
     pub clock: u64,
-    /// Whether commands and motion outside the limits end in a reflex. Without, the arm does what
+    /// True if commands and motion outside the limits end in a reflex. Without, the arm does what
     /// it physically can.
     pub enforce_limits: bool,
     /// Factor on the bounds of acceleration and jerk that commands have to keep in the joints:
     /// above 1 for clients that are rougher than a robot allows. 1 by default.
     pub joint_discontinuity_scale: f64,
-    /// Whether 20 lost commands in a row end in a reflex. Without, a cycle that has no command is
+    /// True if 20 lost commands in a row end in a reflex. Without, a cycle that has no command is
     /// no cycle for the motion generator: it keeps its setpoint until the next command, so that
     /// a client may be slower than 1 kHz or stand in a debugger.
     pub enforce_communication: bool,
@@ -93,7 +93,7 @@ pub struct Tool {
     pub f_t_ne: Matrix4<f64>,
     /// Its mass, centre of mass and inertia: `m_ee`, `F_x_Cee`, `I_ee`.
     pub load: Load,
-    /// Whether it has the shape of the Franka Hand, which the robot keeps off itself. It knows the
+    /// True if it has the shape of the Franka Hand, which the robot keeps off itself. It knows the
     /// shape of no other tool.
     pub has_hand_shape: bool,
 }

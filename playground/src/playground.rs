@@ -21,7 +21,7 @@ pub struct Playground {
     seconds: f64,
     phase: Phase,
     target: Isometry3<f64>,
-    /// Whether the session has not been told of the target yet.
+    /// True if the session has not been told of the target yet.
     is_new: bool,
     goal: Option<GoalId>,
     push: Option<TouchId>,

@@ -17,7 +17,7 @@ const POLLS_MAX: u32 = 60;
 
 type Boxed<'a> = Pin<Box<dyn Future<Output = Result<(), MotionError>> + Send + 'a>>;
 
-/// Whether a future has come to its end, well, within so many polls. It is dropped where it is.
+/// True if a future has come to its end, well, within so many polls. It is dropped where it is.
 async fn ends_within(future: impl Future<Output = Result<(), MotionError>>, polls: u32) -> bool {
     let mut future = pin!(future);
     let mut left = polls;

@@ -26,7 +26,7 @@ pub(crate) enum Treatment {
 pub(crate) struct Manners {
     pub(crate) request: fn(Option<Command>) -> Treatment,
     pub(crate) reply: fn(Vec<u8>) -> Vec<u8>,
-    /// Whether replies go out a byte at a time.
+    /// True if replies go out a byte at a time.
     pub(crate) piecewise: bool,
 }
 

@@ -57,7 +57,7 @@ fn a_pose_through_a_stretched_elbow_or_wrist_is_reached_smoothly() {
     }
 }
 
-/// Whether the pose is reached, and not refused because the arm would come too near itself.
+/// True if the pose is reached, and not refused because the arm would come too near itself.
 fn is_reached_smoothly(mut lockstep: Lockstep, case: usize, target: Isometry3<f64>) -> bool {
     let goal = lockstep.goal(Target::Pose(target), OnArrival::ReportAndFinish);
     let goal = match lockstep.submit(goal) {

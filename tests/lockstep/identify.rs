@@ -109,7 +109,7 @@ fn lags(lockstep: &mut Lockstep, known: Option<Identified>, declared: bool) -> [
     lags
 }
 
-/// Whether an estimate is within so many of its deviations.
+/// True if an estimate is within so many of its deviations.
 fn agrees(found: &Estimate, truth: f64, deviations: f64) -> bool {
     (found.value - truth).abs() < deviations * found.deviation
 }

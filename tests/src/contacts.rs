@@ -206,7 +206,7 @@ fn posture(kind: RobotKind, random: &mut SmallRng) -> JointVector {
     }
 }
 
-/// Whether the parts of an arm with the Hand are well away from each other.
+/// True if the parts of an arm with the Hand are well away from each other.
 pub fn is_clear(q: &JointVector) -> bool {
     Shape::vendor().with_hand().at(q).nearest_pair().distance > 0.03
 }

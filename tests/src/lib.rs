@@ -24,7 +24,7 @@ pub mod push;
 /// end a motion.
 pub const PATIENCE: Duration = Duration::from_millis(100);
 
-/// Whether suites that draw or enumerate many cases run all of them: the variable
+/// True if suites that draw or enumerate many cases run all of them: the variable
 /// `FRANKA_THOROUGH`, as the nightly run sets it. Otherwise they run a sample with all boundaries.
 pub fn thorough() -> bool {
     std::env::var("FRANKA_THOROUGH").is_ok_and(|value| value == "1")

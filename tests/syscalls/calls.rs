@@ -22,12 +22,12 @@ const ALLOWED: &[i64] = &[
 /// The target of an eventfd's descriptor in `/proc`.
 const EVENTFD: &str = "anon_inode:[eventfd]";
 
-/// Whether a cycle may make this call. A `write` is allowed to the eventfd only.
+/// True if a cycle may make this call. A `write` is allowed to the eventfd only.
 pub(crate) fn is_allowed(call: &Call) -> bool {
     ALLOWED.contains(&call.number) || call.target.as_deref() == Some(EVENTFD)
 }
 
-/// Whether this call waits for the robot.
+/// True if this call waits for the robot.
 fn receives(call: &Call) -> bool {
     [libc::SYS_recvfrom, libc::SYS_recvmsg].contains(&call.number)
 }

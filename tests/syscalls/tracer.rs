@@ -25,7 +25,7 @@ use nix::unistd::Pid;
 /// Set in the child.
 const TRACED: &str = "FRANKA_TESTS_TRACED";
 
-/// Whether this process is the traced child.
+/// True if this process is the traced child.
 pub(crate) fn in_the_child() -> bool {
     env::var_os(TRACED).is_some()
 }

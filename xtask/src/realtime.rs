@@ -27,7 +27,7 @@ pub fn obtain() -> Result<(), String> {
 /// Set for the tests where the right is there: the control thread then has to have its priority.
 pub const GRANTED: &str = "FRANKA_REALTIME_GRANTED";
 
-/// Whether a program can be run without input, and succeeds.
+/// True if a program can be run without input, and succeeds.
 pub fn succeeds(line: &[&str]) -> bool {
     let mut command = Command::new(line[0]);
     command.args(&line[1..]).stdin(Stdio::null());

@@ -31,7 +31,7 @@ impl Outcome {
     }
 }
 
-/// Whether nothing that can be checked may be left out: the variable `CI`, as services set it.
+/// True if nothing that can be checked may be left out: the variable `CI`, as services set it.
 pub fn is_ci() -> bool {
     env::var("CI").is_ok_and(|value| value == "true" || value == "1")
 }

@@ -28,17 +28,17 @@ pub(crate) struct Scene {
     pub(crate) q: JointVector,
     /// The events while it moves, in order.
     pub(crate) events: Vec<(When, Event)>,
-    /// Whether the robot keeps the clock on the wall, and waits for late commands. In virtual time
+    /// True if the robot keeps the clock on the wall, and waits for late commands. In virtual time
     /// otherwise, so that no command is late.
     pub(crate) on_the_wall: bool,
-    /// Whether the arm sticks, flexes and lags as real ones do; an ideal one otherwise.
+    /// True if the arm sticks, flexes and lags as real ones do; an ideal one otherwise.
     pub(crate) realistic: bool,
     /// How long each of the robot's milliseconds takes at least: a program that has a rate of its
     /// own is then punctual for the robot, however busy the machine is.
     pub(crate) slow: Duration,
 }
 
-/// Whether the next event is due, from the state and the milliseconds since the motion began.
+/// True if the next event is due, from the state and the milliseconds since the motion began.
 pub(crate) type When = fn(&RobotState, u64) -> bool;
 
 #[derive(Clone, Copy)]

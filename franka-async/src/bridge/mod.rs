@@ -55,9 +55,9 @@ pub(crate) struct Bridge {
     connection: Option<Connection>,
     replies: HashMap<GoalId, (Replies, Span)>,
     started: Instant,
-    /// Whether robot or thread is out of reach, for good.
+    /// True if robot or thread is out of reach, for good.
     lost: bool,
-    /// Whether the thread that runs active control reads no states.
+    /// True if the thread that runs active control reads no states.
     stalled: bool,
     supervisor: Arc<Supervisor>,
     /// The goal that is taken back for a target that was refused.

@@ -222,7 +222,7 @@ impl ActiveError {
     }
 }
 
-/// Whether the robot stopped itself.
+/// True if the robot stopped itself.
 fn needs_recovery(error: &MotionError) -> bool {
     error.control().is_some_and(|error| error.is_reflex())
 }

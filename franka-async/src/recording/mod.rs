@@ -74,7 +74,7 @@ pub struct Track {
     /// Its name in the recording: letters, digits, `-` and `_`; empty by default, which does for
     /// the only robot of a recording.
     pub name: String,
-    /// Whether the metadata has the robot's network address; off by default, as recordings are
+    /// True if the metadata has the robot's network address; off by default, as recordings are
     /// passed on.
     pub with_address: bool,
     /// Cycles that may wait for the recorder: 4 s of them by default.

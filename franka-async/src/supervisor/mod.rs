@@ -73,7 +73,7 @@ struct Inner {
 struct Waiting {
     motion: Beginning,
     replies: Replies,
-    /// Whether its stream of targets has ended.
+    /// True if its stream of targets has ended.
     is_closed: bool,
 }
 
@@ -112,7 +112,7 @@ impl Supervisor {
         }
     }
 
-    /// Whether there is no connection and will be none.
+    /// True if there is no connection and will be none.
     pub(crate) fn is_closed(&self) -> bool {
         self.lock().core.health().condition == Condition::Closed
     }
@@ -122,7 +122,7 @@ impl Supervisor {
         self.lock().core.has_connection()
     }
 
-    /// Whether lost connections and reflexes are acted on, rather than only told.
+    /// True if lost connections and reflexes are acted on, rather than only told.
     pub(crate) fn is_supervised(&self) -> bool {
         self.is_supervised
     }

@@ -51,14 +51,14 @@ pub(crate) struct Status {
     pub(crate) commander: Option<u64>,
     /// Name of the holder of the lease.
     pub(crate) name: Option<String>,
-    /// Whether a hold goes on.
+    /// True if a hold goes on.
     pub(crate) holding: bool,
-    /// Whether the last hold of the commander has ended by silence.
+    /// True if the last hold of the commander has ended by silence.
     pub(crate) expired: bool,
 }
 
 impl Permissions {
-    /// Whether there is anything that takes command.
+    /// True if there is anything that takes command.
     pub(crate) fn any(&self) -> bool {
         self.motion || self.disturbances || self.recording
     }

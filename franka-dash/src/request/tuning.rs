@@ -17,7 +17,7 @@ pub(crate) struct Tuning {
     pub(crate) damping: f64,
     /// With how much force springs and dampers may press, `[N]`.
     pub(crate) force_cap: f64,
-    /// Whether friction and undeclared loads are compensated.
+    /// True if friction and undeclared loads are compensated.
     pub(crate) compensation: bool,
 }
 

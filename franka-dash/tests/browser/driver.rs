@@ -89,7 +89,7 @@ impl Browser {
         self.run("return window.__state ? window.__state() : {}")
     }
 
-    /// Whether the element of this `id` has this text.
+    /// True if the element of this `id` has this text.
     pub(crate) fn shows(&self, id: &str, text: &str) -> anyhow::Result<bool> {
         let all = self.run(&format!(
             "return document.getElementById({id:?}).textContent"

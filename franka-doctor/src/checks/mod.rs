@@ -19,9 +19,9 @@ pub(crate) struct Check {
     pub(crate) wanted: &'static str,
     pub(crate) why: &'static str,
     pub(crate) source: &'static str,
-    /// Whether it reads files and asks drivers only, starting no thread.
+    /// True if it reads files and asks drivers only, starting no thread.
     pub(crate) reads_only: bool,
-    /// Whether it is about the network card on the way to the robot.
+    /// True if it is about the network card on the way to the robot.
     pub(crate) of_card: bool,
     pub(crate) judge: fn(&Readings<'_>) -> Result<Judged, Unread>,
 }

@@ -22,7 +22,7 @@ pub struct DeskState {
     pub mode: Option<String>,
     /// The joints whose brakes are closed, counted from one.
     pub braked: Option<Vec<usize>>,
-    /// Whether FCI is active.
+    /// True if FCI is active.
     pub fci: Option<bool>,
     /// The self-test that is due once a day.
     pub self_test: Option<SelfTest>,

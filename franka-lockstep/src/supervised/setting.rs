@@ -17,7 +17,7 @@ const SHOWN: u64 = 200;
 #[derive(Debug, Default)]
 pub(super) struct Sender {
     queue: VecDeque<Request>,
-    /// Whether the supervision wants its settings sent again.
+    /// True if the supervision wants its settings sent again.
     is_due: bool,
     sent: Option<Sent>,
     /// What counts of each kind: the newest that the robot has not refused.
@@ -28,7 +28,7 @@ pub(super) struct Sender {
 struct Sent {
     id: SettingId,
     request: Request,
-    /// Whether the program has sent it.
+    /// True if the program has sent it.
     is_program: bool,
     /// When it was sent, `[ms]`.
     at: u64,
@@ -36,7 +36,7 @@ struct Sent {
     taken: Option<u64>,
 }
 
-/// Whether a state shows what was set. Of what no state shows: yes.
+/// True if a state shows what was set. Of what no state shows: yes.
 pub fn shows(request: &Request, state: &RobotState) -> bool {
     match request {
         Request::SetLoad(load) => (state.m_load - load.m_load).abs() < 1e-5,
@@ -53,7 +53,7 @@ impl Supervised {
         self.send_settings();
     }
 
-    /// Whether a setting of the program has no answer yet.
+    /// True if a setting of the program has no answer yet.
     pub fn is_setting(&self) -> bool {
         let sent = self.sender.sent.as_ref();
         !self.sender.queue.is_empty() || sent.is_some_and(|sent| sent.is_program)

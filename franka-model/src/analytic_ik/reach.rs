@@ -28,7 +28,7 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// Whether there is a posture.
+    /// True if there is a posture.
     pub fn within(&self) -> bool {
         self.posture.is_some()
     }

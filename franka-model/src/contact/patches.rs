@@ -66,7 +66,7 @@ pub(super) fn visit(capsule: &Capsule, spacing: f64, mut each: impl FnMut(Patch)
     }
 }
 
-/// Whether a point is inside a capsule made thinner by `skin`.
+/// True if a point is inside a capsule made thinner by `skin`.
 pub(super) fn contains(capsule: &Capsule, skin: f64, point: &Vector3<f64>) -> bool {
     let (along, way) = (capsule.end - capsule.start, point - capsule.start);
     let square = dot(&along, &along);

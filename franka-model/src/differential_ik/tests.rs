@@ -280,7 +280,7 @@ const LINE: f64 = 0.12;
 /// Lines of each kind.
 const LINES: usize = if cfg!(debug_assertions) { 28 } else { 140 };
 
-/// Whether every point of a line is more than three centimetres within what the flange can reach.
+/// True if every point of a line is more than three centimetres within what the flange can reach.
 fn reachable(from: &JointVector, direction: &Vector3<f64>, length: f64) -> bool {
     let start = flange(from).translation.vector;
     (0..=5).all(|k| {

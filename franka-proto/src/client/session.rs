@@ -81,7 +81,7 @@ impl<P: Protocol> Session<P> {
         self.version
     }
 
-    /// Whether the handshake is done.
+    /// True if the handshake is done.
     #[must_use]
     pub fn is_connected(&self) -> bool {
         self.phase == ConnectionPhase::Open

@@ -18,7 +18,7 @@ pub struct State {
     pub width: f64,
     /// Distance of the open fingers `[m]`, estimated by homing.
     pub max_width: f64,
-    /// Whether the hand holds an object of the width that was asked for.
+    /// True if the hand holds an object of the width that was asked for.
     pub is_grasped: bool,
     /// Temperature of the hand `[deg C]`.
     pub temperature: u16,

@@ -254,7 +254,7 @@ impl<C: ServiceCommand> Violation<C> {
         }
     }
 
-    /// Whether the session cannot be used any further. A violation in a single reply leaves the
+    /// True if the session cannot be used any further. A violation in a single reply leaves the
     /// others intact.
     #[must_use]
     pub fn is_fatal(&self) -> bool {

@@ -95,7 +95,7 @@ pub enum MotionGeneratorMode {
 }
 
 impl MotionGeneratorMode {
-    /// Whether the client has to feed a generator: any mode but `Idle` and `None`.
+    /// True if the client has to feed a generator: any mode but `Idle` and `None`.
     ///
     /// Protocol 5 has no `None`, and its byte 5 decodes as `Unknown`, so one rule is right for
     /// both versions.
@@ -123,7 +123,7 @@ pub enum ControllerMode {
 }
 
 impl ControllerMode {
-    /// Whether the client has to feed a controller. The robot's own controllers never count.
+    /// True if the client has to feed a controller. The robot's own controllers never count.
     #[must_use]
     pub fn is_running(self) -> bool {
         self == Self::ExternalController

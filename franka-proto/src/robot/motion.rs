@@ -168,7 +168,7 @@ impl MoveCodec {
 pub(crate) trait AsynchronousPart:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned
 {
-    /// Whether the version has it.
+    /// True if the version has it.
     const EXISTS: bool;
     /// How many of [`MoveGeneratorMode::ALL`] the version has.
     const GENERATORS: usize;

@@ -85,7 +85,7 @@ impl<'a> Reply<'a> {
         Some((command, reply))
     }
 
-    /// Whether `command` is answered with this kind of reply.
+    /// True if `command` is answered with this kind of reply.
     #[must_use]
     pub fn suits(&self, command: Command) -> bool {
         match self {

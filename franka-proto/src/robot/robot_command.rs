@@ -27,11 +27,11 @@ pub struct RobotCommand {
     /// Angle of joint 3 `[rad]` and sign of joint 4 (-1, 0 or 1); `None` leaves the redundancy to
     /// the robot.
     pub elbow_c: Option<[f64; 2]>,
-    /// Whether this is the last command of a motion with a generator.
+    /// True if this is the last command of a motion with a generator.
     pub motion_generation_finished: bool,
     /// Joint torques without gravity and friction `[N m]`.
     pub tau_J_d: [f64; 7],
-    /// Whether this is the last command of a torque motion without a generator; protocol 10 only.
+    /// True if this is the last command of a torque motion without a generator; protocol 10 only.
     pub torque_command_finished: bool,
 }
 

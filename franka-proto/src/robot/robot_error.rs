@@ -130,7 +130,7 @@ impl Errors {
         core::array::from_fn(|index| u8::from(self.0 >> index & 1 != 0))
     }
 
-    /// Whether `error` is in the set.
+    /// True if `error` is in the set.
     #[must_use]
     pub fn contains(self, error: RobotError) -> bool {
         self.0 & error.bit() != 0
@@ -152,7 +152,7 @@ impl Errors {
         Self(self.0 | other.0)
     }
 
-    /// Whether there is no error.
+    /// True if there is no error.
     #[must_use]
     pub fn is_empty(self) -> bool {
         self.0 == 0

@@ -32,7 +32,7 @@ impl Version {
         self.table().commands.get(index).copied()
     }
 
-    /// Whether the version has a command.
+    /// True if the version has a command.
     #[must_use]
     pub fn supports(self, command: Command) -> bool {
         self.table().commands.contains(&command)
@@ -60,20 +60,20 @@ impl Version {
         self.table().torque_generator
     }
 
-    /// Whether a robot can plan between sparse joint targets:
+    /// True if a robot can plan between sparse joint targets:
     /// [`MoveRequest::asynchronous`](crate::MoveRequest::asynchronous).
     #[must_use]
     pub fn has_asynchronous_motion(self) -> bool {
         self.table().asynchronous_motion
     }
 
-    /// Whether states carry accelerometers.
+    /// True if states carry accelerometers.
     #[must_use]
     pub fn has_accelerometers(self) -> bool {
         self.table().accelerometers
     }
 
-    /// Whether a control loop with two functions calls the one for the motion generator before the
+    /// True if a control loop with two functions calls the one for the motion generator before the
     /// one for the torques. As in `control_loop.cpp` of libfranka 0.9 (protocol 5: it does) and
     /// 0.21 (protocol 10: it does not).
     #[must_use]

@@ -11,7 +11,7 @@ pub struct VirtualWall {
     pub object_world_size: [f64; 3],
     /// Pose of the cuboid in the base frame, column-major `[m]` (libfranka's `p_frame`).
     pub object_frame: [f64; 16],
-    /// Whether the wall is active.
+    /// True if the wall is active.
     pub object_activation: bool,
 }
 

@@ -14,11 +14,11 @@ use crate::wire::vacuum::VacuumGripperState;
 pub struct State {
     /// The gripper's clock `[ms]`.
     pub message_id: u32,
-    /// Whether the vacuum is inside its range.
+    /// True if the vacuum is inside its range.
     pub in_control_range: bool,
-    /// Whether the object has been dropped off.
+    /// True if the object has been dropped off.
     pub part_detached: bool,
-    /// Whether the gripper holds an object.
+    /// True if the gripper holds an object.
     pub part_present: bool,
     /// Light of the device.
     pub device_status: DeviceStatus,

@@ -6,7 +6,7 @@ use std::time::Duration;
 /// How often threads look whether to stop.
 pub(super) const TICK: Duration = Duration::from_millis(20);
 
-/// Whether nothing came within the time that a socket waits.
+/// True if nothing came within the time that a socket waits.
 pub(super) fn is_timeout(error: &io::Error) -> bool {
     matches!(
         error.kind(),

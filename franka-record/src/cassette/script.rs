@@ -143,7 +143,7 @@ impl Script {
         }
     }
 
-    /// Whether a datagram of the client ends a motion.
+    /// True if a datagram of the client ends a motion.
     pub(super) fn finishes(&self, datagram: &[u8]) -> bool {
         let version = Version::from_number(self.version);
         version.is_some_and(|version| {

@@ -70,7 +70,7 @@ fn generator(rows: &[Row]) -> Option<Generator> {
     }
 }
 
-/// Whether zeros may be a command: of velocities and torques, but for the first of a motion.
+/// True if zeros may be a command: of velocities and torques, but for the first of a motion.
 fn may_rest(generator: Option<Generator>, has_torques: bool, before: Option<RobotState>) -> bool {
     let is_velocity = matches!(
         generator,

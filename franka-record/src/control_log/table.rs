@@ -86,7 +86,7 @@ fn generation(line: &str) -> Option<Generation> {
     }
 }
 
-/// Whether a line below the names belongs to the table. What is cut or garbled does, too: an empty
+/// True if a line below the names belongs to the table. What is cut or garbled does, too: an empty
 /// line, or one of words, ends it.
 fn is_row(line: &str) -> bool {
     let line = line.trim();

@@ -19,7 +19,7 @@ pub struct Place {
     /// Over how long the tare was learned, `[s]`. With little, what the torques read without any
     /// contact is in the estimate.
     pub tared: f64,
-    /// Whether the flange was taken to carry a Hand.
+    /// True if the flange was taken to carry a Hand.
     pub has_hand: bool,
     /// Whether the robot itself noticed a contact or collision in the last 100 ms, or since the
     /// end. Without that and without a stop, the estimate is of an untouched arm.

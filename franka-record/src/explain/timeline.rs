@@ -59,7 +59,7 @@ pub(super) struct Timeline {
     collisions: [Option<u64>; AXES],
     guards: [Option<u64>; Guard::ALL.len()],
     last_loss: Option<u64>,
-    /// Whether goals are told by events.
+    /// True if goals are told by events.
     has_goals: bool,
     /// The newest end of a motion, and the moments until shortly after it, as soon as there are
     /// others.

@@ -22,7 +22,7 @@ pub(super) struct DiskStatus {
     pub(super) written: u64,
     /// Cycles in what could not be written.
     pub(super) cycles_lost: u64,
-    /// Whether a file of the black box waits for the disk.
+    /// True if a file of the black box waits for the disk.
     pub(super) black_box_waits: bool,
     /// The files of the recording, oldest first.
     pub(super) files: Vec<PathBuf>,
@@ -91,7 +91,7 @@ impl Disk {
         lock(&self.status).backlog
     }
 
-    /// Whether the recording can go on.
+    /// True if the recording can go on.
     pub(super) fn is_well(&self) -> bool {
         lock(&self.status).error.is_none()
     }
@@ -212,7 +212,7 @@ struct Open {
     file: File,
     /// Its length: all of it whole chunks.
     length: u64,
-    /// Whether some of it may not have reached the disk.
+    /// True if some of it may not have reached the disk.
     dirty: bool,
 }
 

@@ -36,9 +36,9 @@ pub(super) struct DrainStatus {
     pub(super) cycles: u64,
     pub(super) dropped: u64,
     pub(super) events_dropped: u64,
-    /// Whether to end.
+    /// True to end.
     pub(super) finish: bool,
-    /// Whether it has ended.
+    /// True if it has ended.
     pub(super) ended: bool,
 }
 

@@ -17,7 +17,7 @@ pub(super) struct Message {
     pub(super) topic: Topic,
     pub(super) time: HostTime,
     pub(super) data: Box<[u8]>,
-    /// Whether the cycles around it are worth keeping at the full rate.
+    /// True if the cycles around it are worth keeping at the full rate.
     pub(super) notable: bool,
 }
 

@@ -22,7 +22,7 @@ pub(super) struct Files {
     disk: Disk,
     /// The file that grows; `None` without one, and after a failure.
     open: Option<Open>,
-    /// Whether there was to be a file.
+    /// True if there was to be a file.
     wanted: bool,
     last_seconds: Option<LastSeconds>,
     thinning: Option<Thinning>,
@@ -237,7 +237,7 @@ impl Files {
         }
     }
 
-    /// Whether the next messages of a robot are its first ones in a chunk; true once per chunk.
+    /// True if the next messages of a robot are its first ones in a chunk; true once per chunk.
     pub(super) fn begins_chunk(&mut self, robot: usize) -> bool {
         let chunk = Some(self.chunk);
         let robot = self.robots.get_mut(robot);

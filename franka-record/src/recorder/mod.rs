@@ -343,7 +343,7 @@ impl RecordHandle {
         self.order(Order::Gripper(self.robot, time, state));
     }
 
-    /// Whether the recording has ended: nothing that is given to this handle is kept any more.
+    /// True if the recording has ended: nothing that is given to this handle is kept any more.
     pub fn has_ended(&self) -> bool {
         lock(&self.drained).ended
     }

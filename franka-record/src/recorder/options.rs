@@ -20,7 +20,7 @@ pub struct RecordOptions {
     pub thinned: bool,
     /// The longest time between two writes, 1 s by default and at most: what a crash can lose.
     pub flush: Duration,
-    /// Whether each write is forced to the disk, so that a power cut loses no more than a crash.
+    /// True if each write is forced to the disk, so that a power cut loses no more than a crash.
     /// On by default; it costs nothing to the robot, as a thread of its own waits for the disk.
     pub sync: bool,
     /// When a new file is begun: `run.mcap` is followed by `run-0002.mcap` and so on, without

@@ -74,7 +74,7 @@ impl Chunk {
         Some((kind, body))
     }
 
-    /// Whether records are left that cannot be read.
+    /// True if records are left that cannot be read.
     pub(super) fn is_cut(&self) -> bool {
         self.next < self.records.len()
     }

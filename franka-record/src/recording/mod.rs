@@ -204,7 +204,7 @@ impl Recording {
         Ok(())
     }
 
-    /// Whether the channels of every robot are known.
+    /// True if the channels of every robot are known.
     fn knows_channels(&self) -> bool {
         let schema = Topic::Gripper.schema();
         self.robots.iter().all(|robot| {

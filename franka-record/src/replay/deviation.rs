@@ -67,7 +67,7 @@ impl ReplayDeviation {
         self.joints.len()
     }
 
-    /// Whether none was.
+    /// True if none was.
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty()
     }

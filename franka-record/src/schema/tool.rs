@@ -23,7 +23,7 @@ impl franka::Tool {
         }
     }
 
-    /// Whether `state` names the same tool.
+    /// True if `state` names the same tool.
     pub fn is_of(&self, state: &RobotState) -> bool {
         self.f_t_ee == state.F_T_EE
             && self.ee_t_k == state.EE_T_K

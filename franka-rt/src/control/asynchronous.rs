@@ -17,7 +17,7 @@ pub struct AsynchronousPositions {
 pub struct AsynchronousTarget {
     /// Where to go, and to stay, `[rad]`.
     pub q: [f64; 7],
-    /// Whether this ends the motion.
+    /// True if this ends the motion.
     pub finished: bool,
 }
 

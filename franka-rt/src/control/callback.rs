@@ -27,7 +27,7 @@ pub struct Callback {
     torques: Option<Source<Torques>>,
     /// `message_id` of the state before.
     previous: Option<u64>,
-    /// Whether the arm has been held, so that the newest command is the one that holds it.
+    /// True if the arm has been held, so that the newest command is the one that holds it.
     held: bool,
 }
 
@@ -92,7 +92,7 @@ impl Callback {
         }
     }
 
-    /// Whether it commands torques.
+    /// True if it commands torques.
     pub fn commands_torques(&self) -> bool {
         self.torques.is_some()
     }

@@ -20,7 +20,7 @@ impl Modes {
         }
     }
 
-    /// Whether a motion generator takes commands.
+    /// True if a motion generator takes commands.
     pub fn has_generator(self) -> bool {
         !matches!(
             self.generator,
@@ -28,12 +28,12 @@ impl Modes {
         )
     }
 
-    /// Whether the joints take torques.
+    /// True if the joints take torques.
     pub fn is_external(self) -> bool {
         self.controller == ControllerMode::ExternalController
     }
 
-    /// Whether `state` shows both modes. `robot_mode` is not compared: it may change later than the
+    /// True if `state` shows both modes. `robot_mode` is not compared: it may change later than the
     /// modes at the start.
     pub fn shown_by(&self, state: &RobotState) -> bool {
         state.motion_generator_mode == self.generator && state.controller_mode == self.controller

@@ -18,7 +18,7 @@ pub enum Commander {
 }
 
 impl Commander {
-    /// Whether a command says where to be a cycle later, so that differences of commands are what
+    /// True if a command says where to be a cycle later, so that differences of commands are what
     /// the joints are to do. A target that the robot plans to is not that, and only new targets are
     /// sent.
     pub fn commands_every_cycle(self) -> bool {

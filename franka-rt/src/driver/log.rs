@@ -83,7 +83,7 @@ impl ControlLog {
         self.len
     }
 
-    /// Whether it holds none.
+    /// True if it holds none.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }

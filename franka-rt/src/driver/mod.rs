@@ -122,7 +122,7 @@ impl Driver {
         self.link_timeout
     }
 
-    /// Whether no motion is armed, running or finishing.
+    /// True if no motion is armed, running or finishing.
     pub fn is_watching(&self) -> bool {
         self.motion.is_none()
     }

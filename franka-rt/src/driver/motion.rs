@@ -57,7 +57,7 @@ impl Execution {
         ticket.pass(state.message_id)
     }
 
-    /// Whether the robot has begun it, and has not left it.
+    /// True if the robot has begun it, and has not left it.
     pub(super) fn has_begun(&self) -> bool {
         matches!(
             self.phase,
@@ -94,7 +94,7 @@ impl Execution {
         self.program.leave_team();
     }
 
-    /// Whether the robot no longer runs the motion.
+    /// True if the robot no longer runs the motion.
     pub(super) fn is_left_by(&self, state: &RobotState) -> bool {
         !self.modes.shown_by(state) || state.robot_mode != RobotMode::Move
     }

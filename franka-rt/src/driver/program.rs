@@ -34,7 +34,7 @@ pub(super) enum CycleOutcome {
 }
 
 impl Program {
-    /// Whether everything that it computes with is finite in `state`. A command computed from
+    /// True if everything that it computes with is finite in `state`. A command computed from
     /// non-finite values must not reach the motors.
     pub(super) fn can_read(&self, state: &RobotState) -> bool {
         let numbers = state.q.iter().chain(&state.dq).chain(&state.tau_J_d);
@@ -46,7 +46,7 @@ impl Program {
             }
     }
 
-    /// Whether the first goal of the motion has been cancelled or replaced. Called only while the
+    /// True if the first goal of the motion has been cancelled or replaced. Called only while the
     /// motion waits for others.
     pub(super) fn is_withdrawn(&mut self) -> bool {
         match self {
@@ -76,7 +76,7 @@ impl Program {
         }
     }
 
-    /// Whether it brings an arm that it moves to rest by itself once its goal asks for that.
+    /// True if it brings an arm that it moves to rest by itself once its goal asks for that.
     pub(super) fn brakes(&self) -> bool {
         matches!(self, Self::Target(_))
     }

@@ -53,7 +53,7 @@ impl BlendedGains {
         }
     }
 
-    /// Whether the inertia at the end effector is needed.
+    /// True if the inertia at the end effector is needed.
     pub(crate) fn needs_task_space(&self) -> bool {
         self.projection > 0.0 || self.operational > 0.0 || self.inverse_force_cap > 0.0
     }

@@ -39,7 +39,7 @@ pub struct Gains {
     /// Cutoff frequency of the first-order low-pass on that reference velocity, `[Hz]`; at 1000 it
     /// is off, as a filter of libfranka is.
     pub feedforward_cutoff: f64,
-    /// Whether the joints' springs and dampers act only in the null space of the end effector,
+    /// True if the joints' springs and dampers act only in the null space of the end effector,
     /// where they move the elbow but do not push at the hand. [`Law::OperationalSpace`] always does
     /// this.
     pub project_joint_gains: bool,

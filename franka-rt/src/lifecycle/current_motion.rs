@@ -130,13 +130,13 @@ impl CurrentMotion {
         }))
     }
 
-    /// Whether one of its sides has ended.
+    /// True if one of its sides has ended.
     pub(super) fn is_ending(&self) -> bool {
         matches!(self.thread, ThreadSide::Ended(_))
             || matches!(self.command, CommandSide::Ended(_) | CommandSide::Cancelled)
     }
 
-    /// Whether it is coming to its end, and no caller wants it to go on.
+    /// True if it is coming to its end, and no caller wants it to go on.
     pub(super) fn is_letting_go(&self) -> bool {
         self.is_ending()
             || self.stopped.is_some()
@@ -154,7 +154,7 @@ impl CurrentMotion {
         since.map(|since| since + END_TIMEOUT)
     }
 
-    /// Whether it takes goals from callers outside a session: it is neither a program nor a session
+    /// True if it takes goals from callers outside a session: it is neither a program nor a session
     /// that goes on.
     pub(super) fn takes_goals(&self) -> bool {
         match &self.work {
@@ -163,7 +163,7 @@ impl CurrentMotion {
         }
     }
 
-    /// Whether the robot has neither said that the motion is over nor been given up.
+    /// True if the robot has neither said that the motion is over nor been given up.
     pub(super) fn is_open(&self) -> bool {
         matches!(self.command, CommandSide::Requested | CommandSide::Started)
     }
@@ -240,7 +240,7 @@ impl ControlError {
     }
 }
 
-/// Whether the robot did not let the motion begin, rather than ended it before the thread saw it
+/// True if the robot did not let the motion begin, rather than ended it before the thread saw it
 /// run.
 fn is_rejection(status: MoveStatus) -> bool {
     matches!(

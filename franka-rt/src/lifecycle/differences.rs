@@ -20,7 +20,7 @@ pub struct Differences {
 }
 
 impl Differences {
-    /// Whether nothing differs.
+    /// True if nothing differs.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }

@@ -269,12 +269,12 @@ impl Lifecycle {
         }
     }
 
-    /// Whether the motion under way has ended on one side.
+    /// True if the motion under way has ended on one side.
     pub(super) fn is_ending(&self) -> bool {
         matches!(&self.phase, LifecyclePhase::UnderWay(current) if current.is_ending())
     }
 
-    /// Whether a session that goes from goal to goal has the arm.
+    /// True if a session that goes from goal to goal has the arm.
     pub(super) fn is_engaged(&self) -> bool {
         self.goals().is_some_and(|goals| goals.engaged.is_some())
     }

@@ -20,7 +20,7 @@ pub(super) struct Goals {
     pub(super) slot: SlotWriter<Goal>,
     /// The newest goal.
     pub(super) current: Goal,
-    /// Whether its owner has taken it back.
+    /// True if its owner has taken it back.
     pub(super) cancelled: bool,
     pub(super) settled: Option<Settled>,
     pub(super) bad_tool: bool,
@@ -50,7 +50,7 @@ pub(super) struct Engaged {
     /// Names the caller that awaits its end. Between goals it is the name of the goal that the arm
     /// holds, too.
     pub(super) id: GoalId,
-    /// Whether its end is what was asked for.
+    /// True if its end is what was asked for.
     pub(super) disengaged: bool,
 }
 
@@ -95,7 +95,7 @@ impl Goals {
         Ok(())
     }
 
-    /// Whether a chunk or a path can be sent. Frees those that the session is done with.
+    /// True if a chunk or a path can be sent. Frees those that the session is done with.
     pub(super) fn has_room(&mut self) -> bool {
         while let Some(done) = self.chunks.collect() {
             drop(done);
@@ -141,7 +141,7 @@ impl Goals {
         (!is_session).then_some((previous, result))
     }
 
-    /// Whether goals are still taken.
+    /// True if goals are still taken.
     pub(super) fn goes_on(&self) -> bool {
         self.current.on_arrival != OnArrival::ReportAndFinish
     }
@@ -202,7 +202,7 @@ impl Goals {
         Some((engaged.id, result))
     }
 
-    /// Whether the motion ended well with an older goal than the current one.
+    /// True if the motion ended well with an older goal than the current one.
     pub(super) fn came_too_late(&self, command: CommandSide, ended: &Ended) -> bool {
         let Program::Target(session) = &ended.program else {
             return false;

@@ -239,7 +239,7 @@ impl Lifecycle {
         }
     }
 
-    /// Whether the thread is still needed after the end of the connection: to brake an arm that was
+    /// True if the thread is still needed after the end of the connection: to brake an arm that was
     /// on its way to a goal.
     pub fn is_braking(&self) -> bool {
         matches!(

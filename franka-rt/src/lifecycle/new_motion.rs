@@ -86,7 +86,7 @@ impl NewMotion {
         }
     }
 
-    /// Whether it is a goal of a session.
+    /// True if it is a goal of a session.
     pub(crate) fn is_within_a_session(&self) -> bool {
         matches!(
             self,
@@ -97,7 +97,7 @@ impl NewMotion {
         )
     }
 
-    /// Whether it begins together with those of other robots.
+    /// True if it begins together with those of other robots.
     pub(crate) fn has_ticket(&self) -> bool {
         match self {
             Self::Goal { ticket, .. } | Self::Program { ticket, .. } => ticket.is_some(),
@@ -105,12 +105,12 @@ impl NewMotion {
         }
     }
 
-    /// Whether it gives way to a newer goal.
+    /// True if it gives way to a newer goal.
     pub(crate) fn is_superseded_by_goals(&self) -> bool {
         matches!(self, Self::Goal { .. })
     }
 
-    /// Whether it supersedes older goals.
+    /// True if it supersedes older goals.
     pub(crate) fn supersedes_goals(&self) -> bool {
         matches!(self, Self::Goal { ticket: None, .. })
     }

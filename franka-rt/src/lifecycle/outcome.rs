@@ -254,7 +254,7 @@ pub enum MotionError {
 }
 
 impl MotionError {
-    /// Whether the robot accepts a new motion afterwards without help from outside.
+    /// True if the robot accepts a new motion afterwards without help from outside.
     ///
     /// After a reflex the robot has to be recovered first; after a lost link or connection,
     /// reconnected to. A control function that fails may have left it without commands for long
@@ -472,7 +472,7 @@ impl ControlError {
         }
     }
 
-    /// Whether the robot stopped itself for one of the reasons in
+    /// True if the robot stopped itself for one of the reasons in
     /// [`ControlFailure::reflex_reason`], and has to be recovered.
     pub fn is_reflex(&self) -> bool {
         self.failure.refusal.status() == Status::Move(MoveStatus::ReflexAborted)

@@ -50,7 +50,7 @@ pub enum Unready {
 }
 
 impl Unready {
-    /// Whether the supervisor is about to end it. Everything else is up to the people at the robot.
+    /// True if the supervisor is about to end it. Everything else is up to the people at the robot.
     pub fn is_passing(self) -> bool {
         matches!(
             self,

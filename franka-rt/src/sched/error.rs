@@ -74,7 +74,7 @@ impl SchedError {
         }
     }
 
-    /// Whether the caller asked for an option that is out of range, which no host grants.
+    /// True if the caller asked for an option that is out of range, which no host grants.
     pub fn is_misuse(&self) -> bool {
         matches!(
             self,

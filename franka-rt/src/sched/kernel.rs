@@ -21,7 +21,7 @@ pub struct Kernel {
     pub version: String,
     /// Contents of `/sys/kernel/realtime`; `None` if it cannot be read.
     pub flag: Option<String>,
-    /// Whether the kernel's configuration file has `CONFIG_PREEMPT_RT=y`; `None` if there is no
+    /// True if the kernel's configuration file has `CONFIG_PREEMPT_RT=y`; `None` if there is no
     /// file that can be read.
     pub configured: Option<bool>,
 }
@@ -51,12 +51,12 @@ impl Kernel {
         }
     }
 
-    /// Whether any of the readings shows a real-time kernel.
+    /// True if any of the readings shows a real-time kernel.
     pub fn is_realtime(&self) -> bool {
         self.names_realtime() || self.flag.as_deref() == Some("1") || self.configured == Some(true)
     }
 
-    /// Whether the version text has the word `PREEMPT_RT` or, as kernels with the older patch, the
+    /// True if the version text has the word `PREEMPT_RT` or, as kernels with the older patch, the
     /// words `PREEMPT RT`. `PREEMPT` and `PREEMPT_DYNAMIC` are not real-time kernels.
     fn names_realtime(&self) -> bool {
         let words: Vec<&str> = self.version.split_whitespace().collect();
@@ -92,7 +92,7 @@ fn configuration_files(release: &str) -> [PathBuf; 2] {
     ]
 }
 
-/// Whether the running kernel is a real-time one, by [`Kernel::is_realtime`].
+/// True if the running kernel is a real-time one, by [`Kernel::is_realtime`].
 pub fn kernel_is_realtime() -> bool {
     Kernel::read().is_realtime()
 }

@@ -11,7 +11,7 @@ pub(super) struct Aim {
     pub(super) goal: GoalId,
     pub(super) target: Target,
     pub(super) budget: Budget,
-    /// Whether to stop on the way.
+    /// True to stop on the way.
     pub(super) paused: bool,
     /// The leash of hand guiding, in this cycle.
     pub(super) leash: Leash,

@@ -83,7 +83,7 @@ fn range_of(i: usize, robot: &JointLimits, acceleration: f64) -> (f64, f64) {
     (middle, middle)
 }
 
-/// Whether the braking of `plan` keeps inside the envelope at every speed up to the plan's.
+/// True if the braking of `plan` keeps inside the envelope at every speed up to the plan's.
 fn keeps(deceleration: f64, offset: f64, room: f64, plan: &AxisLimits) -> bool {
     let excess = |v: f64| {
         0.5 * (v + offset) * (v + offset) / deceleration - 0.5 * v * v / plan.acceleration - room

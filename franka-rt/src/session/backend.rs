@@ -170,7 +170,7 @@ impl Backend {
         MoveRequest::new(controller, generator)
     }
 
-    /// Whether the robot's inverse kinematics stands between its setpoints and the joints: it takes
+    /// True if the robot's inverse kinematics stands between its setpoints and the joints: it takes
     /// poses only.
     pub fn is_cartesian(self) -> bool {
         use Setpoints::{CartesianPoses, CartesianVelocities};
@@ -183,7 +183,7 @@ impl Backend {
         )
     }
 
-    /// Whether commands of a session with this backend pass through `guard`.
+    /// True if commands of a session with this backend pass through `guard`.
     ///
     /// The guards of the reference hold under every backend. Those of the torques, and the two that
     /// move the reference with an arm that is pushed away, are the session's own law's: the robot's
@@ -278,7 +278,7 @@ impl Backend {
         Some(model.clone().with_joint_limits(limits))
     }
 
-    /// Whether the desired state of the robot, which setpoints go on from, is finite where it is
+    /// True if the desired state of the robot, which setpoints go on from, is finite where it is
     /// read.
     pub(super) fn can_read(self, state: &RobotState) -> bool {
         if self == Self::Torques {

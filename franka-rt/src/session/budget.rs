@@ -197,7 +197,7 @@ pub(crate) fn beside(speed: f64, most: f64) -> (f64, f64) {
     (kept, most - kept)
 }
 
-/// Whether a motion at `velocity` and `acceleration` keeps `limits`, to one per cent.
+/// True if a motion at `velocity` and `acceleration` keeps `limits`, to one per cent.
 pub(crate) fn keeps(limits: &AxisLimits, velocity: f64, acceleration: f64) -> bool {
     velocity.abs() <= 1.01 * limits.velocity && acceleration.abs() <= 1.01 * limits.acceleration
 }
@@ -238,7 +238,7 @@ impl Leg {
         squares.map(f64::sqrt)
     }
 
-    /// Whether velocity and acceleration lie on the line of the way, to a millionth of their size.
+    /// True if velocity and acceleration lie on the line of the way, to a millionth of their size.
     fn is_straight(&self) -> bool {
         let on_line =
             |v: &Vector3<f64>| self.way.cross(v).norm() <= 1e-6 * self.way.norm() * v.norm();

@@ -39,11 +39,11 @@ pub(super) struct CourseStep {
     pub(super) reference: Reference,
     /// The bounds that held joints back on the way to a pose.
     pub(super) bounds: BoundsReached,
-    /// Whether the pose was held at joints that did not keep up.
+    /// True if the pose was held at joints that did not keep up.
     pub(super) held: bool,
-    /// Whether a leash of the course's own moved the reference with the arm.
+    /// True if a leash of the course's own moved the reference with the arm.
     pub(super) leashed: bool,
-    /// Whether no plan could be made for a pose that was held.
+    /// True if no plan could be made for a pose that was held.
     pub(super) failed: bool,
 }
 
@@ -228,7 +228,7 @@ impl Course {
         }
     }
 
-    /// Whether the course has come to its end.
+    /// True if the course has come to its end.
     pub(super) fn is_done(&self) -> bool {
         match self {
             Self::Rest => true,

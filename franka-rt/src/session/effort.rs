@@ -40,7 +40,7 @@ pub(super) struct Effort {
     asked: JointVector,
     /// Torques that the law demanded in the last cycle, before low-pass and rate limit, `[N m]`.
     demanded: JointVector,
-    /// Whether clamp or force cap bound in the last cycle.
+    /// True if clamp or force cap bound in the last cycle.
     bound: bool,
 }
 
@@ -147,7 +147,7 @@ impl Effort {
         LimitedTorque::worst(&self.asked, &most)
     }
 
-    /// Whether the compensation still grows, to move a joint that rests away from its target.
+    /// True if the compensation still grows, to move a joint that rests away from its target.
     pub(super) fn is_working(&self) -> bool {
         self.compensation.is_working()
     }

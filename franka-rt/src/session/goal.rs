@@ -88,7 +88,7 @@ impl Target {
     /// 5 Hz is followed without a pause.
     pub const MOVES_ON_MS: u64 = 200;
 
-    /// Whether it moves.
+    /// True if it moves.
     pub fn moves(&self) -> bool {
         matches!(self, Self::MovingJoints { .. } | Self::MovingPose { .. })
     }
@@ -204,10 +204,10 @@ pub struct Goal {
     /// effector rests, and a goal arrives when both rest. `None` keeps the elbow, while the end
     /// effector moves, near where the session began.
     pub posture: Option<[f64; 7]>,
-    /// Whether it leads along a path to its target. The path is sent beside it, as a chunk: without
+    /// True if it leads along a path to its target. The path is sent beside it, as a chunk: without
     /// one the arm rests.
     pub along_path: bool,
-    /// Whether the arm is to stop on its way, within the budget, and to stay there until this is
+    /// True if the arm is to stop on its way, within the budget, and to stay there until this is
     /// taken back.
     pub paused: bool,
     /// Condition that ends the motion early. A goal keeps the condition that it began with.

@@ -80,7 +80,7 @@ impl JointGenerator {
         Ok(())
     }
 
-    /// Whether the plan leads to the very motion of `target` already, but for rounding.
+    /// True if the plan leads to the very motion of `target` already, but for rounding.
     fn is_followed(
         &self,
         target: &MovingJoints,
@@ -157,7 +157,7 @@ impl JointGenerator {
         f64::from(self.cycles) * CYCLE
     }
 
-    /// Whether the joints rest at the end of the plan.
+    /// True if the joints rest at the end of the plan.
     pub(super) fn is_done(&self) -> bool {
         self.axes.is_done()
     }

@@ -20,7 +20,7 @@ const FEEDBACK: f64 = 100.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Posture {
     q: JointVector,
-    /// Whether a goal asks for it. If not, it is only kept while the end effector moves: the rate
+    /// True if a goal asks for it. If not, it is only kept while the end effector moves: the rate
     /// fades with the speed, so that an arm at its target rests.
     asked: bool,
 }
@@ -48,7 +48,7 @@ impl Posture {
         Self { q, asked: true }
     }
 
-    /// Whether a goal asks for it.
+    /// True if a goal asks for it.
     pub(super) fn is_asked(&self) -> bool {
         self.asked
     }

@@ -164,7 +164,7 @@ impl Landing {
         self.target
     }
 
-    /// Whether the arm, measured at one pose, rests at the pose of its `reference`, and that one is
+    /// True if the arm, measured at one pose, rests at the pose of its `reference`, and that one is
     /// short of the target.
     pub(super) fn is_short_at(
         &self,

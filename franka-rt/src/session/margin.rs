@@ -40,7 +40,7 @@ impl Margin {
     /// The least that gains should have, on either side.
     pub const WANTED: f64 = 2.0;
 
-    /// Whether both are as wanted.
+    /// True if both are as wanted.
     pub fn is_wanted(&self) -> bool {
         self.damping >= Self::WANTED && self.stiffness >= Self::WANTED
     }

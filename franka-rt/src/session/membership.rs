@@ -15,7 +15,7 @@ pub(super) struct Membership {
     waiting: Option<(Round, Goal)>,
     /// The goal of a round that has begun.
     pursued: Option<Pursued>,
-    /// Whether the team has been told that the session has a fault, since its newest state.
+    /// True if the team has been told that the session has a fault, since its newest state.
     has_failed: bool,
     /// How far it is with an object that the team carries, if it does.
     carrying: Option<Carrying>,
@@ -128,7 +128,7 @@ impl Membership {
         true
     }
 
-    /// Whether the reference has to wait for the arms that carry the same object, this one
+    /// True if the reference has to wait for the arms that carry the same object, this one
     /// included.
     pub(super) fn waits(&self) -> bool {
         let (Some(pursued), Some(own)) = (self.pursued, self.carrying) else {

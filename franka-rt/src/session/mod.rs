@@ -262,7 +262,7 @@ impl TargetSession {
         self.chunks.as_mut()?.take(goal)
     }
 
-    /// Whether everything that the session computes with beside measured joints and torques is
+    /// True if everything that the session computes with beside measured joints and torques is
     /// finite in `state`.
     pub(crate) fn can_read(&self, state: &RobotState) -> bool {
         self.backend.can_read(state)

@@ -270,7 +270,7 @@ impl PoseGenerator {
         self.axes.time_to_target()
     }
 
-    /// Whether the pose rests at the target.
+    /// True if the pose rests at the target.
     pub(crate) fn is_done(&self) -> bool {
         self.axes.is_done()
     }

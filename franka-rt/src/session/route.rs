@@ -30,7 +30,7 @@ pub(super) struct Route {
     pub(super) course: Course,
     clearance: Clearance,
     pace: Pace,
-    /// Whether the course has to be planned anew before its next step: for another target, budget
+    /// True if the course has to be planned anew before its next step: for another target, budget
     /// or pace.
     stale: bool,
     /// Cycles for which it still counts as hindered.
@@ -44,10 +44,10 @@ pub(super) struct Route {
     pub(super) retired_chunk: Option<ChunkCourse>,
     /// Where the goal's last chunk has ended, if none runs.
     pub(super) chunk_end: Option<Target>,
-    /// Whether a brake has ended the chunk on its way. The straight line to its end is no way that
+    /// True if a brake has ended the chunk on its way. The straight line to its end is no way that
     /// anybody asked for: the course rests until another target or chunk comes.
     left_chunk: bool,
-    /// Whether a plan could not be made since the last answer.
+    /// True if a plan could not be made since the last answer.
     failed: bool,
 }
 
@@ -121,7 +121,7 @@ impl Route {
         self.failed |= planned.is_err();
     }
 
-    /// Whether a plan could not be made since this was asked last.
+    /// True if a plan could not be made since this was asked last.
     pub(super) fn take_failure(&mut self) -> bool {
         core::mem::take(&mut self.failed)
     }
@@ -303,7 +303,7 @@ impl Route {
         step
     }
 
-    /// Whether something near slows the course down or keeps it from its aim.
+    /// True if something near slows the course down or keeps it from its aim.
     pub(super) fn is_bound(&self) -> bool {
         !matches!(self.pace, Pace::Full)
     }
@@ -314,7 +314,7 @@ impl Route {
         (self.hindered > 0).then_some(Lapse::Blocked { region })
     }
 
-    /// Whether the course has come to the end of its way.
+    /// True if the course has come to the end of its way.
     pub(super) fn is_done(&self) -> bool {
         !self.stale && self.course.is_done() && !matches!(self.pace, Pace::Braked(_))
     }

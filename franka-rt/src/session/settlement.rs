@@ -90,7 +90,7 @@ pub enum Lapse {
 }
 
 impl Lapse {
-    /// Whether no update brings the goal back.
+    /// True if no update brings the goal back.
     pub(super) fn is_final(self) -> bool {
         match self {
             Self::Silent { .. } => false,

@@ -64,7 +64,7 @@ impl Attempts {
         may
     }
 
-    /// Whether another attempt may be made at `now`.
+    /// True if another attempt may be made at `now`.
     pub(super) fn may(&mut self, most: u32, window: Duration, now: Duration) -> bool {
         self.forget(window, now);
         self.0.len() < most as usize

@@ -89,7 +89,7 @@ impl Configuration {
 #[derive(Debug)]
 pub(super) struct Silent {
     pub(super) since: Duration,
-    /// Whether the connection is about to be closed for it.
+    /// True if the connection is about to be closed for it.
     pub(super) is_given_up: bool,
 }
 
@@ -98,7 +98,7 @@ pub(super) struct Silent {
 pub(super) struct Loss {
     pub(super) since: Duration,
     pub(super) reason: CloseReason,
-    /// Whether there will be no other one.
+    /// True if there will be no other one.
     pub(super) is_final: bool,
     /// Attempts to connect that failed since, or did not last.
     pub(super) failed: u32,
@@ -191,7 +191,7 @@ impl Connection {
         }
     }
 
-    /// Whether what this program has set at the robot holds, if there is a connection.
+    /// True if what this program has set at the robot holds, if there is a connection.
     pub(super) fn is_configured(&self) -> bool {
         match self {
             Self::Up(up) => up.configuration == Configuration::Done,

@@ -85,28 +85,28 @@ pub enum EventKind {
         reflex: u64,
         /// Time from when it was noticed.
         after: Duration,
-        /// Whether the supervisor did it, rather than this program or a person.
+        /// True if the supervisor did it, rather than this program or a person.
         by_supervisor: bool,
     },
     /// The user stop was pressed or released, or a safety function did as much.
     UserStop {
-        /// Whether it holds the robot now.
+        /// True if it holds the robot now.
         pressed: bool,
     },
     /// A hand began or ended to guide the arm.
     Guiding {
-        /// Whether it does now.
+        /// True if it does now.
         active: bool,
     },
     /// The brakes were closed or opened. A robot that is not ready for another reason looks the
     /// same.
     Brakes {
-        /// Whether they are closed now.
+        /// True if they are closed now.
         closed: bool,
     },
     /// This program has latched a stop, or released it.
     StopLatch {
-        /// Whether no motion is admitted now.
+        /// True if no motion is admitted now.
         latched: bool,
     },
     /// A motion, a session or a program was handed over to the connection. Goals that a session

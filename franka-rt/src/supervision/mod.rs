@@ -121,7 +121,7 @@ pub struct Supervision {
     settings: Settings,
     /// Connections made so far.
     connections: u64,
-    /// Whether a stop is latched, which outlives connections.
+    /// True if a stop is latched, which outlives connections.
     stop_latched: bool,
     health: Health,
     outputs: VecDeque<Output>,
@@ -226,7 +226,7 @@ impl Supervision {
         self.set_latch(false, now)
     }
 
-    /// Whether a stop is latched.
+    /// True if a stop is latched.
     pub fn is_stop_latched(&self) -> bool {
         self.stop_latched
     }

@@ -27,10 +27,10 @@ pub(super) struct ReflexCase {
     pub(super) errors: Errors,
     error: Option<Arc<ControlError>>,
     differences: Option<Differences>,
-    /// Whether it has been told. That waits for the end of the motion, which has the log.
+    /// True if it has been told. That waits for the end of the motion, which has the log.
     told: bool,
     stage: Stage,
-    /// Whether it has been told that somebody is needed, in this stage.
+    /// True if it has been told that somebody is needed, in this stage.
     stage_told: bool,
 }
 
@@ -86,7 +86,7 @@ impl ReflexCase {
         self.error.get_or_insert_with(|| Arc::new(error));
     }
 
-    /// Whether it has been told.
+    /// True if it has been told.
     pub(super) fn is_told(&self) -> bool {
         self.told
     }
@@ -107,7 +107,7 @@ impl ReflexCase {
         }
     }
 
-    /// Whether the supervisor has asked the robot to recover.
+    /// True if the supervisor has asked the robot to recover.
     pub(super) fn is_by_supervisor(&self) -> bool {
         matches!(self.stage, Stage::Requested { .. } | Stage::Answered { .. })
     }

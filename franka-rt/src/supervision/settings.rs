@@ -43,7 +43,7 @@ struct Setting {
     /// The number of the connection over which the program has sent it.
     connection: u64,
     standing: Standing,
-    /// Whether states have shown it.
+    /// True if states have shown it.
     was_shown: bool,
     /// The setting of this kind that counts again if the robot refuses this one; until it has
     /// answered.
@@ -69,18 +69,18 @@ impl Settings {
         self.newest.is_empty()
     }
 
-    /// Whether everything holds on the newest connection.
+    /// True if everything holds on the newest connection.
     pub(super) fn all_hold(&self) -> bool {
         let holds = |setting: &Setting| matches!(setting.standing, Standing::Holds);
         self.newest.iter().all(holds)
     }
 
-    /// Whether something has to be set again.
+    /// True if something has to be set again.
     pub(super) fn any_open(&self) -> bool {
         self.next().is_some()
     }
 
-    /// Whether the program waits for an answer. Until it has come it is unknown which value counts.
+    /// True if the program waits for an answer. Until it has come it is unknown which value counts.
     pub(super) fn any_sent(&self) -> bool {
         let is_sent = |setting: &Setting| matches!(setting.standing, Standing::Sent);
         self.newest.iter().any(is_sent)

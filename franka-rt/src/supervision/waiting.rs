@@ -21,7 +21,7 @@ pub enum Admission {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Waiting {
     pub(super) goal: GoalId,
-    /// Whether it gives way to a newer goal.
+    /// True if it gives way to a newer goal.
     gives_way: bool,
     since: Duration,
     pub(super) until: Duration,

@@ -217,7 +217,7 @@ impl<C: Core> Cycle<C> {
             .or(reception.error.map(LinkFault::Receive))
     }
 
-    /// Whether to send a wake-up for a state: for every one if that is requested, for every
+    /// True to send a wake-up for a state: for every one if that is requested, for every
     /// [`STATES_PER_WAKE_MAX`]th otherwise.
     fn is_wakeup_due(&mut self) -> bool {
         self.states_since_wake += 1;

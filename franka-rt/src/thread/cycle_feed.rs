@@ -212,12 +212,12 @@ impl<R> CycleReader<R> {
         self.lost.load(Ordering::Relaxed)
     }
 
-    /// Whether `other` takes the cycles of the same control thread.
+    /// True if `other` takes the cycles of the same control thread.
     pub fn is_of_same_thread(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.shared, &other.shared)
     }
 
-    /// Whether the thread has ended and every cycle was taken.
+    /// True if the thread has ended and every cycle was taken.
     pub fn has_ended(&self) -> bool {
         self.shared.has_ended() && self.waiting() == 0
     }

@@ -81,7 +81,7 @@ impl<C> Thread<C> {
         self.shared.ask_to_stop();
     }
 
-    /// Whether the loop has ended, because it was stopped or because the core panicked. The
+    /// True if the loop has ended, because it was stopped or because the core panicked. The
     /// eventfd is notified after this has become true.
     pub fn has_ended(&self) -> bool {
         self.shared.has_ended()

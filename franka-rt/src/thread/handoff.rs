@@ -77,7 +77,7 @@ impl<T> Handoff<T> {
         }
     }
 
-    /// Whether a borrower waits. Relaxed: the hand-over itself goes through the lock.
+    /// True if a borrower waits. Relaxed: the hand-over itself goes through the lock.
     pub(super) fn is_wanted(&self) -> bool {
         self.wanted.load(Ordering::Relaxed)
     }

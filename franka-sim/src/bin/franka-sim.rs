@@ -24,7 +24,7 @@ async fn main() -> ExitCode {
     }
 }
 
-/// Whether the log has colours: on a terminal, unless NO_COLOR has a value.
+/// True if the log has colours: on a terminal, unless NO_COLOR has a value.
 fn has_colours() -> bool {
     let no_colour = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
     std::io::stderr().is_terminal() && !no_colour

@@ -113,7 +113,7 @@ pub struct Arguments {
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
 
-    /// Whether commands and motions beyond the limits end in a reflex, as on a robot. With `false`
+    /// True if commands and motions beyond the limits end in a reflex, as on a robot. With `false`
     /// the arm does what it physically can.
     #[arg(long, value_name = "BOOL", default_value_t = true, default_missing_value = "true",
           num_args = 0..=1, action = ArgAction::Set)]
@@ -125,7 +125,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FACTOR", value_parser = factor, default_value = "1")]
     pub joint_discontinuity_scale: f64,
 
-    /// Whether 20 commands missing in a row end in a reflex, as on a robot. With `false` the robot
+    /// True if 20 commands missing in a row end in a reflex, as on a robot. With `false` the robot
     /// waits for them: for slow or debugged clients.
     #[arg(long, value_name = "BOOL", default_value_t = true, default_missing_value = "true",
           num_args = 0..=1, action = ArgAction::Set)]

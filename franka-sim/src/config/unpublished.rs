@@ -25,9 +25,9 @@ pub struct Unpublished {
     /// What `control_command_success_rate` divides by while a motion is younger than its window of
     /// 100 cycles.
     pub first_cycles: FirstCycles,
-    /// Whether an accepted `Move` clears `reflex_reason`. Default yes.
+    /// True if an accepted `Move` clears `reflex_reason`. Default yes.
     pub move_clears_reason: bool,
-    /// Whether fields that a motion does not use are zero, as recorded at rest: `O_T_EE_c`,
+    /// True if fields that a motion does not use are zero, as recorded at rest: `O_T_EE_c`,
     /// `elbow_c` and their derivatives under joint setpoints, `tau_J_d` under the robot's own
     /// controllers. In motion nothing was recorded. Default yes.
     pub zero_fields: bool,

@@ -113,7 +113,7 @@ impl FingerMotion {
         }
     }
 
-    /// Whether an object stops the fingers while they close.
+    /// True if an object stops the fingers while they close.
     pub(super) fn is_held(&self) -> bool {
         match &self.means {
             Means::Kinematic { object } => self.width <= object.unwrap_or(0.0),
@@ -121,7 +121,7 @@ impl FingerMotion {
         }
     }
 
-    /// Whether what held the fingers at `width` has gone.
+    /// True if what held the fingers at `width` has gone.
     pub(super) fn has_lost(&self, width: f64) -> bool {
         match &self.means {
             Means::Kinematic { .. } => !self.is_held(),

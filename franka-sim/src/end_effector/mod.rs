@@ -46,7 +46,7 @@ pub trait Mechanism {
     /// What it says of itself.
     type State;
 
-    /// Whether a request asks for nothing but the end of the action that runs.
+    /// True if a request asks for nothing but the end of the action that runs.
     fn is_stop(request: &<Self::Protocol as Protocol>::Request) -> bool;
 
     /// Begins what is asked for, in place of what runs. The answer, if that is all.
@@ -72,7 +72,7 @@ pub struct EndEffector<M: Mechanism> {
     replies: VecDeque<Bytes>,
     /// The request whose action runs.
     running: Option<CommandId>,
-    /// Whether an action has ended since the last state.
+    /// True if an action has ended since the last state.
     ended: bool,
     clock: u32,
     state_period: u32,
@@ -120,7 +120,7 @@ impl<M: Mechanism> EndEffector<M> {
         self.replies.clear();
     }
 
-    /// Whether a client is connected.
+    /// True if a client is connected.
     pub fn is_connected(&self) -> bool {
         self.client.is_some()
     }

@@ -17,7 +17,7 @@ pub(super) struct Broken {
 }
 
 impl Broken {
-    /// Whether there is any.
+    /// True if there is any.
     pub(super) fn any(self) -> bool {
         self.velocity || self.acceleration || self.jerk
     }
@@ -159,7 +159,7 @@ pub(super) fn elbow(
     )
 }
 
-/// Whether the elbow angle is in the range of joint 3.
+/// True if the elbow angle is in the range of joint 3.
 pub(super) fn elbow_in_range(elbow: &ElbowSignal, arm: &ArmModel<'_>) -> bool {
     let limits = arm.model.joint_limits();
     (limits.hard_lower[2]..=limits.hard_upper[2]).contains(&elbow.angle)

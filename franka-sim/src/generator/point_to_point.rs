@@ -63,7 +63,7 @@ impl PointToPoint {
         };
     }
 
-    /// Whether the target, if there is one, has been reached.
+    /// True if the target, if there is one, has been reached.
     pub(crate) fn is_over(&self) -> bool {
         matches!(self.plan, Plan::Resting)
     }

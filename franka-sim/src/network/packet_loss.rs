@@ -9,7 +9,7 @@ use crate::noise::Random;
 pub(super) struct Losses {
     loss: Loss,
     random: Random,
-    /// Whether a burst is on.
+    /// True if a burst is on.
     bad: bool,
 }
 
@@ -22,7 +22,7 @@ impl Losses {
         }
     }
 
-    /// Whether the next packet is.
+    /// True if the next packet is.
     pub(super) fn lose(&mut self) -> bool {
         match self.loss {
             Loss::Never => false,

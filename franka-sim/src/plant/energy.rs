@@ -92,7 +92,7 @@ impl Book {
             .gravity(self.plant.q(), &self.load, &GRAVITY_EARTH)
     }
 
-    /// Whether the arm touches itself, which a rigid one cannot.
+    /// True if the arm touches itself, which a rigid one cannot.
     fn is_touching(&self) -> bool {
         #[cfg(feature = "mujoco")]
         {

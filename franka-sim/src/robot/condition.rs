@@ -286,7 +286,7 @@ impl Robot {
         .collect()
     }
 
-    /// Whether the arm is further from a generated motion than the client allowed.
+    /// True if the arm is further from a generated motion than the client allowed.
     fn leaves_path(&self) -> bool {
         match &self.activity {
             Activity::Moving(motion) if !motion.is_external() => {

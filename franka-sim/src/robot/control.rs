@@ -67,7 +67,7 @@ impl Robot {
         JointVector::zeros()
     }
 
-    /// Whether the arm is one that physics allows: finite, and at velocities below
+    /// True if the arm is one that physics allows: finite, and at velocities below
     /// [`VELOCITY_MAX`].
     fn is_physical(&self) -> bool {
         let Measurement { torque, ddq, .. } = &self.measurement;
@@ -163,7 +163,7 @@ impl Robot {
         self.desired.follow_joints(&arm);
     }
 
-    /// Whether the brakes stand between motors and links: they close when the arm has come to rest.
+    /// True if the brakes stand between motors and links: they close when the arm has come to rest.
     fn are_brakes_holding(&self) -> bool {
         self.frozen.is_some()
             || self.lock.brakes_closed && matches!(self.activity, Activity::Holding)

@@ -25,11 +25,11 @@ pub(super) struct ActiveMotion {
     success_rate: SuccessRate,
     /// Whether a command has come, in time or not.
     is_answered: bool,
-    /// Whether one has come in time.
+    /// True if one has come in time.
     is_begun: bool,
     /// `tau_J_d`: the last torques accepted, zero before the first, `[N·m]`.
     torque: JointVector,
-    /// Whether the last cycle had no command, so that the generator did not advance.
+    /// True if the last cycle had no command, so that the generator did not advance.
     paused: bool,
     /// In place of one command per cycle.
     asynchronous: Option<PointToPoint>,
@@ -109,17 +109,17 @@ impl ActiveMotion {
         self.request.controller.in_state()
     }
 
-    /// Whether the client's torques drive the arm.
+    /// True if the client's torques drive the arm.
     pub(super) fn is_external(&self) -> bool {
         self.request.controller == MoveControllerMode::ExternalController
     }
 
-    /// Whether the robot itself moves to targets that come irregularly.
+    /// True if the robot itself moves to targets that come irregularly.
     pub(super) fn is_asynchronous(&self) -> bool {
         self.asynchronous.is_some()
     }
 
-    /// Whether torques are all that the client sends.
+    /// True if torques are all that the client sends.
     pub(super) fn is_torque_only(&self) -> bool {
         self.request.generator == MoveGeneratorMode::None
     }
@@ -129,7 +129,7 @@ impl ActiveMotion {
         &self.torque
     }
 
-    /// Whether the setpoint stands still because no command came, with the motion to be continued.
+    /// True if the setpoint stands still because no command came, with the motion to be continued.
     pub(super) fn is_paused(&self) -> bool {
         self.paused
     }
@@ -139,7 +139,7 @@ impl ActiveMotion {
         self.success_rate.rate(first)
     }
 
-    /// Whether a command counts that answers state `answers` while `newest` is the last one
+    /// True if a command counts that answers state `answers` while `newest` is the last one
     /// published. A late command does not: the cycle has been extrapolated already.
     pub(super) fn accepts(&self, answers: u64, newest: u64) -> bool {
         answers >= self.first_state

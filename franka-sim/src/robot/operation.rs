@@ -132,7 +132,7 @@ impl Robot {
         !self.lock.brakes_closed && !self.lock.safety_function && self.recovery.is_none()
     }
 
-    /// Whether a hand has guided a joint further out of its range than it was.
+    /// True if a hand has guided a joint further out of its range than it was.
     pub(super) fn is_guided_out(&mut self) -> bool {
         let limits = self.model.joint_limits();
         let q = self.measurement.q;

@@ -20,7 +20,7 @@ impl Ratchet {
         Self { best: bound }
     }
 
-    /// Whether the clearance, updated to its present value, has shrunk too far.
+    /// True if the clearance, updated to its present value, has shrunk too far.
     pub(super) fn is_passed(&mut self, clearance: f64, bound: f64, allowed: f64) -> bool {
         self.best = self.best.max(clearance).min(bound);
         clearance < self.best - allowed

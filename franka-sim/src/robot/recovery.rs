@@ -50,7 +50,7 @@ impl Robot {
         self.reply(id, Reply::Recovery(status));
     }
 
-    /// Whether a joint is further out than the robot brings it back by itself.
+    /// True if a joint is further out than the robot brings it back by itself.
     pub(super) fn is_outside(&self) -> bool {
         let limits = self.model.joint_limits();
         let q = self.measurement.q;

@@ -35,7 +35,7 @@ impl Robot {
         }
     }
 
-    /// Whether a client is connected.
+    /// True if a client is connected.
     pub fn is_connected(&self) -> bool {
         self.client.is_some()
     }

@@ -143,7 +143,7 @@ impl Cycle {
         }
     }
 
-    /// Whether a client is connected to any device.
+    /// True if a client is connected to any device.
     fn has_client(&self) -> bool {
         let hand = self.hand.as_ref().is_some_and(DeviceServer::has_client);
         let vacuum = self.vacuum.as_ref().is_some_and(DeviceServer::has_client);

@@ -75,7 +75,7 @@ impl Wait {
         self.counted += took.min(WAIT_MAX);
     }
 
-    /// Whether there is to be no more waiting.
+    /// True if there is to be no more waiting.
     fn is_over(&self, patience: Duration) -> bool {
         self.counted >= patience || self.silence >= patience.max(SILENCE_MAX)
     }
@@ -218,7 +218,7 @@ impl<D: Device> DeviceServer<D> {
         let _ = socket.set_nonblocking(true);
     }
 
-    /// Whether a client is connected.
+    /// True if a client is connected.
     pub(super) fn has_client(&self) -> bool {
         self.client.is_some()
     }
@@ -290,7 +290,7 @@ impl<D: Device> DeviceServer<D> {
         }
     }
 
-    /// Whether the client has room for what may be answered to one more order. One that has gone
+    /// True if the client has room for what may be answered to one more order. One that has gone
     /// needs none.
     fn has_room(&self) -> bool {
         let full =

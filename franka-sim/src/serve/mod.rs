@@ -82,7 +82,7 @@ pub struct Sim {
     vacuum_gripper: Option<(Suction, u16)>,
     realtime: bool,
     strict_clock: bool,
-    /// Whether the client's answers are the clock.
+    /// True if the client's answers are the clock.
     virtual_time: bool,
     /// How long to wait for a command that is late.
     patience: Duration,

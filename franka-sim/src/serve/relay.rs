@@ -21,7 +21,7 @@ pub(super) struct Relay {
     asking: Option<u64>,
     /// `message_id` of the newest state that has reached the client.
     newest: Option<u64>,
-    /// Whether a command that answers that state has been read from the socket.
+    /// True if a command that answers that state has been read from the socket.
     answered: bool,
 }
 
@@ -119,7 +119,7 @@ impl Relay {
         (self.newest, self.answered) = (None, false);
     }
 
-    /// Whether the client has a state that asks for a command and has not answered the newest one
+    /// True if the client has a state that asks for a command and has not answered the newest one
     /// that it has.
     pub(super) fn is_unanswered(&self) -> bool {
         self.asking.is_some() && self.newest >= self.asking && !self.answered

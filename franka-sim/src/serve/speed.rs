@@ -67,7 +67,7 @@ impl Running {
         self.speed.as_ref().and_then(Speed::get)
     }
 
-    /// Whether it runs in [virtual time](super::Sim::virtual_time), in which
+    /// True if it runs in [virtual time](super::Sim::virtual_time), in which
     /// [`Self::set_speed`] can be called.
     pub fn is_in_virtual_time(&self) -> bool {
         self.speed.is_some()

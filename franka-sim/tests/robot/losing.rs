@@ -14,7 +14,7 @@ struct Channel {
     told: fn(&RobotState) -> [f64; 3],
     /// How far it is from the start after 0.6 s, or how fast.
     way: f64,
-    /// Whether the command is a velocity.
+    /// True if the command is a velocity.
     is_rate: bool,
 }
 

@@ -274,7 +274,7 @@ impl Trial {
         panic!("{moment:?} does not come");
     }
 
-    /// Whether the motion has run and ended, as far as the thread knows.
+    /// True if the motion has run and ended, as far as the thread knows.
     pub(crate) fn has_ended(&self) -> bool {
         self.ended
     }

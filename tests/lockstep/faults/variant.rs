@@ -66,7 +66,7 @@ impl Channel {
         ]
     };
 
-    /// Whether torques are commanded.
+    /// True if torques are commanded.
     pub(crate) fn is_external(self) -> bool {
         self.controller == MoveControllerMode::ExternalController
     }
@@ -100,7 +100,7 @@ impl Variant {
         }
     }
 
-    /// Whether goals are set instead of commands.
+    /// True if goals are set instead of commands.
     pub(crate) fn is_target(self) -> bool {
         matches!(self.way, Way::Target(_))
     }

@@ -79,12 +79,12 @@ fn felt(lockstep: &Lockstep, touch: TouchId) -> f64 {
     felt.fixed_rows::<3>(0).norm()
 }
 
-/// Whether the record of the last cycle says that the goal has reacted.
+/// True if the record of the last cycle says that the goal has reacted.
 fn says_so(lockstep: &Lockstep) -> bool {
     lockstep.client.record.bindings.contains(Guard::Reaction)
 }
 
-/// Whether the goal is not resolved yet.
+/// True if the goal is not resolved yet.
 ///
 /// # Panics
 /// If the robot has been running for two minutes.

@@ -58,17 +58,17 @@ impl Causes {
         self.possible.insert(error);
     }
 
-    /// Whether the arm was pushed.
+    /// True if the arm was pushed.
     pub(super) fn pushed(&self) -> bool {
         self.pushed
     }
 
-    /// Whether any disturbance may end a motion.
+    /// True if any disturbance may end a motion.
     pub(super) fn any(&self) -> bool {
         self.stopped || !self.possible.is_empty()
     }
 
-    /// Whether these disturbances explain the error with which the robot ended a motion.
+    /// True if these disturbances explain the error with which the robot ended a motion.
     pub(super) fn explains(&self, error: &ControlError) -> bool {
         if !error.is_reflex() {
             return self.any();

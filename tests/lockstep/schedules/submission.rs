@@ -132,7 +132,7 @@ impl Submission {
         }
     }
 
-    /// Whether the arm is where the report says, and that is the target.
+    /// True if the arm is where the report says, and that is the target.
     fn is_there(&self, report: &MotionReport, lockstep: &Lockstep) -> bool {
         let target = match (self.work, self.reaction, report.reacted) {
             (Work::Goal(_), Some(then), Some(_)) => then,

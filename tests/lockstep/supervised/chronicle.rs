@@ -133,7 +133,7 @@ impl Chronicle {
         }
     }
 
-    /// Whether every motion that began has ended.
+    /// True if every motion that began has ended.
     pub(super) fn is_complete(&self) -> bool {
         self.motions.is_empty()
     }

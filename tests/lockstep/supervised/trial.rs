@@ -124,7 +124,7 @@ pub(super) struct Trial {
     agreed: BTreeSet<u64>,
     /// Reflexes of a robot that was not recognised.
     unrecognised: BTreeSet<u64>,
-    /// Whether it was started again since it was last connected to.
+    /// True if it was started again since it was last connected to.
     is_restarted: bool,
     /// When it was last asked to connect, since the connection was lost.
     attempt: Option<u64>,

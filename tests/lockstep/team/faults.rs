@@ -24,7 +24,7 @@ struct Case {
     fault: MemberFault,
     /// Cycles from that to the one in which the thread of the first robot has to have seen it.
     seen_after: core::ops::RangeInclusive<u64>,
-    /// Whether its session goes on.
+    /// True if its session goes on.
     goes_on: bool,
 }
 

@@ -21,7 +21,7 @@ struct Pair {
     robots: [Lockstep; 2],
     sessions: [GoalId; 2],
     coordinator: Coordinator,
-    /// Whether the milliseconds of the second robot come first.
+    /// True if the milliseconds of the second robot come first.
     swapped: bool,
     /// The tick at which the team was first seen to have stopped, and those at which the records of
     /// the members say so.

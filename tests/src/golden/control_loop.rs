@@ -136,7 +136,7 @@ struct Cycle {
     calls: Vec<Noted>,
     /// What was sent then.
     command: RobotCommand,
-    /// Whether that was the last command.
+    /// True if that was the last command.
     finished: bool,
 }
 

@@ -122,12 +122,12 @@ pub fn failed(outcomes: &[Outcome]) -> bool {
 }
 
 impl Outcome {
-    /// Whether the directory does not hold the file.
+    /// True if the directory does not hold the file.
     pub fn absent(&self) -> bool {
         self.result.is_none()
     }
 
-    /// Whether the file cannot be read or a case of it failed.
+    /// True if the file cannot be read or a case of it failed.
     pub fn failed(&self) -> bool {
         match &self.result {
             None => false,

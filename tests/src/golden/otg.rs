@@ -313,7 +313,7 @@ impl Problem<1> {
         }
     }
 
-    /// Whether a motion inside the limits can lead through the start.
+    /// True if a motion inside the limits can lead through the start.
     fn starts_reachably(&self) -> bool {
         let (velocity, acceleration) = (self.start.velocity[0], self.start.acceleration[0]);
         velocity.abs() + 0.5 * acceleration * acceleration / self.jerk[0] <= self.velocity[0]

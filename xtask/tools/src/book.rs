@@ -222,7 +222,7 @@ fn unknown(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<Strin
     Ok(found)
 }
 
-/// Whether a page has a Rust program of its own that is not to be ignored.
+/// True if a page has a Rust program of its own that is not to be ignored.
 fn programs(page: &str) -> bool {
     let mut lines = page.lines();
     while let Some(line) = lines.next() {

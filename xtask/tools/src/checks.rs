@@ -279,7 +279,7 @@ fn no_std(workspace: &Workspace) -> anyhow::Result<Outcome> {
     })
 }
 
-/// Whether the toolchain has the `core` of a target.
+/// True if the toolchain has the `core` of a target.
 fn installed(target: &str) -> bool {
     let output = Command::new("rustc")
         .args(["--print", "target-libdir", "--target", target])

@@ -311,7 +311,7 @@ fn first_names(tokens: &[TokenTree]) -> Vec<String> {
     }
 }
 
-/// Whether an attribute keeps its item for tests.
+/// True if an attribute keeps its item for tests.
 fn is_for_tests(attribute: TokenStream) -> bool {
     let words = words(attribute);
     let has = |name: &str| words.iter().any(|word| word == name);

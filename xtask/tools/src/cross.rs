@@ -108,7 +108,7 @@ pub(crate) fn emulator(architecture: &str, has: impl Fn(&str) -> bool) -> Result
     found.ok_or_else(|| format!("{} is not installed", emulators[0]))
 }
 
-/// Whether a program is there.
+/// True if a program is there.
 pub(crate) fn is_installed(program: &str) -> bool {
     let mut command = Command::new(program);
     command

@@ -49,7 +49,7 @@ pub(crate) fn check_assets(workspace: &Workspace) -> anyhow::Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-/// Whether [`bundle`] can run.
+/// True if [`bundle`] can run.
 pub(crate) fn has_npm() -> bool {
     find(&["npm"]).is_some()
 }

@@ -63,19 +63,19 @@ impl Members {
             .map(String::as_str)
     }
 
-    /// Whether a type of this name may have this member.
+    /// True if a type of this name may have this member.
     pub(crate) fn has(&self, name: &str, member: &str) -> bool {
         self.of
             .get(name)
             .is_some_and(|members| members.contains(member) || self.in_macros.contains(member))
     }
 
-    /// Whether there is a type, a function or a constant of this name.
+    /// True if there is a type, a function or a constant of this name.
     pub(crate) fn declares(&self, name: &str) -> bool {
         self.of.contains_key(name) || self.free.contains(name)
     }
 
-    /// Whether any type may have this member.
+    /// True if any type may have this member.
     pub(crate) fn any_has(&self, member: &str) -> bool {
         self.in_macros.contains(member) || self.of.values().any(|of| of.contains(member))
     }

@@ -170,7 +170,7 @@ fn named_by_user(workspace: &Workspace) -> Option<&'static str> {
         .find(|name| env::var_os(name).is_some_and(|value| !is_in(workspace.root(), &value)))
 }
 
-/// Whether this is the value that the configuration in `root` gives.
+/// True if this is the value that the configuration in `root` gives.
 fn is_in(root: &Path, value: &OsStr) -> bool {
     let real = |path: &Path| fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let same = |own: &Path| real(own) == real(root);

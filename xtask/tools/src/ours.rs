@@ -49,7 +49,7 @@ impl Ours {
         names.chain(motion).filter(is_enumeration).collect()
     }
 
-    /// Whether a program can write this: `module::Type::method`, `Type`, `module::function(..)`,
+    /// True if a program can write this: `module::Type::method`, `Type`, `module::function(..)`,
     /// `.method(..)` of whatever has it, `franka_sim::Sim::fr3`.
     pub(crate) fn has(&self, span: &str) -> bool {
         let path = span.split(['(', '<', ' ']).next().unwrap_or_default();

@@ -167,7 +167,7 @@ fn listing(source: &Path) -> anyhow::Result<BTreeSet<String>> {
 /// Modules of franka-rs that are its own inside: bytes, sockets, the connection behind `Robot`.
 const FRANKA_RS_OPAQUE: [&str; 4] = ["network", "wire", "robot::robot_impl", "robot::commands"];
 
-/// Whether a table maps names to ours.
+/// True if a table maps names to ours.
 fn is_map(table: &Table<'_>) -> bool {
     ["Rust", "Python"]
         .iter()

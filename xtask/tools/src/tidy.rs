@@ -130,7 +130,7 @@ fn comments(text: &str) -> impl Iterator<Item = CommentLine<'_>> {
     })
 }
 
-/// Whether rustdoc takes a block of this language for Rust.
+/// True if rustdoc takes a block of this language for Rust.
 fn is_rust(language: &str) -> bool {
     const ATTRIBUTES: [&str; 6] = [
         "",
@@ -144,7 +144,7 @@ fn is_rust(language: &str) -> bool {
     ATTRIBUTES.contains(&first)
 }
 
-/// Whether code goes on after the end of a statement, outside brackets, strings and comments.
+/// True if code goes on after the end of a statement, outside brackets, strings and comments.
 fn has_several_statements(code: &str) -> bool {
     let mut depth = 0_i32;
     let mut is_text = false;

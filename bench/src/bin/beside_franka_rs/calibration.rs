@@ -61,7 +61,7 @@ struct Figures {
     moving: Vec<f64>,
 }
 
-/// Whether the figures of a family are as they have to be.
+/// True if the figures of a family are as they have to be.
 type Verdict = fn(&Figures) -> bool;
 
 /// Prints a line for each family, and returns how many failed.

@@ -207,7 +207,7 @@ impl Wanted {
 }
 
 impl Measured {
-    /// Whether it is more accurate, sooner at its target and softer.
+    /// True if it is more accurate, sooner at its target and softer.
     fn is_better_than(&self, peer: &Self) -> bool {
         let sooner = match (self.within, peer.within) {
             (Some(own), Some(peer)) => own < peer,

@@ -37,7 +37,7 @@ pub(crate) struct SimulatorCase {
     pub(crate) plant: Plant,
     /// Its client.
     pub(crate) client: ConnectedClient,
-    /// Whether it requests `SCHED_FIFO`.
+    /// True if it requests `SCHED_FIFO`.
     pub(crate) realtime: bool,
 }
 

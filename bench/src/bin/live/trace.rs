@@ -65,7 +65,7 @@ pub(crate) struct Punctuality {
     pub(crate) states: u64,
     /// The number of them whose command had not arrived when the next state left.
     pub(crate) late: u64,
-    /// Whether the robot stopped itself.
+    /// True if the robot stopped itself.
     pub(crate) reflex: bool,
 }
 
@@ -200,7 +200,7 @@ mod tests {
         }
     }
 
-    /// Whether two values are equal to the digits of the histogram.
+    /// True if two values are equal to the digits of the histogram.
     fn near(got: u64, micros: u64) -> bool {
         got.abs_diff(1000 * micros) * 1000 <= 1000 * micros
     }

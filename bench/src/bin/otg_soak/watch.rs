@@ -244,7 +244,7 @@ fn goes_on([_, v, a]: [f64; 3], limits: AxisLimits) -> bool {
     v * (v + 0.5 * a * a.abs() / limits.jerk) >= 0.0
 }
 
-/// Whether the velocity limits can be kept from here on.
+/// True if the velocity limits can be kept from here on.
 fn can_stay<const N: usize>(state: &State<N>, limits: &Limits<N>) -> bool {
     (0..N).all(|i| {
         let (l, s) = (limits.axis(i), state.axis(i));

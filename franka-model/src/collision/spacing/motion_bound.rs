@@ -57,7 +57,7 @@ impl CandidateMask {
     /// Every distance.
     pub const ALL: Self = Self(u64::MAX);
 
-    /// Whether no distance has to be measured.
+    /// True if no distance has to be measured.
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0

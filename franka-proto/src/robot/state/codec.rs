@@ -35,7 +35,7 @@ impl StateCodec {
 pub(crate) trait AccelerometerBlock:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned
 {
-    /// Whether the layout has them.
+    /// True if the layout has them.
     const EXISTS: bool;
     /// The upper and the lower sensors; zero without accelerometers.
     fn values(&self) -> [[[f32; 3]; 6]; 2];

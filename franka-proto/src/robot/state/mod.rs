@@ -186,19 +186,19 @@ impl RobotState {
         filled.unwrap_or(self.elbow)
     }
 
-    /// Whether the client has to feed a motion generator.
+    /// True if the client has to feed a motion generator.
     #[must_use]
     pub fn generator_running(&self) -> bool {
         self.motion_generator_mode.is_running()
     }
 
-    /// Whether the client has to feed a controller.
+    /// True if the client has to feed a controller.
     #[must_use]
     pub fn controller_running(&self) -> bool {
         self.controller_mode.is_running()
     }
 
-    /// Whether a motion of the client is on: one of the two above. A motion has ended when this
+    /// True if a motion of the client is on: one of the two above. A motion has ended when this
     /// turns false, whatever [`RobotState::robot_mode`] says (libfranka 0.21).
     #[must_use]
     pub fn motion_running(&self) -> bool {

@@ -78,7 +78,7 @@ pub struct Player {
     shift: u64,
     /// Ids of states sent, and the recorded ones; `None` if held.
     sent: VecDeque<(u64, Option<u64>)>,
-    /// Whether a command did not come in time, and no other has come since.
+    /// True if a command did not come in time, and no other has come since.
     silent: bool,
     failure: Option<Mismatch>,
     tally: Tally,
@@ -121,7 +121,7 @@ impl Player {
         self.udp_port
     }
 
-    /// Whether everything has been played.
+    /// True if everything has been played.
     #[must_use]
     pub fn is_finished(&self) -> bool {
         self.position == self.script.steps.len()

@@ -33,7 +33,7 @@ impl Player {
         Ok(Gate::Open)
     }
 
-    /// Whether a step is the last command of a motion and a lenient play waits for it as for a
+    /// True if a step is the last command of a motion and a lenient play waits for it as for a
     /// request.
     pub(super) fn is_unfinished_motion(&self, step: usize) -> bool {
         let waits = self.options.matching == Matching::Lenient && step >= self.commanded;

@@ -19,7 +19,7 @@ struct Link<'a> {
     stop: &'a AtomicBool,
     /// When the first of the two streams ended.
     ended: OnceLock<Instant>,
-    /// Whether both have.
+    /// True if both have.
     over: AtomicBool,
     /// Where the client expects datagrams.
     client: OnceLock<SocketAddr>,
@@ -32,7 +32,7 @@ impl Link<'_> {
         self.stop.load(Ordering::Relaxed) || self.over.load(Ordering::Relaxed)
     }
 
-    /// Whether a stream that is silent is to be closed: the other has ended, and this one did not
+    /// True if a stream that is silent is to be closed: the other has ended, and this one did not
     /// follow, as after a power cut.
     fn abandoned(&self) -> bool {
         let ended = self.ended.get();

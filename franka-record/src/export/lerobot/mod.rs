@@ -42,7 +42,7 @@ pub struct DatasetOptions {
     pub fps: u16,
     /// What the robot is called: `franka_fr3`, `franka_fer`.
     pub robot_type: String,
-    /// Whether the width of the gripper is part of states and actions.
+    /// True if the width of the gripper is part of states and actions.
     pub gripper: bool,
     /// What actions are.
     pub action: Action,

@@ -114,7 +114,7 @@ impl Shaper {
         Self::new(version, limit_rate, DEFAULT_CUTOFF_FREQUENCY)
     }
 
-    /// Whether libfranka's control loops limit by default: up to version 0.9 for the FER they do,
+    /// True if libfranka's control loops limit by default: up to version 0.9 for the FER they do,
     /// for the FR3 not.
     pub fn limits_by_default(version: Version) -> bool {
         Conventions::of(version).limit_rate

@@ -52,7 +52,7 @@ pub(crate) struct Compensation {
     /// Cycles for which each joint has rested, and its reference.
     rested: [u32; 7],
     approach: Approach,
-    /// Whether the integral of a joint runs.
+    /// True if the integral of a joint runs.
     is_working: bool,
 }
 
@@ -96,11 +96,11 @@ pub(crate) struct Demand<'a> {
     pub(crate) springs: &'a JointVector,
     /// Most of the compensation, `[N m]`.
     pub(crate) bounds: &'a [f64; 7],
-    /// Whether a guard of the interaction binds.
+    /// True if a guard of the interaction binds.
     pub(crate) held: bool,
-    /// Whether the goal has reacted to something that the arm has met: nothing is learned.
+    /// True if the goal has reacted to something that the arm has met: nothing is learned.
     pub(crate) met: bool,
-    /// Whether the motion is about to end, without a torque.
+    /// True if the motion is about to end, without a torque.
     pub(crate) ending: bool,
 }
 
@@ -122,7 +122,7 @@ impl Compensation {
         self.learned
     }
 
-    /// Whether it still grows towards moving a joint that rests outside its dead zone.
+    /// True if it still grows towards moving a joint that rests outside its dead zone.
     pub(crate) fn is_working(&self) -> bool {
         self.is_working
     }

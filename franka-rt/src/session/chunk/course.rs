@@ -261,7 +261,7 @@ impl ChunkCourse {
         }
     }
 
-    /// Whether the chunk has come to its end by `now`.
+    /// True if the chunk has come to its end by `now`.
     pub(in crate::session) fn is_over(&self, now: u64) -> bool {
         match &self.play {
             Play::Joints { player, .. } => player.is_over(now),

@@ -130,7 +130,7 @@ impl<M: CurveState> Player<M> {
         }
     }
 
-    /// Whether nothing moves any more from `now` on.
+    /// True if nothing moves any more from `now` on.
     pub(super) fn is_over(&self, now: u64) -> bool {
         let t = self.time(now);
         let entered = match self.entry {

@@ -132,7 +132,7 @@ impl ChunkWriter {
         }
     }
 
-    /// Whether another chunk may be sent.
+    /// True if another chunk may be sent.
     pub fn has_room(&self) -> bool {
         self.under_way < Chunk::UNDER_WAY_MAX
     }
@@ -144,7 +144,7 @@ impl ChunkWriter {
         Some(returned)
     }
 
-    /// Whether the session is gone, so that no chunk will be taken up any more.
+    /// True if the session is gone, so that no chunk will be taken up any more.
     pub fn is_abandoned(&self) -> bool {
         self.chunks.is_abandoned()
     }

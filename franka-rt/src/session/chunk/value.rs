@@ -70,7 +70,7 @@ pub struct Chunk {
     pub(super) points: Points,
     pub(super) origin: Origin,
     pub(super) blend: Duration,
-    /// Whether the velocities of the points were given: these are checked before it is sent.
+    /// True if the velocities of the points were given: these are checked before it is sent.
     pub(super) with_velocities: bool,
     /// How a path waits and pauses; `None` for points that have times.
     pub(super) pace: Option<Pace>,
@@ -303,7 +303,7 @@ impl Chunk {
         }
     }
 
-    /// Whether its times count from the cycle that takes it up, whenever that is.
+    /// True if its times count from the cycle that takes it up, whenever that is.
     pub(super) fn begins_at_take_up(&self) -> bool {
         self.origin == Origin::TakeUp
     }

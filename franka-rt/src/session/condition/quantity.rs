@@ -77,7 +77,7 @@ impl Quantity {
         Node::compare(self, Bound::Beyond, value).into()
     }
 
-    /// Whether it is one of the robot's estimates, which a tare may be taken off.
+    /// True if it is one of the robot's estimates, which a tare may be taken off.
     pub(super) fn is_estimate(self) -> bool {
         matches!(
             self,

@@ -40,7 +40,7 @@ impl Arm {
         }
     }
 
-    /// Whether a condition is met in the first state that it sees.
+    /// True if a condition is met in the first state that it sees.
     fn meets(&self, condition: Condition) -> bool {
         assert_eq!(condition.check(), Ok(()));
         Watch::new(condition, self.measured.time).is_met(&self.observed(), &self.measured)

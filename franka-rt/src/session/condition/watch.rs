@@ -61,7 +61,7 @@ impl Watch {
         }
     }
 
-    /// Whether the condition is true in this state, with the arm as it was measured in it. Bounded
+    /// True if the condition is true in this state, with the arm as it was measured in it. Bounded
     /// work, the same in every cycle.
     pub(in crate::session) fn is_met(&mut self, state: &Observed, arm: &Measured) -> bool {
         let now = Sample::of(state, arm);

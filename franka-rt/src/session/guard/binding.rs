@@ -147,7 +147,7 @@ impl Bindings {
         self.set(guard, true);
     }
 
-    /// Whether `guard` bound the command.
+    /// True if `guard` bound the command.
     pub fn contains(self, guard: Guard) -> bool {
         self.0 & (1 << guard as u32) != 0
     }
@@ -158,7 +158,7 @@ impl Bindings {
         all.filter(move |guard| self.contains(*guard))
     }
 
-    /// Whether no guard did.
+    /// True if no guard did.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }

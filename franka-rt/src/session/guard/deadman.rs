@@ -22,7 +22,7 @@ pub struct Pulse {
 }
 
 impl Pulse {
-    /// Whether the control thread has found the token silent, and it was not kept alive since.
+    /// True if the control thread has found the token silent, and it was not kept alive since.
     pub fn is_silent(&self) -> bool {
         // Relaxed, as below.
         self.beats.load(Ordering::Relaxed) == self.silent.load(Ordering::Relaxed)
@@ -106,7 +106,7 @@ impl DeadmanMonitor {
         self.pulse.beats.load(Ordering::Relaxed) == GONE
     }
 
-    /// Whether the token lives at the robot's time `now`, `[ms]`. Its silence counts from the first
+    /// True if the token lives at the robot's time `now`, `[ms]`. Its silence counts from the first
     /// call on.
     pub(crate) fn is_alive(&mut self, now: u64) -> bool {
         let beats = self.pulse.beats.load(Ordering::Relaxed);

@@ -51,7 +51,7 @@ impl Displacement {
         self.anchor = *reference;
     }
 
-    /// Whether the arm, at `q` and `measured`, is further than `most` from the way between where
+    /// True if the arm, at `q` and `measured`, is further than `most` from the way between where
     /// the reference was last free and the target: an arm that comes along slowly is on its way,
     /// and not displaced.
     pub(crate) fn is_exceeded(

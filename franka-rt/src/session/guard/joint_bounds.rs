@@ -43,7 +43,7 @@ pub(crate) struct BoundsReached {
 }
 
 impl BoundsReached {
-    /// Whether anything did.
+    /// True if anything did.
     pub(crate) fn any(self) -> bool {
         self != Self::default()
     }

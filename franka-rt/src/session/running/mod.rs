@@ -75,14 +75,14 @@ pub(super) struct RunningSession {
     since: u64,
     /// What the reference heads for: the goal's target, or one nearer, or rest.
     aim: Target,
-    /// Whether the target moved on and no news of it came for too long.
+    /// True if the target moved on and no news of it came for too long.
     halted: bool,
     route: Route,
     reference: Reference,
     drive: Drive,
     displacement: Displacement,
     response: Unresponsive,
-    /// Whether the arm ignores its commands, by the last answer.
+    /// True if the arm ignores its commands, by the last answer.
     ignores: bool,
     /// What follows a goal that is held and has to be given up.
     afterwards: OnArrival,
@@ -98,11 +98,11 @@ pub(super) struct RunningSession {
     held_back: u64,
     /// The same for cycles in which the leash is what holds it back.
     leashed: u64,
-    /// Whether that is how its goal came to land short of its target.
+    /// True if that is how its goal came to land short of its target.
     obstructed: bool,
-    /// Whether the reference waits for the others that carry the same object.
+    /// True if the reference waits for the others that carry the same object.
     waits: bool,
-    /// Whether the arm is held back from the reference of an object that is carried.
+    /// True if the arm is held back from the reference of an object that is carried.
     lags: bool,
     /// Greatest speed of any point of the arm, `[m/s]`.
     speed_cap: Option<f64>,
@@ -255,7 +255,7 @@ impl RunningSession {
         self.arm.time
     }
 
-    /// Whether the answer to the next state is prepared.
+    /// True if the answer to the next state is prepared.
     pub(super) fn is_prepared(&self) -> bool {
         self.next.is_some()
     }

@@ -75,7 +75,7 @@ impl RunningSession {
         self.reacting = None;
     }
 
-    /// Whether a condition of the goal counts: until the goal was reported, taken back or braked.
+    /// True if a condition of the goal counts: until the goal was reported, taken back or braked.
     fn is_watched(&self) -> bool {
         let pursued = match self.standing {
             Standing::InForce => true,
@@ -85,7 +85,7 @@ impl RunningSession {
         pursued && matches!(self.stage, GoalStage::UnderWay | GoalStage::Landing(_))
     }
 
-    /// Whether what the arm has come to the end of is the brake of a reaction, before its way to
+    /// True if what the arm has come to the end of is the brake of a reaction, before its way to
     /// `heading`.
     pub(super) fn has_braked_before(&self, heading: &Target) -> bool {
         self.has_reacted() && self.aim == Target::Rest && *heading != Target::Rest
@@ -100,7 +100,7 @@ impl RunningSession {
         }
     }
 
-    /// Whether the goal ends otherwise since its condition was true.
+    /// True if the goal ends otherwise since its condition was true.
     pub(super) fn has_reacted(&self) -> bool {
         matches!(self.standing, Standing::Reacted(_))
     }

@@ -53,7 +53,7 @@ impl RunningSession {
         self.lapse(OnTimeout::Brake, lapse);
     }
 
-    /// Whether neither an update nor a chunk brings back a goal that was given up or has reacted.
+    /// True if neither an update nor a chunk brings back a goal that was given up or has reacted.
     pub(super) fn is_given_up_for_good(&self) -> bool {
         let settled = matches!(self.stage, GoalStage::Staying | GoalStage::Releasing(_));
         match self.standing {
@@ -63,7 +63,7 @@ impl RunningSession {
         }
     }
 
-    /// Whether the goal was given up, for good or until an update comes.
+    /// True if the goal was given up, for good or until an update comes.
     pub(super) fn is_given_up(&self) -> bool {
         matches!(self.standing, Standing::GivenUp { .. })
     }
@@ -163,7 +163,7 @@ impl RunningSession {
         }
     }
 
-    /// Whether the goal was given up because the team has stopped.
+    /// True if the goal was given up because the team has stopped.
     pub(super) fn has_stopped_with_team(&self) -> bool {
         matches!(
             self.standing,

@@ -41,7 +41,7 @@ pub(super) mod is_off {
 /// unchanged: the joints behind them feel some ten times as much, a jerk of 100 rad/s^3.
 const SAME: f64 = 1e-8;
 
-/// Whether the robot has another setpoint than `sent`. Where velocities have led is not compared.
+/// True if the robot has another setpoint than `sent`. Where velocities have led is not compared.
 pub(super) fn differs(sent: &MotionCommand, state: &RobotState) -> bool {
     let far = |a: &[f64], b: &[f64]| {
         a.iter()
@@ -68,7 +68,7 @@ pub(super) fn differs(sent: &MotionCommand, state: &RobotState) -> bool {
     }
 }
 
-/// Whether the limiter has left `asked` as it was, but for rounding.
+/// True if the limiter has left `asked` as it was, but for rounding.
 pub(super) fn unchanged(shaped: &MotionCommand, asked: &MotionCommand) -> bool {
     let most = match asked {
         MotionCommand::JointPositions(_) => echo::JOINTS,

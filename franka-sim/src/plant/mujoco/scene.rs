@@ -154,7 +154,7 @@ impl Scene {
         Ok(model)
     }
 
-    /// Whether there is a Franka Hand.
+    /// True if there is a Franka Hand.
     pub(super) fn has_hand(&self) -> bool {
         self.has_hand
     }

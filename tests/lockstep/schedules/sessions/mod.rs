@@ -46,7 +46,7 @@ pub(super) struct Sessions<'a> {
     random: SmallRng,
     counts: &'a mut OutcomeCounts,
     home: Isometry3<f64>,
-    /// Whether there are no disturbances from outside.
+    /// True if there are no disturbances from outside.
     calm: bool,
     /// True if the disturbances may move the arm or end a motion by themselves.
     forceful: bool,
@@ -66,7 +66,7 @@ struct Session {
     deadman: Option<DeadmanFeed>,
     /// The newest goal.
     current: Option<GoalId>,
-    /// Whether goals are refused from now on.
+    /// True if goals are refused from now on.
     over: bool,
 }
 

@@ -71,7 +71,7 @@ impl Program {
     }
 }
 
-/// Whether a program (64-bit ELF, little-endian) asks for a loader of shared libraries: it then has
+/// True if a program (64-bit ELF, little-endian) asks for a loader of shared libraries: it then has
 /// a program header of the type `PT_INTERP`.
 fn needs_a_loader(program: &[u8]) -> bool {
     let at = |from: usize, bytes: usize| {

@@ -117,7 +117,7 @@ fn version_and_date(title: &str) -> Option<(Version, &str)> {
     Some((Version::parse(version).ok()?, date))
 }
 
-/// Whether a text is a date as `YYYY-MM-DD`.
+/// True if a text is a date as `YYYY-MM-DD`.
 pub(crate) fn is_date(text: &str) -> bool {
     let mut parts = text.split('-');
     let mut number = |digits: usize| {
