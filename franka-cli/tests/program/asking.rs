@@ -22,7 +22,7 @@ fn without_a_terminal_nothing_moves_unless_agreed_beforehand() {
         home.run(&guide).failed(5, &["no terminal"]);
         let open = ["gripper", "close", &sim.hand()];
         home.run(&open)
-            .failed(5, &["The fingers go from", "no terminal"]);
+            .failed(5, &["The fingers move from", "no terminal"]);
         near(sim.state().q, before);
     });
 }

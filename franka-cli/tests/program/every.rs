@@ -166,7 +166,7 @@ fn every_motion_is_braked_by_ctrl_c() {
             program.signal(Signal::SIGINT);
             program
                 .ended()
-                .failed(130, &["braking", "braked, and rests"]);
+                .failed(130, &["braking", "braked and is at rest"]);
             sim.rests(RobotMode::Idle);
         }
     });

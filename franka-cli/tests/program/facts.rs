@@ -123,7 +123,7 @@ fn wrong_arguments_are_told_with_code_2() {
     let home = Home::new();
     for (arguments, text) in [
         (&["dance"][..], "dance"),
-        (&["state"], "no robot was named"),
+        (&["state"], "no robot was given"),
         (&["state", "a b"], "not a host name"),
         (&["state", "x", "--rate", "5"], "--watch"),
         (&["state", "x", "--watch", "--rate", "1000"], "0.1 to 100"),

@@ -88,7 +88,7 @@ fn ctrl_c_and_sigterm_brake_and_say_so() {
             let mut program = home.start(&moving(&robot, &SLOW));
             sim.moves();
             program.signal(signal);
-            program.ended().failed(code, &[text, "braked, and rests"]);
+            program.ended().failed(code, &[text, "braked and is at rest"]);
             sim.rests(RobotMode::Idle);
         }
     });
@@ -145,7 +145,7 @@ fn ctrl_c_at_a_recovery_says_that_it_may_go_on() {
                 recovers
             })
         });
-        program.ended().failed(130, &["may recover all the same"]);
+        program.ended().failed(130, &["may still recover"]);
         sim.rests(RobotMode::Idle);
     });
 }

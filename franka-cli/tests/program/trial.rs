@@ -183,7 +183,7 @@ fn an_interrupted_trial_brakes_and_says_that_it_is_incomplete() {
         program.signal(signal);
         program
             .ended()
-            .failed(code, &["braking", "braked, and rests"]);
+            .failed(code, &["braking", "braked and is at rest"]);
         let (_, trial) = report(&home, "trial.md");
         assert_eq!(trial["complete"], false);
         assert_eq!(trial["ended"]["kind"], kind);
@@ -201,7 +201,7 @@ fn a_trial_that_is_interrupted_at_rest_moves_nothing() {
     let mut program = home.start(&trial(&robot, &["--yes"]));
     until("a recording", || home.path("trial.mcap").exists());
     program.signal(Signal::SIGINT);
-    program.ended().failed(130, &["rests"]);
+    program.ended().failed(130, &["is at rest"]);
     assert_eq!(report(&home, "trial.md").1["ended"]["step"], "at rest");
     sim.rests(RobotMode::Idle);
 }
