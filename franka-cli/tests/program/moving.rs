@@ -88,7 +88,9 @@ fn ctrl_c_and_sigterm_brake_and_say_so() {
             let mut program = home.start(&moving(&robot, &SLOW));
             sim.moves();
             program.signal(signal);
-            program.ended().failed(code, &[text, "braked and is at rest"]);
+            program
+                .ended()
+                .failed(code, &[text, "braked and is at rest"]);
             sim.rests(RobotMode::Idle);
         }
     });
