@@ -201,11 +201,12 @@ impl Builder {
     /// [`Robot::events`] and [`Robot::health`] tell what happens. Nothing that was begun before
     /// goes on by itself. [`connect`](Self::connect) itself is not repeated.
     ///
-    /// What this program has set at the robot (load, frames, thresholds, impedance, guiding mode,
-    /// filters) is set again after each reconnect, once the robot is idle, and looked up in its
-    /// states where they show it. Motions begin after that. If the robot does not take it, motions
-    /// are refused as [`Unready::NotConfigured`](crate::error::Unready::NotConfigured) until it is
-    /// set; see [`EventKind::NotConfigured`](crate::supervision::EventKind::NotConfigured).
+    /// The settings of this program (load, frames, thresholds, impedance, guiding mode, filters)
+    /// are sent again after each reconnect, once the robot is idle, and compared with its states
+    /// where they show them. Motions begin after that. If the robot does not accept a setting,
+    /// motions are refused as [`Unready::NotConfigured`](crate::error::Unready::NotConfigured)
+    /// until it does; see
+    /// [`EventKind::NotConfigured`](crate::supervision::EventKind::NotConfigured).
     pub fn supervise(mut self, policy: Policy) -> Self {
         self.policy = Some(policy);
         self

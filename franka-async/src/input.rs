@@ -193,7 +193,7 @@ pub(crate) enum EndReply {
 }
 
 impl EndReply {
-    /// True if nobody waits for it.
+    /// True if no future waits for it.
     pub(crate) fn is_closed(&self) -> bool {
         match self {
             Self::One(ended) => ended.is_closed(),

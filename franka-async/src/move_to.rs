@@ -136,9 +136,9 @@ impl Motion {
     goal_options!(target);
 
     /// Moves the joints to the pose, as [`Robot::move_joints`] does, where the arm cannot follow
-    /// the straight line of [`Robot::move_to`]. The end effector then goes there on a curve: mind
-    /// what stands beside the line. [`Self::preview`] shows the way that is taken. A motion that
-    /// has no such way either is refused as
+    /// the straight line of [`Robot::move_to`]. The end effector then moves along a curve: mind
+    /// obstacles beside the line. [`Self::preview`] shows the path. If the joints have no path
+    /// either, the motion is refused as
     /// [`GoalError::NoLine`](crate::error::GoalError::NoLine), and one in a session that commands
     /// poses to the robot's own controller as
     /// [`GoalError::Backend`](crate::error::GoalError::Backend).

@@ -171,7 +171,7 @@ impl Bridge {
         let taken: Vec<_> = self.planning.extract_if(.., |plan| of(plan)).collect();
         let any = !taken.is_empty();
         for planning in taken {
-            // What was asked of it is over, whatever the thread still computes.
+            // The thread may compute on; its result is dropped.
             planning.task.abort();
             self.refuse(planning.id(), planning.replies, reason.clone());
         }

@@ -26,11 +26,11 @@ pub enum Unready {
     /// from a reflex waits for somebody to agree, and a motion that waited does not begin.
     #[error("the robot is not recognised: {0}")]
     Unrecognised(Differences),
-    /// Robot: what this program had set at it before a connection was lost is being set again.
-    #[error("what was set at the robot is being set again")]
+    /// Robot: the settings of this program are being sent to it again after a reconnect.
+    #[error("the settings of this program are being sent to the robot again")]
     Configuring,
-    /// Robot: it has not taken again what this program had set at it.
-    #[error("\"{0}\" of this program does not hold at the robot any more")]
+    /// Robot: a setting of this program could not be restored after a reconnect.
+    #[error("the setting \"{0}\" of this program could not be restored after a reconnect")]
     NotConfigured(Command),
     /// Robot: a reflex, which somebody has to recover it from.
     #[error("a reflex holds the robot")]

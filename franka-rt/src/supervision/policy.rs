@@ -100,7 +100,7 @@ impl Policy {
         self
     }
 
-    /// Makes no new connection when one is lost, whatever pauses [`Self::reconnect`] sets.
+    /// Makes no new connection when one is lost, regardless of the pauses of [`Self::reconnect`].
     pub fn without_reconnecting(mut self) -> Self {
         self.reconnects = false;
         self

@@ -23,14 +23,14 @@ use crate::session::backend::Controller;
 use crate::session::landing::REST_VELOCITY;
 
 /// Counts how long the arm has ignored its commands.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Unresponsive {
     /// Cycles in which the arm stood still under commands that should move it.
     still: u32,
     /// Cycles in which the robot refused its setpoints.
     refusing: u32,
     /// Cycles since the robot last had another setpoint than the one it was sent.
-    taken: u32,
+    since_refused: u32,
     /// The robot's setpoint in the last state, `[rad]`.
     setpoint: JointVector,
     /// True if the last command was not the setpoint that the session asked for.
@@ -50,6 +50,18 @@ pub(crate) enum Commanded<'a> {
         /// True if the backstop changed the setpoint of this cycle.
         changed: bool,
     },
+}
+
+impl Default for Unresponsive {
+    fn default() -> Self {
+        Self {
+            still: 0,
+            refusing: 0,
+            since_refused: REFUSED_WITHIN,
+            setpoint: JointVector::zeros(),
+            changed: false,
+        }
+    }
 }
 
 impl Unresponsive {
@@ -99,11 +111,11 @@ impl Unresponsive {
     fn is_refused(&mut self, setpoint: &[f64; 7], differs: bool) -> bool {
         let setpoint = JointVector::from(*setpoint);
         let stays = core::mem::replace(&mut self.setpoint, setpoint) == setpoint;
-        self.taken = match differs && !self.changed {
+        self.since_refused = match differs && !self.changed {
             true => 0,
-            false => self.taken.saturating_add(1),
+            false => self.since_refused.saturating_add(1),
         };
-        stays && self.taken < REFUSED_WITHIN
+        stays && self.since_refused < REFUSED_WITHIN
     }
 }
 
