@@ -88,6 +88,7 @@ class Card {
 }
 
 export async function overview() {
+  const add = stopControls([]);
   const answer = await listed(() => tell("No connection to the server. The page asks again each second."));
   document.getElementById("notice").hidden = true;
   if (!answer.ok) {
@@ -100,6 +101,6 @@ export async function overview() {
   const names = await answer.json();
   tabs(names, "", "");
   const cards = names.map((name) => new Card(name));
-  stopControls(cards.map((card) => card.stop));
+  add(cards.map((card) => card.stop));
   window.__state = () => ({ ready: cards.every((card) => card.frame), cards: cards.map((card) => card.state()) });
 }

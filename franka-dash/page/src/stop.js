@@ -55,10 +55,15 @@ export class Stop extends EventTarget {
   }
 }
 
-/** Has the button, Escape and the space bar press all `stops`, and tells which got through. */
-export function stopControls(stops) {
+/**
+ * Makes the button, Escape and the space bar press all `stops`, and shows which got through. Returns
+ * a function that adds more: a stop that was pressed before any were known is sent by them.
+ */
+export function stopControls(known) {
+  const stops = [];
   const notice = document.getElementById("stop-notice");
   let hide = null;
+  let isEarly = false;
   const names = (of) => of.map((stop) => stop.name).filter((name) => name !== null).join(", ");
   const line = (state, text) => {
     const those = stops.filter((stop) => stop.state === state);
@@ -67,6 +72,7 @@ export function stopControls(stops) {
   };
   const show = () => {
     const late = [
+      ...(isEarly ? ["Stop not sent, the robots are not known yet; it is sent as soon as they are."] : []),
       ...line("unsent", "not sent, no connection; it is sent when the page is connected again"),
       ...line("unconfirmed", "not confirmed by the server; it is sent again"),
     ];
@@ -80,8 +86,17 @@ export function stopControls(stops) {
       if (!isWaiting) hide = setTimeout(() => { notice.hidden = true; }, NOTICE_MS);
     }
   };
-  for (const stop of stops) stop.addEventListener("changed", show);
-  const press = () => { for (const stop of stops) stop.press(); };
+  const press = () => {
+    isEarly = stops.length === 0;
+    for (const stop of stops) stop.press();
+    show();
+  };
+  const add = (more) => {
+    for (const stop of more) stop.addEventListener("changed", show);
+    stops.push(...more);
+    if (isEarly) press();
+  };
+  add(known);
   document.getElementById("stop").addEventListener("click", press);
   addEventListener("keydown", (event) => {
     // Checkboxes have this key, as the space bar stops.
@@ -93,4 +108,5 @@ export function stopControls(stops) {
   }, { capture: true });
   // Some browsers press a button when the key is released.
   addEventListener("keyup", (event) => { if (event.key === " ") event.preventDefault(); }, { capture: true });
+  return add;
 }

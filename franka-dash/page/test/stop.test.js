@@ -89,6 +89,19 @@ test("stop all names the robots that it has not reached", () => {
 /** An element of this kind, which counts its clicks. */
 const focused = (kind) => Object.assign(element(), { clicks: 0, click() { this.clicks += 1; }, matches: (selector) => selector === kind });
 
+test("stop before the robots are known is sent as soon as they are", () => {
+  const add = stopControls([]);
+  document.getElementById("stop").dispatchEvent(event("click"));
+  assert.match(notice().textContent, /not sent, the robots are not known.*user stop/);
+  const connections = [new Connection(), new Connection()];
+  add(connections.map((connection, i) => new Stop(connection, `robot ${i}`)));
+  for (const connection of connections) {
+    assert.equal(connection.count("stop"), 1);
+    connection.tell("stopping");
+  }
+  assert.match(notice().textContent, /received/);
+});
+
 test("space bar and Escape stop regardless of what has the focus", () => {
   for (const [kind, key, stops, clicks] of [
     ["button", " ", 1, 0],
