@@ -67,7 +67,7 @@ pub(crate) fn plan(
     let place = |q| robot.pose_at(q).translation.vector;
     if let Some(blocked) = blocked.map_err(|error| error.to_string())? {
         let what = match blocked.region {
-            Some(region) => format!("region {} to keep out of", region + 1),
+            Some(region) => format!("region {region} to keep out of"),
             None => "itself".to_owned(),
         };
         let (after, at) = (blocked.time.as_secs_f64(), millimetres(place(blocked.q)));

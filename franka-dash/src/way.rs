@@ -25,8 +25,9 @@ impl Way {
             Motion::Joint { joint, up } => {
                 // The others stay where they are, wherever that is.
                 let mut q = state.q_d;
-                let (lower, upper) = range[*joint];
-                q[*joint] = if *up { upper } else { lower };
+                let index = joint - 1;
+                let (lower, upper) = range[index];
+                q[index] = if *up { upper } else { lower };
                 q
             }
             Motion::Joints { q } => core::array::from_fn(|i| q[i].clamp(range[i].0, range[i].1)),

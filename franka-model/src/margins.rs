@@ -25,13 +25,13 @@ pub struct JointMargins {
 }
 
 impl JointMargins {
-    /// The joint with the least [`normalised`](Self::normalised) margin, counted from 0, and that
+    /// Returns the joint, 1 to 7, with the least [`normalised`](Self::normalised) margin, and that
     /// margin. A joint whose position is NaN comes before all others.
     pub fn tightest(&self) -> (usize, f64) {
-        let mut tightest = (0, self.normalised[0]);
+        let mut tightest = (1, self.normalised[0]);
         for (i, &margin) in self.normalised.iter().enumerate() {
             if margin < tightest.1 || (margin.is_nan() && !tightest.1.is_nan()) {
-                tightest = (i, margin);
+                tightest = (i + 1, margin);
             }
         }
         tightest
@@ -105,13 +105,13 @@ mod tests {
         q[3] = limits.upper[3] - 0.01;
         let margins = limits.margins(&q, &JointVector::zeros());
         let (joint, margin) = margins.tightest();
-        assert_eq!(joint, 3);
+        assert_eq!(joint, 4);
         assert!((margin - 0.02 / (limits.upper[3] - limits.lower[3])).abs() < 1e-15);
         assert!((margins.to_upper[3] - 0.01).abs() < 1e-15);
 
         q[5] = f64::NAN;
         let (joint, margin) = limits.margins(&q, &JointVector::zeros()).tightest();
-        assert!(joint == 5 && margin.is_nan());
+        assert!(joint == 6 && margin.is_nan());
     }
 
     #[test]

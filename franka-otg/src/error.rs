@@ -11,7 +11,7 @@ pub enum PlanError {
     NotFinite {
         /// What the number describes.
         quantity: Quantity,
-        /// Axis, counted from zero.
+        /// Axis, from 1.
         axis: usize,
     },
     /// A limit that is not positive and finite.
@@ -19,7 +19,7 @@ pub enum PlanError {
     Limit {
         /// What is limited.
         quantity: Quantity,
-        /// Axis, counted from zero.
+        /// Axis, from 1.
         axis: usize,
         /// The limit as given.
         value: f64,
@@ -30,14 +30,14 @@ pub enum PlanError {
         "the target of axis {axis} moves faster than its limits allow: |velocity| + acceleration^2 / (2 jerk limit) and |acceleration| must not exceed the limits"
     )]
     TargetMotion {
-        /// Axis, counted from zero; 0 for a straight line, which is planned as one.
+        /// Axis, from 1; 1 for a straight line, which is planned as one.
         axis: usize,
     },
     /// Distance or velocity and the limits lie so far apart that `f64` cannot hold the powers that
     /// the solution is made of: more than 100 decades in units of `A^3/J^2` or `A^2/J`.
     #[error("state, target and limits of axis {axis} lie too many orders of magnitude apart")]
     OutOfRange {
-        /// Axis, counted from zero; 0 for a straight line, which is planned as one.
+        /// Axis, from 1; 1 for a straight line, which is planned as one.
         axis: usize,
     },
 }

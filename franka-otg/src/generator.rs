@@ -376,7 +376,7 @@ impl<const N: usize> Generator<N> {
 /// Refuses a state too many orders of magnitude from its limits to stop from.
 fn check_range<const N: usize>(state: &State<N>, limits: &Limits<N>) -> Result<(), PlanError> {
     match (0..N).find(|&i| !can_stop(state.axis(i), limits.axis(i))) {
-        Some(axis) => Err(PlanError::OutOfRange { axis }),
+        Some(index) => Err(PlanError::OutOfRange { axis: index + 1 }),
         None => Ok(()),
     }
 }

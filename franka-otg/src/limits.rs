@@ -42,7 +42,7 @@ impl<const N: usize> Limits<N> {
     /// # Errors
     /// [`PlanError::Limit`] for a limit that is not a positive finite number.
     pub fn per_axis(limits: [AxisLimits; N]) -> Result<Self, PlanError> {
-        for (axis, limit) in limits.iter().enumerate() {
+        for (axis, limit) in (1..).zip(&limits) {
             limit.check(axis)?;
         }
         Ok(Self(limits))
@@ -121,7 +121,7 @@ mod tests {
             let Err(PlanError::Limit { quantity, axis, .. }) = refused else {
                 panic!("{value} was accepted");
             };
-            assert_eq!((quantity, axis), (Quantity::Acceleration, 1));
+            assert_eq!((quantity, axis), (Quantity::Acceleration, 2));
         }
     }
 }

@@ -102,7 +102,7 @@ impl<const N: usize> Plan<N> {
         limits: &Limits<N>,
     ) -> Result<(), PlanError> {
         let axis = Axis::new(along, to, limits.along(line.direction()))
-            .map_err(|refusal| refusal.of_axis(0))?;
+            .map_err(|refusal| refusal.of_axis(1))?;
         let least = axis.least_duration();
         axis.lay_out(least, &mut self.along);
         self.duration = self.along.duration();
@@ -131,7 +131,7 @@ impl<const N: usize> Plan<N> {
         for (i, axis) in axes.iter().enumerate() {
             match axis {
                 Ok(axis) => duration = duration.max(axis.least_duration()),
-                Err(refusal) => return Err(refusal.of_axis(i)),
+                Err(refusal) => return Err(refusal.of_axis(i + 1)),
             }
         }
         let moves = !target.is_at_rest();

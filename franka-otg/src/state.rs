@@ -104,7 +104,10 @@ impl<const N: usize> State<N> {
 /// Refuses the first non-finite one of `values`.
 pub(crate) fn check_finite(values: &[f64], quantity: Quantity) -> Result<(), PlanError> {
     match values.iter().position(|value| !value.is_finite()) {
-        Some(axis) => Err(PlanError::NotFinite { quantity, axis }),
+        Some(index) => Err(PlanError::NotFinite {
+            quantity,
+            axis: index + 1,
+        }),
         None => Ok(()),
     }
 }

@@ -161,7 +161,7 @@ impl Sim {
         };
         touch(
             this,
-            franka_sim::Touch::block(number - 1),
+            franka_sim::Touch::block(number),
             None,
             (duration, once_moving),
         )

@@ -106,7 +106,7 @@ fn a_hand_stays_out_of_a_region_and_leaves_it() {
         println!("{:.2} mm", least * 1e3);
         assert!(bound && least >= KEEP_OUT_STOP - CURVE, "{least}");
         assert!(least < KEEP_OUT_STOP + 0.01, "{least}");
-        let blocked = Err(MotionError::Braked(Lapse::Blocked { region: Some(1) }));
+        let blocked = Err(MotionError::Braked(Lapse::Blocked { region: Some(2) }));
         assert_eq!(lockstep.client.outcome(down), Some(&blocked));
         let up = lockstep.begin(Target::Pose(start));
         lockstep.until_resolved(up, 10_000).expect("a way out");

@@ -476,11 +476,11 @@ fn numbers_out_of_bounds_are_named_with_what_is_accepted() {
         ),
         (
             gains(12.0, 100.0),
-            "torque limit of axis 6 is 12, expected between 1 and 11.5",
+            "torque limit of axis 7 is 12, expected between 1 and 11.5",
         ),
         (
             gains(11.0, 10.0),
-            "torque cutoff frequency of axis 0 is 10, expected between 20 and 1000",
+            "torque cutoff frequency is 10, expected between 20 and 1000",
         ),
         (stretched, "joint 4: 0 rad"),
     ] {

@@ -604,7 +604,7 @@ fn a_path_that_is_braked_before_a_region_goes_nowhere_else() {
             .through(None, &rounded(&places, 0.0))
             .expect("within reach");
         let outcome = lockstep.until_resolved(id, 40_000);
-        let blocked = Err(MotionError::Braked(Lapse::Blocked { region: Some(0) }));
+        let blocked = Err(MotionError::Braked(Lapse::Blocked { region: Some(1) }));
         assert_eq!(outcome.map(drop), blocked);
         let end = lockstep.arm_pose().translation.vector;
         let line = places[0].translation.vector - start.translation.vector;

@@ -25,8 +25,8 @@ export class Joints {
         + `<button type="button" aria-label="joint ${joint + 1} up">+</button><span class="value"></span>`;
       place.append(row);
       const [down, up] = row.querySelectorAll("button");
-      hold.bind(down, () => ({ motion: { kind: "joint", joint, up: false }, speed: speed() }));
-      hold.bind(up, () => ({ motion: { kind: "joint", joint, up: true }, speed: speed() }));
+      hold.bind(down, () => ({ motion: { kind: "joint", joint: joint + 1, up: false }, speed: speed() }));
+      hold.bind(up, () => ({ motion: { kind: "joint", joint: joint + 1, up: true }, speed: speed() }));
       const [measured, reference, pace] = row.querySelectorAll("i");
       this.#rows.push({
         measured, reference, pace, track: row.querySelector(".track"),

@@ -174,8 +174,8 @@ mod tests {
                 "a speed is 0.001 to 0.25 m/s, got 0.2501",
             ),
             (
-                r#"{"type":"begin","motion":{"kind":"joint","joint":7,"up":true},"speed":0.1}"#,
-                "a joint is 0 to 6, got 7",
+                r#"{"type":"begin","motion":{"kind":"joint","joint":8,"up":true},"speed":0.1}"#,
+                "a joint is 1 to 7, got 8",
             ),
             (
                 r#"{"type":"preview","number":1,"motion":{"kind":"pose","position":[0,0,9],"orientation":[0,0,0,1]},"speed":0.1}"#,

@@ -20,7 +20,7 @@ pub(crate) enum Motion {
     Translate { direction: [f64; 3], axes: Axes },
     /// The end effector about an axis through its origin.
     Rotate { direction: [f64; 3], axes: Axes },
-    /// One joint, 0 to 6, up or down, as far as its range.
+    /// One joint, 1 to 7, up or down, as far as its range.
     Joint { joint: usize, up: bool },
     /// All joints to these positions, `[rad]`.
     Joints { q: [f64; 7] },
@@ -50,7 +50,7 @@ impl Motion {
                     )),
                 }
             }
-            Self::Joint { joint, .. } => within("a joint", "", *joint, 0..=6),
+            Self::Joint { joint, .. } => within("a joint", "", *joint, 1..=7),
             Self::Joints { q } if !q.iter().all(|x| x.is_finite()) => {
                 Err(format!("joint positions are finite numbers; got {q:?}"))
             }

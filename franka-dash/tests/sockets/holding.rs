@@ -50,7 +50,7 @@ fn the_arm_rests_when_the_page_of_its_commander_has_gone() {
     let served = Served::movable();
     let mut viewer = Viewer::connect(served.address);
     viewer.take();
-    let joint = json!({"kind": "joint", "joint": 0, "up": true});
+    let joint = json!({"kind": "joint", "joint": 1, "up": true});
     let start = served.robot.state().q[0];
     viewer.hold_until(&joint, || served.robot.state().q[0] > start + 0.01);
     drop(viewer);

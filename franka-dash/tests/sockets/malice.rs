@@ -129,7 +129,7 @@ fn a_hundred_viewers_that_mean_harm_change_nothing_for_one_that_jogs() {
     commander.take();
     let under_way = AtomicUsize::new(HARMFUL);
     std::thread::scope(|scope| {
-        let joint = json!({"kind": "joint", "joint": 0, "up": true});
+        let joint = json!({"kind": "joint", "joint": 1, "up": true});
         let start = served.robot.state().q[0];
         let moved = || served.robot.state().q[0] - start;
         let next = commander.hold_until(&joint, || moved() > 0.005);
@@ -157,7 +157,7 @@ fn a_hundred_viewers_that_mean_harm_change_nothing_for_one_that_jogs() {
     assert_eq!(state.robot_mode, RobotMode::Idle);
     assert_eq!(served.robot.stats().lost.get(), 0);
     // And it goes on.
-    let up = json!({"kind": "joint", "joint": 0, "up": false});
+    let up = json!({"kind": "joint", "joint": 1, "up": false});
     commander.hold_until(&up, || served.robot.state().q[0] < state.q[0] - 0.005);
 }
 

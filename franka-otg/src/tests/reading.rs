@@ -54,7 +54,7 @@ fn targets_that_the_limits_do_not_allow_are_refused() {
         velocity: [0.0, velocity, 0.0],
         acceleration: [0.0, acceleration, 0.0],
     };
-    let refused = Err(PlanError::TargetMotion { axis: 1 });
+    let refused = Err(PlanError::TargetMotion { axis: 2 });
     assert_eq!(generator.set_moving_target(&motion(0.81, 0.0)), refused);
     assert_eq!(generator.set_moving_target(&motion(0.0, -4.1)), refused);
     // At its limit the velocity cannot have an acceleration: it came from beyond, or goes there.
@@ -63,7 +63,7 @@ fn targets_that_the_limits_do_not_allow_are_refused() {
         generator.set_moving_target(&motion(f64::NAN, 0.0)),
         Err(PlanError::NotFinite {
             quantity: Quantity::TargetVelocity,
-            axis: 1
+            axis: 2
         })
     );
     assert_eq!(generator.target(), &[0.3, -0.2, 0.1]);

@@ -31,7 +31,7 @@ fn targets_and_states_that_are_not_finite_are_refused() {
             generator.set_target(&[0.0, bad]),
             Err(PlanError::NotFinite {
                 quantity: Quantity::Target,
-                axis: 1
+                axis: 2
             })
         );
         let state = State {
@@ -42,7 +42,7 @@ fn targets_and_states_that_are_not_finite_are_refused() {
             generator.set_state(state),
             Err(PlanError::NotFinite {
                 quantity: Quantity::Velocity,
-                axis: 0
+                axis: 1
             })
         );
     }
@@ -55,12 +55,12 @@ fn what_no_double_can_compute_is_refused() {
     let mut generator = moving();
     assert_eq!(
         generator.set_target(&[1e300, 0.0]),
-        Err(PlanError::OutOfRange { axis: 0 })
+        Err(PlanError::OutOfRange { axis: 1 })
     );
     let tiny = Limits::from_arrays([2.0; 2], [1e-250, 10.0], [5000.0; 2]).unwrap();
     assert_eq!(
         generator.set_limits(tiny),
-        Err(PlanError::OutOfRange { axis: 0 })
+        Err(PlanError::OutOfRange { axis: 1 })
     );
     assert_eq!(generator.limits(), untouched.limits());
     same_motion(&generator, &untouched);

@@ -57,19 +57,23 @@ pub struct Gains {
 
 /// A gain out of its bounds.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{what} of axis {axis} is {got}, expected between {least} and {most}")]
+#[error("{what}{} is {got}, expected between {least} and {most}", of_axis(*.axis))]
 #[non_exhaustive]
 pub struct GainError {
     /// The group of gains.
     pub what: &'static str,
-    /// Index in the group, from 0.
-    pub axis: usize,
+    /// Its number in the group, from 1; `None` for a single number.
+    pub axis: Option<usize>,
     /// The value given.
     pub got: f64,
     /// The lowest value accepted.
     pub least: f64,
     /// The highest value accepted.
     pub most: f64,
+}
+
+fn of_axis(axis: Option<usize>) -> String {
+    axis.map_or(String::new(), |axis| format!(" of axis {axis}"))
 }
 
 impl Gains {
@@ -208,15 +212,15 @@ impl Gains {
         for (i, got) in self.to_array().into_iter().enumerate() {
             if !(least[i]..=most[i]).contains(&got) {
                 let (what, axis) = match i {
-                    0..6 => ("end-effector stiffness", i),
-                    6..12 => ("end-effector damping", i - 6),
-                    12..19 => ("joint stiffness", i - 12),
-                    19..26 => ("joint damping", i - 19),
-                    26 => ("feedforward weight", 0),
-                    30..37 => ("compensation", i - 30),
-                    37..44 => ("torque limit", i - 37),
-                    44.. => ("torque cutoff frequency", 0),
-                    _ => ("feedforward cutoff frequency", 0),
+                    0..6 => ("end-effector stiffness", Some(i + 1)),
+                    6..12 => ("end-effector damping", Some(i - 5)),
+                    12..19 => ("joint stiffness", Some(i - 11)),
+                    19..26 => ("joint damping", Some(i - 18)),
+                    26 => ("feedforward weight", None),
+                    30..37 => ("compensation", Some(i - 29)),
+                    37..44 => ("torque limit", Some(i - 36)),
+                    44.. => ("torque cutoff frequency", None),
+                    _ => ("feedforward cutoff frequency", None),
                 };
                 return Err(GainError {
                     what,
@@ -292,23 +296,23 @@ mod tests {
         let error = gains.check().unwrap_err();
         assert_eq!(
             error.to_string(),
-            "end-effector stiffness of axis 4 is 301, expected between 0 and 300"
+            "end-effector stiffness of axis 5 is 301, expected between 0 and 300"
         );
         gains = Gains::joint();
         gains.joint_damping[6] = f64::NAN;
-        assert_eq!(gains.check().unwrap_err().axis, 6);
+        assert_eq!(gains.check().unwrap_err().axis, Some(7));
         gains = Gains::droid();
         gains.feedforward = -0.1;
         assert_eq!(gains.check().unwrap_err().what, "feedforward weight");
         gains = Gains::droid();
         gains.compensation[3] = -1.0;
         let error = gains.check().unwrap_err();
-        assert_eq!((error.what, error.axis), ("compensation", 3));
+        assert_eq!((error.what, error.axis), ("compensation", Some(4)));
         gains = Gains::droid();
         gains.feedforward_cutoff = 0.0;
         assert_eq!(
             gains.check().unwrap_err().to_string(),
-            "feedforward cutoff frequency of axis 0 is 0, expected between 1 and 1000"
+            "feedforward cutoff frequency is 0, expected between 1 and 1000"
         );
     }
 

@@ -212,10 +212,10 @@ pub enum MotionError {
     /// Robot or surroundings: no motion runs, and the arm was not seen to rest after a stop. A hand
     /// guides it, or its joints still move.
     #[error(
-        "no motion runs, and the arm does not rest: joint {} moves at {velocity:.3} rad/s", .joint + 1
+        "no motion runs, and the arm does not rest: joint {joint} moves at {velocity:.3} rad/s"
     )]
     NotAtRest {
-        /// A joint that moves, from 0.
+        /// A joint that moves, 1 to 7.
         joint: usize,
         /// Its velocity, `[rad/s]`.
         velocity: f64,

@@ -219,6 +219,8 @@ fn unrest(state: &RobotState) -> Option<MotionError> {
     }
     let rests = |dq: &f64| dq.abs() < REST_VELOCITY;
     let joint = state.dq.iter().position(|dq| !rests(dq))?;
-    let velocity = state.dq[joint];
-    Some(MotionError::NotAtRest { joint, velocity })
+    Some(MotionError::NotAtRest {
+        joint: joint + 1,
+        velocity: state.dq[joint],
+    })
 }

@@ -310,7 +310,7 @@ impl Route {
 
     /// What keeps the course from its goal by being too near, or did a moment ago.
     pub(super) fn hindrance(&self) -> Option<Lapse> {
-        let region = self.obstacle;
+        let region = self.obstacle.map(|index| index + 1);
         (self.hindered > 0).then_some(Lapse::Blocked { region })
     }
 

@@ -71,7 +71,8 @@ pub enum Lapse {
     /// The way leads too near to the arm itself, or to a region to keep out of: see
     /// [`SELF_STOP`](super::SELF_STOP) and [`KEEP_OUT_STOP`](super::KEEP_OUT_STOP).
     Blocked {
-        /// The index of the region, as the session was given them; `None` for the arm itself.
+        /// The region, from 1, in the order in which the session was given them; `None` for the arm
+        /// itself.
         region: Option<usize>,
     },
     /// The joints have no way on to the target from where the arm came to rest: one is at the end
@@ -132,7 +133,7 @@ impl core::fmt::Display for Lapse {
                 region: Some(region),
             } => write!(
                 f,
-                "the way leads too near to a region to keep out of, keep_out[{region}]"
+                "the way leads too near to region {region} to keep out of"
             ),
             Self::OutOfReach { joint: Some(joint) } => {
                 write!(f, "joint {joint} came to the end of its range on the way")

@@ -68,7 +68,7 @@ enum Effort {
     },
     /// Holds the angle that a joint has when the touch begins.
     Block {
-        joint: usize,
+        index: usize,
         angle: Option<f64>,
     },
     Wall {
@@ -138,13 +138,16 @@ impl Touch {
         })
     }
 
-    /// Something that lets a joint (0 to 6) turn no further, either way.
+    /// Blocks a joint, 1 to 7: it turns no further, either way.
     ///
     /// # Panics
     /// If there is no such joint.
     pub fn block(joint: usize) -> Self {
-        assert!(joint < 7, "an arm has joints 0 to 6, there is no {joint}");
-        Self::new(Effort::Block { joint, angle: None })
+        assert!((1..=7).contains(&joint), "joint {joint}, expected 1 to 7");
+        Self::new(Effort::Block {
+            index: joint - 1,
+            angle: None,
+        })
     }
 
     /// A wall or table: the place cannot go behind the plane through `point`, `[m]`, whose `normal`

@@ -90,12 +90,12 @@ fn a_still_arm_stays_still_in_every_firm_grip() {
 #[test]
 fn a_still_arm_stays_still_while_any_joint_or_all_are_blocked() {
     for_each_arm(0, |name, pair| {
-        for joint in 0..7 {
+        for joint in 1..=7 {
             pair.robot.touch(Touch::block(joint));
-            assert_still(&format!("{name}, joint {}", joint + 1), pair);
+            assert_still(&format!("{name}, joint {joint}"), pair);
             pair.robot.let_go();
         }
-        (0..7).for_each(|joint| _ = pair.robot.touch(Touch::block(joint)));
+        (1..=7).for_each(|joint| _ = pair.robot.touch(Touch::block(joint)));
         assert_still(&format!("{name}, all joints"), pair);
     });
 }

@@ -68,7 +68,7 @@ fn a_spring_pulls_to_its_point_a_wall_is_in_the_way_and_a_blocked_joint_does_not
         assert!((deep - 0.5e-3).abs() < 0.2e-3, "{name}: {deep} m deep");
         pair.robot.let_go();
 
-        pair.robot.touch(Touch::block(0));
+        pair.robot.touch(Touch::block(1));
         let before = pair.q()[0];
         pair.robot.touch(Touch::torque(axis(0) * 20.0).lasting(300));
         pair.idle(300);

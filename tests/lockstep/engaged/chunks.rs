@@ -188,11 +188,11 @@ fn points_too_large_to_plan_are_refused() {
         let wild = Translation3::new(far, 0.0, 0.0) * start;
         let poses = Chunk::poses([(apart, start), (apart * 2, wild), (apart * 3, start)]);
         let x = far + start.translation.x;
-        assert_eq!(poses, Err(ChunkError::Number { point: 1, got: x }));
+        assert_eq!(poses, Err(ChunkError::Number { point: 2, got: x }));
         let (at, still) = (READY.into(), [0.0; 7]);
         let fast = [far; 7];
         let joints = Chunk::joints_with_velocities([(apart, at, still), (apart * 2, at, fast)]);
-        assert_eq!(joints, Err(ChunkError::Number { point: 1, got: far }));
+        assert_eq!(joints, Err(ChunkError::Number { point: 2, got: far }));
     }
 }
 

@@ -216,7 +216,7 @@ fn a_session_keeps_out_of_its_regions_and_refuses_invalid_ones() {
         let outcome = lockstep.until_resolved(goal, 20_000);
         assert_eq!(
             outcome,
-            Err(MotionError::Braked(Lapse::Blocked { region: Some(0) }))
+            Err(MotionError::Braked(Lapse::Blocked { region: Some(1) }))
         );
         lockstep.disengage(engaged);
         lockstep.until_resolved(engaged, 1000).unwrap();

@@ -95,7 +95,7 @@ fn a_begin_is_refused_with_the_reason() {
         assert!(matches!(refusal, Some(Refusal::Value(_))), "{speed}");
     }
     for motion in [
-        Motion::Joint { joint: 7, up: true },
+        Motion::Joint { joint: 8, up: true },
         Motion::Joints { q: [f64::NAN; 7] },
         Motion::Rotate {
             direction: [0.0; 3],

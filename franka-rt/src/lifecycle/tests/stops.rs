@@ -106,7 +106,7 @@ fn stop_without_a_motion_of_this_program_waits_for_an_arm_that_moves() {
     pair.comes_to(0.2);
     pair.time_passes(None);
     let moves = MotionError::NotAtRest {
-        joint: 0,
+        joint: 1,
         velocity: 0.2,
     };
     assert_eq!(ended(&pair, 11), Some(Err(moves)));

@@ -21,7 +21,7 @@ pub enum ChunkError {
     /// A number of a point is not finite, or larger than 1e6.
     #[error("point {point} has the number {got}, expected finite ones up to 1e6")]
     Number {
-        /// The point, from 0.
+        /// The point, from 1.
         point: usize,
         /// The number.
         got: f64,
@@ -29,7 +29,7 @@ pub enum ChunkError {
     /// The quaternion of a point is not of length one.
     #[error("the quaternion of point {point} has the length {length}, expected 1")]
     Rotation {
-        /// The point, from 0.
+        /// The point, from 1.
         point: usize,
         /// The length.
         length: f64,
@@ -39,7 +39,7 @@ pub enum ChunkError {
         "point {point} is due at {time:?}, expected 1 ms or more after the one before, at {before:?}"
     )]
     TooClose {
-        /// The point, from 0.
+        /// The point, from 1.
         point: usize,
         /// Its time.
         time: Duration,
@@ -53,7 +53,7 @@ pub enum ChunkError {
         super::Chunk::OFFSET_MAX
     )]
     TooLate {
-        /// The point, from 0.
+        /// The point, from 1.
         point: usize,
         /// Its time.
         time: Duration,
@@ -61,7 +61,7 @@ pub enum ChunkError {
     /// Between two points the end effector turns so far that its direction is in doubt.
     #[error("{degrees} degrees from point {} to point {point}: expected less than 170", point - 1)]
     Turn {
-        /// The later point, from 0.
+        /// The later point, from 1.
         point: usize,
         /// The angle.
         degrees: u16,

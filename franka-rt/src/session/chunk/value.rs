@@ -356,8 +356,8 @@ fn collect<T>(
 ) -> Result<(Vec<f64>, Vec<T>), ChunkError> {
     let (mut times, mut values) = (Vec::new(), Vec::new());
     let mut before: Option<Duration> = None;
-    for (point, (time, value)) in points.into_iter().enumerate() {
-        if point == Chunk::POINTS_MAX {
+    for (point, (time, value)) in (1..).zip(points) {
+        if point > Chunk::POINTS_MAX {
             return Err(ChunkError::TooMany {
                 most: Chunk::POINTS_MAX,
             });
@@ -404,7 +404,7 @@ fn check_pose(point: usize, pose: &Isometry3<f64>) -> Result<(), ChunkError> {
 
 fn check_turns<'a>(poses: impl Iterator<Item = &'a Isometry3<f64>>) -> Result<(), ChunkError> {
     let mut before: Option<&Isometry3<f64>> = None;
-    for (point, pose) in poses.enumerate() {
+    for (point, pose) in (1..).zip(poses) {
         if let Some(before) = before {
             let angle = rotation::error(&pose.rotation, &before.rotation).norm();
             if angle >= TURN_MAX {
@@ -435,19 +435,19 @@ mod tests {
             (vec![], "a chunk needs at least one point"),
             (
                 vec![at(0, 0.0), at(10, 0.0), at(10, 0.1)],
-                "point 2 is due at 10ms, expected 1 ms or more after the one before, at 10ms",
+                "point 3 is due at 10ms, expected 1 ms or more after the one before, at 10ms",
             ),
             (
                 vec![at(10, 0.0), at(5, 0.0)],
-                "point 1 is due at 5ms, expected 1 ms or more after the one before, at 10ms",
+                "point 2 is due at 5ms, expected 1 ms or more after the one before, at 10ms",
             ),
             (
                 vec![at(0, 0.0), at(1, f64::NAN)],
-                "point 1 has the number NaN, expected finite ones up to 1e6",
+                "point 2 has the number NaN, expected finite ones up to 1e6",
             ),
             (
                 vec![at(0, 0.0), at(60_001, 0.0)],
-                "point 1 is due at 60.001s, expected at most 60s",
+                "point 2 is due at 60.001s, expected at most 60s",
             ),
             (
                 (0..1025).map(|k| at(k, 0.0)).collect(),
@@ -471,7 +471,7 @@ mod tests {
         let far = Chunk::poses([(MS, pose(0.0)), (MS * 2, pose(3.0))]).unwrap_err();
         assert_eq!(
             far.to_string(),
-            "172 degrees from point 0 to point 1: expected less than 170"
+            "172 degrees from point 1 to point 2: expected less than 170"
         );
         let mut long = pose(0.0);
         long.rotation =
@@ -479,7 +479,7 @@ mod tests {
         assert_eq!(
             Chunk::poses([(MS, long)]),
             Err(ChunkError::Rotation {
-                point: 0,
+                point: 1,
                 length: 2.0
             })
         );

@@ -133,10 +133,10 @@ impl Present {
         let frame = self.touch.frame;
         match &mut self.touch.effort {
             Effort::Torque(torque) => return External::from(*torque),
-            Effort::Block { joint, angle } => {
-                let joint = *joint;
-                let angle = *angle.get_or_insert(q[joint]);
-                return block(joint, angle - q[joint], dq[joint], dt);
+            Effort::Block { index, angle } => {
+                let index = *index;
+                let angle = *angle.get_or_insert(q[index]);
+                return block(index, angle - q[index], dq[index], dt);
             }
             _ => {}
         }
@@ -224,13 +224,13 @@ impl Present {
     }
 }
 
-/// Of a joint that is held at an angle that is so far ahead.
-fn block(joint: usize, ahead: f64, dq: f64, dt: f64) -> External {
+/// Holds the joint of this index at an angle `ahead` of it.
+fn block(index: usize, ahead: f64, dq: f64, dt: f64) -> External {
     let spring = Spring::damped(FIRM_JOINT, JOINT_INERTIA);
     let mut torque = JointVector::zeros();
-    torque[joint] = spring.stiffness * (ahead - dq * dt) - spring.damping * dq;
+    torque[index] = spring.stiffness * (ahead - dq * dt) - spring.damping * dq;
     let mut slope = MassMatrix::zeros();
-    slope[(joint, joint)] = spring.slope(dt);
+    slope[(index, index)] = spring.slope(dt);
     External {
         torque,
         slope: Some(slope),

@@ -75,7 +75,7 @@ impl Preview {
             Some(Blocked {
                 time,
                 q: next,
-                region: near.region(),
+                region: near.region().map(|index| index + 1),
             })
         }))
     }
@@ -94,6 +94,6 @@ pub struct Blocked {
     pub time: Duration,
     /// The joint positions there, `[rad]`.
     pub q: [f64; 7],
-    /// The index of the region; `None` where a link comes near another.
+    /// The region, from 1; `None` where a link comes near another.
     pub region: Option<usize>,
 }

@@ -494,7 +494,7 @@ fn a_preview_says_where_the_guards_stop_the_arm() {
     let (Some(found), preview) = blocked(-0.2, 0.2) else {
         panic!("it comes too near");
     };
-    assert_eq!(found.region, Some(1));
+    assert_eq!(found.region, Some(2));
     let height = rigid(&model.pose(Frame::EndEffector, &found.q.into(), &ee))
         .translation
         .z;
