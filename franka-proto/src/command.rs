@@ -1,9 +1,9 @@
-//! The commands of a robot, and what the commands of all services have in common.
+//! The commands of a robot, and the common parts of the commands of all services.
 
 use core::fmt;
 
-/// Counter of a client's requests on one connection: 0 for `Connect`, then one more for each.
-/// Replies are matched by it and by nothing else.
+/// Counter of a client's requests on one connection: 0 for `Connect`, then one more for each
+/// request. Replies are matched by this counter alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CommandId(pub u32);
 
@@ -18,21 +18,21 @@ pub trait ServiceCommand: Copy + fmt::Debug + fmt::Display + Eq + 'static {
     /// `Connect`.
     const CONNECT: Self;
 
-    /// How libfranka's messages about this service begin.
+    /// The beginning of libfranka's messages about this service.
     const SERVICE: &'static str;
 
     /// Writes libfranka's text about a reply with an undefined status.
     ///
     /// # Errors
-    /// Those of the formatter.
+    /// Returns the errors of the formatter.
     fn unexpected_response(self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let service = Self::SERVICE;
         write!(f, "{service}: Unexpected response while handling command!")
     }
 }
 
-/// The commands of all versions. Which number one has, and whether a version has it at all, is in
-/// the version table: see [`Version::command_number`](crate::Version::command_number).
+/// The commands of all versions. The version table states which versions have a command, and its
+/// number: see [`Version::command_number`](crate::Version::command_number).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Command {
@@ -88,8 +88,8 @@ impl Command {
         Self::LoadModelLibrary,
     ];
 
-    /// libfranka's name in its messages. `Connect` and `LoadModelLibrary` have none there; their
-    /// own texts never use it.
+    /// libfranka's name in its messages. `Connect` and `LoadModelLibrary` have no name in
+    /// libfranka, and their texts do not use one.
     #[must_use]
     pub fn display_name(self) -> &'static str {
         match self {
@@ -125,7 +125,7 @@ impl ServiceCommand for Command {
     fn unexpected_response(self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let service = Self::SERVICE;
         match self {
-            // libfranka asks of a library only whether it is a success.
+            // libfranka only checks whether the status of a library is a success.
             Self::LoadModelLibrary => write!(f, "{service}: {NO_LIBRARY}"),
             _ => write!(
                 f,
@@ -135,5 +135,5 @@ impl ServiceCommand for Command {
     }
 }
 
-/// libfranka's text about a library that the robot does not give, which names no command.
+/// libfranka's text about a library that the robot does not provide. It names no command.
 pub(crate) const NO_LIBRARY: &str = "Server reports error when loading model library.";

@@ -1,7 +1,7 @@
-//! Stream bytes in, whole messages out.
+//! Splits a byte stream into whole messages.
 //!
 //! Every message on the robot's TCP stream is a 12-byte [`Header`] and a payload; the header's
-//! `size` counts both. The end effectors have 10 bytes there: see
+//! `size` counts both. The headers of end effectors have 10 bytes: see
 //! [`gripper::next_message`](crate::gripper::next_message).
 //!
 //! ```
@@ -25,8 +25,8 @@ use crate::wire::{self, CommandNumber};
 /// The longest message that [`next_message`] waits for, in bytes: 8 MiB.
 ///
 /// The long messages are the URDF text of protocol 10 (tens of KiB) and the shared library of
-/// protocol 5 (below a few MiB). Without a bound, four bytes of garbage could make a reader
-/// collect 4 GiB before it notices.
+/// protocol 5 (below a few MiB). Without a bound, four bytes of garbage could make a reader collect
+/// 4 GiB before it detects the error.
 pub const MAX_MESSAGE_SIZE: usize = 8 << 20;
 
 /// The longest request that a robot waits for, in bytes.
@@ -35,10 +35,11 @@ pub const MAX_MESSAGE_SIZE: usize = 8 << 20;
 /// client that pads.
 pub const MAX_REQUEST_SIZE: usize = 1024;
 
-/// What precedes every message on the stream.
+/// The header of every message on the stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Header {
-    /// The version's number of the command; repeated in replies, where it is not checked.
+    /// The version's number of the command. Replies repeat it; the number in a reply is not
+    /// checked.
     pub command: u32,
     /// Counter of the client's requests; a reply repeats it.
     pub command_id: u32,
@@ -50,13 +51,13 @@ impl Header {
     /// Length of a header on the robot's stream in bytes.
     pub const SIZE: usize = size_of::<wire::CommandHeader<U32>>();
 
-    /// The request that the message is or answers.
+    /// The id of the request that this message is or answers.
     #[must_use]
     pub fn id(&self) -> CommandId {
         CommandId(self.command_id)
     }
 
-    /// Bytes for the robot's stream.
+    /// Returns the bytes for the robot's stream.
     #[must_use]
     pub fn to_bytes(self) -> [u8; Self::SIZE] {
         let mut bytes = [0; Self::SIZE];
@@ -76,21 +77,21 @@ impl Header {
 /// A whole message, borrowed from the bytes received.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Message<'a> {
-    /// The header, with a `size` that is checked.
+    /// The header; its `size` has been checked.
     pub header: Header,
-    /// Everything behind the header.
+    /// The bytes after the header.
     pub payload: &'a [u8],
 }
 
 impl Message<'_> {
-    /// Length of the whole message in bytes: how far to advance in the stream.
+    /// Length of the whole message in bytes: the number of bytes to advance in the stream.
     #[must_use]
     pub fn size(&self) -> usize {
         self.header.size as usize
     }
 }
 
-/// Why the bytes of a stream cannot be cut into messages. The stream cannot be used any further.
+/// The bytes of a stream cannot be split into messages. The stream is no longer usable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FrameError {
@@ -100,7 +101,7 @@ pub enum FrameError {
         /// The size that the header claims, in bytes.
         got: u32,
     },
-    /// The size is beyond what any message needs.
+    /// The size is larger than any message needs.
     #[error("a message of {got} bytes is announced, and the longest allowed has {limit}")]
     TooLong {
         /// The size that the header claims, in bytes.
@@ -110,19 +111,19 @@ pub enum FrameError {
     },
 }
 
-/// The first message in `received`, or `None` while it is incomplete.
+/// Returns the first message in `received`, or `None` while it is incomplete.
 ///
 /// # Errors
-/// [`FrameError`] if its size is below the header's or above [`MAX_MESSAGE_SIZE`]. That shows as
-/// soon as the header is there.
+/// [`FrameError`] if the message size is smaller than the header or larger than
+/// [`MAX_MESSAGE_SIZE`]. This is detected as soon as the header has arrived.
 pub fn next_message(received: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
     next_message_within(received, MAX_MESSAGE_SIZE)
 }
 
-/// [`next_message`] with a bound of the caller's, such as [`MAX_REQUEST_SIZE`].
+/// Like [`next_message`], with the caller's bound, such as [`MAX_REQUEST_SIZE`].
 ///
 /// # Errors
-/// [`FrameError`] if the size is below the header's or above `limit`.
+/// [`FrameError`] if the size is smaller than the header or larger than `limit`.
 pub fn next_message_within(
     received: &[u8],
     limit: usize,
@@ -130,7 +131,7 @@ pub fn next_message_within(
     next_message_of::<U32>(received, limit)
 }
 
-/// [`next_message_within`] for a stream whose headers number the commands with `N`.
+/// Like [`next_message_within`], for a stream whose headers use `N` for the command number.
 pub(crate) fn next_message_of<N: CommandNumber>(
     received: &[u8],
     limit: usize,

@@ -1,9 +1,10 @@
-//! The wire protocol (FCI) of Franka robots as values: bytes to meaning and back, for both sides.
+//! The wire protocol (FCI) of Franka robots as values: decodes and encodes the messages of both
+//! sides.
 //!
-//! Protocols 10 (Franka Research 3) and 5 (Franka Emika Robot) in one crate. There is no input or
-//! output in here, no clock, no thread and no allocation: bytes go in, values come out, and the
-//! other way round. The real-time thread, an asynchronous shell, a simulator and tests drive the
-//! same code.
+//! Protocols 10 (Franka Research 3) and 5 (Franka Emika Robot) in one crate. The crate does no
+//! input or output and has no clock, threads or allocation: it turns bytes into values and values
+//! into bytes. The real-time thread, an asynchronous shell, a simulator and tests use the same
+//! code.
 //!
 //! ```text
 //!            TCP stream                                    UDP datagrams
@@ -15,21 +16,21 @@
 //!                          Version, and its one table
 //! ```
 //!
-//! | part | what it holds |
+//! | part | contents |
 //! |---|---|
-//! | [`Version`] | the versions, and the table of what differs between them |
+//! | [`Version`] | the versions, and the table of their differences |
 //! | [`wire`] | the packed structs, declared once, with their offsets asserted |
-//! | [`RobotState`], [`RobotCommand`] | the datagrams as `f64`, whatever the version |
-//! | [`framing`] | stream bytes in, whole messages out, with a bound |
-//! | [`Request`], [`Reply`] | the messages as meaning |
+//! | [`RobotState`], [`RobotCommand`] | the datagrams as `f64`, the same for all versions |
+//! | [`framing`] | splits byte streams into whole messages of limited size |
+//! | [`Request`], [`Reply`] | the decoded messages |
 //! | [`client`], [`server`] | the two sides of a connection as state machines |
 //! | [`gripper`], [`vacuum`] | the protocols of the Franka Hand and of the vacuum gripper |
-//! | [`Protocol`] | what a session asks of a protocol; the same sessions run all three |
-//! | [`Refusal`], [`ControlFailure`], [`IncompatibleVersion`] | libfranka's texts, to the byte |
+//! | [`Protocol`] | the interface between sessions and protocols; the same sessions run all three protocols |
+//! | [`Refusal`], [`ControlFailure`], [`IncompatibleVersion`] | libfranka's texts, byte for byte |
 //!
 //! # Example
 //!
-//! A client and a robot in one thread:
+//! This example runs a client and a robot in one thread:
 //!
 //! ```
 //! use franka_proto::framing::next_message;
@@ -57,9 +58,9 @@
 //!
 //! # Panics and bad bytes
 //!
-//! Decoding never panics, whatever the bytes; what cannot be decoded is an error with what was got
-//! and what was expected. Lengths are checked before anything is read, and a message that announces
-//! more than [`framing::MAX_MESSAGE_SIZE`] is refused before it is collected.
+//! Decoding never panics on any input. An undecodable message is an error with the received and the
+//! expected value. Lengths are checked before data is read. A message that announces more than
+//! [`framing::MAX_MESSAGE_SIZE`] is refused before it is collected.
 //!
 //! # Features
 //!
@@ -68,8 +69,8 @@
 //!
 //! # What is not here
 //!
-//! Sockets and deadlines; which state to accept and when to answer it (that is the cycle); limits
-//! and filters.
+//! Sockets and deadlines; the choice of the states to accept and the time of the answers (the
+//! control cycle decides both); limits and filters.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
 #![forbid(unsafe_code)]
@@ -108,7 +109,7 @@ pub use robot::{
 };
 pub use version::Version;
 
-// The program in the README compiles.
+// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,8 +1,8 @@
-//! Numbers as libfranka prints them.
+//! Formats numbers as libfranka does.
 
 use core::fmt::{self, Write};
 
-/// A number as a C++ stream prints it by default: six significant digits, C's `%g`.
+/// A number in the default format of a C++ stream: six significant digits, C's `%g`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct General(pub f64);
 
@@ -58,7 +58,7 @@ struct Scientific {
 }
 
 impl Scientific {
-    /// The digits without the point, and the exponent of the first.
+    /// Returns the digits without the point, and the exponent of the first digit.
     fn parse(&self) -> Option<([u8; DIGITS], i32)> {
         let text = core::str::from_utf8(&self.bytes[..self.len]).ok()?;
         let (mantissa, exponent) = text.split_once('e')?;

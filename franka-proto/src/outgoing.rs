@@ -9,10 +9,10 @@ use crate::command::CommandId;
 use crate::framing::Header;
 use crate::wire::{self, CommandNumber};
 
-/// One TCP message to send with one write: header and payload.
+/// One TCP message, header and payload, to send with one write.
 ///
-/// The longest is `SetCollisionBehavior` with 428 bytes; the buffer is inline, so making one
-/// allocates nothing. The variable part of a model reply is not in here: see
+/// The longest is `SetCollisionBehavior` with 428 bytes. The buffer is inline, so creating a
+/// message allocates nothing. The variable part of a model reply is not included: see
 /// [`server::Session::model_header`](crate::server::Session::model_header).
 #[derive(Clone, PartialEq, Eq)]
 pub struct Outgoing {
@@ -25,8 +25,8 @@ impl Outgoing {
     /// Size of the inline buffer in bytes: room for the longest fixed message.
     pub const CAPACITY: usize = 440;
 
-    /// A message of the robot's service: a header followed by `payload`; `extra` bytes that the
-    /// caller sends behind it count in the header's size.
+    /// Creates a message of the robot's service: a header followed by `payload`. The header's size
+    /// includes `extra` bytes that the caller sends afterwards.
     pub(crate) fn new<P: IntoBytes + Immutable + ?Sized>(
         command: u32,
         id: CommandId,
@@ -36,7 +36,7 @@ impl Outgoing {
         Self::with_header::<U32, P>(command, id, payload, extra)
     }
 
-    /// [`Outgoing::new`] for a service whose headers number the commands with `N`.
+    /// Like [`Outgoing::new`], for a service whose headers use `N` for the command number.
     pub(crate) fn with_header<N: CommandNumber, P: IntoBytes + Immutable + ?Sized>(
         command: u32,
         id: CommandId,
@@ -58,7 +58,7 @@ impl Outgoing {
         Self { bytes, len, id }
     }
 
-    /// The command id of the message, by which replies are matched.
+    /// The command id of the message. Replies are matched by this id.
     #[must_use]
     pub fn id(&self) -> CommandId {
         self.id

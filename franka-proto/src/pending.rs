@@ -2,10 +2,11 @@
 
 use crate::command::CommandId;
 
-/// Requests of one session that may wait for replies at the same time.
+/// Limit of requests of one session that may wait for replies at the same time.
 ///
-/// A client that waits for each reply has one motion and one more; an asynchronous one has a few
-/// setters besides. The bound keeps the table inline and a lookup short.
+/// A client that waits for each reply has at most two pending requests: one motion and one other.
+/// An asynchronous client also has a few setters. The bound keeps the table inline and a lookup
+/// short.
 pub(crate) const LIMIT: usize = 32;
 
 /// A request that waits for a reply.
@@ -61,7 +62,7 @@ impl<C: Copy> Pending<C> {
         }
     }
 
-    /// Removes a request; returns whether there was one with this id.
+    /// Removes a request; returns true if a request with this id existed.
     pub(crate) fn remove(&mut self, id: CommandId) -> bool {
         let entry = self
             .entries

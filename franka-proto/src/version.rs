@@ -1,4 +1,4 @@
-//! The versions of the robot's protocol. What differs between them is in the version table.
+//! The versions of the robot's protocol. The version table contains their differences.
 
 use core::fmt;
 
@@ -21,7 +21,7 @@ impl Version {
     /// TCP port of the robot in all versions.
     pub const TCP_PORT: u16 = 1337;
 
-    /// The number that the handshake carries.
+    /// The number of this version in the handshake.
     #[must_use]
     pub fn number(self) -> u16 {
         match self {
@@ -30,7 +30,7 @@ impl Version {
         }
     }
 
-    /// The version with this number, if this crate speaks it.
+    /// Returns the version with this number, if this crate supports it.
     #[must_use]
     pub fn from_number(number: u16) -> Option<Self> {
         Self::ALL

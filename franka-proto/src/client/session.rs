@@ -11,8 +11,8 @@ use crate::protocol::{DecodeError, RequestError, Violation};
 use crate::protocol::{Progress, Protocol};
 use crate::version::Version;
 
-/// One connection to a device, from its first byte to its last: to a robot, unless `P` says
-/// otherwise.
+/// One connection to a device, from its first byte to its last. The device is a robot, unless `P`
+/// is another protocol.
 #[derive(Clone, Debug)]
 pub struct Session<P: Protocol = Version> {
     version: P,
@@ -28,7 +28,7 @@ enum ConnectionPhase {
     Open,
 }
 
-/// What a message of the device means.
+/// The meaning of a message from the device.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Event<'a, P: Protocol = Version> {
@@ -37,23 +37,23 @@ pub enum Event<'a, P: Protocol = Version> {
         /// The version of the session.
         version: P,
     },
-    /// The device speaks another version. The connection cannot be used any further: open another
-    /// one, with a robot's version if [`Version::from_number`] knows it.
+    /// The device speaks another version. The connection is no longer usable: open another one. Use
+    /// the robot's version if [`Version::from_number`] knows it.
     Incompatible(IncompatibleVersion<P>),
     /// The answer to a request.
     ///
-    /// [`MoveStatus::MotionStarted`](crate::MoveStatus::MotionStarted) is the first of two answers;
-    /// every other one is the last under its id.
+    /// [`MoveStatus::MotionStarted`](crate::MoveStatus::MotionStarted) is the first of two answers.
+    /// Every other reply is the last one with its id.
     Reply {
         /// The request.
         id: CommandId,
-        /// What it asked for.
+        /// The command of the request.
         command: P::Command,
         /// The answer.
         reply: P::Reply<'a>,
     },
-    /// An answer to no pending request, such as the late one of an abandoned request. The session
-    /// does not change.
+    /// An answer that matches no pending request, such as a late answer to an abandoned request.
+    /// The session does not change.
     Unmatched {
         /// The id in the message.
         id: CommandId,
@@ -61,10 +61,10 @@ pub enum Event<'a, P: Protocol = Version> {
 }
 
 impl<P: Protocol> Session<P> {
-    /// Requests that may wait for replies at the same time.
+    /// Limit of requests that may wait for replies at the same time.
     pub const PENDING_LIMIT: usize = pending::LIMIT;
 
-    /// A session that will announce `version`.
+    /// Creates a session that announces `version`.
     #[must_use]
     pub fn new(version: P) -> Self {
         Self {
@@ -87,16 +87,16 @@ impl<P: Protocol> Session<P> {
         self.phase == ConnectionPhase::Open
     }
 
-    /// How many requests wait for a reply; a motion counts until its last one.
+    /// Number of requests that wait for a reply. A motion counts until its last reply.
     #[must_use]
     pub fn pending(&self) -> usize {
         self.pending.len()
     }
 
-    /// The handshake: the first message on a fresh connection. `udp_port` is where the client
-    /// expects states.
+    /// Returns the handshake, the first message on a fresh connection. `udp_port` is the client's
+    /// port for states.
     ///
-    /// The session starts over with it: ids begin at 0 and no request is pending.
+    /// The handshake resets the session: ids begin at 0 and no request is pending.
     pub fn connect(&mut self, udp_port: u16) -> Outgoing {
         *self = Self::new(self.version);
         self.phase = ConnectionPhase::Connecting;
@@ -107,10 +107,10 @@ impl<P: Protocol> Session<P> {
         hello.expect("every version has Connect")
     }
 
-    /// The message of a request, under the next id.
+    /// Returns the message of a request, with the next id.
     ///
     /// # Errors
-    /// [`RequestError`]; the session is then as before.
+    /// [`RequestError`]; the session is then unchanged.
     pub fn request(&mut self, request: &P::Request) -> Result<Outgoing, RequestError> {
         if P::handshake(request).is_some() {
             return Err(RequestError::Handshake);
@@ -130,16 +130,16 @@ impl<P: Protocol> Session<P> {
         Ok(outgoing)
     }
 
-    /// Stops waiting for the replies of a request. Those that still come are
-    /// [`Event::Unmatched`]. False if nothing waited under `id`.
+    /// Stops waiting for the replies of a request. Later replies become [`Event::Unmatched`].
+    /// Returns false if no request waited with this `id`.
     pub fn abandon(&mut self, id: CommandId) -> bool {
         self.pending.remove(id)
     }
 
-    /// What a message of the device means.
+    /// Returns the meaning of a message from the device.
     ///
     /// # Errors
-    /// [`Violation`]; [`Violation::is_fatal`] says whether the connection is of no more use.
+    /// [`Violation`]; [`Violation::is_fatal`] is true if the connection is no longer usable.
     pub fn on_message<'a>(
         &mut self,
         message: Message<'a>,
@@ -194,7 +194,7 @@ impl<P: Protocol> Session<P> {
                     library_version: self.version,
                 }))
             }
-            // libfranka does not look at the version here and fails at the first datagram.
+            // libfranka does not check the version here and fails at the first datagram.
             ConnectStatus::Success if reported != announced => Err(Violation::ForeignVersion {
                 announced,
                 reported,

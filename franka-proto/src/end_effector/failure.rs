@@ -1,10 +1,10 @@
-//! An action that did not come to its end.
+//! An action that failed or was aborted.
 
 use core::fmt;
 
 use crate::command::ServiceCommand;
 
-/// An action of an end effector that failed or was ended.
+/// An action of an end effector that failed or was aborted.
 ///
 /// `Display` is libfranka's text, the same for all commands of a device.
 ///
@@ -16,14 +16,14 @@ use crate::command::ServiceCommand;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Failure<C> {
-    /// The device could not do it.
+    /// The device could not complete the action.
     Failed {
-        /// What was asked for.
+        /// The command.
         command: C,
     },
-    /// Something ended the action, such as a stop.
+    /// Another command, such as a stop, ended the action.
     Aborted {
-        /// What was asked for.
+        /// The command.
         command: C,
     },
 }

@@ -1,4 +1,4 @@
-//! The protocol of an end effector, written once for both.
+//! The protocol of an end effector, shared by both devices.
 
 use core::fmt;
 
@@ -15,9 +15,9 @@ use crate::protocol::{DecodeError, ReplyError, RequestError};
 use crate::protocol::{FieldDevice, Progress, Protocol, sealed};
 use crate::wire;
 
-/// What differs between the Hand and the vacuum gripper. It is sealed.
+/// The differences between the Hand and the vacuum gripper. This trait is sealed.
 pub trait EndEffector: Copy + fmt::Debug + Eq + sealed::Sealed {
-    /// What can be asked for; the number of a command is its position in [`Self::COMMANDS`].
+    /// The commands. The number of a command is its position in [`Self::COMMANDS`].
     type Command: ServiceCommand;
     /// A request with its parameters.
     type Request: Clone + fmt::Debug + PartialEq;
@@ -35,7 +35,7 @@ pub trait EndEffector: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// Version and UDP port of a handshake.
     fn announced(request: &Self::Request) -> Option<(u16, u16)>;
 
-    /// Which command a request is.
+    /// The command of a request.
     fn command(request: &Self::Request) -> Self::Command;
 
     /// Writes the parameters of a request.
@@ -51,7 +51,7 @@ pub trait EndEffector: Copy + fmt::Debug + Eq + sealed::Sealed {
     ) -> Result<Self::Request, DecodeError<Self::Command>>;
 }
 
-/// A message of which the header is known.
+/// A message whose header is known.
 #[derive(Clone, Copy, Debug)]
 pub struct Draft {
     number: u32,

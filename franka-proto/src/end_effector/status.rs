@@ -1,20 +1,20 @@
-//! How an end effector answers.
+//! The answers of an end effector.
 
 use super::Failure;
 use crate::command::ServiceCommand;
 use crate::protocol::ConnectStatus;
 
-/// How the action of an end effector ended.
+/// The result of an end effector's action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
-    /// It did what was asked.
+    /// The action succeeded.
     Success,
-    /// It failed.
+    /// The action failed.
     Fail,
-    /// It ended without the result that was asked for: nothing was grasped, say.
+    /// The action ended without the requested result: for example, no object was grasped.
     Unsuccessful,
-    /// Something ended it, such as a stop.
+    /// Another command, such as a stop, ended the action.
     Aborted,
 }
 
@@ -22,11 +22,11 @@ impl Status {
     pub(super) const ALL: [Self; 4] =
         [Self::Success, Self::Fail, Self::Unsuccessful, Self::Aborted];
 
-    /// What libfranka's methods return for this answer to `command`: whether the action had the
-    /// result that was asked for.
+    /// Returns the result of libfranka's method for this answer to `command`: true if the action
+    /// had the requested result.
     ///
     /// # Errors
-    /// [`Failure`] if it failed or was ended.
+    /// [`Failure`] if the action failed or was aborted.
     pub fn result<C: ServiceCommand>(self, command: C) -> Result<bool, Failure<C>> {
         match self {
             Self::Success => Ok(true),
@@ -37,16 +37,16 @@ impl Status {
     }
 }
 
-/// What an end effector answers to one request.
+/// The answer of an end effector to one request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Reply {
-    /// To `Connect`.
+    /// Answer to `Connect`.
     Connect {
-        /// Whether the version suits.
+        /// Result of the version check.
         status: ConnectStatus,
         /// Protocol version of the end effector.
         version: u16,
     },
-    /// To everything else: how the action ended.
+    /// Answer to every other command: the result of the action.
     Done(Status),
 }

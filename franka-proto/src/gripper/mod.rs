@@ -1,8 +1,9 @@
 //! The protocol of the Franka Hand: TCP port 1338, version 3, the same on both robots.
 //!
-//! A client sends requests over TCP and gets one reply to each, when the action has ended; a `Stop`
-//! can be sent while another action runs, which is then answered as aborted. The hand sends its
-//! [`State`] by UDP to the port announced in the handshake, and nothing goes the other way.
+//! A client sends requests over TCP and gets one reply to each when the action has ended. It can
+//! send `Stop` while another action runs; the hand then answers that action as aborted. The hand
+//! sends its [`State`] by UDP to the port announced in the handshake. The client sends no UDP
+//! datagrams.
 //!
 //! ```
 //! use franka_proto::gripper::{Client, Command, Request, Server, Status, Version, next_message};
@@ -36,7 +37,7 @@ pub use crate::end_effector::{Failure, Reply, Status, next_message};
 pub use request::{Command, Grasp, Move, Request};
 pub use state::State;
 
-/// A version of the Hand's protocol. There is one.
+/// A version of the Hand's protocol. Only one exists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Version {
     /// The version of all Hands on protocols 5 and 10 of the robot.

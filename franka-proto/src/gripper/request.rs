@@ -1,4 +1,4 @@
-//! What can be asked of the Hand.
+//! The requests to the Hand.
 
 use core::fmt;
 
@@ -12,7 +12,7 @@ use crate::protocol::payload;
 use crate::protocol::sealed;
 use crate::wire;
 
-/// What can be asked of the Hand. Each has one reply, given when the action has ended.
+/// The commands of the Hand. Each has one reply, sent when the action has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Command {
@@ -28,7 +28,7 @@ pub enum Command {
     Stop,
 }
 
-/// A request with its parameters. Nothing here is checked for range: the Hand does that.
+/// A request with its parameters. Ranges are not checked here: the Hand checks them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Request {
@@ -39,26 +39,26 @@ pub enum Request {
         /// UDP port of the client.
         udp_port: u16,
     },
-    /// Opens and closes the fingers to find their range; needed after a change of fingers.
+    /// Opens and closes the fingers to find their range; required after a change of fingers.
     Homing,
     /// Grasps an object.
     Grasp(Grasp),
     /// Moves the fingers.
     Move(Move),
-    /// Stops the fingers. The action that runs is answered as aborted.
+    /// Stops the fingers. The hand answers the current action as aborted.
     Stop,
 }
 
-/// How to grasp an object. It is grasped if the fingers end at a distance `d` with
+/// The parameters of a grasp. An object counts as grasped if the fingers end at a distance `d` with
 /// `width - epsilon_inner < d < width + epsilon_outer`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Grasp {
     /// Width of the object `[m]`.
     pub width: f64,
-    /// How much narrower than the object the fingers may end `[m]`.
+    /// Tolerance below the width of the object `[m]`.
     pub epsilon_inner: f64,
-    /// How much wider than the object the fingers may end `[m]`.
+    /// Tolerance above the width of the object `[m]`.
     pub epsilon_outer: f64,
     /// Speed of the fingers `[m/s]`.
     pub speed: f64,
@@ -70,7 +70,7 @@ impl Grasp {
     /// libfranka's default of both tolerances `[m]`.
     pub const EPSILON: f64 = 0.005;
 
-    /// A grasp with libfranka's tolerances: width `[m]`, speed `[m/s]`, force `[N]`.
+    /// Creates a grasp with libfranka's tolerances: width `[m]`, speed `[m/s]`, force `[N]`.
     #[must_use]
     pub fn new(width: f64, speed: f64, force: f64) -> Self {
         Self {
@@ -83,11 +83,11 @@ impl Grasp {
     }
 }
 
-/// Where to move the fingers.
+/// The parameters of a finger motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Move {
-    /// Distance of the fingers to reach `[m]`.
+    /// Target distance of the fingers `[m]`.
     pub width: f64,
     /// Speed of the fingers `[m/s]`.
     pub speed: f64,

@@ -8,7 +8,7 @@ use crate::number_text::General;
 use crate::protocol::DecodeError;
 use crate::wire::gripper::GripperState;
 
-/// Everything that the Hand says in one datagram.
+/// All values of one datagram.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
@@ -18,7 +18,7 @@ pub struct State {
     pub width: f64,
     /// Distance of the open fingers `[m]`, estimated by homing.
     pub max_width: f64,
-    /// True if the hand holds an object of the width that was asked for.
+    /// True if the hand holds an object of the requested width.
     pub is_grasped: bool,
     /// Temperature of the hand `[deg C]`.
     pub temperature: u16,
@@ -44,7 +44,7 @@ impl State {
         })
     }
 
-    /// The datagram for a client.
+    /// Returns the datagram for a client.
     #[must_use]
     pub fn encode(&self) -> [u8; Self::SIZE] {
         zerocopy::transmute!(GripperState {
@@ -57,7 +57,7 @@ impl State {
     }
 }
 
-/// libfranka's text: an object of JSON on one line. The time is in seconds, and truth a number.
+/// libfranka's text: a JSON object on one line. The time is in seconds; booleans are numbers.
 impl fmt::Display for State {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(

@@ -1,4 +1,4 @@
-//! Errors of bytes, requests, replies and peers: what was got and what was expected.
+//! Errors of bytes, requests, replies and peers, with the received and the expected value.
 
 use core::fmt;
 
@@ -8,27 +8,27 @@ use crate::command::{Command, CommandId, ServiceCommand};
 use crate::framing::Message;
 use crate::version::Version;
 
-/// Bytes that cannot be decoded. `C` are the commands of the device.
+/// Bytes that cannot be decoded. `C` is the type of the device's commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecodeError<C: ServiceCommand = Command> {
     /// A datagram is shorter than its struct.
     #[error("libfranka: incorrect object size")]
     DatagramSize {
-        /// Bytes there are.
+        /// Number of bytes received.
         got: usize,
-        /// Bytes there should be, at least.
+        /// Smallest number of bytes expected.
         expected: usize,
     },
     /// A message is shorter than its header and struct.
     #[error("libfranka: Incorrect TCP message size.")]
     MessageSize {
-        /// Bytes there are, with the header.
+        /// Number of bytes received, with the header.
         got: usize,
-        /// Bytes there should be, at least.
+        /// Smallest number of bytes expected.
         expected: usize,
     },
-    /// The version has no command of this number.
+    /// The version has no command with this number.
     #[error("protocol {version} has no command {number}")]
     UnknownCommand {
         /// The number in the header.
@@ -88,19 +88,19 @@ impl<C: ServiceCommand> fmt::Display for Unexpected<C> {
     }
 }
 
-/// A datagram that cannot be written.
+/// A datagram that cannot be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EncodeError {
     /// The caller's buffer is too short.
     #[error("the buffer has {got} bytes, and the datagram needs {needed}")]
     Buffer {
-        /// Bytes there are.
+        /// Length of the buffer in bytes.
         got: usize,
-        /// Bytes that the datagram has.
+        /// Length of the datagram in bytes.
         needed: usize,
     },
-    /// The version has no field or value for it.
+    /// The version has no such field or value.
     #[error("this protocol version cannot carry {what}")]
     Unsupported {
         /// The vendor's name of the field.
@@ -108,14 +108,14 @@ pub enum EncodeError {
     },
 }
 
-/// A request that the client session does not send. Nothing of it has been encoded.
+/// A request that the client session does not send. No part of it has been encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RequestError {
-    /// The version has no such command, or none with these parameters.
+    /// The version has no such command, or does not support these parameters.
     #[error("protocol {version} ({}) has no {what}", version.robot())]
     Unsupported {
-        /// What was asked for.
+        /// The requested command or parameter.
         what: &'static str,
         /// The version of the session.
         version: Version,
@@ -126,33 +126,33 @@ pub enum RequestError {
     /// `Connect` is sent by [`client::Session::connect`](crate::client::Session::connect).
     #[error("a handshake is not a request of a session")]
     Handshake,
-    /// As many requests as the session can remember wait for their replies.
+    /// The session cannot track any more requests that wait for replies.
     #[error("{limit} requests wait for replies already")]
     TooManyPending {
-        /// How many that are.
+        /// Largest number of waiting requests.
         limit: usize,
     },
 }
 
-/// A reply that the server session does not send. Nothing of it has been encoded.
+/// A reply that the server session does not send. No part of it has been encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReplyError<C: ServiceCommand = Command> {
-    /// No request of this id waits for a reply.
+    /// No request with this id waits for a reply.
     #[error("no request {id} waits for a reply")]
     NotPending {
         /// The id.
         id: CommandId,
     },
-    /// The request is answered with another kind of reply.
+    /// The request requires another kind of reply.
     #[error("request {id} is {command}, which has another kind of reply")]
     Mismatch {
         /// The id.
         id: CommandId,
-        /// What was asked for.
+        /// The command of the request.
         command: C,
     },
-    /// A `Move` has got its first answer already.
+    /// A `Move` has already received its first answer.
     #[error("the motion of request {id} has been reported as started")]
     AlreadyStarted {
         /// The id.
@@ -164,9 +164,10 @@ pub enum ReplyError<C: ServiceCommand = Command> {
         /// The version of the session.
         version: Version,
     },
-    /// A model is sent with [`server::Session::model_header`](crate::server::Session::model_header)
-    /// or [`server::Session::library_header`](crate::server::Session::library_header), which also
-    /// bound its length.
+    /// A model that is too long. Models are sent with
+    /// [`server::Session::model_header`](crate::server::Session::model_header) or
+    /// [`server::Session::library_header`](crate::server::Session::library_header), which also
+    /// limit their length.
     #[error("a model of {len} bytes does not fit")]
     TextLength {
         /// Length of the model in bytes.
@@ -174,7 +175,7 @@ pub enum ReplyError<C: ServiceCommand = Command> {
     },
 }
 
-/// A peer that violated the protocol. No caller can cause it.
+/// A peer violated the protocol. No caller can cause this.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Violation<C: ServiceCommand = Command> {
@@ -184,7 +185,7 @@ pub enum Violation<C: ServiceCommand = Command> {
         /// The number of the status.
         status: u16,
     },
-    /// The device agreed to our version and reports another one as its own.
+    /// The device agreed to our version and reports another version as its own.
     #[error("the device accepts protocol {announced} and reports {reported} as its own")]
     ForeignVersion {
         /// The version that the client announced.
@@ -192,53 +193,54 @@ pub enum Violation<C: ServiceCommand = Command> {
         /// The version that the device reports.
         reported: u16,
     },
-    /// The answer to a request cannot be read. The request has ended with this.
+    /// The answer to a request cannot be decoded. The request has ended with this error.
     #[error("{error}")]
     Reply {
         /// The request.
         id: CommandId,
-        /// What is wrong with the answer.
+        /// The decoding error.
         error: DecodeError<C>,
     },
-    /// A motion is reported as started for the second time. It is still on.
+    /// A motion is reported as started for the second time. It still runs.
     #[error("libfranka: Move received unexpected motion started message.")]
     SecondMotionStarted {
         /// The request.
         id: CommandId,
     },
-    /// A client's message cannot be read.
+    /// A client's message cannot be decoded.
     #[error("{error}")]
     Request {
         /// The id in the message.
         id: CommandId,
-        /// What is wrong with it.
+        /// The decoding error.
         error: DecodeError<C>,
     },
     /// A client's first message is not `Connect`.
     #[error("the first message is {got}, expected Connect")]
     NotConnect {
-        /// What it is.
+        /// The command received.
         got: C,
     },
     /// A client sends `Connect` in an open session.
     #[error("a second Connect in one session")]
     SecondConnect,
-    /// A client uses the id of a request that is not answered yet.
+    /// A client uses the id of a request that has not been answered yet.
     #[error("request {id} is not answered yet, and its id is used again")]
     RepeatedId {
         /// The id.
         id: CommandId,
     },
-    /// A client has more requests open than a server remembers.
+    /// A client has more open requests than a server can track.
     #[error("more than {limit} requests wait for replies")]
     TooManyPending {
-        /// How many a server remembers.
+        /// Largest number of open requests.
         limit: usize,
     },
 }
 
 impl<C: ServiceCommand> Violation<C> {
-    /// The request that has ended, or in one case goes on, with this violation.
+    /// The request that this violation belongs to. It has ended, except after
+    /// [`Violation::SecondMotionStarted`].
     #[must_use]
     pub fn id(&self) -> Option<CommandId> {
         match *self {
@@ -254,8 +256,8 @@ impl<C: ServiceCommand> Violation<C> {
         }
     }
 
-    /// True if the session cannot be used any further. A violation in a single reply leaves the
-    /// others intact.
+    /// True if the session is no longer usable. A violation in a single reply does not affect other
+    /// requests.
     #[must_use]
     pub fn is_fatal(&self) -> bool {
         !matches!(self, Self::Reply { .. } | Self::SecondMotionStarted { .. })

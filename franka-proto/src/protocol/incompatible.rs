@@ -8,7 +8,7 @@ use crate::version::Version;
 /// The device speaks another version than the client announced.
 ///
 /// `Display` is the text of the libfranka that speaks the client's version: 0.21 for 10, 0.9 for 5.
-/// [`IncompatibleVersion::explanation`] says in plain words what the number means.
+/// [`IncompatibleVersion::explanation`] explains the number in plain words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct IncompatibleVersion<P: Protocol = Version> {
     /// The device's version.
@@ -18,7 +18,8 @@ pub struct IncompatibleVersion<P: Protocol = Version> {
 }
 
 impl<P: Protocol> IncompatibleVersion<P> {
-    /// What device and which system image speak the device's version, and what to do.
+    /// Returns an explanation: the device and the system image that speak the device's version, and
+    /// the action to take.
     ///
     /// ```
     /// use franka_proto::{IncompatibleVersion, Version};
@@ -51,7 +52,7 @@ impl<P: Protocol> fmt::Display for IncompatibleVersion<P> {
 
 impl<P: Protocol> core::error::Error for IncompatibleVersion<P> {}
 
-/// What [`IncompatibleVersion::explanation`] says: `Display` is the text.
+/// The text of [`IncompatibleVersion::explanation`], through `Display`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Explanation<P: Protocol = Version>(IncompatibleVersion<P>);
 

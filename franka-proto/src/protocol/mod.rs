@@ -1,5 +1,5 @@
-//! What every service has in common: the trait by which the sessions run its protocol, its errors,
-//! and the handshake.
+//! The common parts of all services: the trait between sessions and protocols, the errors, and the
+//! handshake.
 
 mod error;
 mod incompatible;
@@ -14,12 +14,12 @@ use crate::command::{CommandId, ServiceCommand};
 use crate::framing::Message;
 use crate::outgoing::Outgoing;
 
-/// A protocol of a TCP service: the robot's in one of its versions, the Hand's, the vacuum
-/// gripper's.
+/// A protocol of a TCP service: a version of the robot's protocol, or the protocol of the Hand or
+/// of the vacuum gripper.
 ///
-/// The sessions of both sides are written once and ask this trait for what differs. It is sealed:
+/// The sessions of both sides are generic over this trait. It is sealed:
 /// [`Version`](crate::Version), [`gripper::Version`](crate::gripper::Version) and
-/// [`vacuum::Version`](crate::vacuum::Version) are all there are.
+/// [`vacuum::Version`](crate::vacuum::Version) are its only implementors.
 pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// The commands.
     type Command: ServiceCommand;
@@ -40,11 +40,11 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// The versions of this protocol that this crate speaks, ascending.
     fn spoken() -> &'static [u16];
 
-    /// Where libfranka's text about an incompatible version sends the reader: for updates, and for
+    /// The sources that libfranka's text about an incompatible version names: for updates, and for
     /// the table of system images.
     fn incompatible_advice(self) -> [&'static str; 2];
 
-    /// Which command a request is.
+    /// The command of a request.
     fn command_of(request: &Self::Request) -> Self::Command;
 
     /// The handshake of a client that expects states on `udp_port`.
@@ -60,7 +60,7 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
     /// command.
     fn rejection(self, message: &Message<'_>) -> Option<(Self::Command, Self::Reply<'static>)>;
 
-    /// What a reply means for the request that it answers.
+    /// The effect of a reply on its request.
     fn progress(reply: &Self::Reply<'_>) -> Progress;
 
     /// The message of a request.
@@ -82,8 +82,8 @@ pub trait Protocol: Copy + fmt::Debug + Eq + sealed::Sealed {
         message: &Message<'_>,
     ) -> Result<Self::Request, DecodeError<Self::Command>>;
 
-    /// The message of a reply to `command`; `extra` bytes that the caller sends behind it count in
-    /// the header's size.
+    /// Returns the message of a reply to `command`. The header's size includes `extra` bytes that
+    /// the caller sends afterwards.
     ///
     /// # Errors
     /// [`ReplyError`] if the reply does not suit the command or the protocol.
@@ -117,11 +117,11 @@ pub enum ConnectStatus {
 }
 
 impl ConnectStatus {
-    /// By number, in all versions of all protocols.
+    /// All statuses in wire order, the same in all versions of all protocols.
     pub(crate) const ALL: [Self; 2] = [Self::Success, Self::IncompatibleLibraryVersion];
 }
 
-/// What a reply means for the request that it answers.
+/// The effect of a reply on its request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
     /// The handshake has ended; the device reports this version as its own.
@@ -139,7 +139,7 @@ pub struct FieldDevice {
     pub name: &'static str,
     /// The system images with this version, such as `4.2.1 or later`.
     pub system: &'static str,
-    /// What system to install to be understood by this crate; `None` if that is so already.
+    /// The system to install for compatibility with this crate; `None` if the system is compatible.
     pub update: Option<&'static str>,
 }
 

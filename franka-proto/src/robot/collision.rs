@@ -42,7 +42,7 @@ pub struct CollisionBehavior {
 }
 
 impl CollisionBehavior {
-    /// The same thresholds whether or not the arm accelerates.
+    /// Returns the same thresholds for accelerating and for nominal motion.
     #[must_use]
     pub fn uniform(
         lower_torque: [f64; 7],
@@ -62,9 +62,10 @@ impl CollisionBehavior {
         }
     }
 
-    /// Stops at a light push: contact and collision at 10 N and 10 N m, at 20 while the arm
-    /// accelerates. For motions of the robot's own controllers; compliant control presses harder
-    /// than that. The values of the vendor's examples.
+    /// Returns thresholds at which a light push stops the robot: contact and collision at 10 N and
+    /// 10 N m, or at 20 while the arm accelerates. They suit motions of the robot's own
+    /// controllers; compliant control presses harder. The values are those of the vendor's
+    /// examples.
     #[must_use]
     pub fn careful() -> Self {
         Self {
@@ -76,21 +77,22 @@ impl CollisionBehavior {
         }
     }
 
-    /// Lets a hand push an arm under compliant control: contact at 20 N and 20 N m, collision at
-    /// 60, which is above the default force cap together with what friction shows.
+    /// Returns thresholds for pushing an arm by hand under compliant control: contact at 20 N and
+    /// 20 N m, collision at 60. The collision threshold is above the default force cap plus the
+    /// apparent force of friction.
     #[must_use]
     pub fn compliant() -> Self {
         Self::uniform([20.0; 7], [60.0; 7], [20.0; 6], [60.0; 6])
     }
 
-    /// Stops at 100 N and 100 N m only: for work that presses. The values of the vendor's examples
-    /// of impedance control.
+    /// Returns thresholds of 100 N and 100 N m, for tasks that press. The values are those of the
+    /// vendor's examples of impedance control.
     #[must_use]
     pub fn insensitive() -> Self {
         Self::uniform([100.0; 7], [100.0; 7], [100.0; 6], [100.0; 6])
     }
 
-    /// The least force at which the robot stops itself, `[N]`, along an axis.
+    /// Smallest force at which the robot stops itself, `[N]`, along an axis.
     #[must_use]
     pub fn least_force(&self) -> f64 {
         let [moving, even] = [

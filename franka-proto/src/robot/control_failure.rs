@@ -1,18 +1,18 @@
-//! The text of a motion that ended abnormally, as libfranka's `ControlException` has it.
+//! The text of a motion that ended abnormally, as in libfranka's `ControlException`.
 
 use core::fmt;
 
 use super::{Errors, MoveStatus, Refusal, Status};
 use crate::number_text::General;
 
-/// A motion that ended abnormally, with what the log of its last cycles says.
+/// A motion that ended abnormally, with the contents of the log of its last cycles.
 ///
 /// `Display` is the message of libfranka's `ControlException`: the refusal's text, and after a
 /// reflex the errors and the success rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ControlFailure {
-    /// How the robot answered the `Move`.
+    /// The robot's answer to the `Move`.
     pub refusal: Refusal,
     /// `reflex_reason` of the state in which the client saw the end.
     pub reflex_reason: Errors,
@@ -35,9 +35,9 @@ impl fmt::Display for ControlFailure {
 
 impl core::error::Error for ControlFailure {}
 
-/// The success rate at the end of a motion.
+/// The command success rate at the end of a motion.
 ///
-/// `Display` is the end of libfranka's message, with the line break before it.
+/// `Display` is the last part of libfranka's message, including the preceding line break.
 ///
 /// ```
 /// use franka_proto::SuccessRate;
@@ -51,14 +51,15 @@ impl core::error::Error for ControlFailure {}
 pub struct SuccessRate {
     /// Share of commands that arrived, 0 to 1.
     pub rate: f64,
-    /// States lost in a row at the end.
+    /// Consecutive states lost at the end.
     pub lost: u64,
 }
 
 impl SuccessRate {
-    /// The rate that libfranka 0.21 computes from the last two records of its log: the success rate
-    /// in the last but one, diminished by a hundredth for every state lost between the two; but 0
-    /// at least, where libfranka's falls below. Times are `message_id`s `[ms]`.
+    /// Computes the success rate as libfranka 0.21 does, from the last two records of its log. It
+    /// is the success rate in the record before the last, minus 0.01 for every state lost between
+    /// the two. The result is at least 0, where libfranka's can be negative. Times are
+    /// `message_id`s `[ms]`.
     #[must_use]
     pub fn of_log(success_rate: f64, time: u64, last_time: u64) -> Self {
         let lost = last_time.saturating_sub(time).saturating_sub(1);

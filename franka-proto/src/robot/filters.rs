@@ -2,25 +2,25 @@
 
 use crate::wire::service::SetFilters;
 
-/// Cutoff frequencies of the robot's own low-pass filters, documented as 1 to 1000 Hz, where 1000
-/// switches a filter off. Protocol 5 only, and deprecated there: filter on the client's side.
+/// Cutoff frequencies of the robot's own low-pass filters, documented as 1 to 1000 Hz. A value of
+/// 1000 disables a filter. Protocol 5 only, and deprecated: filter on the client's side instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Filters {
-    /// Of commanded joint positions `[Hz]`.
+    /// Cutoff for commanded joint positions `[Hz]`.
     pub joint_position_filter_frequency: f64,
-    /// Of commanded joint velocities `[Hz]`.
+    /// Cutoff for commanded joint velocities `[Hz]`.
     pub joint_velocity_filter_frequency: f64,
-    /// Of commanded poses `[Hz]`.
+    /// Cutoff for commanded poses `[Hz]`.
     pub cartesian_position_filter_frequency: f64,
-    /// Of commanded twists `[Hz]`.
+    /// Cutoff for commanded twists `[Hz]`.
     pub cartesian_velocity_filter_frequency: f64,
-    /// Of the controller `[Hz]`.
+    /// Cutoff for the controller `[Hz]`.
     pub controller_filter_frequency: f64,
 }
 
 impl Filters {
-    /// The same cutoff frequency `[Hz]` for all.
+    /// Returns filters that all have the same cutoff frequency `[Hz]`.
     #[must_use]
     pub fn uniform(frequency: f64) -> Self {
         Self {

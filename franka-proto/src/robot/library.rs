@@ -1,10 +1,10 @@
-//! Which model library a client of protocol 5 can load.
+//! The model libraries that a client of protocol 5 can load.
 
 use super::motion::nth;
 use crate::protocol::DecodeError;
 use crate::wire::service::LoadModelLibrary;
 
-/// Processor of a client that asks for the model library.
+/// Processor of a client that requests the model library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Architecture {
     /// x86, 64 bits.
@@ -17,7 +17,7 @@ pub enum Architecture {
     Arm64,
 }
 
-/// Operating system of a client that asks for the model library.
+/// Operating system of a client that requests the model library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum System {
     /// Linux.

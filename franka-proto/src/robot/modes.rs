@@ -2,14 +2,14 @@
 
 use core::fmt;
 
-/// What the robot as a whole is doing.
+/// The overall mode of the robot.
 ///
 /// Numbers 0 to 6 on the wire, in this order; other numbers read as [`RobotMode::Other`], as in
 /// libfranka 0.21.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum RobotMode {
-    /// None of the others: in practice the brakes are closed or the robot is not ready.
+    /// Any other mode: in practice the brakes are closed or the robot is not ready.
     #[default]
     Other,
     /// Ready for a motion.
@@ -18,7 +18,7 @@ pub enum RobotMode {
     Move,
     /// Guided by hand.
     Guiding,
-    /// Stopped by a reflex; only a recovery leads out.
+    /// Stopped by a reflex; only a recovery ends this mode.
     Reflex,
     /// The user stop or a safety function holds the robot.
     UserStopped,
@@ -55,7 +55,7 @@ impl RobotMode {
 }
 
 impl fmt::Display for RobotMode {
-    /// libfranka's text, without the double quotes that its messages put around it.
+    /// libfranka's text, without the double quotes of its messages.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Self::Other => "Other",
@@ -90,15 +90,15 @@ pub enum MotionGeneratorMode {
     CartesianVelocity,
     /// A torque motion without a generator; protocol 10 only.
     None,
-    /// A byte that the protocol version gives no meaning.
+    /// A byte that the protocol version does not define.
     Unknown(u8),
 }
 
 impl MotionGeneratorMode {
-    /// True if the client has to feed a generator: any mode but `Idle` and `None`.
+    /// True if the client must send motion commands: any mode except `Idle` and `None`.
     ///
-    /// Protocol 5 has no `None`, and its byte 5 decodes as `Unknown`, so one rule is right for
-    /// both versions.
+    /// Protocol 5 has no `None`, and its byte 5 decodes as `Unknown`, so one rule works for both
+    /// versions.
     #[must_use]
     pub fn is_running(self) -> bool {
         !matches!(self, Self::Idle | Self::None)
@@ -115,15 +115,15 @@ pub enum ControllerMode {
     CartesianImpedance,
     /// The client's torques.
     ExternalController,
-    /// None of the above: what an idle robot reports.
+    /// Any other controller: the value of an idle robot.
     #[default]
     Other,
-    /// A byte that the protocol gives no meaning.
+    /// A byte that the protocol does not define.
     Unknown(u8),
 }
 
 impl ControllerMode {
-    /// True if the client has to feed a controller. The robot's own controllers never count.
+    /// True if the client must send torques. The robot's own controllers never count.
     #[must_use]
     pub fn is_running(self) -> bool {
         self == Self::ExternalController

@@ -15,13 +15,13 @@ use crate::wire::{self, from_wire, to_wire};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MoveRequest {
-    /// The controller of the joints.
+    /// The joint controller.
     pub controller: MoveControllerMode,
-    /// What the client sends.
+    /// The kind of commands that the client sends.
     pub generator: MoveGeneratorMode,
-    /// Deviation allowed on the way.
+    /// Allowed deviation during the motion.
     pub maximum_path_deviation: Deviation,
-    /// Deviation allowed at the goal.
+    /// Allowed deviation at the goal.
     pub maximum_goal_pose_deviation: Deviation,
     /// Joint velocities `[rad/s]` for a robot that plans between sparse joint targets; `None`
     /// for one command per cycle. Protocol 10 only.
@@ -29,7 +29,7 @@ pub struct MoveRequest {
 }
 
 impl MoveRequest {
-    /// A motion with libfranka's deviations and one command per cycle.
+    /// Creates a motion with libfranka's deviations and one command per cycle.
     #[must_use]
     pub fn new(controller: MoveControllerMode, generator: MoveGeneratorMode) -> Self {
         Self {
@@ -42,20 +42,21 @@ impl MoveRequest {
     }
 }
 
-/// How far the robot may be from where it should be.
+/// Largest allowed deviation of the robot from its commanded pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Deviation {
-    /// Of the position `[m]`.
+    /// Deviation of the position `[m]`.
     pub translation: f64,
-    /// Of the orientation `[rad]`.
+    /// Deviation of the orientation `[rad]`.
     pub rotation: f64,
-    /// Of the elbow `[rad]`.
+    /// Deviation of the elbow `[rad]`.
     pub elbow: f64,
 }
 
 impl Deviation {
-    /// What libfranka 0.9 and 0.21 send with every motion: wide enough never to bind.
+    /// The deviations that libfranka 0.9 and 0.21 send with every motion: so large that they never
+    /// apply.
     pub const LIBFRANKA: Self = Self {
         translation: 10.0,
         rotation: 3.12,
@@ -98,7 +99,7 @@ impl MoveControllerMode {
         Self::ExternalController,
     ];
 
-    /// The mode that the states report once the motion runs.
+    /// The mode in the robot's states while the motion runs.
     #[must_use]
     pub fn in_state(self) -> ControllerMode {
         match self {
@@ -134,7 +135,7 @@ impl MoveGeneratorMode {
         Self::None,
     ];
 
-    /// The mode that the states report once the motion runs.
+    /// The mode in the robot's states while the motion runs.
     #[must_use]
     pub fn in_state(self) -> MotionGeneratorMode {
         match self {
@@ -155,7 +156,7 @@ pub(crate) struct MoveCodec {
 }
 
 impl MoveCodec {
-    /// The codec of the layout with the tail `A`.
+    /// Creates the codec of the layout with the tail `A`.
     pub(crate) const fn of<A: AsynchronousPart>() -> Self {
         Self {
             decode: decode::<A>,
@@ -164,13 +165,13 @@ impl MoveCodec {
     }
 }
 
-/// What a version appends to a `Move` for robots that plan between targets.
+/// The fields that a version appends to a `Move` for robots that plan between targets.
 pub(crate) trait AsynchronousPart:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned
 {
-    /// True if the version has it.
+    /// True if the version has these fields.
     const EXISTS: bool;
-    /// How many of [`MoveGeneratorMode::ALL`] the version has.
+    /// Number of modes of [`MoveGeneratorMode::ALL`] that the version has.
     const GENERATORS: usize;
     fn velocities(&self) -> Option<[f64; 7]>;
     fn of(velocities: Option<[f64; 7]>) -> Option<Self>;
@@ -243,7 +244,7 @@ fn decode<A: AsynchronousPart>(message: &Message<'_>) -> Result<MoveRequest, Dec
     })
 }
 
-/// The enumerator whose number is `value`.
+/// Returns the enumerator with the number `value`.
 pub(super) fn nth<T: Copy>(all: &[T], field: &'static str, value: u32) -> Result<T, DecodeError> {
     let index = usize::try_from(value).unwrap_or(usize::MAX);
     let known = all.get(index).copied();

@@ -1,4 +1,4 @@
-//! A command that the robot refused or gave up.
+//! A command that the robot refused or aborted.
 
 use core::fmt;
 
@@ -9,11 +9,11 @@ use crate::command::Command;
 use crate::command::NO_LIBRARY;
 use crate::robot::RobotMode;
 
-/// A command that the robot refused or gave up.
+/// A command that the robot refused or aborted.
 ///
-/// `Display` is libfranka's text to the byte, quirks included: a safety function that refuses a
-/// stop or a recovery is reported as one that refuses `Move`, and for setters the text ends in a
-/// blank (libfranka 0.21, `robot_impl.h`).
+/// `Display` is libfranka's text byte for byte, with its quirks (libfranka 0.21, `robot_impl.h`).
+/// If a safety function refuses a stop or a recovery, the text names `Move`. For setters the text
+/// ends in a space.
 ///
 /// ```
 /// use franka_proto::{Command, Refusal, RobotMode, SetterStatus, Status};
@@ -34,9 +34,10 @@ pub struct Refusal {
 }
 
 impl Refusal {
-    /// The refusal that `status` means for `command`; `None` if it is not a refusal.
+    /// Returns the refusal for `status` as an answer to `command`; `None` if `status` is not a
+    /// refusal.
     ///
-    /// `mode` is the robot's mode as the caller knows it, in general that of the newest state.
+    /// `mode` is the robot's mode as the caller knows it, usually from the newest state.
     #[must_use]
     pub fn new(command: Command, status: Status, mode: RobotMode) -> Option<Self> {
         (!status.is_success()).then_some(Self {
@@ -46,20 +47,20 @@ impl Refusal {
         })
     }
 
-    /// The refusal in a reply to `command`; `None` if the reply is a success, or is to
+    /// Returns the refusal in a reply to `command`; `None` if the reply is a success or answers
     /// `Connect`.
     #[must_use]
     pub fn from_reply(command: Command, reply: &Reply<'_>, mode: RobotMode) -> Option<Self> {
         Self::new(command, reply.status()?, mode)
     }
 
-    /// What was asked for.
+    /// The refused command.
     #[must_use]
     pub fn command(&self) -> Command {
         self.command
     }
 
-    /// What the robot answered; never a success.
+    /// The robot's answer; never a success.
     #[must_use]
     pub fn status(&self) -> Status {
         self.status
@@ -71,7 +72,7 @@ impl Refusal {
         self.mode
     }
 
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of the refusal's row in the book's chapter of errors, `errors.md`.
     #[must_use]
     pub fn entry(&self) -> &'static str {
         match self.status {
@@ -204,11 +205,11 @@ impl fmt::Display for Refusal {
 
 impl core::error::Error for Refusal {}
 
-/// What the text says behind the command's name.
+/// The part of the text after the command's name.
 enum Reason {
     Text(&'static str),
     NotPossible,
-    /// The safety text in the name of `Move`, whatever the command.
+    /// The safety text with the name `Move`, regardless of the command.
     MoveSafety,
     /// The text of the model library, which names no command.
     Library,

@@ -1,4 +1,4 @@
-//! What the robot answers.
+//! The replies of the robot.
 
 use super::{
     LibraryStatus, ModelStatus, MoveStatus, RecoveryStatus, SetterStatus, Status, StopStatus,
@@ -12,42 +12,42 @@ use crate::protocol::{DecodeError, ReplyError};
 use crate::version::Version;
 use crate::wire;
 
-/// What the robot answers to one request.
+/// The robot's answer to one request.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Reply<'a> {
-    /// To `Connect`.
+    /// Answer to `Connect`.
     Connect {
-        /// Whether the version suits.
+        /// Result of the version check.
         status: ConnectStatus,
         /// Protocol version of the robot.
         version: u16,
     },
-    /// To `Move`: twice, unless the first answer is a refusal.
+    /// Answer to `Move`: two answers, unless the first is a refusal.
     Move(MoveStatus),
-    /// To `StopMove`.
+    /// Answer to `StopMove`.
     StopMove(StopStatus),
-    /// To a setter.
+    /// Answer to a setter.
     Setter(SetterStatus),
-    /// To `AutomaticErrorRecovery`.
+    /// Answer to `AutomaticErrorRecovery`.
     Recovery(RecoveryStatus),
-    /// To `GetRobotModel`.
+    /// Answer to `GetRobotModel`.
     Model {
-        /// Whether the text is there.
+        /// Result of the request.
         status: ModelStatus,
-        /// URDF, in general UTF-8; empty after a refusal.
+        /// URDF, usually UTF-8; empty after a refusal.
         text: &'a [u8],
     },
-    /// To `GetCartesianLimit`.
+    /// Answer to `GetCartesianLimit`.
     CartesianLimit {
-        /// Whether there is such a wall.
+        /// Result of the request.
         status: SetterStatus,
-        /// The wall; of no meaning after a refusal.
+        /// The wall; undefined after a refusal.
         wall: VirtualWall,
     },
-    /// To `LoadModelLibrary`.
+    /// Answer to `LoadModelLibrary`.
     ModelLibrary {
-        /// Whether the library is there.
+        /// Result of the request.
         status: LibraryStatus,
         /// A file for the client's loader; empty after a refusal.
         library: &'a [u8],
@@ -55,7 +55,7 @@ pub enum Reply<'a> {
 }
 
 impl<'a> Reply<'a> {
-    /// The status; `None` for `Connect`, whose refusal has a text of its own:
+    /// The status; `None` for `Connect`, whose refusal has a separate text:
     /// [`IncompatibleVersion`](crate::IncompatibleVersion).
     #[must_use]
     pub fn status(&self) -> Option<Status> {
@@ -71,8 +71,8 @@ impl<'a> Reply<'a> {
         }
     }
 
-    /// What a robot answers to a request with an enumerator that does not exist, for the commands
-    /// that have enumerators.
+    /// Returns a robot's answer to a request with an undefined enumerator; `None` for commands
+    /// without enumerators.
     pub(crate) fn to_unknown_value(command: Command) -> Option<(Command, Reply<'static>)> {
         let reply = match command {
             Command::Move => Reply::Move(MoveStatus::InvalidArgumentRejected),
@@ -85,7 +85,7 @@ impl<'a> Reply<'a> {
         Some((command, reply))
     }
 
-    /// True if `command` is answered with this kind of reply.
+    /// True if this kind of reply answers `command`.
     #[must_use]
     pub fn suits(&self, command: Command) -> bool {
         match self {
@@ -110,9 +110,9 @@ impl<'a> Reply<'a> {
         }
     }
 
-    /// The message that carries this reply to the request `id` for `command`; `extra` bytes of a
-    /// model are sent behind it and count in the header's size. What is in `self` of the model
-    /// would not fit: it has to be empty.
+    /// Returns the message that carries this reply to the request `id` for `command`. The header's
+    /// size includes `extra` bytes of a model that follow the message. The model in `self` must be
+    /// empty, because it would not fit.
     pub(crate) fn encode(
         &self,
         version: Version,
@@ -156,11 +156,12 @@ impl<'a> Reply<'a> {
         })
     }
 
-    /// The reply to `command` in a message of the robot; bytes behind a fixed reply are ignored.
+    /// Decodes the reply to `command` from a message of the robot; bytes after a fixed reply are
+    /// ignored.
     ///
     /// # Errors
     /// [`DecodeError::MessageSize`] if the payload is too short, and [`DecodeError::UnknownStatus`]
-    /// if the version gives the status byte no meaning.
+    /// if the version does not define the status byte.
     pub fn decode(
         version: Version,
         command: Command,

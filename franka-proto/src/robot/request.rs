@@ -1,4 +1,4 @@
-//! What a client asks for, and its bytes.
+//! The requests of a client, and their encoding.
 #![allow(non_snake_case)]
 
 use super::{Architecture, CollisionBehavior, Filters, MoveRequest, System, library};
@@ -11,15 +11,15 @@ use crate::wire::{self, from_wire, to_wire};
 
 /// A request with its parameters.
 ///
-/// Nothing here is checked for range: the robot does that and answers.
-// A box would need an allocator, and requests are few.
+/// Ranges are not checked here: the robot checks them and answers.
+// A box would require an allocator, and few requests exist at a time.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Request {
     /// Opens a session: the client's version and the port where it expects states.
     Connect {
-        /// Protocol version of the client, which need not be one that this crate knows.
+        /// Protocol version of the client; it may be unknown to this crate.
         version: u16,
         /// UDP port of the client.
         udp_port: u16,
@@ -35,7 +35,7 @@ pub enum Request {
     /// Stiffnesses of the robot's own Cartesian controller in the stiffness frame: 10 to 3000
     /// `[N/m]`, then 1 to 300 `[N m/rad]`.
     SetCartesianImpedance([f64; 6]),
-    /// Which axes a hand may guide.
+    /// Sets the axes that can be guided by hand.
     SetGuidingMode {
         /// x, y, z, roll, pitch, yaw; true is free.
         guiding_mode: [bool; 6],
@@ -48,13 +48,13 @@ pub enum Request {
     SetNEToEE([f64; 16]),
     /// Sets the load.
     SetLoad(Load),
-    /// Clears errors after a reflex; replied to when it has ended.
+    /// Clears errors after a reflex; answered when the recovery has ended.
     AutomaticErrorRecovery,
     /// Fetches the robot's description as URDF text; protocol 10 only.
     GetRobotModel,
     /// Reads a virtual wall (libfranka's `getVirtualWall`); protocol 5 only.
     GetCartesianLimit {
-        /// Which wall.
+        /// Number of the wall.
         id: i32,
     },
     /// Sets the filters of the robot's interfaces; protocol 5 only.
@@ -68,7 +68,7 @@ pub enum Request {
     },
 }
 
-/// What the end effector carries. The end effector itself is set up in Desk.
+/// The load of the end effector. The end effector itself is configured in Desk.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Load {
@@ -81,7 +81,7 @@ pub struct Load {
 }
 
 impl Request {
-    /// Which command this is.
+    /// The command of this request.
     #[must_use]
     pub fn command(&self) -> Command {
         match self {
@@ -103,10 +103,10 @@ impl Request {
         }
     }
 
-    /// The message that carries this request under `id`.
+    /// Returns the message that carries this request with `id`.
     ///
     /// # Errors
-    /// [`RequestError::Unsupported`] if the version has no such command, or none with these
+    /// [`RequestError::Unsupported`] if the version has no such command, or does not support these
     /// parameters.
     pub fn encode(&self, version: Version, id: CommandId) -> Result<Outgoing, RequestError> {
         let number = version
@@ -174,12 +174,12 @@ impl Request {
         })
     }
 
-    /// The request in a client's message; bytes behind its struct are ignored.
+    /// Decodes the request from a client's message; bytes after its struct are ignored.
     ///
     /// # Errors
-    /// [`DecodeError::UnknownCommand`] if the version has no such number,
+    /// [`DecodeError::UnknownCommand`] if the version has no command with this number,
     /// [`DecodeError::MessageSize`] if the payload is too short, and [`DecodeError::UnknownValue`]
-    /// if the version does not define an enumerator in it, such as a mode of a `Move`.
+    /// if the version does not define one of its enumerators, such as a mode of a `Move`.
     pub fn decode(version: Version, message: &Message<'_>) -> Result<Self, DecodeError> {
         let number = message.header.command;
         let command = version

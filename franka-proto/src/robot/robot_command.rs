@@ -1,4 +1,4 @@
-//! The command of one cycle, whatever the version.
+//! The command of one cycle, independent of the version.
 #![allow(non_snake_case)]
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
@@ -7,10 +7,10 @@ use crate::protocol::{DecodeError, EncodeError};
 use crate::version::Version;
 use crate::wire::{self, from_wire, to_wire};
 
-/// What the client commands for one cycle; the field names are the vendor's.
+/// The client's command for one cycle; the field names are the vendor's.
 ///
-/// Only the fields of the active generator and controller count; the rest stays zero. The robot
-/// reads every field of the half that it runs and ignores the other.
+/// Only the fields of the active generator and controller count; the others stay zero. The robot
+/// reads every field of the half that it uses and ignores the other half.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RobotCommand {
@@ -36,11 +36,12 @@ pub struct RobotCommand {
 }
 
 impl RobotCommand {
-    /// Length of the longest datagram of any version in bytes: a buffer of this size always does.
+    /// Length of the longest datagram of any version in bytes. A buffer of this size is always
+    /// sufficient.
     pub const MAX_SIZE: usize = size_of::<wire::RobotCommand<u8>>();
 
-    /// Reads a datagram of a client. Bytes beyond the struct are ignored, as the kernel cuts them
-    /// off a real one.
+    /// Decodes a datagram of a client. Bytes beyond the struct are ignored, because the kernel
+    /// truncates real datagrams in the same way.
     ///
     /// # Errors
     /// [`DecodeError::DatagramSize`] if there are fewer bytes than the version's command has.
@@ -51,9 +52,9 @@ impl RobotCommand {
     /// Writes the datagram for the robot into `buffer` and returns its length in bytes.
     ///
     /// # Errors
-    /// `EncodeError::Buffer` if `buffer` is too short ([`RobotCommand::MAX_SIZE`] always does);
-    /// `EncodeError::Unsupported` if the version cannot say `torque_command_finished`. `buffer`
-    /// is then untouched.
+    /// `EncodeError::Buffer` if `buffer` is too short ([`RobotCommand::MAX_SIZE`] is always
+    /// sufficient); `EncodeError::Unsupported` if the version does not support
+    /// `torque_command_finished`. `buffer` is then unchanged.
     pub fn encode(&self, version: Version, buffer: &mut [u8]) -> Result<usize, EncodeError> {
         (version.table().command_codec.encode)(self, buffer)
     }
@@ -77,7 +78,7 @@ impl CommandCodec {
     }
 }
 
-/// The end of the torque half: a byte in protocol 10, nothing in protocol 5.
+/// The last field of the torque half: a byte in protocol 10, nothing in protocol 5.
 pub(crate) trait Finish:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned
 {

@@ -1,4 +1,4 @@
-//! The 41 errors that a robot state can carry.
+//! The 41 errors of a robot state.
 
 use core::fmt;
 
@@ -81,13 +81,13 @@ impl RobotError {
         self as usize
     }
 
-    /// The error at a wire position.
+    /// Returns the error at a wire position.
     #[must_use]
     pub fn from_index(index: usize) -> Option<Self> {
         Self::ALL.get(index).copied()
     }
 
-    /// The error with libfranka's name.
+    /// Returns the error with libfranka's name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|error| error.name() == name)
@@ -114,7 +114,7 @@ impl Errors {
     /// The empty set.
     pub const NONE: Self = Self(0);
 
-    /// Reads the flags of the wire: one byte each, any non-zero value is true.
+    /// Reads the wire flags: one byte each; any non-zero value is true.
     #[must_use]
     pub fn from_flags(flags: &[u8; 41]) -> Self {
         let mut bits = 0;
@@ -141,24 +141,24 @@ impl Errors {
         self.0 |= error.bit();
     }
 
-    /// Takes `error` out.
+    /// Removes `error`.
     pub fn remove(&mut self, error: RobotError) {
         self.0 &= !error.bit();
     }
 
-    /// Everything that is in either set.
+    /// Returns the union of both sets.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// True if there is no error.
+    /// True if the set is empty.
     #[must_use]
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
 
-    /// How many errors there are.
+    /// Number of errors in the set.
     #[must_use]
     pub fn len(self) -> usize {
         self.0.count_ones() as usize
@@ -170,7 +170,7 @@ impl Errors {
         self.0
     }
 
-    /// The set of the bits of [`Errors::bits`]; bits above 40 are dropped.
+    /// Returns the set with the bits of [`Errors::bits`]; bits above 40 are dropped.
     #[must_use]
     pub fn from_bits(bits: u64) -> Self {
         Self(bits & ((1 << RobotError::ALL.len()) - 1))

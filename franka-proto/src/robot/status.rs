@@ -1,7 +1,7 @@
-//! How the robot answers, whatever the version. The bytes are in the version table.
+//! The robot's answers, independent of the version. The version table contains their bytes.
 
-/// Answer to `Move`: [`MoveStatus::MotionStarted`] first, then one of the others when the motion
-/// ends; or one of the others at once if it does not start.
+/// Answer to `Move`. If the motion starts, [`MoveStatus::MotionStarted`] comes first and another
+/// status follows when the motion ends. Otherwise the only answer is another status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum MoveStatus {
@@ -17,15 +17,15 @@ pub enum MoveStatus {
     CommandRejectedDueToActivatedSafetyFunctions,
     /// The robot's mode does not allow it.
     CommandNotPossibleRejected,
-    /// A Cartesian motion cannot start where the arm is singular.
+    /// A Cartesian motion cannot start at a singular pose.
     StartAtSingularPoseRejected,
     /// A deviation or mode is out of range.
     InvalidArgumentRejected,
-    /// A reflex ended the motion; the state's `reflex_reason` says why.
+    /// A reflex ended the motion; the state's `reflex_reason` contains the cause.
     ReflexAborted,
     /// The user stop ended the motion.
     EmergencyAborted,
-    /// A command could not be used.
+    /// A command was invalid.
     InputErrorAborted,
     /// Something else ended the motion.
     Aborted,
@@ -41,11 +41,11 @@ pub enum StopStatus {
     CommandNotPossibleRejected,
     /// A safety function forbids it; protocol 10 only.
     CommandRejectedDueToActivatedSafetyFunctions,
-    /// The user stop came first.
+    /// The user stop ended the motion first.
     EmergencyAborted,
-    /// A reflex came first.
+    /// A reflex ended the motion first.
     ReflexAborted,
-    /// Something else came first.
+    /// Another event ended the motion first.
     Aborted,
 }
 
@@ -53,7 +53,7 @@ pub enum StopStatus {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SetterStatus {
-    /// The value holds from now on.
+    /// The value applies from now on.
     Success,
     /// The robot's mode does not allow it.
     CommandNotPossibleRejected,
@@ -73,7 +73,7 @@ pub enum RecoveryStatus {
     CommandNotPossibleRejected,
     /// A safety function forbids it; protocol 10 only.
     CommandRejectedDueToActivatedSafetyFunctions,
-    /// A person has to move the arm first.
+    /// A person must move the arm first.
     ManualErrorRecoveryRequiredRejected,
     /// A reflex ended the recovery.
     ReflexAborted,
@@ -101,30 +101,30 @@ pub enum ModelStatus {
 pub enum LibraryStatus {
     /// The library follows.
     Success,
-    /// There is no library for this architecture and system.
+    /// No library exists for this architecture and system.
     Error,
 }
 
-/// The status of any command but `Connect`.
+/// The status of any command except `Connect`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
-    /// Of `Move`.
+    /// Status of `Move`.
     Move(MoveStatus),
-    /// Of `StopMove`.
+    /// Status of `StopMove`.
     StopMove(StopStatus),
-    /// Of a setter.
+    /// Status of a setter.
     Setter(SetterStatus),
-    /// Of `AutomaticErrorRecovery`.
+    /// Status of `AutomaticErrorRecovery`.
     Recovery(RecoveryStatus),
-    /// Of `GetRobotModel`.
+    /// Status of `GetRobotModel`.
     Model(ModelStatus),
-    /// Of `LoadModelLibrary`.
+    /// Status of `LoadModelLibrary`.
     Library(LibraryStatus),
 }
 
 impl Status {
-    /// Whether the command did, or began to do, what it was asked for.
+    /// True if the command succeeded, or its motion started.
     #[must_use]
     pub fn is_success(self) -> bool {
         matches!(

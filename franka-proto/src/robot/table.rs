@@ -1,4 +1,4 @@
-//! The table: one row per version, everything that differs between them.
+//! The version table: one row per version, with all differences between versions.
 //!
 //! Numbers of commands and statuses are positions in the lists. Sources: libfranka-common,
 //! `research_interface/robot/service_types.h` and `rbk_types.h`, as libfranka 0.9 (protocol 5) and
@@ -16,23 +16,23 @@ use crate::protocol::ConnectStatus;
 use crate::version::Version;
 use crate::wire::{self, F32, F64};
 
-/// What differs between the versions.
+/// The version-specific properties.
 impl Version {
-    /// The number of a command; `None` if the version does not have it.
+    /// Number of a command; `None` if the version does not have it.
     #[must_use]
     pub fn command_number(self, command: Command) -> Option<u32> {
         let position = self.table().commands.iter().position(|&c| c == command)?;
         u32::try_from(position).ok()
     }
 
-    /// The command of a number; `None` if the version does not have it.
+    /// Command with this number; `None` if the version does not have it.
     #[must_use]
     pub fn command_from_number(self, number: u32) -> Option<Command> {
         let index = usize::try_from(number).ok()?;
         self.table().commands.get(index).copied()
     }
 
-    /// True if the version has a command.
+    /// True if the version supports the command.
     #[must_use]
     pub fn supports(self, command: Command) -> bool {
         self.table().commands.contains(&command)
@@ -50,11 +50,11 @@ impl Version {
         self.table().command_codec.size
     }
 
-    /// The motion generator to ask for when the client commands torques alone.
+    /// Returns the motion generator to request when the client commands torques alone.
     ///
     /// Protocol 10 has `MoveGeneratorMode::None`, and the motion ends with
-    /// `torque_command_finished`. In protocol 5 a joint velocity generator runs beside the torques:
-    /// it gets zeros, and its `motion_generation_finished` ends the motion.
+    /// `torque_command_finished`. In protocol 5 a joint velocity generator runs in parallel with
+    /// the torques. It receives zeros, and its `motion_generation_finished` ends the motion.
     #[must_use]
     pub fn torque_generator(self) -> MoveGeneratorMode {
         self.table().torque_generator
@@ -73,9 +73,9 @@ impl Version {
         self.table().accelerometers
     }
 
-    /// True if a control loop with two functions calls the one for the motion generator before the
-    /// one for the torques. As in `control_loop.cpp` of libfranka 0.9 (protocol 5: it does) and
-    /// 0.21 (protocol 10: it does not).
+    /// True if a control loop with two functions calls the motion generator's function before the
+    /// torque function. Source: `control_loop.cpp` of libfranka 0.9 (protocol 5: true) and 0.21
+    /// (protocol 10: false).
     #[must_use]
     pub fn generator_first(self) -> bool {
         self.table().generator_first
@@ -111,7 +111,7 @@ pub(crate) struct Table {
     pub(crate) accelerometers: bool,
     /// Conventions of the reference client.
     pub(crate) generator_first: bool,
-    /// Where the text about an incompatible version sends the reader: for updates, and for the
+    /// The sources that the text about an incompatible version names: for updates, and for the
     /// table of images.
     pub(crate) incompatible_advice: [&'static str; 2],
 }

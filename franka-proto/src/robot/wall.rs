@@ -3,7 +3,7 @@
 use crate::wire::service::CartesianLimit;
 use crate::wire::{from_wire, to_wire};
 
-/// A cuboid that the robot does not leave, set up in Desk. Protocol 5 only.
+/// A cuboid that the robot must not leave, configured in Desk. Protocol 5 only.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct VirtualWall {

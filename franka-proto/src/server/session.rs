@@ -1,4 +1,4 @@
-//! The device's side of a session: the verdict on the handshake, then requests and the order of
+//! The device's side of a session: the decision on the handshake, then requests and the order of
 //! their replies.
 
 use crate::command::CommandId;
@@ -12,8 +12,8 @@ use crate::protocol::{Progress, Protocol};
 use crate::robot::{LibraryStatus, ModelStatus, Reply};
 use crate::version::Version;
 
-/// One connection of a client, from its first byte to its last: a client of a robot, unless `P`
-/// says otherwise.
+/// One connection of a client, from its first byte to its last. The device is a robot, unless `P`
+/// is another protocol.
 #[derive(Clone, Debug)]
 pub struct Session<P: Protocol = Version> {
     version: P,
@@ -28,49 +28,49 @@ enum ConnectionPhase {
 }
 
 /// The event that a message of a client causes.
-// The variants are moved once, from the session to the driver; a box would need an allocator.
+// The variants are moved once, from the session to the driver; a box would require an allocator.
 #[allow(clippy::large_enum_variant)]
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Event<P: Protocol = Version> {
-    /// A client of the same version is there. Send `reply`; states go to `udp_port` from then on.
+    /// A client of the same version connected. Send `reply`, then send states to `udp_port`.
     Connect {
         /// The id of the handshake.
         id: CommandId,
         /// UDP port of the client.
         udp_port: u16,
-        /// The answer that the session gives.
+        /// The answer of the session.
         reply: Outgoing,
     },
-    /// A client of another version is there. Send `reply`; the client closes.
+    /// A client of another version connected. Send `reply`; the client then closes the connection.
     Incompatible {
         /// The version that the client announces.
         version: u16,
-        /// The answer that the session gives.
+        /// The answer of the session.
         reply: Outgoing,
     },
-    /// A request to act on, and to answer with [`Session::reply`] (or, of a model,
-    /// `Session::model_header`).
+    /// A request to process. Answer it with [`Session::reply`], or with `Session::model_header` for
+    /// a model.
     Request {
-        /// The id to answer to.
+        /// The id for the answer.
         id: CommandId,
-        /// What is asked for.
+        /// The request.
         request: P::Request,
     },
-    /// A request with an enumerator that does not exist, such as a `Move` with an unknown mode. A
-    /// robot answers it as an invalid argument. Send `reply`; the request is done.
+    /// A request with an undefined enumerator, such as a `Move` with an unknown mode. A robot
+    /// answers it as an invalid argument. Send `reply`; the request is then complete.
     Rejected {
         /// The id of the request.
         id: CommandId,
-        /// What is wrong with it.
+        /// The decoding error.
         error: DecodeError<P::Command>,
-        /// The answer that the session gives.
+        /// The answer of the session.
         reply: Outgoing,
     },
 }
 
 impl<P: Protocol> Session<P> {
-    /// Requests that may wait for replies at the same time.
+    /// Limit of requests that may wait for replies at the same time.
     pub const PENDING_LIMIT: usize = pending::LIMIT;
 
     /// A session of a device that speaks `version`.
@@ -95,7 +95,7 @@ impl<P: Protocol> Session<P> {
         self.phase == ConnectionPhase::Open
     }
 
-    /// The event that a message of the client causes.
+    /// Processes a message of the client and returns the resulting event.
     ///
     /// # Errors
     /// [`Violation`]: the client is to be disconnected.
@@ -120,15 +120,15 @@ impl<P: Protocol> Session<P> {
         }
     }
 
-    /// The message that answers a request.
+    /// Returns the message that answers a request.
     ///
-    /// A `Move` of a robot is answered twice:
-    /// [`MoveStatus::MotionStarted`](crate::MoveStatus::MotionStarted), then how it ended; or once,
-    /// with a refusal. A model is answered with [`Session::model_header`] or
-    /// [`Session::library_header`] instead, unless it is refused.
+    /// A robot answers `Move` twice:
+    /// [`MoveStatus::MotionStarted`](crate::MoveStatus::MotionStarted), then the result. It answers
+    /// a refused `Move` once. Models are sent with [`Session::model_header`] or
+    /// [`Session::library_header`] instead, unless they are refused.
     ///
     /// # Errors
-    /// [`ReplyError`]; the session is then as before.
+    /// [`ReplyError`]; the session is then unchanged.
     pub fn reply(
         &mut self,
         id: CommandId,
@@ -176,7 +176,7 @@ impl<P: Protocol> Session<P> {
         }
     }
 
-    /// An enumerator without a meaning has an answer; what else cannot be read has none.
+    /// Answers a message with an undefined enumerator; other unreadable messages get no answer.
     fn on_unreadable(
         &mut self,
         message: &Message<'_>,
@@ -188,7 +188,7 @@ impl<P: Protocol> Session<P> {
         match rejection.filter(|_| unknown_value && self.phase == ConnectionPhase::Open) {
             Some((command, reply)) => {
                 self.remember(id, command)?;
-                // A version that has the command has this status, and the request is noted.
+                // Every version with this command has this status, and the request is recorded.
                 let reply = self.reply(id, reply);
                 let reply = reply.expect("a pending request can be rejected");
                 Ok(Event::Rejected { id, error, reply })
@@ -215,12 +215,12 @@ impl<P: Protocol> Session<P> {
 }
 
 impl Session {
-    /// The beginning of the message that answers `GetRobotModel`: the caller sends `text_len` bytes
-    /// of text right behind it.
+    /// Returns the beginning of the message that answers `GetRobotModel`. The caller sends
+    /// `text_len` bytes of text directly afterwards.
     ///
     /// # Errors
-    /// [`ReplyError::TextLength`] if the message would be longer than [`MAX_MESSAGE_SIZE`], and
-    /// those of [`Session::reply`]; the session is then as before.
+    /// [`ReplyError::TextLength`] if the message would be longer than [`MAX_MESSAGE_SIZE`], and the
+    /// errors of [`Session::reply`]; the session is then unchanged.
     pub fn model_header(&mut self, id: CommandId, text_len: usize) -> Result<Outgoing, ReplyError> {
         let reply = Reply::Model {
             status: ModelStatus::Success,
@@ -229,11 +229,11 @@ impl Session {
         self.answer_with_tail(id, &reply, text_len)
     }
 
-    /// The beginning of the message that answers `LoadModelLibrary`: the caller sends the `len`
-    /// bytes of the library right behind it.
+    /// Returns the beginning of the message that answers `LoadModelLibrary`. The caller sends the
+    /// `len` bytes of the library directly afterwards.
     ///
     /// # Errors
-    /// As [`Session::model_header`].
+    /// The errors of [`Session::model_header`].
     pub fn library_header(&mut self, id: CommandId, len: usize) -> Result<Outgoing, ReplyError> {
         let reply = Reply::ModelLibrary {
             status: LibraryStatus::Success,

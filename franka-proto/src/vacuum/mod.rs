@@ -1,7 +1,7 @@
 //! The protocol of the vacuum gripper: TCP port 1339, version 1, the same on both robots.
 //!
-//! It works like that of the [Hand](crate::gripper): one reply to each request, given when the
-//! action has ended, and a [`State`] by UDP.
+//! The protocol works like the protocol of the [Hand](crate::gripper): one reply to each request,
+//! sent when the action has ended, and a [`State`] by UDP.
 
 mod request;
 mod state;
@@ -12,7 +12,7 @@ pub use crate::end_effector::{Failure, Reply, Status, next_message};
 pub use request::{Command, Profile, Request, UndefinedProfile, Vacuum};
 pub use state::{DeviceStatus, State};
 
-/// A version of the vacuum gripper's protocol. There is one.
+/// A version of the vacuum gripper's protocol. Only one exists.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Version {
     /// The version of all vacuum grippers on protocols 5 and 10 of the robot.

@@ -1,4 +1,4 @@
-//! What can be asked of the vacuum gripper.
+//! The requests to the vacuum gripper.
 
 use core::fmt;
 
@@ -12,21 +12,21 @@ use crate::protocol::payload;
 use crate::protocol::sealed;
 use crate::wire;
 
-/// What can be asked of the vacuum gripper. Each has one reply, given when the action has ended.
+/// The commands of the vacuum gripper. Each has one reply, sent when the action has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Command {
     /// Opens a session.
     Connect,
-    /// Sucks an object on.
+    /// Picks up an object by vacuum.
     Vacuum,
     /// Drops the object.
     DropOff,
-    /// Stops the action that runs.
+    /// Stops the current action.
     Stop,
 }
 
-/// A request with its parameters. Nothing here is checked for range: the gripper does that.
+/// A request with its parameters. Ranges are not checked here: the gripper checks them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Request {
@@ -37,26 +37,26 @@ pub enum Request {
         /// UDP port of the client.
         udp_port: u16,
     },
-    /// Sucks an object on.
+    /// Picks up an object by vacuum.
     Vacuum(Vacuum),
     /// Drops the object.
     DropOff {
-        /// How long it may take `[ms]`.
+        /// Time limit `[ms]`.
         timeout: i64,
     },
-    /// Stops the action that runs, which is answered as aborted.
+    /// Stops the current action. The gripper answers that action as aborted.
     Stop,
 }
 
-/// How to suck an object on.
+/// The parameters of a vacuum grasp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Vacuum {
-    /// Vacuum to reach, in units of 10 mbar.
+    /// Target vacuum, in units of 10 mbar.
     pub vacuum: u8,
     /// Production set-up profile of the device.
     pub profile: Profile,
-    /// How long it may take `[ms]`.
+    /// Time limit `[ms]`.
     pub timeout: i64,
 }
 
@@ -93,7 +93,7 @@ impl Profile {
     }
 }
 
-/// An undefined profile. The text is libfranka's, which then sends nothing.
+/// An undefined profile. The text is libfranka's; libfranka sends no request in this case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("Vacuum Gripper: Vacuum profile not defined!")]
 pub struct UndefinedProfile(pub u8);

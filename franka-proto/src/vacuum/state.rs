@@ -8,19 +8,19 @@ use crate::number_text::General;
 use crate::protocol::DecodeError;
 use crate::wire::vacuum::VacuumGripperState;
 
-/// Everything that the vacuum gripper says in one datagram.
+/// All values of one datagram of the vacuum gripper.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// The gripper's clock `[ms]`.
     pub message_id: u32,
-    /// True if the vacuum is inside its range.
+    /// True if the vacuum is within its range.
     pub in_control_range: bool,
     /// True if the object has been dropped off.
     pub part_detached: bool,
     /// True if the gripper holds an object.
     pub part_present: bool,
-    /// Light of the device.
+    /// Status light of the device.
     pub device_status: DeviceStatus,
     /// Power of the pump `[%]`. libfranka narrows it to 16 bits without a sign.
     pub actual_power: i32,
@@ -32,16 +32,16 @@ pub struct State {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum DeviceStatus {
-    /// It works.
+    /// The device works.
     #[default]
     Green,
-    /// It works, with warnings.
+    /// The device works, with warnings.
     Yellow,
-    /// It works, with severe warnings.
+    /// The device works, with severe warnings.
     Orange,
-    /// It does not work.
+    /// The device does not work.
     Red,
-    /// A byte that the protocol gives no meaning.
+    /// A byte that the protocol does not define.
     Unknown(u8),
 }
 
@@ -105,7 +105,7 @@ impl State {
         })
     }
 
-    /// The datagram for a client.
+    /// Returns the datagram for a client.
     #[must_use]
     pub fn encode(&self) -> [u8; Self::SIZE] {
         zerocopy::transmute!(VacuumGripperState {
@@ -120,7 +120,7 @@ impl State {
     }
 }
 
-/// libfranka's text: an object of JSON on one line. The time is in seconds, and truth a number.
+/// libfranka's text: a JSON object on one line. The time is in seconds; booleans are numbers.
 impl fmt::Display for State {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(

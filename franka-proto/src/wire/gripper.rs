@@ -11,7 +11,7 @@ use super::F64;
 pub struct Grasp {
     /// Width of the object `[m]`.
     pub width: F64,
-    /// How far from it the fingers may end.
+    /// Tolerances of the final finger distance.
     pub epsilon: GraspEpsilon,
     /// Speed of closing `[m/s]`.
     pub speed: F64,
@@ -23,9 +23,9 @@ pub struct Grasp {
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct GraspEpsilon {
-    /// How much narrower than the object `[m]`.
+    /// Tolerance below the width of the object `[m]`.
     pub inner: F64,
-    /// How much wider than the object `[m]`.
+    /// Tolerance above the width of the object `[m]`.
     pub outer: F64,
 }
 
@@ -33,7 +33,7 @@ pub struct GraspEpsilon {
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct Move {
-    /// Width to move to `[m]`.
+    /// Target width `[m]`.
     pub width: F64,
     /// Speed of the fingers `[m/s]`.
     pub speed: F64,
@@ -49,7 +49,7 @@ pub struct GripperState {
     pub width: F64,
     /// Distance of the open fingers `[m]`, estimated by homing.
     pub max_width: F64,
-    /// Whether the hand holds an object.
+    /// Non-zero if the hand holds an object.
     pub is_grasped: u8,
     /// Temperature of the hand `[deg C]`.
     pub temperature: U16,

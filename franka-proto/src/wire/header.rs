@@ -1,4 +1,4 @@
-//! What precedes every message on a TCP stream.
+//! The header of every message on a TCP stream.
 
 use zerocopy::byteorder::little_endian::{U16, U32};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
@@ -18,14 +18,14 @@ pub struct CommandHeader<N> {
     pub size: U32,
 }
 
-/// The number of a command in a header, as wide as the service has it.
+/// The number of a command in a header, with the width of the service.
 pub trait CommandNumber:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned + sealed::Sealed
 {
-    /// The number.
+    /// The number as `u32`.
     fn get(self) -> u32;
 
-    /// The number of the wire. What does not fit is cut off; no service has so many commands.
+    /// Creates the wire number. Excess bits are cut off; no service has so large a number.
     fn new(number: u32) -> Self;
 }
 

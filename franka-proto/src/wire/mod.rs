@@ -1,13 +1,14 @@
-//! The structs of the wire: little-endian, packed, declared once for all versions and services.
+//! The wire structs: little-endian, packed, declared once for all versions and services.
 //!
-//! What differs between the versions is a type parameter: the width of a state's numbers
-//! ([`Real`]), and the parts that protocol 10 appended and protocol 5 fills with `()`. The field
-//! names are the vendor's. Size, alignment and every offset are asserted at compile time.
+//! Type parameters cover the differences between the versions. They are the width of a state's
+//! numbers ([`Real`]), and the parts that protocol 10 appended and protocol 5 fills with `()`. The
+//! field names are the vendor's. Size, alignment and every offset are asserted at compile time.
 //!
-//! All types here are plain bytes: `zerocopy` reads them from any slice that is long enough and no
-//! accessor can panic. Meaning (enums, options, `f64`) starts one level up.
+//! All types here are plain bytes: `zerocopy` reads them from any sufficiently long slice, and no
+//! accessor can panic. Meaning (enums, options, `f64`) is added one level above.
 
-/// Asserts at compile time that a wire struct has no padding and its fields sit where they should.
+/// Asserts at compile time that a wire struct has no padding and its fields have the expected
+/// offsets.
 macro_rules! assert_layout {
     ($type:ty, size: $size:literal, { $($($field:ident).+: $offset:literal),* $(,)? }) => {
         const _: () = {

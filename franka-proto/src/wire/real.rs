@@ -1,25 +1,25 @@
-//! Numbers of the wire.
+//! Numbers on the wire.
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
-/// A little-endian `f32`, the state's number in protocol 10.
+/// A little-endian `f32`, the number type of states in protocol 10.
 pub type F32 = zerocopy::byteorder::little_endian::F32;
 
-/// A little-endian `f64`: the state's number in protocol 5, and that of commands and requests in
+/// A little-endian `f64`: the number type of states in protocol 5, and of commands and requests in
 /// both versions.
 pub type F64 = zerocopy::byteorder::little_endian::F64;
 
-/// A floating-point number of the wire, as wide as the version has it.
+/// A floating-point number on the wire, with the width of the version.
 pub trait Real:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned + sealed::Sealed
 {
-    /// The value, exactly.
+    /// Returns the exact value.
     fn widen(self) -> f64;
 
-    /// The nearest value of the wire's width.
+    /// Returns the nearest value with the wire's width.
     fn narrow(value: f64) -> Self;
 
-    /// The sum, rounded to the wire's width.
+    /// Returns the sum, rounded to the wire's width.
     fn add(self, other: Self) -> Self;
 }
 
@@ -57,14 +57,14 @@ impl Real for F64 {
     }
 }
 
-/// An array of the wire as numbers.
+/// Converts an array of wire numbers.
 #[inline]
 #[must_use]
 pub fn from_wire<R: Real, const N: usize>(array: &[R; N]) -> [f64; N] {
     array.map(R::widen)
 }
 
-/// Numbers as an array of the wire.
+/// Converts numbers to an array of wire numbers.
 #[inline]
 #[must_use]
 pub fn to_wire<R: Real, const N: usize>(array: &[f64; N]) -> [R; N] {

@@ -6,7 +6,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
 use super::F64;
 
-/// What a motion generator of the client commands.
+/// The client's command for a motion generator.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct MotionGeneratorCommand {
@@ -20,21 +20,21 @@ pub struct MotionGeneratorCommand {
     pub O_dP_EE_c: [F64; 6],
     /// Angle of joint 3 `[rad]` and sign of the elbow.
     pub elbow_c: [F64; 2],
-    /// Whether `elbow_c` counts.
+    /// Non-zero if `elbow_c` is valid.
     pub valid_elbow: u8,
-    /// Whether this is the last command of the motion.
+    /// Non-zero if this is the last command of the motion.
     pub motion_generation_finished: u8,
 }
 
-/// What a torque controller of the client commands.
+/// The client's command for a torque controller.
 ///
-/// `Finish` is the byte that protocol 10 appended; protocol 5 has `()` there.
+/// `Finish` is the byte that protocol 10 appended; protocol 5 has `()` in its place.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct ControllerCommand<Finish> {
     /// Joint torques without gravity and friction `[N m]`.
     pub tau_J_d: [F64; 7],
-    /// Whether this is the last command of a torque motion.
+    /// Non-zero if this is the last command of a torque motion.
     pub torque_command_finished: Finish,
 }
 
@@ -44,9 +44,9 @@ pub struct ControllerCommand<Finish> {
 pub struct RobotCommand<Finish> {
     /// `message_id` of the state that this command answers.
     pub message_id: U64,
-    /// The half of the motion generator.
+    /// The half for the motion generator.
     pub motion: MotionGeneratorCommand,
-    /// The half of the torque controller.
+    /// The half for the torque controller.
     pub control: ControllerCommand<Finish>,
 }
 

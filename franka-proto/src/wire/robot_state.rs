@@ -8,9 +8,9 @@ use super::{F32, F64};
 
 /// `RobotState` of `research_interface/robot/rbk_types.h`, protocols 5 and 10.
 ///
-/// `R` is the number of the version: [`F32`] in protocol 10, [`F64`] in protocol 5. `A` is what
-/// protocol 10 inserted: [`Accelerometers`]; protocol 5 has `()` there. Units and frames are those
-/// of the fields of the same name in [`crate::RobotState`].
+/// `R` is the number type of the version: [`F32`] in protocol 10, [`F64`] in protocol 5. `A` is the
+/// block that protocol 10 inserted, [`Accelerometers`]; protocol 5 has `()` in its place. Units and
+/// frames are the same as in [`crate::RobotState`].
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct RobotState<R, A> {
@@ -94,7 +94,7 @@ pub struct RobotState<R, A> {
     pub theta: [R; 7],
     /// Motor velocities.
     pub dtheta: [R; 7],
-    /// The accelerometers, where the version has them.
+    /// The accelerometers, if the version has them.
     pub accelerometers: A,
     /// Active motion generator, in the numbering of states.
     pub motion_generator_mode: u8,
@@ -104,7 +104,7 @@ pub struct RobotState<R, A> {
     pub errors: [u8; 41],
     /// Errors that ended the last motion, one flag each.
     pub reflex_reason: [u8; 41],
-    /// What the robot does.
+    /// The overall mode of the robot.
     pub robot_mode: u8,
     /// Share of the last 100 commands that arrived in time.
     pub control_command_success_rate: R,

@@ -7,11 +7,11 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct Vacuum {
-    /// Vacuum to reach, in units of 10 mbar.
+    /// Target vacuum, in units of 10 mbar.
     pub vacuum: u8,
     /// Production set-up profile, 0 to 3.
     pub profile: u8,
-    /// How long it may take `[ms]`.
+    /// Time limit `[ms]`.
     pub timeout: I64,
 }
 
@@ -19,7 +19,7 @@ pub struct Vacuum {
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct DropOff {
-    /// How long it may take `[ms]`.
+    /// Time limit `[ms]`.
     pub timeout: I64,
 }
 
@@ -29,13 +29,13 @@ pub struct DropOff {
 pub struct VacuumGripperState {
     /// Counter of milliseconds.
     pub message_id: U32,
-    /// Whether the vacuum is inside its range.
+    /// Non-zero if the vacuum is within its range.
     pub in_control_range: u8,
-    /// Whether the object has been dropped off.
+    /// Non-zero if the object has been dropped off.
     pub part_detached: u8,
-    /// Whether the gripper holds an object.
+    /// Non-zero if the gripper holds an object.
     pub part_present: u8,
-    /// Light of the device.
+    /// Status light of the device.
     pub device_status: u8,
     /// Power of the pump `[%]`.
     pub actual_power: I32,

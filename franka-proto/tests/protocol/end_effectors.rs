@@ -89,7 +89,7 @@ fn a_stop_overtakes_the_grasp_that_it_ends() {
     pair.reply(stop, Status::Success);
     pair.reply(grasp, Status::Aborted);
     assert_eq!(pair.client.pending(), 0);
-    // One reply to each: there is no second.
+    // Each request has one reply: a second reply is refused.
     let again = pair.device.reply(grasp, Reply::Done(Status::Success));
     assert_eq!(
         again.unwrap_err(),
@@ -230,7 +230,7 @@ fn another_version_is_told() {
         event,
         Ok(server::Event::Incompatible { version: 2, .. })
     ));
-    // The device is of version 2 now.
+    // The device now has version 2.
     let reply = [0, 0, 0, 0, 0, 0, 14, 0, 0, 0, 1, 0, 2, 0];
     let event = client.on_message(next_message(&reply).unwrap().unwrap());
     let incompatible = IncompatibleVersion {

@@ -4,9 +4,9 @@
 //! |---|---|
 //! | [`any_bytes`] | the fuzz targets on mutated golden messages |
 //! | [`end_effectors`] | sessions and states of the Hand and of the vacuum gripper |
-//! | [`no_std`] | neither the standard library nor an allocator is used |
+//! | [`no_std`] | the crate uses neither the standard library nor an allocator |
 //! | [`pair`] | a client session and a server session, through their bytes |
-//! | [`properties`] | what holds for any bytes and any values |
+//! | [`properties`] | properties that hold for any bytes and any values |
 //! | [`serde_forms`] | the serialised forms |
 //! | [`texts`] | libfranka's texts, byte for byte |
 

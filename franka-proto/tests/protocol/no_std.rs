@@ -1,8 +1,7 @@
-//! The library stays free of the standard library and of an allocator.
+//! The library uses neither the standard library nor an allocator.
 //!
-//! Without `extern crate alloc` or `extern crate std` in a `no_std` crate, the language offers no
-//! name through which either could be used. So a look at the sources is enough, and needs no
-//! target without a standard library.
+//! Without `extern crate alloc` or `extern crate std`, a `no_std` crate has no name for either.
+//! Checking the sources is therefore sufficient, and requires no target without a standard library.
 
 use std::fs;
 use std::path::Path;
@@ -17,7 +16,7 @@ fn no_source_file_asks_for_std_or_alloc() {
     assert!(files > 20, "only {files} files were looked at");
 }
 
-/// Checks every file below `dir` and returns how many there are.
+/// Checks every file below `dir` and returns the number of files.
 fn check(dir: &Path) -> usize {
     let mut files = 0;
     for entry in fs::read_dir(dir).unwrap() {

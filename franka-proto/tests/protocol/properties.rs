@@ -1,4 +1,4 @@
-//! What holds for any bytes and any values.
+//! Properties that hold for any bytes and any values.
 #![allow(non_snake_case)]
 
 use franka_proto::framing::{Header, Message, next_message};
@@ -115,7 +115,7 @@ fn request() -> impl Strategy<Value = Request> {
     ]
 }
 
-/// A datagram of a state: random numbers that are finite, any errors, modes in range.
+/// The datagram of a state: random finite numbers, any errors, and modes in range.
 fn state_bytes(version: Version) -> impl Strategy<Value = Vec<u8>> {
     let size = version.state_size();
     // The modes and flags lie between the numbers and the success rate.
@@ -200,7 +200,7 @@ proptest! {
         }
     }
 
-    /// Ids and command numbers are small, so that the sessions meet known ones often.
+    /// Ids and command numbers are small, so that they often match known ones.
     #[test]
     fn no_messages_make_a_session_panic(
         version in version(),
@@ -229,7 +229,7 @@ proptest! {
             let _ = server.on_message(message);
             for command in Command::ALL {
                 if let Ok(reply) = Reply::decode(version, command, &message) {
-                    // What can be read is of the right kind.
+                    // A decoded reply is of the right kind.
                     prop_assert!(reply.suits(command));
                 }
             }

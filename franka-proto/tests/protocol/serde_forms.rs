@@ -1,4 +1,4 @@
-//! What the feature `serde` writes, and that it is read back as it was.
+//! The output of the feature `serde`, and its round trip.
 #![allow(non_snake_case)]
 
 use std::fmt::Debug;
@@ -74,7 +74,7 @@ fn commands_statuses_and_refusals_come_back() {
     assert_eq!(round_trip(&command)["elbow_c"], json!([0.1, -1.0]));
     let status = Status::Move(MoveStatus::ReflexAborted);
     assert_eq!(round_trip(&status), json!({ "Move": "ReflexAborted" }));
-    // A refusal is never a success, so it is written only.
+    // A refusal is never a success, so it is only serialised.
     let refusal = Refusal::new(Command::Move, status, RobotMode::Reflex).unwrap();
     assert_eq!(serde_json::to_value(refusal).unwrap()["mode"], "Reflex");
     round_trip(&MoveRequest::new(

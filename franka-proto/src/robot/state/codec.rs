@@ -1,4 +1,4 @@
-//! Wire state to [`RobotState`] and back, once for both layouts.
+//! Conversion between the wire state and [`RobotState`], shared by both layouts.
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
@@ -14,13 +14,13 @@ pub(crate) struct StateCodec {
     pub(crate) size: usize,
     pub(super) decode: fn(&[u8]) -> Result<RobotState, DecodeError>,
     pub(super) encode: fn(&RobotState, &mut [u8]) -> Result<usize, EncodeError>,
-    /// The sum of two numbers in the precision of the layout.
+    /// Adds two numbers in the precision of the layout.
     pub(super) add: fn(f64, f64) -> f64,
 }
 
 impl StateCodec {
-    /// The codec of the layout with numbers `R` and accelerometers `A`, in a version whose motion
-    /// generator modes are `G`.
+    /// Creates the codec of the layout with numbers `R` and accelerometers `A`, in a version with
+    /// the motion generator modes `G`.
     pub(crate) const fn of<R: Real, A: AccelerometerBlock, G: GeneratorModes>() -> Self {
         Self {
             size: size_of::<wire::RobotState<R, A>>(),
@@ -35,7 +35,7 @@ impl StateCodec {
 pub(crate) trait AccelerometerBlock:
     Copy + FromBytes + IntoBytes + Immutable + KnownLayout + Unaligned
 {
-    /// True if the layout has them.
+    /// True if the layout has accelerometers.
     const EXISTS: bool;
     /// The upper and the lower sensors; zero without accelerometers.
     fn values(&self) -> [[[f32; 3]; 6]; 2];

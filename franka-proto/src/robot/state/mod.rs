@@ -1,4 +1,4 @@
-//! The robot's state of one millisecond, whatever the version.
+//! The robot's state of one millisecond, independent of the version.
 #![allow(non_snake_case)]
 
 mod codec;
@@ -15,11 +15,11 @@ use crate::robot::{ControllerMode, MotionGeneratorMode, RobotMode};
 use crate::version::Version;
 use crate::wire;
 
-/// Everything that the robot says in one datagram, as `f64`; the field names are the vendor's.
+/// All values of one datagram of the robot, as `f64`; the field names are the vendor's.
 ///
-/// The frames are those of the vendor: O base, F flange, NE nominal end effector, EE end effector,
-/// K stiffness frame. `X_T_Y` is the pose of Y in X as a 4x4 matrix, column-major
-/// (index = 4 * column + row); inertia matrices are 3x3, column-major.
+/// The frames are the vendor's: O base, F flange, NE nominal end effector, EE end effector, K
+/// stiffness frame. `X_T_Y` is the pose of Y in X as a 4x4 matrix, column-major (index = 4 * column
+/// + row). Inertia matrices are 3x3, column-major.
 ///
 /// [`Default`] has identities for poses, [`ControllerMode::Other`], and zero everywhere else.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -83,7 +83,7 @@ pub struct RobotState {
     pub tau_ext_hat_filtered: [f64; 7],
     /// Estimated external wrench in the base frame; force then torque about the origin of the base,
     /// positive when the robot pushes the environment, `[N, N m]`. All zeros near a singularity.
-    /// [`wrench_at_stiffness_frame`](Self::wrench_at_stiffness_frame) has the torque about the
+    /// [`wrench_at_stiffness_frame`](Self::wrench_at_stiffness_frame) returns the torque about the
     /// origin of the stiffness frame.
     pub O_F_ext_hat_K: [f64; 6],
     /// Estimated external wrench on the stiffness frame, in the stiffness frame; force then
@@ -98,9 +98,9 @@ pub struct RobotState {
     /// Last commanded elbow; angle of joint 3 `[rad]` and sign of joint 4. Zeros under joint
     /// setpoints: see [`commanded_elbow`](Self::commanded_elbow).
     pub elbow_c: [f64; 2],
-    /// Velocity of the commanded elbow; of joint 3 `[rad/s]`, then 0.
+    /// Velocity of the commanded elbow: velocity of joint 3 `[rad/s]`, then 0.
     pub delbow_c: [f64; 2],
-    /// Acceleration of the commanded elbow; of joint 3 `[rad/s^2]`, then 0.
+    /// Acceleration of the commanded elbow: acceleration of joint 3 `[rad/s^2]`, then 0.
     pub ddelbow_c: [f64; 2],
     /// Last commanded pose of the end effector in the base frame; column-major, `[m]`. Zeros under
     /// joint setpoints: see [`commanded_pose`](Self::commanded_pose).
@@ -124,22 +124,23 @@ pub struct RobotState {
     pub motion_generator_mode: MotionGeneratorMode,
     /// Active controller.
     pub controller_mode: ControllerMode,
-    /// Errors that hold the robot now (libfranka's `current_errors`).
+    /// Errors that block the robot now (libfranka's `current_errors`).
     pub errors: Errors,
     /// Errors that ended the last motion (libfranka's `last_motion_errors`).
     pub reflex_reason: Errors,
-    /// What the robot as a whole does.
+    /// The overall mode of the robot.
     pub robot_mode: RobotMode,
     /// Share of the last 100 commands that arrived in time, 0 to 1; 0 while no control runs.
     pub control_command_success_rate: f64,
 }
 
 impl RobotState {
-    /// Length of the longest datagram of any version in bytes: a buffer of this size always does.
+    /// Length of the longest datagram of any version in bytes. A buffer of this size is always
+    /// sufficient.
     pub const MAX_SIZE: usize = size_of::<wire::RobotState<wire::F64, ()>>();
 
-    /// Reads a datagram of the robot. Bytes beyond the struct are ignored, as the kernel cuts them
-    /// off for a client that reads into a buffer of the struct's size.
+    /// Decodes a datagram of the robot. Bytes beyond the struct are ignored. The kernel truncates
+    /// them in the same way for a client with a buffer of the struct's size.
     ///
     /// # Errors
     /// [`DecodeError::DatagramSize`] if there are fewer bytes than the version's state has.
@@ -150,23 +151,23 @@ impl RobotState {
 
     /// Writes the datagram for a client into `buffer` and returns its length in bytes.
     ///
-    /// Numbers are rounded to the width of the version. Protocol 5 has no accelerometers: they
-    /// are left out.
+    /// Numbers are rounded to the width of the version. Protocol 5 has no accelerometers, so they
+    /// are omitted.
     ///
     /// # Errors
-    /// `EncodeError::Buffer` if `buffer` is too short ([`RobotState::MAX_SIZE`] always does);
-    /// `EncodeError::Unsupported` if the version lacks the motion generator mode. `buffer` is
-    /// then untouched.
+    /// `EncodeError::Buffer` if `buffer` is too short ([`RobotState::MAX_SIZE`] is always
+    /// sufficient); `EncodeError::Unsupported` if the version lacks the motion generator mode.
+    /// `buffer` is then unchanged.
     pub fn encode(&self, version: Version, buffer: &mut [u8]) -> Result<usize, EncodeError> {
         (version.table().state_codec.encode)(self, buffer)
     }
 
-    /// Pose of the end effector that was commanded last, column-major: the first of `O_T_EE_c` and
+    /// Last commanded pose of the end effector, column-major: the first of `O_T_EE_c` and
     /// `O_T_EE_d` that is a rigid transformation, or else `O_T_EE`.
     ///
     /// Robots leave `O_T_EE_c` at zero while they move by joint setpoints (recorded on a Franka
-    /// Research 3), and zeros are no pose. A matrix with a number that is not finite is returned as
-    /// it is: nothing may continue from a state that is broken.
+    /// Research 3), and a zero matrix is not a pose. A matrix with a number that is not finite is
+    /// returned unchanged: no caller may continue from a broken state.
     #[must_use]
     pub fn commanded_pose(&self) -> &[f64; 16] {
         let poses = [&self.O_T_EE_c, &self.O_T_EE_d];
@@ -177,8 +178,8 @@ impl RobotState {
         found.unwrap_or(&self.O_T_EE)
     }
 
-    /// Elbow that was commanded last: `elbow_c`, or else `elbow_d`, or else `elbow`. Robots leave
-    /// `elbow_c` at zero where they leave `O_T_EE_c` at zero.
+    /// Last commanded elbow: `elbow_c`, or else `elbow_d`, or else `elbow`. Robots leave `elbow_c`
+    /// at zero whenever `O_T_EE_c` is zero.
     #[must_use]
     pub fn commanded_elbow(&self) -> [f64; 2] {
         let elbows = [self.elbow_c, self.elbow_d];
@@ -186,27 +187,28 @@ impl RobotState {
         filled.unwrap_or(self.elbow)
     }
 
-    /// True if the client has to feed a motion generator.
+    /// True if the client must send motion commands.
     #[must_use]
     pub fn generator_running(&self) -> bool {
         self.motion_generator_mode.is_running()
     }
 
-    /// True if the client has to feed a controller.
+    /// True if the client must send torques.
     #[must_use]
     pub fn controller_running(&self) -> bool {
         self.controller_mode.is_running()
     }
 
-    /// True if a motion of the client is on: one of the two above. A motion has ended when this
-    /// turns false, whatever [`RobotState::robot_mode`] says (libfranka 0.21).
+    /// True if a motion of the client runs: [`generator_running`](Self::generator_running) or
+    /// [`controller_running`](Self::controller_running). A motion has ended when this becomes
+    /// false, regardless of [`RobotState::robot_mode`] (libfranka 0.21).
     #[must_use]
     pub fn motion_running(&self) -> bool {
         self.generator_running() || self.controller_running()
     }
 
-    /// The estimated external wrench in the axes of the base, its torque about the origin of the
-    /// stiffness frame; positive when the robot pushes the environment, `[N, N m]`.
+    /// The estimated external wrench in the axes of the base, with the torque about the origin of
+    /// the stiffness frame; positive when the robot pushes the environment, `[N, N m]`.
     ///
     /// [`O_F_ext_hat_K`](Self::O_F_ext_hat_K) has the torque about the origin of the base, where a
     /// force of 10 N at half a metre counts as 5 N m.
@@ -218,11 +220,11 @@ impl RobotState {
         [x, y, z, a, b, c]
     }
 
-    /// End effector and load as one body, equal to the last bit to what libfranka computes from a
-    /// state of this version.
+    /// Returns end effector and load as one body, bit-identical to libfranka's result for a state
+    /// of this version.
     ///
-    /// The masses are added in the precision in which the version sends them, as libfranka does;
-    /// everything else is computed as `f64`.
+    /// The masses are added in the precision of the version's numbers, as in libfranka; everything
+    /// else is computed as `f64`.
     #[must_use]
     pub fn total_load(&self, version: Version) -> TotalLoad {
         let m_total = (version.table().state_codec.add)(self.m_ee, self.m_load);
@@ -230,13 +232,13 @@ impl RobotState {
     }
 }
 
-/// The vector turned by the rotation of a column-major pose.
+/// Rotates a vector by the rotation of a column-major pose.
 fn rotate(pose: &[f64; 16], [x, y, z]: [f64; 3]) -> [f64; 3] {
     core::array::from_fn(|i| pose[i] * x + pose[4 + i] * y + pose[8 + i] * z)
 }
 
-/// True if a column-major matrix is a rigid transformation, up to the rounding of the vendor's
-/// constants: `franka_model::transform` takes what passes here for a pose, too.
+/// True if a column-major matrix is a rigid transformation, within the rounding of the vendor's
+/// constants. `franka_model::transform` also accepts every matrix that passes here.
 fn is_rigid(pose: &[f64; 16]) -> bool {
     let [x, y, z] = [0, 4, 8].map(|i| [pose[i], pose[i + 1], pose[i + 2]]);
     if [pose[3], pose[7], pose[11], pose[15]] != [0.0, 0.0, 0.0, 1.0] {
@@ -262,8 +264,8 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     })
 }
 
-/// How far a product of two axes of a rotation may be from that of a rotation. The vendor's 0.7071
-/// for `sqrt(1/2)` makes 2e-5.
+/// Largest deviation of a product of two axes from the product of exact rotation axes. The vendor's
+/// 0.7071 for `sqrt(1/2)` causes 2e-5.
 const DISTORTION_MAX: f64 = 1e-3;
 
 impl Default for RobotState {
@@ -343,7 +345,7 @@ mod tests {
         let mut mirrored = moved_by(0.1);
         mirrored[10] = -1.0;
         let mut empty = [0.0; 16];
-        empty[15] = 1.0; // filled in, and no pose all the same
+        empty[15] = 1.0; // not empty, and still not a pose
         for none in [sheared, mirrored, empty, [0.0; 16]] {
             let mut state = RobotState {
                 O_T_EE_c: none,
@@ -362,7 +364,7 @@ mod tests {
         };
         assert_eq!(infinite.commanded_pose(), &moved_by(f64::INFINITY));
         let mut rounded = moved_by(0.1);
-        // A turn by thirty degrees, rounded to four digits.
+        // A rotation by thirty degrees, rounded to four digits.
         (rounded[0], rounded[1], rounded[4], rounded[5]) = (0.8660, -0.5, 0.5, 0.8660);
         let state = RobotState {
             O_T_EE_c: rounded,

@@ -6,9 +6,9 @@ use super::RobotState;
 use crate::number_text::General;
 use crate::version::Version;
 
-/// A state as libfranka's `operator<<` prints it: an object of JSON on one line.
+/// A state in the format of libfranka's `operator<<`: a JSON object on one line.
 ///
-/// Numbers have six significant digits. Made by [`RobotState::text`].
+/// Numbers have six significant digits. Created by [`RobotState::text`].
 #[derive(Clone, Copy, Debug)]
 pub struct StateText<'a> {
     state: &'a RobotState,
@@ -16,8 +16,8 @@ pub struct StateText<'a> {
 }
 
 impl RobotState {
-    /// The text that libfranka prints for a state of this version: libfranka 0.9 for protocol 5,
-    /// which has no accelerometers, and 0.21 for protocol 10.
+    /// Returns libfranka's text of a state of this version: libfranka 0.9 for protocol 5, which has
+    /// no accelerometers, and 0.21 for protocol 10.
     #[must_use]
     pub fn text(&self, version: Version) -> StateText<'_> {
         StateText {
@@ -40,7 +40,7 @@ impl fmt::Display for StateText<'_> {
                 )*
             };
         }
-        // In libfranka's order; `total` is what is computed from end effector and load.
+        // The order is libfranka's; `total` is computed from end effector and load.
         write_fields! {
             state O_T_EE, state O_T_EE_d, state F_T_NE, state NE_T_EE, state F_T_EE, state EE_T_K,
             state m_ee, state F_x_Cee, state I_ee, state m_load, state F_x_Cload, state I_load,

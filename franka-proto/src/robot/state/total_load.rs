@@ -17,11 +17,11 @@ pub struct TotalLoad {
 }
 
 impl TotalLoad {
-    /// The sums of libfranka 0.21, `load_calculations.cpp`, in its order of operations: the centre
-    /// of mass is the mean of both, each inertia is moved to it by the parallel axis theorem. A
-    /// body without mass has no inertia.
+    /// Computes the sums of libfranka 0.21, `load_calculations.cpp`, in its order of operations.
+    /// The centre of mass is the weighted mean of both bodies. Each inertia is moved to it by the
+    /// parallel axis theorem. A body without mass has no inertia.
     pub(super) fn of(state: &RobotState, m_total: f64) -> Self {
-        // As `f64`, which `m_total` is not in protocol 10.
+        // The sum as `f64`; in protocol 10, `m_total` has single precision.
         let mass = state.m_ee + state.m_load;
         let F_x_Ctotal = core::array::from_fn(|axis| {
             if mass > 0.0 {
@@ -58,7 +58,8 @@ fn about_flange(mass: f64, centre: &[f64; 3], inertia: &[f64; 9]) -> [f64; 9] {
 }
 
 /// `mass * S(x)^2` with the skew matrix `S`: minus the inertia of a point mass at `x` about the
-/// origin. Column-major; Eigen multiplies the first factor by the mass, which decides the last bit.
+/// origin. Column-major; Eigen multiplies the first factor by the mass, and this order determines
+/// the last bit.
 fn skew_squared(mass: f64, [x, y, z]: &[f64; 3]) -> [f64; 9] {
     let (mx, my, mz) = (mass * x, mass * y, mass * z);
     [
@@ -79,7 +80,7 @@ mod tests {
     use super::*;
     use crate::version::Version;
 
-    /// From vectors of libfranka's own computation.
+    /// The vectors come from libfranka's own computation.
     #[test]
     fn two_bodies_are_one_with_the_sum_of_their_moments() {
         let state = RobotState {
@@ -138,7 +139,7 @@ mod tests {
                 0.020814351226077794,
             ],
         };
-        // The numbers of the vectors are `f64`, as protocol 5 has them.
+        // The numbers of the vectors are `f64`, as in protocol 5.
         assert_eq!(state.total_load(Version::V5), expected);
     }
 
@@ -164,13 +165,13 @@ mod tests {
         }
     }
 
-    /// Masses above 1 kg as a datagram carries them. Sums of two `f32` take more than its 24 bits,
-    /// so the two precisions differ; the expected values were computed elsewhere.
+    /// Masses above 1 kg as encoded in a datagram. Sums of two `f32` require more than 24 bits, so
+    /// the two precisions differ. The expected values were computed independently.
     #[test]
     fn the_masses_of_protocol_10_are_added_in_single_precision() {
         for (m_ee, m_load, single, double) in [
-            // 1 + 2^-23 and 2 + 2^-22: the exact sum ends halfway between two values and is
-            // rounded to the even one, 3 + 2^-21.
+            // 1 + 2^-23 and 2 + 2^-22: the exact sum lies halfway between two values and is rounded
+            // to the even one, 3 + 2^-21.
             (
                 0x3f80_0001,
                 0x4000_0001,
@@ -202,7 +203,7 @@ mod tests {
         }
     }
 
-    /// The mean of the centres divides by the sum as `f64`, the inertia takes the rounded mass.
+    /// The mean of the centres divides by the sum as `f64`; the inertia uses the rounded mass.
     #[test]
     fn only_the_mass_of_protocol_10_is_rounded() {
         let state = RobotState {

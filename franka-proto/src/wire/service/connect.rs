@@ -1,4 +1,4 @@
-//! The bytes of the handshake. Its rules: `client::session`, `server::session`.
+//! The wire format of the handshake. See `client::session` and `server::session` for its rules.
 
 use zerocopy::byteorder::little_endian::U16;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
@@ -17,7 +17,7 @@ pub struct ConnectRequest {
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct ConnectResponse<S> {
-    /// Whether the version suits.
+    /// Result of the version check.
     pub status: S,
     /// Protocol version of the device.
     pub version: U16,

@@ -6,9 +6,9 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct LoadModelLibrary {
-    /// Processor that the library is for.
+    /// Processor of the client.
     pub architecture: u8,
-    /// Operating system that the library is for.
+    /// Operating system of the client.
     pub system: u8,
 }
 

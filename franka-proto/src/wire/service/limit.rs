@@ -9,7 +9,7 @@ use crate::wire::F64;
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct GetCartesianLimit {
-    /// Which wall.
+    /// Number of the wall.
     pub id: I32,
 }
 
@@ -17,13 +17,13 @@ pub struct GetCartesianLimit {
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct CartesianLimit {
-    /// Whether the rest counts.
+    /// Status of the request; the other fields are valid after a success only.
     pub status: u8,
     /// Corner of the cuboid in its frame `[m]`.
     pub object_world_size: [F64; 3],
     /// Pose of the cuboid in the base frame, column-major `[m]`.
     pub object_frame: [F64; 16],
-    /// Whether the wall is active.
+    /// Non-zero if the wall is active.
     pub object_activation: u8,
 }
 

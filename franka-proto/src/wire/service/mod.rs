@@ -1,7 +1,7 @@
 //! Payloads of requests and replies, one request family per file.
 //!
-//! A request without parameters has no struct: it is a header alone. Replies that are a status
-//! alone have none either.
+//! A request without parameters has no struct: it consists of a header. A reply that is only a
+//! status has no struct either.
 
 mod connect;
 mod library;

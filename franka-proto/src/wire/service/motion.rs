@@ -1,29 +1,29 @@
-//! The start of a motion. Its replies and those of `StopMove` are a status alone.
+//! The start of a motion. Its replies and the replies of `StopMove` are only a status.
 
 use zerocopy::byteorder::little_endian::U32;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
 use crate::wire::F64;
 
-/// `Move::Deviation`: how far the robot may be from where it should be.
+/// `Move::Deviation`: largest allowed deviation of the robot from its commanded pose.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct Deviation {
-    /// Of the position `[m]`.
+    /// Deviation of the position `[m]`.
     pub translation: F64,
-    /// Of the orientation `[rad]`.
+    /// Deviation of the orientation `[rad]`.
     pub rotation: F64,
-    /// Of the elbow `[rad]`.
+    /// Deviation of the elbow `[rad]`.
     pub elbow: F64,
 }
 
-/// What protocol 10 appended to a `Move`: the robot plans between sparse joint targets.
+/// The fields that protocol 10 appended to a `Move`: the robot plans between sparse joint targets.
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct AsynchronousMotion {
-    /// Whether the robot plans.
+    /// Non-zero if the robot plans.
     pub use_async_motion_generator: u8,
-    /// Joint velocities that the plan keeps `[rad/s]`; zero without a plan.
+    /// Joint velocities of the plan `[rad/s]`; zero without a plan.
     pub maximum_velocity: [F64; 7],
 }
 
@@ -35,11 +35,11 @@ pub struct MoveRequest<A> {
     pub controller_mode: U32,
     /// Motion generator, in the numbering of requests.
     pub motion_generator_mode: U32,
-    /// Allowed on the way.
+    /// Allowed deviation during the motion.
     pub maximum_path_deviation: Deviation,
-    /// Allowed at the goal.
+    /// Allowed deviation at the goal.
     pub maximum_goal_pose_deviation: Deviation,
-    /// The robot's planning, where the version has it.
+    /// The robot's planning, if the version has it.
     pub asynchronous: A,
 }
 

@@ -1,4 +1,4 @@
-//! Parameters that the robot keeps until they are set again. All replies are a status alone.
+//! Parameters that the robot keeps until they are set again. All replies are only a status.
 #![allow(non_snake_case)]
 
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
@@ -47,9 +47,9 @@ pub struct SetCartesianImpedance {
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct SetGuidingMode {
-    /// Which axes are free: x, y, z, roll, pitch, yaw.
+    /// Non-zero for each free axis: x, y, z, roll, pitch, yaw.
     pub guiding_mode: [u8; 6],
-    /// Whether the elbow is free.
+    /// Non-zero if the elbow is free.
     pub nullspace: u8,
 }
 
@@ -77,15 +77,15 @@ pub struct SetLoad {
 #[derive(Clone, Copy, Debug, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
 #[repr(C)]
 pub struct SetFilters {
-    /// Of commanded joint positions `[Hz]`.
+    /// Cutoff for commanded joint positions `[Hz]`.
     pub joint_position_filter_frequency: F64,
-    /// Of commanded joint velocities `[Hz]`.
+    /// Cutoff for commanded joint velocities `[Hz]`.
     pub joint_velocity_filter_frequency: F64,
-    /// Of commanded poses `[Hz]`.
+    /// Cutoff for commanded poses `[Hz]`.
     pub cartesian_position_filter_frequency: F64,
-    /// Of commanded twists `[Hz]`.
+    /// Cutoff for commanded twists `[Hz]`.
     pub cartesian_velocity_filter_frequency: F64,
-    /// Of the controller `[Hz]`.
+    /// Cutoff for the controller `[Hz]`.
     pub controller_filter_frequency: F64,
 }
 

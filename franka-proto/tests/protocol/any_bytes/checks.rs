@@ -1,8 +1,8 @@
-//! What holds for any bytes, one function per fuzz target.
+//! Properties that hold for any bytes, one function per fuzz target.
 //!
-//! The targets in `fuzz/` and the test beside this file call the same functions. A finding is a
-//! panic: one of the crate's, or an assertion in here.
-// Public in the library of `fuzz/`, which has these sources too.
+//! The targets in `fuzz/` and the test in `mod.rs` call the same functions. A finding is a panic of
+//! the crate, or a failed assertion in this file.
+// Public in the library of `fuzz/`, which also compiles this file.
 #![allow(unreachable_pub)]
 
 use franka_proto::framing::{
@@ -14,7 +14,7 @@ use franka_proto::{
     SetterStatus, StopStatus, System, Version, client, gripper, server, vacuum,
 };
 
-/// A target: its name and what it does with bytes.
+/// A fuzz target: its name and its function.
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets. Names are those of the binaries in `fuzz/fuzz_targets/`.
@@ -41,7 +41,7 @@ pub fn stream(bytes: &[u8]) {
         while let Ok(Some(message)) = cut(rest) {
             assert_eq!(message.size(), header + message.payload.len());
             assert_eq!(&rest[header..message.size()], message.payload);
-            // What is missing one byte is not there yet.
+            // Without its last byte, the message is incomplete.
             assert_eq!(cut(&rest[..message.size() - 1]), Ok(None));
             rest = &rest[message.size()..];
         }
@@ -55,7 +55,7 @@ pub fn robot_state(bytes: &[u8]) {
         assert_eq!(state.is_ok(), bytes.len() >= version.state_size());
         let Ok(state) = state else { continue };
         let _ = state.total_load(version);
-        // Bits may be lost on the way to meaning (a flag of 7 is true), and then no more.
+        // Decoding may lose bits (a flag of 7 becomes true), but a second pass loses no more.
         let write = |state: &RobotState| {
             let mut bytes = [0; RobotState::MAX_SIZE];
             state.encode(version, &mut bytes).expect("it was read");
@@ -84,7 +84,7 @@ pub fn robot_command(bytes: &[u8]) {
     }
 }
 
-/// Gives a client of the robot a stream of replies. The first byte chooses the version.
+/// Feeds a stream of replies to a client of the robot. The first byte chooses the version.
 pub fn client_replies(bytes: &[u8]) {
     let Some((&version, stream)) = bytes.split_first() else {
         return;
@@ -93,7 +93,7 @@ pub fn client_replies(bytes: &[u8]) {
     client(version, &requests(version), next_message, stream);
 }
 
-/// Gives a robot a stream of requests. The first byte chooses the version.
+/// Feeds a stream of requests to a robot. The first byte chooses the version.
 pub fn server_requests(bytes: &[u8]) {
     let Some((&version, stream)) = bytes.split_first() else {
         return;
@@ -108,7 +108,7 @@ pub fn server_requests(bytes: &[u8]) {
     device(version, &replies, next_request, stream);
 }
 
-/// Gives the bytes to a client of a Hand, to a Hand, and to the reader of its states.
+/// Feeds the bytes to a client of a Hand, to a Hand, and to the decoder of its states.
 pub fn gripper(bytes: &[u8]) {
     let state = gripper::State::decode(bytes);
     assert_eq!(state.is_ok(), bytes.len() >= gripper::State::SIZE);
@@ -127,7 +127,8 @@ pub fn gripper(bytes: &[u8]) {
     device(version, &DONE, gripper::next_message, bytes);
 }
 
-/// Gives the bytes to a client of a vacuum gripper, to one, and to the reader of its states.
+/// Feeds the bytes to a client of a vacuum gripper, to a vacuum gripper, and to the decoder of its
+/// states.
 pub fn vacuum(bytes: &[u8]) {
     let state = vacuum::State::decode(bytes);
     assert_eq!(state.is_ok(), bytes.len() >= vacuum::State::SIZE);
@@ -145,7 +146,7 @@ pub fn vacuum(bytes: &[u8]) {
 
 const DONE: [gripper::Reply; 1] = [gripper::Reply::Done(gripper::Status::Unsuccessful)];
 
-/// One request of every kind that the version has.
+/// Returns one request of every kind that the version has.
 fn requests(version: Version) -> Vec<Request> {
     let (torque, force) = ([1.0; 7], [1.0; 6]);
     let thresholds = CollisionBehavior::uniform(torque, torque, force, force);
@@ -169,7 +170,7 @@ fn requests(version: Version) -> Vec<Request> {
     requests
 }
 
-/// Client and device with the handshake done.
+/// Returns client and device after the handshake.
 fn connected<P: Protocol>(version: P, cut: Cut) -> (client::Session<P>, server::Session<P>) {
     let mut client = client::Session::new(version);
     let mut device = server::Session::new(version);
@@ -187,7 +188,7 @@ fn whole(cut: Cut, outgoing: &Outgoing) -> Message<'_> {
     message.expect("sent whole")
 }
 
-/// Feeds a client that waits for its handshake, and one that waits for answers to `requests`.
+/// Feeds a client that waits for its handshake, and a client that waits for answers to `requests`.
 fn client<P: Protocol>(version: P, requests: &[P::Request], cut: Cut, stream: &[u8]) {
     let mut connecting = client::Session::new(version);
     connecting.connect(1);
@@ -209,8 +210,8 @@ fn client<P: Protocol>(version: P, requests: &[P::Request], cut: Cut, stream: &[
     }
 }
 
-/// Feeds a device that waits for a handshake, and one that has had it. Every request is answered
-/// with each of `replies`, whether they suit or not.
+/// Feeds a device before its handshake, and a device after it. Every request is answered with each
+/// of `replies`, matching or not.
 fn device<P: Protocol>(version: P, replies: &[P::Reply<'_>], cut: Cut, stream: &[u8]) {
     let (_, open) = connected(version, cut);
     for mut session in [server::Session::new(version), open] {
@@ -235,8 +236,8 @@ fn device<P: Protocol>(version: P, replies: &[P::Reply<'_>], cut: Cut, stream: &
     }
 }
 
-/// A request that was read can be written, and reads as the same bytes again. Values cannot be
-/// compared: some are NaN.
+/// Checks that a decoded request can be encoded, and decodes to the same bytes again. Values cannot
+/// be compared: some are NaN.
 fn comes_back<P: Protocol>(version: P, request: &P::Request, id: CommandId, cut: Cut) {
     let once = version.encode_request(request, id).expect("it was read");
     let again = version.decode_request(&whole(cut, &once));

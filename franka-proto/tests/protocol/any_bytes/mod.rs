@@ -1,7 +1,8 @@
-//! The fuzz targets on mutated golden messages: the same every time, in a second or two.
+//! Runs the fuzz targets on mutated golden messages: the same inputs every time, in a second or
+//! two.
 //!
-//! `fuzz/` runs the same targets under libFuzzer, which finds its way to new code; this test needs
-//! nothing but `cargo test`.
+//! `fuzz/` runs the same targets under libFuzzer, which searches for new code paths; this test
+//! requires only `cargo test`.
 
 mod checks;
 mod seeds;
@@ -51,7 +52,7 @@ fn seeds() -> Vec<seeds::Seed> {
     seeds::read(&root.join("../tests/vectors/wire_golden.json"))
 }
 
-/// One error: a bit, a byte, a number in a header, a cut, an insertion, a splice.
+/// Applies one mutation: a bit, a byte, a number in a header, a cut, an insertion, or a splice.
 fn mutate(random: &mut SmallRng, bytes: &mut Vec<u8>, other: &[u8]) {
     let value = random.random();
     if bytes.is_empty() {
@@ -61,7 +62,7 @@ fn mutate(random: &mut SmallRng, bytes: &mut Vec<u8>, other: &[u8]) {
     match random.random_range(0..7) {
         0 => bytes[at] ^= 1 << random.random_range(0..8),
         1 => bytes[at] = value,
-        // Command, id and size are in the first bytes: small numbers there get far.
+        // Command, id and size are in the first bytes: small numbers there reach more code.
         2 => {
             let at = random.random_range(0..bytes.len().min(14));
             bytes[at] = value % 16;

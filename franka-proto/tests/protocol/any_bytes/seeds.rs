@@ -1,23 +1,23 @@
 //! The golden messages as inputs of the targets.
-// Public in the library of `fuzz/`, which has these sources too.
+// Public in the library of `fuzz/`, which also compiles this file.
 #![allow(unreachable_pub)]
 
 use std::path::Path;
 
 use serde_json::Value;
 
-/// An input: the target that it is for, a name, the bytes.
+/// An input: its target, its name and its bytes.
 pub struct Seed {
     /// Name of the target.
     pub target: &'static str,
     /// Name of the input, unique in its target.
     pub name: String,
-    /// The bytes that the target gets.
+    /// The bytes for the target.
     pub bytes: Vec<u8>,
 }
 
-/// Reads `wire_golden.json`: every message on its own for its target, and all of one side as one
-/// stream.
+/// Reads `wire_golden.json`: every message as an input of its target, and all messages of one side
+/// as one stream.
 pub fn read(golden: &Path) -> Vec<Seed> {
     let text = std::fs::read(golden).expect("the golden messages are there");
     let root: Value = serde_json::from_slice(&text).expect("they are JSON");

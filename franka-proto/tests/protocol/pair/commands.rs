@@ -1,4 +1,4 @@
-//! The other commands, and what a version lacks of them.
+//! The other commands, and the commands that a version does not have.
 
 use franka_proto::framing::next_message;
 use franka_proto::{
@@ -23,7 +23,7 @@ fn setters_and_recovery_work_in_every_version() {
                 nullspace: true,
             },
         ];
-        // All are open at once, and the answers come in reverse.
+        // All requests are open at once, and the answers arrive in reverse order.
         let ids: Vec<_> = setters.iter().map(|setter| pair.request(setter)).collect();
         for id in ids.into_iter().rev() {
             pair.reply(id, Reply::Setter(SetterStatus::InvalidArgumentRejected));
@@ -59,7 +59,7 @@ fn what_a_version_lacks_is_refused_before_a_byte_is_made() {
         );
     }
     assert_eq!(pair.client.pending(), 0);
-    // No id is lost.
+    // The refused request used no id.
     assert_eq!(pair.request(&Request::StopMove), CommandId(1));
 
     let mut pair = Pair::connected(Version::V10);

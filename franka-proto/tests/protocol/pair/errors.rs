@@ -1,4 +1,4 @@
-//! What either side makes of the other's errors.
+//! The reaction of either side to errors of the other.
 
 use franka_proto::{
     Command, CommandId, DecodeError, RecoveryStatus, Reply, ReplyError, Request, RequestError,
@@ -85,7 +85,7 @@ fn pending_requests_are_bounded_on_both_sides() {
     let limit = <server::Session>::PENDING_LIMIT;
     let error = pair.deliver(&one_more).unwrap_err();
     assert_eq!(error, Violation::TooManyPending { limit });
-    // An answer makes room on both sides.
+    // An answer frees an entry on both sides.
     pair.reply(CommandId(1), Reply::Recovery(RecoveryStatus::Success));
     pair.request(&Request::StopMove);
 }

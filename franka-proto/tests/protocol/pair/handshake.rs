@@ -1,4 +1,4 @@
-//! The handshake: versions that suit, and versions that do not.
+//! The handshake: compatible and incompatible versions.
 
 use franka_proto::framing::next_message;
 use franka_proto::{

@@ -1,4 +1,4 @@
-//! A client session and a server session in one thread: every message goes through its bytes.
+//! A client session and a server session in one thread: every message is encoded and decoded.
 
 mod commands;
 mod errors;
@@ -18,7 +18,7 @@ struct Pair {
 }
 
 impl Pair {
-    /// Both sides of the same version, with the handshake done.
+    /// Returns both sides with the same version, after the handshake.
     fn connected(version: Version) -> Self {
         let mut pair = Self::new(version, version);
         let hello = pair.client.connect(4711);
@@ -49,19 +49,19 @@ impl Pair {
         self.deliver_bytes(outgoing.as_bytes())
     }
 
-    /// Gives the robot a whole message.
+    /// Delivers a whole message to the robot.
     fn deliver_bytes(&mut self, bytes: &[u8]) -> Result<server::Event, Violation> {
         let received = next_message_within(bytes, MAX_REQUEST_SIZE);
         self.server.on_message(received.unwrap().unwrap())
     }
 
-    /// Gives the client a whole message.
+    /// Delivers a whole message to the client.
     fn receive<'a>(&mut self, bytes: &'a [u8]) -> Result<client::Event<'a>, Violation> {
         self.client
             .on_message(next_message(bytes).unwrap().unwrap())
     }
 
-    /// Sends a request and checks that the robot reads the same.
+    /// Sends a request and checks that the robot decodes the same.
     fn request(&mut self, request: &Request) -> CommandId {
         let outgoing = self.client.request(request).unwrap();
         let id = outgoing.id();
@@ -71,7 +71,7 @@ impl Pair {
         id
     }
 
-    /// Answers a request and checks that the client reads the same.
+    /// Answers a request and checks that the client decodes the same.
     fn reply(&mut self, id: CommandId, reply: Reply<'_>) {
         let outgoing = self.server.reply(id, reply).unwrap();
         match self.client.on_message(message(&outgoing)).unwrap() {
@@ -98,7 +98,7 @@ fn joint_motion() -> Request {
     ))
 }
 
-/// A reply of the robot as bytes, without a session that would refuse to make it.
+/// Returns a robot's reply as bytes, without a session that would refuse to create it.
 fn raw_reply(id: u32, payload: &[u8]) -> Vec<u8> {
     let size = 12 + payload.len() as u32;
     let mut bytes: Vec<u8> = [1, id, size].iter().flat_map(|n| n.to_le_bytes()).collect();

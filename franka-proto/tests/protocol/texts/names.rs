@@ -12,7 +12,7 @@ fn modes_by_byte() {
         "Reflex",
         "User stopped",
         "Automatic error recovery",
-        // Without a meaning.
+        // An undefined byte.
         "Other",
     ];
     for (byte, name) in (0..).zip(names) {
@@ -29,7 +29,7 @@ fn errors_by_index() {
     assert_eq!(Errors::NONE.to_string(), "[]");
 }
 
-/// In the order of the states' flags, which is the same in both versions.
+/// The order is that of the state's flags, the same in both versions.
 const NAMES: [&str; 41] = [
     "joint_position_limits_violation",
     "cartesian_position_limits_violation",

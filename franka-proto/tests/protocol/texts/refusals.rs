@@ -1,13 +1,12 @@
-//! What the status byte of a reply means to the user: every byte of every command of both versions.
+//! The text for the status byte of a reply: every byte of every command of both versions.
 
 use franka_proto::framing::{Header, Message};
 use franka_proto::{Command, MoveStatus, Refusal, Reply, RobotMode, Status, Version};
 
-/// The texts behind `libfranka: `, by status byte; empty where there is nothing to say. A byte more
-/// has no meaning.
+/// The texts after `libfranka: `, by status byte; empty for a success. The next byte is undefined.
 type Texts = &'static [&'static str];
 
-/// A reply that is long enough for every command.
+/// Returns a reply that is long enough for every command.
 fn reply(version: Version, command: Command, status: u8) -> Result<Option<String>, String> {
     let payload = [&[status][..], &[0; 200]].concat();
     let header = Header {
@@ -24,7 +23,7 @@ fn reply(version: Version, command: Command, status: u8) -> Result<Option<String
     Ok(refusal.map(|refusal| refusal.to_string()))
 }
 
-/// Checks the texts of `command`, and the one of the byte behind the last.
+/// Checks the texts of `command`, and the text of the byte after the last.
 fn check(version: Version, command: Command, texts: Texts, unknown: &str) {
     for (status, text) in (0..).zip(texts) {
         let expected = (!text.is_empty()).then(|| format!("libfranka: {text}"));
@@ -84,7 +83,7 @@ fn of_the_setters() {
 fn of_the_models() {
     let unknown = "Unexpected response while handling Get Robot Model command!";
     check(Version::V10, Command::GetRobotModel, MODEL, unknown);
-    // Every status but success is this one error, also a byte without a meaning.
+    // Every status except success gives this error, including an undefined byte.
     let error = LIBRARY[1];
     check(Version::V5, Command::LoadModelLibrary, LIBRARY, error);
 }
@@ -138,7 +137,7 @@ const MOVE_V5: Texts = &[
     "Move command aborted!",
 ];
 
-/// Aborted is as good as not possible, and a safety function speaks of a `Move`.
+/// Aborted has the same text as not possible, and the text of a safety function names `Move`.
 const STOP_V10: Texts = &[
     "",
     "Stop Move command rejected: command not possible in the current mode (\"Guiding\")!",
@@ -195,7 +194,7 @@ const SETTERS: [(Command, &str); 9] = [
     (Command::GetCartesianLimit, "Get Cartesian Limit"),
 ];
 
-/// Behind the command's name; the last with a blank at its end.
+/// The texts after the command's name; the last ends in a space.
 const SETTER: [&str; 4] = [
     "",
     " command rejected: command not possible in the current mode (\"Guiding\")!",

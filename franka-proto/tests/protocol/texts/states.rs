@@ -4,7 +4,7 @@
 use franka_proto::{RobotError, RobotMode, RobotState, Version, gripper, vacuum};
 use serde_json::{Value, json};
 
-/// The keys of an object's text, in the order in which they stand in it.
+/// Returns the keys of an object's text, in the order of the text.
 fn keys(text: &str, value: &Value) -> Vec<String> {
     let mut keys: Vec<String> = value.as_object().unwrap().keys().cloned().collect();
     keys.sort_by_key(|key| text.find(&format!("\"{key}\": ")).unwrap());
