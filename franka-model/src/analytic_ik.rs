@@ -1,7 +1,7 @@
-//! Every joint position for a pose of the flange and one number that picks the self-motion.
+//! All joint positions for a pose of the flange and one redundancy parameter.
 //!
-//! The arm has a joint more than a pose has coordinates. With the right number given beside the
-//! pose ([`Redundancy`]) finitely many postures remain, and all of them are found:
+//! The arm has one joint more than a pose has coordinates. With one additional number
+//! ([`Redundancy`]), finitely many postures remain. All of them are found:
 //!
 //! ```text
 //! joint 7 ──────────────┐
@@ -10,13 +10,13 @@
 //! ```
 //!
 //! With joint 7 given, the flange's pose fixes the wrist W, where axes 5 and 6 meet. Shoulder S,
-//! elbow E and wrist make a triangle, whose sides give joint 4; the direction of the forearm in the
-//! hand's axes gives joints 6 and 5; what is left for joints 1, 2 and 3 is a rotation. Every step
-//! is an equivalence with two answers at most, so none is lost. Fixing joint 7 is the idea of He
-//! and Liu (2021), the enumeration and the other two parameters are those of López-Custodio, Gong
-//! and Figueredo (GeoFIK, 2025).
+//! elbow E and wrist form a triangle, whose sides determine joint 4. The direction of the forearm
+//! in the hand's axes determines joints 6 and 5. The remaining rotation determines joints 1, 2 and
+//! 3. Every step is an equivalence with at most two answers, so no solution is lost. Fixing joint 7
+//! is the idea of He and Liu (2021). The enumeration and the other two parameters come from
+//! López-Custodio, Gong and Figueredo (GeoFIK, 2025).
 //!
-//! | given | how | at most |
+//! | given | method | solutions, at most |
 //! |---|---|---|
 //! | [`Joint7`](Redundancy::Joint7) | closed form | 8 |
 //! | [`Joint4`](Redundancy::Joint4) | closed form: the distance of W from S gives two angles of joint 7 | 8 |
@@ -24,36 +24,37 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`solutions`] | the answers: branch, distance to limits and singularities, the nearest |
-//! | [`reach`] | whether a pose or a point is within reach, and how far from the boundary |
+//! | [`solutions`] | the solutions: branch, distance to limits and singularities, the nearest |
+//! | [`reach`] | reachability of a pose or a point, and its distance from the boundary |
 //!
 //! The driver's own cycle does not call this module: it follows poses with
 //! [`differential_ik`](crate::differential_ik) and starts from
-//! [`inverse_kinematics`](crate::inverse_kinematics). It is for programs that choose a posture, or
-//! refuse a target, before anything moves: planners, paths through waypoints, tools.
+//! [`inverse_kinematics`](crate::inverse_kinematics). The module is for programs that choose a
+//! posture or refuse a target before a motion: planners, paths through waypoints, tools.
 //!
 //! # Singularities
 //!
-//! Seen from a solver, a singularity is where solutions meet. With joint 7 locked they are where
-//! the determinant `L1 L2 sin(q4 − flip) · sin(q2) · f(q4) cos(q5)` of the other six joints
-//! vanishes, and each is answered in its own way:
+//! For a solver, a singularity is a posture where solutions meet. With joint 7 locked, the
+//! determinant `L1 L2 sin(q4 − flip) · sin(q2) · f(q4) cos(q5)` of the other six joints vanishes
+//! there. The solver handles each singularity in its own way:
 //!
 //! - **Stretched elbow** (joint 4 at its [flip angle](Lengths::flip_angle)) and **wrist** (joint 5
-//!   a quarter turn off): two solutions approach each other, like the roots of `x² = ε`, and meet
-//!   in one. It is listed twice there, and a pose beyond by less than 1e-12 in the cosine counts
-//!   as on it. Both solutions are continuous up to that place; beyond there is none.
-//! - **Shoulder** (joint 2 at zero): axes 1 and 3 coincide, and the pose fixes the sum of their
-//!   angles only. There each takes half, [`Solution::slide`] tells how far joint 1 may turn while
-//!   joint 3 turns back, and [`Solutions::nearest`] slides to the posture nearest to the given one,
-//!   which is therefore continued through the singularity: joint 2 changes sign, joints 1 and 3 do
-//!   not move. Every answer meets its pose also in the neighbourhood, but a path that passes
-//!   *beside* the singularity at a distance has to turn joint 1 by up to half a turn there, as
-//!   close as it passes. This is the arm's nature, not the solver's;
-//!   [`differential_ik`](crate::differential_ik) goes around it with bounded velocities.
-//! - Joint 4 given: the two angles of joint 7 meet where they pass each other. If the shoulder is
-//!   on axis 7 the angle of joint 7 is free, and zero stands for all.
-//! - Swivel given: it is undefined where the wrist is straight above or below the shoulder, and
-//!   no solution is sought within a nanometre of that.
+//!   a quarter turn off): two solutions approach each other, like the roots of `x² = ε`, and
+//!   coincide. The common solution is listed twice. A pose outside by less than 1e-12 in the cosine
+//!   counts as on the boundary. Both solutions are continuous up to the boundary; beyond it no
+//!   solution exists.
+//! - **Shoulder** (joint 2 at zero): axes 1 and 3 coincide, and the pose fixes only the sum of
+//!   their angles. Each joint then takes half. [`Solution::slide`] gives the range in which joint 1
+//!   may turn while joint 3 turns back. [`Solutions::nearest`] slides to the posture nearest to the
+//!   given one, so the posture continues through the singularity: joint 2 changes sign, joints 1
+//!   and 3 do not move. Solutions near the singularity also meet their pose. A path that passes
+//!   *beside* the singularity must turn joint 1 by up to half a turn, within a length that shrinks
+//!   with the distance. This is a property of the arm, not of the solver;
+//!   [`differential_ik`](crate::differential_ik) passes it with bounded velocities.
+//! - Joint 4 given: the two angles of joint 7 coincide where they pass each other. If the shoulder
+//!   is on axis 7, the angle of joint 7 is free, and zero represents all angles.
+//! - Swivel given: the angle is undefined if the wrist is straight above or below the shoulder. No
+//!   solution is sought within a nanometre of that line.
 
 use core::f64::consts::PI;
 
@@ -76,15 +77,15 @@ mod swivel;
 pub use nearest::nearest;
 pub use solutions::{Branch, Singularity, Solution, Solutions};
 
-/// What picks among the self-motions of a pose.
+/// The parameter that selects one self-motion of a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Redundancy {
     /// The angle of joint 7, `[rad]`.
     Joint7(f64),
     /// The angle of joint 4, `[rad]`: the distance between shoulder and wrist.
     Joint4(f64),
-    /// The [swivel angle](crate::elbow::swivel), `[rad]`: where the elbow is on its circle about
-    /// the line from shoulder to wrist, zero when it is on top.
+    /// The [swivel angle](crate::elbow::swivel), `[rad]`: the position of the elbow on its circle
+    /// about the line from shoulder to wrist. It is zero with the elbow on top.
     Swivel(f64),
 }
 
@@ -95,11 +96,11 @@ impl Redundancy {
     }
 }
 
-/// The solutions within the joint limits that bring the end effector to `target`. There may be
-/// none.
+/// Returns the solutions within the joint limits that bring the end effector to `target`. The list
+/// may be empty.
 ///
-/// An end-effector frame that is not quite rigid counts as its nearest rigid one. What it costs is
-/// in the benchmarks (`model.ik_all_ns`, `model.ik_joint_4_ns`, `model.ik_swivel_ns`).
+/// A slightly non-rigid end-effector frame is replaced by the nearest rigid one. The benchmarks
+/// measure the cost (`model.ik_all_ns`, `model.ik_joint_4_ns`, `model.ik_swivel_ns`).
 ///
 /// # Errors
 /// [`IkError::NotFinite`] and [`IkError::EndEffectorNotRigid`].
@@ -119,16 +120,16 @@ pub fn solve(
     Ok(found.within(lower, upper))
 }
 
-/// All solutions for a pose of the flange in the base frame, whatever the limits.
+/// Returns all solutions for a pose of the flange in the base frame, regardless of the limits.
 ///
-/// Angles are in `(−π, π]`, given ones as given. The same for both kinds of robot with the same
-/// lengths. Empty if a number is non-finite.
+/// Angles are in `(−π, π]`; given angles are returned unchanged. The result is the same for both
+/// kinds of robot with the same lengths. It is empty if a number is non-finite.
 pub fn all(lengths: &Lengths, flange: &Isometry3<f64>, given: Redundancy) -> Solutions {
     let flip = lengths.flip_angle();
     find(lengths, flange, given, [flip - PI, flip + PI])
 }
 
-/// Solutions of which those with joint 4 outside `q4_range` may be left out.
+/// Returns the solutions; solutions with joint 4 outside `q4_range` may be omitted.
 fn find(
     lengths: &Lengths,
     flange: &Isometry3<f64>,
@@ -142,7 +143,7 @@ fn find(
     }
 }
 
-/// Pose of the flange that brings the end effector to `target`.
+/// Returns the pose of the flange that brings the end effector to `target`.
 fn flange_of(target: &Isometry3<f64>, ee: &EndEffector) -> Result<Isometry3<f64>, IkError> {
     let tool = transform::isometry(&ee.f_t_ee).ok_or(IkError::EndEffectorNotRigid)?;
     let flange = target * tool.inverse();
@@ -153,7 +154,7 @@ fn flange_of(target: &Isometry3<f64>, ee: &EndEffector) -> Result<Isometry3<f64>
     finite.then_some(flange).ok_or(IkError::NotFinite)
 }
 
-/// All postures of a sweep of joint 7 through its range, within the limits.
+/// Returns all postures of a sweep of joint 7 through its range, within the limits.
 fn sweep(model: &Model, flange: &Isometry3<f64>, steps: u32) -> impl Iterator<Item = Solution> {
     let limits = model.joint_limits();
     let (lower, upper) = (&limits.lower, &limits.upper);
@@ -167,7 +168,7 @@ fn sweep(model: &Model, flange: &Isometry3<f64>, steps: u32) -> impl Iterator<It
     })
 }
 
-/// Angle moved by whole turns into `(−π, π]`.
+/// Returns the angle moved by whole turns into `(−π, π]`.
 fn wrapped(angle: f64) -> f64 {
     let (sin, cos) = crate::scalar::sin_cos(angle);
     crate::scalar::atan2(sin, cos)

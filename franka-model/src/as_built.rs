@@ -1,4 +1,4 @@
-//! An arm as it was built: not exactly as its model says.
+//! An arm as built, with deviations from its model.
 
 use nalgebra::{Isometry3, Matrix4, Vector3};
 
@@ -11,53 +11,54 @@ use crate::load::Load;
 use crate::model::Model;
 use crate::{Jacobian, JointVector, MassMatrix};
 
-/// A [`Model`] whose links and joint axes may be off: the truth behind the model that a robot's
-/// controllers use. For simulation; control uses [`Model`].
+/// A [`Model`] whose links and joint axes may deviate: the true arm behind the model of a robot's
+/// controllers. For simulation; control uses [`Model`].
 ///
-/// Units, frames and loads are those of [`Model`].
+/// Units, frames and loads are the same as in [`Model`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct AsBuilt {
     model: Model,
 }
 
 impl AsBuilt {
-    /// An arm that is exactly as `model` says.
+    /// Returns an arm that matches `model` exactly.
     pub fn exactly(model: &Model) -> Self {
         Self {
             model: model.clone(),
         }
     }
 
-    /// With these bodies instead of links 1 to 7, each in the axes of its own link.
+    /// Replaces links 1 to 7 with these bodies, each in the axes of its own link.
     #[must_use]
     pub fn with_links(mut self, links: [RigidBody; 7]) -> Self {
         self.model.links = links;
         self
     }
 
-    /// As [`Model::with_deviations`].
+    /// Like [`Model::with_deviations`].
     #[must_use]
     pub fn with_deviations(mut self, deviations: &[Isometry3<f64>; 7]) -> Self {
         self.model = self.model.with_deviations(deviations);
         self
     }
 
-    /// Links 1 to 7 without a load, each in the axes of its own link.
+    /// Returns links 1 to 7 without a load, each in the axes of its own link.
     pub fn links(&self) -> &[RigidBody; 7] {
         self.model.links()
     }
 
-    /// Pose of each joint's frame, with the joint at zero, in the frame of the link before.
+    /// Returns the pose of each joint's frame, with the joint at zero, in the frame of the previous
+    /// link.
     pub fn joint_origins(&self) -> [Isometry3<f64>; 7] {
         self.model.joint_origins()
     }
 
-    /// Pose of `frame` in the base frame.
+    /// Returns the pose of `frame` in the base frame.
     pub fn pose(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Matrix4<f64> {
         Placement::of(&self.chain(q), frame, ee).pose()
     }
 
-    /// As [`Model::pose_and_jacobian`].
+    /// Like [`Model::pose_and_jacobian`].
     pub fn pose_and_jacobian(
         &self,
         frame: Frame,
@@ -70,12 +71,12 @@ impl AsBuilt {
         (placement.pose(), jacobian)
     }
 
-    /// As [`Model::mass`].
+    /// Like [`Model::mass`].
     pub fn mass(&self, q: &JointVector, load: &Load) -> MassMatrix {
         dynamics::mass(&self.chain(q), &self.model.links_with(load))
     }
 
-    /// As [`Model::gravity`].
+    /// Like [`Model::gravity`].
     pub fn gravity(
         &self,
         q: &JointVector,
@@ -85,7 +86,7 @@ impl AsBuilt {
         dynamics::gravity(&self.chain(q), &self.model.links_with(load), gravity_earth)
     }
 
-    /// As [`Model::forward_dynamics`], with an armature that may couple the joints: symmetric.
+    /// Like [`Model::forward_dynamics`], with a symmetric armature that may couple the joints.
     #[allow(clippy::too_many_arguments)] // the terms of the equation of motion
     pub fn forward_dynamics(
         &self,

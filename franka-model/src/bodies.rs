@@ -5,9 +5,9 @@ use nalgebra::Vector3;
 use crate::chain::Chain;
 use crate::inertia::{RigidBody, Symmetric3, cross};
 
-/// Bodies 1 to 7 in base axes, centres of mass from the shoulder.
+/// Returns bodies 1 to 7 in base axes, with centres of mass relative to the shoulder.
 ///
-/// `links` are in link axes, the load already joined to the last.
+/// `links` are in link axes; the last includes the load.
 #[inline(always)]
 pub(crate) fn placed(chain: &Chain, links: &[RigidBody; 7]) -> [RigidBody; 7] {
     core::array::from_fn(|i| RigidBody {
@@ -17,7 +17,7 @@ pub(crate) fn placed(chain: &Chain, links: &[RigidBody; 7]) -> [RigidBody; 7] {
     })
 }
 
-/// Centre of mass of body `i` in base axes, from the shoulder.
+/// Returns the centre of mass of body `i` in base axes, relative to the shoulder.
 #[inline(always)]
 pub(crate) fn com(chain: &Chain, links: &[RigidBody; 7], i: usize) -> Vector3<f64> {
     let (r, c) = (&chain.rotation[i], &links[i].com);
@@ -29,7 +29,7 @@ pub(crate) fn com(chain: &Chain, links: &[RigidBody; 7], i: usize) -> Vector3<f6
         )
 }
 
-/// Bodies frozen together, described about the shoulder.
+/// Several bodies as one rigid body, described about the shoulder.
 pub(crate) struct Composite {
     pub(crate) mass: f64,
     /// Mass times centre of mass.
@@ -52,8 +52,8 @@ impl Composite {
         self.inertia += body.inertia + Symmetric3::of_point(body.mass, &body.com);
     }
 
-    /// Linear momentum, and angular momentum about the shoulder, when the composite turns about an
-    /// axis at unit rate.
+    /// Returns linear momentum, and angular momentum about the shoulder, of the composite turning
+    /// about an axis at unit rate.
     #[inline(always)]
     pub(crate) fn momentum(
         &self,

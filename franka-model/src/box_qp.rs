@@ -4,20 +4,22 @@
 //! minimise  1/2 |A x − t|² + 1/2 d |x − x0|²   subject to  lower <= x <= upper
 //! ```
 //!
-//! The minimum is found by guessing which bounds bind, and mending the guess:
+//! The search guesses the set of active bounds and corrects the guess:
 //!
-//! 1. hold the active variables on their bounds, minimise over the others;
-//! 2. hold those that are then beyond a bound, free those whose gradient points inside;
-//! 3. no change: done. After [`GUESSES`] passes: go on one bound at a time.
+//! 1. hold the active variables on their bounds, and minimise over the others;
+//! 2. hold the variables that are then beyond a bound, and free the variables whose gradient points
+//!    inside;
+//! 3. stop if nothing changed. After [`GUESSES`] passes, change one bound at a time.
 //!
-//! The first way (Hintermüller, Ito and Kunisch, The Primal-Dual Active Set Strategy as a
-//! Semismooth Newton Method, 2003) takes two or three passes and may, rarely, go in circles. The
-//! second (primal active sets: Nocedal and Wright, Numerical Optimization, 2006, section 16.5)
-//! descends, every iterate inside the box, and so ends.
+//! The first method (Hintermüller, Ito and Kunisch, The Primal-Dual Active Set Strategy as a
+//! Semismooth Newton Method, 2003) takes two or three passes and may, rarely, cycle. The second
+//! (primal active sets: Nocedal and Wright, Numerical Optimization, 2006, section 16.5) descends
+//! with every iterate inside the box, so it terminates.
 //!
-//! `A` has six rows, so `d` alone makes the minimum unique, and may be 1e-11 of the rest. The
-//! normal equations `AᵀA + d` know that direction to five digits; a step of refinement whose
-//! residual is computed from `A` itself makes them ten, another all. Guesses do without.
+//! `A` has six rows, so only `d` makes the minimum unique, and `d` may be 1e-11 of the rest. The
+//! normal equations `AᵀA + d` resolve that direction to five digits. A refinement step with a
+//! residual computed from `A` itself gives ten digits, and another step gives all. Guesses do not
+//! need the refinement.
 
 mod joint_box;
 mod problem;
@@ -28,27 +30,29 @@ use crate::ldl::Ldl;
 pub use joint_box::{JointBox, Side};
 pub(crate) use problem::Problem;
 
-/// How a search ended.
+/// The result of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
-    /// At the minimum.
+    /// The minimum was found.
     Optimal,
-    /// After [`PASSES_MAX`] passes: inside the box, but perhaps not at the minimum.
+    /// The search stopped after [`PASSES_MAX`] passes: the result is inside the box, but may not be
+    /// the minimum.
     PassLimit,
-    /// On non-finite numbers: the result is inside the box, nothing else is known of it.
+    /// A number was non-finite: the result is inside the box, and has no other guarantee.
     Degenerate,
 }
 
-/// Passes after which a search gives up.
+/// Number of passes after which a search stops.
 ///
-/// Each costs one factorisation. Of two million random problems of differential IK, most of them
-/// with several variables on their bounds, half took seven or fewer and none more than 25.
+/// Each pass costs one factorisation. Two million random problems of differential IK were solved,
+/// most of them with several variables on their bounds. Half took seven passes or fewer, and none
+/// more than 25.
 pub const PASSES_MAX: usize = 32;
 
-/// Passes that mend the whole guess at once.
+/// Number of passes that correct the whole guess at once.
 const GUESSES: usize = 4;
 
-/// Where a search ended.
+/// The end of a search.
 pub(crate) struct Minimum {
     pub(crate) x: JointVector,
     pub(crate) active: [Side; 7],
@@ -56,7 +60,7 @@ pub(crate) struct Minimum {
     pub(crate) passes: usize,
 }
 
-/// Searches for the minimum, at first with the bounds `active` binding.
+/// Searches for the minimum, starting with the bounds `active`.
 pub(crate) fn minimise(
     problem: &Problem<'_>,
     bounds: &JointBox,
@@ -103,8 +107,8 @@ pub(crate) fn minimise(
         }
     };
     Minimum {
-        // A held variable is on its bound and a free one of an optimum within them, up to the
-        // last digit.
+        // A held variable is on its bound, and a free variable of an optimum is within its bounds,
+        // up to the last digit.
         x: bounds.clamp(&search.x),
         active: search.active,
         outcome,
@@ -116,13 +120,13 @@ struct Search<'a> {
     problem: &'a Problem<'a>,
     bounds: &'a JointBox,
     linear: [f64; 7],
-    /// Held variables are on their bounds.
+    /// The current point; held variables are on their bounds.
     x: JointVector,
     active: [Side; 7],
 }
 
 impl Search<'_> {
-    /// Makes bound `side` of variable `i` active, unless there is no bound on that side.
+    /// Makes bound `side` of variable `i` active, if the variable has a bound on that side.
     fn hold(&mut self, i: usize, side: Side) {
         let value = match side {
             Side::Free => return,
@@ -137,7 +141,7 @@ impl Search<'_> {
         }
     }
 
-    /// Of the normal equations of the free variables; held ones keep their places.
+    /// Factorises the normal equations of the free variables; held variables keep their places.
     #[inline(always)]
     fn factor(&self) -> Option<Ldl<7>> {
         let free = self.active.map(|side| side == Side::Free);
@@ -151,8 +155,8 @@ impl Search<'_> {
         Ldl::of(&matrix)
     }
 
-    /// The minimum with the active variables where they are, and the gradient there, both as far
-    /// as the normal equations know them.
+    /// Returns the minimum with the active variables fixed, and its gradient, with the precision of
+    /// the normal equations.
     #[inline(always)]
     fn minimum_of_free(&self, factor: &Ldl<7>) -> (JointVector, [f64; 7]) {
         let normal = &self.problem.normal;
@@ -180,7 +184,7 @@ impl Search<'_> {
         (crate::joint_vector(goal), gradient)
     }
 
-    /// Makes that minimum exact; the gradient there.
+    /// Refines that minimum to full precision; returns its gradient.
     #[inline(always)]
     fn refine(&self, factor: &Ldl<7>, goal: &mut JointVector) -> [f64; 7] {
         let mut gradient = self.problem.gradient(goal);
@@ -198,7 +202,7 @@ impl Search<'_> {
         gradient
     }
 
-    /// Whether a guess with this minimum needs no mending.
+    /// True if a guess with this minimum needs no correction.
     #[inline(always)]
     fn accepts(&self, goal: &JointVector, gradient: &[f64; 7]) -> bool {
         (0..7).all(|i| match self.active[i] {
@@ -207,8 +211,8 @@ impl Search<'_> {
         })
     }
 
-    /// Takes the bounds beyond which `goal` is for active, and those for free whose gradient
-    /// points inside; true if nothing changed.
+    /// Activates the bounds that `goal` exceeds, and frees the variables whose gradient points
+    /// inside; true if nothing changed.
     fn mend(&mut self, goal: &JointVector, gradient: &[f64; 7]) -> bool {
         let mut done = true;
         for i in 0..7 {
@@ -232,9 +236,9 @@ impl Search<'_> {
         done
     }
 
-    /// Goes towards `goal` and along the bounds in the way, which become active, as long as that
-    /// leads down; arrived without one, frees the variable that falls most steeply into the box.
-    /// True if there is none.
+    /// Moves towards `goal` and along the bounds on the path, which become active, while the
+    /// function decreases. If no bound was met, frees the variable with the steepest descent into
+    /// the box. True if no variable can be freed.
     fn descend(&mut self, goal: &JointVector, gradient: &[f64; 7]) -> bool {
         if self.walk(goal) {
             return false;
@@ -254,7 +258,7 @@ impl Search<'_> {
         steepest.is_none()
     }
 
-    /// The way to `goal`, bent at every bound that it meets; true if it met one.
+    /// Moves to `goal`, bending at every bound; true if a bound was met.
     fn walk(&mut self, goal: &JointVector) -> bool {
         let mut direction: [f64; 7] = core::array::from_fn(|i| match self.active[i] {
             Side::Free => goal[i] - self.x[i],
@@ -286,7 +290,7 @@ impl Search<'_> {
         }
     }
 
-    /// Share of `direction`, at most `left`, that leads to a bound, and which that is.
+    /// Returns the share of `direction`, at most `left`, that leads to a bound, and this bound.
     fn first_bound(&self, direction: &[f64; 7], left: f64) -> (f64, Option<(usize, Side, f64)>) {
         let mut share = left;
         let mut first = None;
@@ -307,7 +311,7 @@ impl Search<'_> {
         (share, first)
     }
 
-    /// Share of `direction` after which it leads up again.
+    /// Returns the share of `direction` after which the function increases again.
     fn downhill(&self, direction: &[f64; 7]) -> f64 {
         let gradient = self.problem.gradient(&self.x);
         let (mut slope, mut curvature) = (0.0, 0.0);
@@ -321,8 +325,8 @@ impl Search<'_> {
         if slope > 0.0 { slope / curvature } else { 0.0 }
     }
 
-    /// How steeply the function falls into the box from the bound that holds variable `i`; zero
-    /// where that is rounding, or there is no inside.
+    /// Returns the slope of the function into the box from the bound that holds variable `i`; zero
+    /// if it is rounding error, or the interval is empty inside.
     #[inline(always)]
     fn inward(&self, i: usize, side: Side, gradient: f64) -> f64 {
         let fall = match side {
@@ -349,9 +353,9 @@ impl Search<'_> {
     }
 }
 
-/// Steps of refinement that make a minimum exact.
+/// Number of refinement steps for an exact minimum.
 const REFINEMENTS: usize = 2;
-/// Relative to its terms, a gradient below this is rounding.
+/// Bound, relative to its terms, below which a gradient is rounding error.
 const ROUNDING: f64 = 1e-15;
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
-//! The joints in base axes: where every frame is and along what every axis points.
+//! The joints in base axes: the positions of all frames and the directions of all axes.
 //!
 //! The FER and the FR3 have the same [geometry](crate::geometry) except for two lengths: an
-//! alternating chain in which every joint frame is rolled by 0 or ±90° against the one before, so a
-//! joint costs one plane rotation and a permutation of columns. Positions are relative to the
-//! shoulder S, where axes 1, 2 and 3 meet: those axes then have no moment about the reference
+//! alternating chain in which every joint frame is rolled by 0 or ±90° against the previous one. A
+//! joint therefore costs one plane rotation and a permutation of columns. Positions are relative to
+//! the shoulder S, where axes 1, 2 and 3 meet: those axes then have no moment about the reference
 //! point.
 
 use nalgebra::{Matrix3, Vector3};
@@ -22,7 +22,7 @@ pub(crate) struct Chain {
     pub(crate) origin: [Vector3<f64>; 7],
     /// Direction of axis i.
     pub(crate) axis: [Vector3<f64>; 7],
-    /// Velocity that a unit rate of joint i gives to the point at the shoulder: `origin × axis`.
+    /// Velocity of the body's point at the shoulder per unit rate of joint i: `origin × axis`.
     pub(crate) moment: [Vector3<f64>; 7],
 }
 
@@ -35,7 +35,7 @@ struct Axes {
 }
 
 impl Axes {
-    /// `RotX(+90°)`, then `RotZ` of the joint.
+    /// Applies `RotX(+90°)`, then `RotZ` of the joint.
     #[inline(always)]
     fn roll_up(self, (sin, cos): (f64, f64)) -> Self {
         Self {
@@ -45,7 +45,7 @@ impl Axes {
         }
     }
 
-    /// `RotX(−90°)`, then `RotZ` of the joint.
+    /// Applies `RotX(−90°)`, then `RotZ` of the joint.
     #[inline(always)]
     fn roll_down(self, (sin, cos): (f64, f64)) -> Self {
         Self {
@@ -66,7 +66,7 @@ impl Axes {
 }
 
 impl Chain {
-    /// All frames at the positions `q`.
+    /// Returns all frames at the positions `q`.
     #[inline(always)]
     pub(crate) fn at(lengths: &Lengths, q: &JointVector) -> Self {
         let [t1, t2, t3, t4, t5, t6, t7] = q.data.0[0].map(sin_cos);
@@ -105,8 +105,8 @@ impl Chain {
         }
     }
 
-    /// All frames at the positions `q` of an arm whose joint frames, at zero, are at `origins`:
-    /// rotation and translation in the frame of the link before.
+    /// Returns all frames at the positions `q` of an arm with the joint frames `origins`: their
+    /// rotation and translation at joint position zero, in the frame of the previous link.
     pub(crate) fn through(origins: &[(Matrix3<f64>, Vector3<f64>); 7], q: &JointVector) -> Self {
         let mut chain = Self {
             rotation: [Matrix3::identity(); 7],
@@ -130,7 +130,7 @@ impl Chain {
         chain
     }
 
-    /// Origin of the flange, from the shoulder.
+    /// Returns the origin of the flange, relative to the shoulder.
     #[inline(always)]
     pub(crate) fn flange(&self) -> Vector3<f64> {
         self.origin[6] + self.axis[6] * FLANGE

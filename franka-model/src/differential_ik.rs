@@ -1,22 +1,21 @@
-//! Joint velocities for a twist of the end effector, exactly inside a box.
+//! Joint velocities for a twist of the end effector, exactly within a box.
 //!
 //! ```text
 //! minimise  |Jp x − vp|² + W² |Jo x − vo|² + λ² |x − x_posture|²   subject to  lower <= x <= upper
 //! ```
 //!
-//! `x` are joint velocities and `(vp, vo)` a twist, or both displacements. Where the task leaves
-//! freedom, `x` follows the posture term; where a bound binds, the other joints take over as far as
-//! they can. A clamp after the fact would do neither.
+//! `x` are joint velocities and `(vp, vo)` is a twist, or both are displacements. In the nullspace
+//! of the task, `x` follows the posture term. If a bound is active, the other joints compensate as
+//! well as possible. Clamping the result would do neither.
 //!
 //! # Position first
 //!
-//! `W` weighs radians of orientation against metres of position. It decides nothing while both can
-//! be met. Where they cannot, because joints are pinned to their bounds or the arm is singular,
-//! something has to give, and with the small default it is the orientation, but for a share `W²/r²`
-//! of it, `r` being the lever of the joints that turn the hand. What the position then lacks is
-//! added to what is asked of it, and the problem solved once more (one step of the method of
-//! multipliers: Hestenes, 1969), which squares that share. The answer is continuous in all of its
-//! arguments.
+//! `W` weighs radians of orientation against metres of position. It has no effect if both can be
+//! met. If not, because joints are at their bounds or the arm is singular, the small default
+//! sacrifices the orientation, except for a share `W²/r²` of it, where `r` is the lever of the
+//! joints that turn the hand. The remaining error of the position is then added to the target, and
+//! the problem is solved once more (one step of the method of multipliers: Hestenes, 1969), which
+//! squares that share. The answer is continuous in all of its arguments.
 //!
 //! # Damping
 //!
@@ -25,13 +24,13 @@
 //! loss = max(0, 1 − w²/onset²)
 //! ```
 //!
-//! The floor is small enough not to be seen in the motion. The damping rises with the loss of
-//! manipulability `w` (Nakamura and Hanafusa, 1986, in `w²`): for the whole task by as much as
-//! orientations are worth, which leaves the position undamped, and for the position where the
-//! position itself loses a direction. `w²` is a polynomial in sines and cosines of q, so `λ²` and
-//! its derivative are continuous along any path, and the first part does not depend on the tool's
-//! length. Tracking near a singularity is given up smoothly, in the directions that need large
-//! joint velocities first.
+//! The floor is too small to affect the motion visibly. The damping rises as the manipulability `w`
+//! falls (Nakamura and Hanafusa, 1986, in `w²`). For the whole task it rises by the weight of
+//! orientations, which leaves the position undamped. For the position it rises if the position
+//! itself loses a direction. `w²` is a polynomial in sines and cosines of q, so `λ²` and its
+//! derivative are continuous along any path, and the first part does not depend on the tool's
+//! length. Near a singularity, tracking is abandoned smoothly, first in the directions that need
+//! large joint velocities.
 
 use crate::jacobian::squared_manipulabilities;
 use crate::{Jacobian, JointVector, Twist};
@@ -39,28 +38,28 @@ use crate::{Jacobian, JointVector, Twist};
 pub use crate::box_qp::{JointBox, Outcome, PASSES_MAX, Side};
 use crate::box_qp::{Problem, minimise};
 
-/// How `λ` depends on the manipulability; see the module.
+/// The dependence of `λ` on the manipulability; see the module.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Damping {
-    /// Radians per radian away from singularities: the square is the share of a rotation that is
-    /// left undone. Must be positive: it makes the minimum unique.
+    /// Damping in radians per radian away from singularities: its square is the share of a rotation
+    /// that is not executed. Must be positive, because it makes the minimum unique.
     pub floor: f64,
-    /// What is added in a singularity of the pose, in the same unit.
+    /// Additional damping in a singularity of the pose, in the same unit.
     pub ceiling: f64,
-    /// The manipulability below which it rises; 0.080 at the ready pose.
+    /// Manipulability below which the damping rises; 0.080 at the ready pose.
     pub onset: f64,
-    /// What is added in a singularity of the position, metres per radian.
+    /// Additional damping in a singularity of the position, metres per radian.
     pub position_ceiling: f64,
-    /// The manipulability of the position, `sqrt(det(Jp Jpᵀ))` `[m³]`, below which it rises; 0.1 in
-    /// good postures.
+    /// Manipulability of the position, `sqrt(det(Jp Jpᵀ))` `[m³]`, below which the damping rises;
+    /// 0.1 in good postures.
     pub position_onset: f64,
 }
 
 impl Default for Damping {
-    /// A floor that costs less than 10⁻⁵ of a rotation and 10⁻⁹ of a translation at the ready pose.
-    /// In a singularity an orientation asks for at most 8 rad/s per rad/s. A position that only a
-    /// turning hand can keep, at a stretched elbow, asks for hundreds of rad/s per m/s: there the
-    /// box bounds the velocities.
+    /// Returns a floor that costs less than 10⁻⁵ of a rotation and 10⁻⁹ of a translation at the
+    /// ready pose. In a singularity, an orientation demands at most 8 rad/s per rad/s. A position
+    /// that only a turning hand can keep, at a stretched elbow, demands hundreds of rad/s per m/s:
+    /// in that case the box bounds the velocities.
     fn default() -> Self {
         Self {
             floor: 1.5e-3,
@@ -72,23 +71,23 @@ impl Default for Damping {
     }
 }
 
-/// The constants of the problem.
+/// The parameters of the problem.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DifferentialIk {
-    /// Metres of position error that count as much as one radian of orientation error; positive.
+    /// Position error in metres with the same weight as one radian of orientation error; positive.
     pub orientation_weight: f64,
     /// True if the position's residual is added to the target once; see the module.
     pub position_first: bool,
-    /// How `λ` is chosen.
+    /// The choice of `λ`.
     pub damping: Damping,
 }
 
 impl DifferentialIk {
-    /// Position and orientation give way alike where both cannot be met: a radian counts as 0.3 m,
-    /// about what it moves at the far side of a held object.
+    /// Returns parameters that sacrifice position and orientation equally if both cannot be met. A
+    /// radian counts as 0.3 m, about its effect at the far side of a held object.
     ///
-    /// The joints are slower for it near singularities, at most 50 rad/s per m/s whatever the box,
-    /// and the hand leaves its line there and comes back. For motions whose way does not matter.
+    /// The joints are therefore slower near singularities, at most 50 rad/s per m/s regardless of
+    /// the box. The hand leaves its line there and returns. For motions whose path does not matter.
     pub const fn smooth() -> Self {
         Self {
             orientation_weight: 0.3,
@@ -105,7 +104,7 @@ impl DifferentialIk {
 }
 
 impl Default for DifferentialIk {
-    /// Position first: a radian counts as 4 mm.
+    /// Returns parameters with the position first: a radian counts as 4 mm.
     fn default() -> Self {
         Self {
             orientation_weight: 0.004,
@@ -122,20 +121,20 @@ pub struct Solution {
     pub velocity: JointVector,
     /// `J x − v`: the residual of the end effector's velocity, unweighted.
     pub residual: Twist,
-    /// Which bounds bind. Passing it to the next, similar problem saves passes.
+    /// The active bounds. Passing them to the next, similar problem saves passes.
     pub active: [Side; 7],
-    /// Whether `velocity` is the minimum.
+    /// The result of the search: `velocity` is the minimum if it is [`Outcome::Optimal`].
     pub outcome: Outcome,
-    /// Factorisations that it took.
+    /// Number of factorisations.
     pub passes: usize,
 }
 
 impl DifferentialIk {
-    /// Solves one problem; at most [`PASSES_MAX`] passes, whatever the numbers.
+    /// Solves one problem in at most [`PASSES_MAX`] passes, regardless of the numbers.
     ///
-    /// `jacobian` and `twist` are in the same axes about the same point. `posture` is the joint
-    /// velocity to have where the task does not care. `start` is the active set of the problem
-    /// before, or `Default::default()`: it changes the time, not the answer.
+    /// `jacobian` and `twist` are in the same axes about the same point. `posture` is the preferred
+    /// joint velocity in the nullspace of the task. `start` is the active set of the previous
+    /// problem, or `Default::default()`: it changes the time, not the answer.
     pub fn solve(
         &self,
         jacobian: &Jacobian,
@@ -172,7 +171,7 @@ impl DifferentialIk {
         }
     }
 
-    /// Jacobian and twist with their orientation rows in metres.
+    /// Returns Jacobian and twist with their orientation rows in metres.
     #[inline(always)]
     fn weighted(&self, jacobian: &Jacobian, twist: &Twist) -> (Jacobian, Twist) {
         let (mut weighted, mut task) = (*jacobian, *twist);
@@ -184,7 +183,7 @@ impl DifferentialIk {
         (weighted, task)
     }
 
-    /// `λ²` at a Jacobian.
+    /// Returns `λ²` for a Jacobian.
     pub fn squared_damping(&self, jacobian: &Jacobian) -> f64 {
         let Damping {
             floor,
@@ -204,7 +203,7 @@ impl DifferentialIk {
     }
 }
 
-/// A residual velocity of the end effector, `[m/s]`, below which no second solution is computed.
+/// Residual velocity of the end effector, `[m/s]`, below which no second solution is computed.
 const NOTHING: f64 = 1e-9;
 
 #[cfg(test)]

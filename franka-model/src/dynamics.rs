@@ -1,9 +1,9 @@
 //! Mass matrix, bias torques, inverse and forward dynamics.
 //!
-//! Composite rigid bodies give the mass matrix and gravity, recursive Newton-Euler the rest
+//! Composite rigid bodies give the mass matrix and gravity, and recursive Newton-Euler the rest
 //! (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 5 and 6). All vectors are in base
-//! axes about the shoulder: forces and momenta of different links add up as they are, and a joint
-//! reads its share as `axis · torque + moment · force`.
+//! axes about the shoulder. Forces and momenta of different links therefore add up directly, and
+//! the torque of a joint is `axis · torque + moment · force`.
 
 use nalgebra::{Cholesky, Matrix4, Vector3};
 
@@ -14,7 +14,7 @@ use crate::inertia::{RigidBody, cross, dot};
 use crate::jacobian::{Placement, zero_jacobian};
 use crate::{Jacobian, JointVector, MassMatrix, Twist};
 
-/// What a control law needs about one state of the arm, from one pass.
+/// The quantities that a control law needs at one state of the arm, from one pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dynamics {
     /// Pose of the end effector in the base frame.
@@ -137,7 +137,7 @@ pub(crate) fn forward_dynamics(
     Some(factor.solve(&(tau - coriolis - gravity)))
 }
 
-/// How a body turns: maps a vector fixed in it to the acceleration of the vector's tip.
+/// The rotation of a body: maps a vector fixed in it to the acceleration of the vector's tip.
 #[derive(Clone, Copy)]
 struct Spin {
     angular_acceleration: Vector3<f64>,
@@ -145,7 +145,7 @@ struct Spin {
 }
 
 impl Spin {
-    /// `α × r + ω × (ω × r)`.
+    /// Returns `α × r + ω × (ω × r)`.
     #[inline(always)]
     fn times(&self, r: &Vector3<f64>) -> Vector3<f64> {
         let w = &self.angular_velocity;
@@ -155,13 +155,13 @@ impl Spin {
 
 /// Velocities and accelerations of the seven link frames, in base axes.
 struct LinkMotions {
-    /// Acceleration of each frame's origin, less that of gravity.
+    /// Acceleration of each frame's origin, minus gravity.
     accelerations: [Vector3<f64>; 7],
     spin: [Spin; 7],
 }
 
 impl LinkMotions {
-    /// Outward recursion; `ddq` absent counts as zero.
+    /// Outward recursion; a missing `ddq` counts as zero.
     #[inline(always)]
     fn of(
         chain: &Chain,
@@ -195,7 +195,7 @@ impl LinkMotions {
         motion
     }
 
-    /// Inward recursion: the joint torques that this motion takes.
+    /// Inward recursion: returns the joint torques for this motion.
     #[inline(always)]
     fn torques(&self, chain: &Chain, bodies: &[RigidBody; 7]) -> JointVector {
         let mut torques = JointVector::zeros();

@@ -6,7 +6,7 @@ use crate::geometry::Lengths;
 use crate::inertia::dot;
 use crate::scalar::{atan2, sqrt};
 
-/// Angle of joint 4, `[rad]`, at which the arm is stretched and the elbow flips over.
+/// Angle of joint 4, `[rad]`, at which the arm is stretched and the elbow flips.
 ///
 /// `atan2(-a (d3 + d5), d3 d5 - a²)` with the elbow offset `a` and the lengths `d3`, `d5` of upper
 /// arm and forearm; libfranka 0.21 documents it in `robot_state.h`. An arm with other
@@ -14,8 +14,8 @@ use crate::scalar::{atan2, sqrt};
 /// milliradian.
 pub const FLIP_ANGLE: f64 = -0.467002423653011;
 
-/// `[angle of joint 3 [rad], side of joint 4]`, as in the state's `elbow`: the side is +1 above
-/// [`FLIP_ANGLE`], −1 below, 0 on it.
+/// Returns `[angle of joint 3 [rad], side of joint 4]`, as in the state's `elbow`: the side is +1
+/// above [`FLIP_ANGLE`], −1 below, 0 on it.
 pub fn elbow(q: &JointVector) -> [f64; 2] {
     let side = match q[3].partial_cmp(&FLIP_ANGLE) {
         Some(core::cmp::Ordering::Greater) => 1.0,
@@ -25,26 +25,26 @@ pub fn elbow(q: &JointVector) -> [f64; 2] {
     [q[2], side]
 }
 
-/// The swivel (arm) angle, `[rad]`: where the elbow is on the circle about the line from shoulder
-/// to wrist on which it can be.
+/// Returns the swivel (arm) angle, `[rad]`: the position of the elbow on its circle about the line
+/// from shoulder to wrist.
 ///
-/// The elbow is the origin of frame 4, the wrist that of frame 5. The angle is that of the half
-/// plane of the elbow from the vertical half plane above the line, about the direction from the
-/// shoulder to the wrist, in `(−π, π]`: zero with the elbow on top (Kreutz-Delgado, Long and
-/// Seraji, 1992, with the base's z axis for reference). `None` where the wrist is on the axis of
-/// joint 1 or the elbow on the line, to the last digits.
+/// The elbow is the origin of frame 4; the wrist is the origin of frame 5. The angle is between the
+/// vertical half plane above the line and the half plane of the elbow, about the direction from the
+/// shoulder to the wrist, in `(−π, π]`. It is zero with the elbow on top (Kreutz-Delgado, Long and
+/// Seraji, 1992, with the base's z axis as reference). `None` if the wrist is on the axis of joint
+/// 1 or the elbow on the line, up to rounding.
 pub fn swivel(lengths: &Lengths, q: &JointVector) -> Option<f64> {
     let chain = Chain::at(lengths, q);
     let (e, w) = (&chain.origin[3], &chain.origin[4]);
     let squared = dot(w, w);
     let turned = e.x * w.y - e.y * w.x;
     let up = (e.z * squared - dot(e, w) * w.z) / sqrt(squared);
-    // Both are the horizontal distance of the wrist times that of the elbow from the line.
+    // Both are the horizontal distance of the wrist times the distance of the elbow from the line.
     let size = sqrt(turned * turned + up * up);
     (size > UNDEFINED).then(|| atan2(turned, up))
 }
 
-/// Product of two distances, `[m²]`, that is rounding.
+/// Product of two distances, `[m²]`, below which it is rounding error.
 const UNDEFINED: f64 = 1e-16;
 
 #[cfg(test)]

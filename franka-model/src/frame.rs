@@ -1,4 +1,4 @@
-//! The frames whose pose and Jacobians the model gives, and those that the user places.
+//! The frames of the model's poses and Jacobians, and the frames that the user defines.
 
 use nalgebra::Matrix4;
 
@@ -6,7 +6,8 @@ use nalgebra::Matrix4;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Frame {
-    /// Frame of link 1, after the rotation of joint 1; z is the joint's axis. So for all seven.
+    /// Frame of link 1, after the rotation of joint 1; z is the joint's axis. The other six joint
+    /// frames follow the same rule.
     Joint1,
     /// Frame of link 2.
     Joint2,
@@ -22,9 +23,9 @@ pub enum Frame {
     Joint7,
     /// Centre of the flange surface, 0.107 m along the axis of joint 7, oriented like link 7.
     Flange,
-    /// The end effector, [`EndEffector::f_t_ee`] from the flange.
+    /// The end effector, at [`EndEffector::f_t_ee`] from the flange.
     EndEffector,
-    /// The stiffness frame, [`EndEffector::ee_t_k`] from the end effector.
+    /// The stiffness frame, at [`EndEffector::ee_t_k`] from the end effector.
     Stiffness,
 }
 
@@ -43,17 +44,17 @@ impl Frame {
         Self::Stiffness,
     ];
 
-    /// How many joints move this frame: the columns of its Jacobians beyond are zero.
+    /// Number of joints that move this frame; the remaining columns of its Jacobians are zero.
     pub const fn joints(self) -> usize {
         let index = self as usize;
         if index < 7 { index + 1 } else { 7 }
     }
 }
 
-/// Where the user's frames sit on the flange.
+/// The poses of the user's frames on the flange.
 ///
-/// Both are used as they are, also when the rotation block is not exactly orthonormal (the vendor
-/// ships 0.7071 for sqrt(1/2)); the last row counts as `0 0 0 1`.
+/// Both are used unchanged, even if the rotation block is not exactly orthonormal (the vendor
+/// supplies 0.7071 for sqrt(1/2)); the last row counts as `0 0 0 1`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndEffector {
     /// Pose of the end effector in the flange frame, `F_T_EE`.
@@ -63,7 +64,7 @@ pub struct EndEffector {
 }
 
 impl Default for EndEffector {
-    /// Both frames on the flange.
+    /// Returns both frames at the flange.
     fn default() -> Self {
         Self {
             f_t_ee: Matrix4::identity(),

@@ -21,7 +21,7 @@ pub const WRIST: f64 = 0.088;
 /// Frame of link 7 to flange, along the axis of joint 7, `[m]`.
 pub const FLANGE: f64 = 0.107;
 
-/// The two lengths in which robots differ.
+/// The two lengths that differ between robots.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lengths {
     /// Shoulder to elbow, along the axis of joint 3, `[m]`.
@@ -31,13 +31,13 @@ pub struct Lengths {
 }
 
 impl Lengths {
-    /// Lengths in the vendor's description, for both robots.
+    /// Lengths of the vendor's description, for both robots.
     pub const DESCRIBED: Self = Self {
         upper_arm: UPPER_ARM,
         forearm: FOREARM,
     };
 
-    /// Lengths that the poses of two recorded Franka Research 3 have, 0.2 mm longer each.
+    /// Lengths derived from the poses of two recorded Franka Research 3, 0.2 mm longer each.
     ///
     /// Source: states of 2023 (`dlo_parameter_id`) and 2026 (`franka_ros2_teleop_data_collection`,
     /// `O_T_EE` against `q` of 949 of them, median 0.001 µm off).
@@ -46,10 +46,10 @@ impl Lengths {
         forearm: 0.3842,
     };
 
-    /// Every set that robots are known to have.
+    /// All sets of lengths known from robots.
     pub const KNOWN: [Self; 2] = [Self::DESCRIBED, Self::RECORDED_FR3];
 
-    /// The origins of joints 1 to 7; that of joint 1 is in the base frame.
+    /// Returns the origins of joints 1 to 7; the origin of joint 1 is in the base frame.
     pub const fn joint_origins(&self) -> [JointOrigin; 7] {
         const fn origin(x: f64, y: f64, z: f64, roll: f64) -> JointOrigin {
             JointOrigin {
@@ -68,7 +68,7 @@ impl Lengths {
         ]
     }
 
-    /// Angle of joint 4 at which this arm is stretched, `[rad]`: the
+    /// Returns the angle of joint 4 at which this arm is stretched, `[rad]`: the
     /// [vendor's](crate::elbow::FLIP_ANGLE) for [`DESCRIBED`](Self::DESCRIBED), up to rounding.
     pub fn flip_angle(&self) -> f64 {
         let (upper, fore) = (self.upper_arm, self.forearm);
@@ -76,13 +76,13 @@ impl Lengths {
     }
 }
 
-/// Where a joint's frame is in the frame of the link before, with the joint at zero: moved by
+/// The pose of a joint's frame in the frame of the previous link, with the joint at zero: moved by
 /// `translation`, then rolled about x. The joint turns about z of the result.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointOrigin {
-    /// `[m]`, in the axes of the link before.
+    /// Translation, `[m]`, in the axes of the previous link.
     pub translation: Vector3<f64>,
-    /// About x, `[rad]`: 0 or a quarter turn. Pitch and yaw are zero.
+    /// Roll about x, `[rad]`: 0 or a quarter turn. Pitch and yaw are zero.
     pub roll: f64,
 }
 

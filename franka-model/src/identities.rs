@@ -1,4 +1,4 @@
-//! Laws of mechanics that hold between the algorithms, at random states and loads.
+//! Laws of mechanics that relate the algorithms, checked at random states and loads.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -8,7 +8,7 @@ use crate::{
     Twist, rotation, transform,
 };
 
-/// One state of the arm, with everything that the model takes.
+/// One state of the arm, with all inputs of the model.
 struct Case {
     q: JointVector,
     dq: JointVector,
@@ -18,8 +18,8 @@ struct Case {
     gravity: Vector3<f64>,
 }
 
-/// Every constant model. That of the FER's clients is not a set of physical bodies and does not
-/// load link 7 as mechanics does; the tests say where that matters.
+/// Returns every constant model. The FER client's model is not a set of physical bodies, and loads
+/// join its link 7 by a non-physical rule; the tests mark the places where this matters.
 fn models() -> [&'static Model; 3] {
     [
         Model::fr3(),
@@ -28,7 +28,7 @@ fn models() -> [&'static Model; 3] {
     ]
 }
 
-/// True if a load is a rigid body more.
+/// True if a load acts as an additional rigid body.
 fn loads_add_up(model: &Model) -> bool {
     !core::ptr::eq(model, Model::fer())
 }
@@ -73,7 +73,7 @@ fn unit(i: usize) -> JointVector {
 
 const ZERO: JointVector = crate::joint_vector([0.0; 7]);
 const FLOATING: Vector3<f64> = Vector3::new(0.0, 0.0, 0.0);
-/// Per model: ten thousand in all, and with `--release` of each.
+/// Number of cases per model: ten thousand in all; with `--release`, ten thousand of each.
 const CASES: usize = if cfg!(debug_assertions) {
     3_400
 } else {
@@ -151,7 +151,8 @@ fn forward_dynamics_refuses_what_is_not_positive_definite() {
     assert_eq!(solve(&JointVector::from_element(f64::NAN), 0.1), None);
 }
 
-/// Centre of mass and inertia of body `i` in base axes, from the frames' poses; 7 is the load.
+/// Returns the centre of mass and inertia of body `i` in base axes, from the frames' poses; 7 is
+/// the load.
 fn body(model: &Model, case: &Case, i: usize) -> (f64, Vector3<f64>, Matrix3<f64>, Frame) {
     let (frame, mass, com, inertia) = if i == 7 {
         let load = &case.load;
@@ -229,7 +230,7 @@ fn coriolis_torques_follow_from_the_mass_matrix() {
         let coriolis = model.coriolis(&case.q, &case.dq, &case.load);
         let along = (0..7).fold(MassMatrix::zeros(), |sum, k| sum + slopes[k] * case.dq[k]);
         for i in 0..7 {
-            // Lagrange's equations: d/dt (M dq) less the gradient of the kinetic energy.
+            // Lagrange's equations: d/dt (M dq) minus the gradient of the kinetic energy.
             let expected = (along * case.dq)[i] - 0.5 * case.dq.dot(&(slopes[i] * case.dq));
             assert!((coriolis[i] - expected).abs() < 1e-7);
         }
@@ -238,7 +239,7 @@ fn coriolis_torques_follow_from_the_mass_matrix() {
 
 #[test]
 fn coriolis_torques_do_no_work_but_what_changes_the_inertia() {
-    // dM/dt − 2 C does no work: the passivity that control laws rest on.
+    // dM/dt − 2 C does no work: control laws rely on this passivity.
     for_each_case(44, |model, case| {
         let h = 1e-5;
         let mass = |step: f64| model.mass(&(case.q + case.dq * step), &case.load);
@@ -275,7 +276,7 @@ fn a_free_swing_keeps_its_energy() {
                 0.5 * case.dq.dot(&(mass * case.dq)) + potential(model, case)
             };
             let before = energy(&case);
-            // Runge and Kutta's fourth order, a quarter of a second.
+            // Fourth-order Runge-Kutta integration, a quarter of a second.
             let rate = |q: JointVector, dq: JointVector| {
                 let (load, gravity) = (&case.load, &case.gravity);
                 let ddq = model.forward_dynamics(&q, &dq, &ZERO, load, gravity, &ZERO);
@@ -393,8 +394,8 @@ fn a_payload_in_two_parts_weighs_like_their_combination() {
     }
 }
 
-/// Least principal value of what a body's mass distribution has as second moments about its
-/// centre; a body of positive mass everywhere has a positive one.
+/// Returns the least principal value of the second moments of a body's mass distribution about its
+/// centre. It is positive for a body of positive mass everywhere.
 fn least_second_moment(body: &RigidBody) -> f64 {
     let inertia = body.inertia.matrix();
     let moments = Matrix3::from_diagonal_element(0.5 * inertia.trace()) - inertia;
@@ -421,7 +422,7 @@ fn the_physically_consistent_fer_is_near_the_one_of_the_clients() {
         let none = &Load::NONE;
         // 0.018, 0.013 and 0.083 at the reference states, whose velocities are about this large.
         assert!((model.mass(q, none) - other.mass(q, none)).amax() < 0.03);
-        // Upright: what joint 1 carries of link 1 shows in a tilted base only.
+        // The weight of link 1 loads joint 1 only in a tilted base.
         let gravity = |model: &Model| model.gravity(q, none, &GRAVITY_EARTH);
         let torque = gravity(model) - gravity(other);
         assert!(torque.amax() < 0.03, "{torque}");

@@ -4,7 +4,7 @@ use core::ops::{Add, AddAssign};
 
 use nalgebra::{Matrix3, Vector3};
 
-/// A symmetric 3×3 matrix by its six numbers: rows x, y, z and columns x, y, z.
+/// A symmetric 3×3 matrix as six numbers: rows x, y, z and columns x, y, z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs)] // the fields are the places in the matrix
 pub struct Symmetric3 {
@@ -26,7 +26,7 @@ impl Symmetric3 {
         zz: 0.0,
     };
 
-    /// The symmetric part of `m`.
+    /// Returns the symmetric part of `m`.
     pub(crate) fn of(m: &Matrix3<f64>) -> Self {
         Self {
             xx: m.m11,
@@ -38,7 +38,7 @@ impl Symmetric3 {
         }
     }
 
-    /// All nine numbers.
+    /// Returns all nine numbers.
     pub fn matrix(&self) -> Matrix3<f64> {
         Matrix3::new(
             self.xx, self.xy, self.xz, //
@@ -47,7 +47,7 @@ impl Symmetric3 {
         )
     }
 
-    /// Inertia of a point mass at `r` about the origin: `mass (|r|² 1 − r rᵀ)`.
+    /// Returns the inertia of a point mass at `r` about the origin: `mass (|r|² 1 − r rᵀ)`.
     #[inline(always)]
     pub(crate) fn of_point(mass: f64, r: &Vector3<f64>) -> Self {
         let (mx, my, mz) = (mass * r.x, mass * r.y, mass * r.z);
@@ -62,7 +62,7 @@ impl Symmetric3 {
         }
     }
 
-    /// `R self Rᵀ`: the same tensor in the axes that `R` maps to.
+    /// Returns `R self Rᵀ`: the same tensor in the axes that `R` maps to.
     #[inline(always)]
     pub(crate) fn rotated(&self, r: &Matrix3<f64>) -> Self {
         let half = |i: usize| {
@@ -117,7 +117,7 @@ impl AddAssign for Symmetric3 {
 /// axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RigidBody {
-    /// `[kg]`.
+    /// Mass, `[kg]`.
     pub mass: f64,
     /// Centre of mass, `[m]`.
     pub com: Vector3<f64>,
@@ -126,7 +126,7 @@ pub struct RigidBody {
 }
 
 impl RigidBody {
-    /// From numbers in the order of a URDF: `inertia` is xx, xy, xz, yy, yz, zz.
+    /// Creates a body from numbers in the order of a URDF: `inertia` is xx, xy, xz, yy, yz, zz.
     pub(crate) const fn new(mass: f64, com: [f64; 3], inertia: [f64; 6]) -> Self {
         let [x, y, z] = com;
         let [xx, xy, xz, yy, yz, zz] = inertia;
@@ -144,7 +144,7 @@ impl RigidBody {
         }
     }
 
-    /// A body of the same shape with `factor` times the density.
+    /// Returns a body of the same shape with `factor` times the density.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let Symmetric3 {
@@ -159,7 +159,7 @@ impl RigidBody {
         Self::new(self.mass * factor, self.com.into(), inertia)
     }
 
-    /// Both bodies as one; `self` where the total has no mass.
+    /// Returns both bodies as one; `self` if the total has no mass.
     #[inline]
     pub(crate) fn joined(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;

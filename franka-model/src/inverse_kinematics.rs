@@ -1,9 +1,9 @@
 //! Joint positions for a pose, by iteration.
 //!
-//! Good for accepting or refusing a target before moving: each iteration is a damped Gauss-Newton
-//! step inside the joint limits, from the seed first and then from postures spread over the joint
-//! ranges. It finds one solution near the seed where there is one; it does not list them, and a
-//! refusal is strong evidence, not a proof.
+//! Accepts or refuses a target before a motion. Each iteration is a damped Gauss-Newton step inside
+//! the joint limits, first from the seed and then from postures spread over the joint ranges. It
+//! finds one solution near the seed, if one exists; it does not list all of them. A refusal is
+//! strong evidence, not a proof.
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
@@ -13,15 +13,15 @@ use crate::limits::JointLimits;
 use crate::model::Model;
 use crate::{Jacobian, JointVector, READY, Twist, rotation, transform};
 
-/// Why there is no solution.
+/// The reason why no solution was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum IkError {
     /// The pose is out of reach within the joint limits: no start came closer than this.
     Unreachable {
-        /// Distance left, `[m]`.
+        /// Remaining distance, `[m]`.
         position: f64,
-        /// Angle left, `[rad]`.
+        /// Remaining angle, `[rad]`.
         orientation: f64,
     },
     /// The target or the seed has a non-finite number.
@@ -52,10 +52,11 @@ impl core::fmt::Display for IkError {
 
 impl core::error::Error for IkError {}
 
-/// Positions within the limits that bring the end effector to `target`, to [`TOLERANCE`].
+/// Returns positions within the limits that bring the end effector to `target`, within
+/// [`TOLERANCE`].
 ///
-/// `seed` decides which of the infinitely many solutions is found: usually one nearby. An
-/// end-effector frame that is not quite rigid counts as its nearest rigid one.
+/// `seed` selects one of the infinitely many solutions, usually a nearby one. A slightly non-rigid
+/// end-effector frame is replaced by the nearest rigid one.
 ///
 /// # Errors
 /// See [`IkError`]. A refusal takes up to 32 starts of 60 iterations each, some 2 ms.
@@ -83,11 +84,11 @@ pub fn solve(
     Err(best.into())
 }
 
-/// Positions within the limits that bring the origin of the end effector to `point` `[m]`, in the
-/// base frame, to [`TOLERANCE`], with whatever orientation.
+/// Returns positions within the limits that bring the origin of the end effector to `point` `[m]`,
+/// in the base frame, within [`TOLERANCE`], with any orientation.
 ///
 /// # Errors
-/// See [`IkError`]; the orientation that remains is zero.
+/// See [`IkError`]; its `orientation` is zero.
 pub fn solve_position(
     model: &Model,
     point: &Vector3<f64>,
@@ -112,7 +113,7 @@ pub fn solve_position(
     Err(best.into())
 }
 
-/// Positions within the limits that bring the flange to a pose, from one start.
+/// Returns positions within the limits that bring the flange to a pose, from one start.
 pub(crate) fn from_seed(
     model: &Model,
     flange: &Isometry3<f64>,
@@ -126,9 +127,9 @@ pub const TOLERANCE: f64 = 1e-9;
 
 /// The target, in the base frame.
 enum Task {
-    /// By the flange.
+    /// The pose of the flange.
     Pose(Isometry3<f64>),
-    /// By a point in flange axes: the point, and where it is to be.
+    /// A point in flange axes, and its target position.
     Position(Vector3<f64>, Vector3<f64>),
 }
 
@@ -164,7 +165,7 @@ impl Gap {
     }
 }
 
-/// Gauss-Newton from one start.
+/// Runs Gauss-Newton from one start.
 fn descend(model: &Model, task: &Task, start: &JointVector) -> Result<JointVector, Gap> {
     let limits = model.joint_limits();
     let mut q = JointBox::new(&limits.lower, &limits.upper).clamp(start);
@@ -184,8 +185,8 @@ fn descend(model: &Model, task: &Task, start: &JointVector) -> Result<JointVecto
             .fixed_rows_mut::<3>(3)
             .scale_mut(ORIENTATION_WEIGHT);
         task.fixed_rows_mut::<3>(3).scale_mut(ORIENTATION_WEIGHT);
-        // Damping in proportion to the error left converges from afar and near singularities,
-        // and fades where Gauss-Newton is quadratic (Sugihara, 2011).
+        // Damping in proportion to the remaining error converges from afar and near singularities,
+        // and vanishes where Gauss-Newton converges quadratically (Sugihara, 2011).
         let damping = 0.5 * task.norm_squared() + DAMPING_FLOOR;
         let zero = JointVector::zeros();
         let problem = Problem::new(&weighted, &task, &zero, damping);
@@ -197,8 +198,8 @@ fn descend(model: &Model, task: &Task, start: &JointVector) -> Result<JointVecto
 }
 
 impl Task {
-    /// What is left to do at `q`, position error and rotation vector in base axes, and how it
-    /// changes with the joints; zeros where nothing is asked.
+    /// Returns the remaining error at `q` (position error and rotation vector in base axes) and its
+    /// derivative; zeros for components without a target.
     fn linearised(&self, model: &Model, q: &JointVector) -> (Twist, Jacobian) {
         let flange = EndEffector::default();
         let pose = model.pose(Frame::Flange, q, &flange);
@@ -228,7 +229,7 @@ impl Task {
     }
 }
 
-/// Displacements that stay within the limits and within what a linear model is good for.
+/// Returns the displacements that stay within the limits and within the validity of a linear model.
 fn step_box(limits: &JointLimits, q: &JointVector) -> JointBox {
     let reach = JointVector::from_element(STEP_MAX);
     JointBox::new(
@@ -237,19 +238,19 @@ fn step_box(limits: &JointLimits, q: &JointVector) -> JointBox {
     )
 }
 
-/// Metres per radian, about half the forearm.
+/// Weight in metres per radian, about half the forearm.
 const ORIENTATION_WEIGHT: f64 = 0.2;
 /// Keeps the problem strictly convex at the solution, `[m²]`.
 const DAMPING_FLOOR: f64 = 1e-9;
 /// Largest move of a joint in one iteration, `[rad]`.
 const STEP_MAX: f64 = 0.5;
 const ITERATIONS_MAX: usize = 60;
-/// Starts beyond the seed and the ready pose.
+/// Number of starts after the seed and the ready pose.
 const SPREAD_STARTS: u32 = 30;
-/// The same for a point, which one of few starts leads to.
+/// Number of starts for a point, which few starts suffice for.
 const POSITION_STARTS: u32 = 6;
 
-/// Posture `index` of a sequence that fills the joint ranges evenly.
+/// Returns posture `index` of a sequence that fills the joint ranges evenly.
 ///
 /// Steps by powers of the reciprocal of 1.1127756842787055, the root of `x⁸ = x + 1` (Roberts, The
 /// Unreasonable Effectiveness of Quasirandom Sequences, 2018, for seven dimensions).
@@ -339,7 +340,8 @@ mod tests {
         let mut target = pose(&READY, &EndEffector::default());
         target.translation.vector.x = 2.0;
         match solve(Model::fr3(), &target, &EndEffector::default(), &READY) {
-            // The flange cannot be further from the shoulder than arm, wrist and flange together.
+            // The distance of the flange from the shoulder is at most arm, wrist and flange
+            // together.
             Err(IkError::Unreachable { position, .. }) => assert!(position > 1.0, "{position}"),
             other => panic!("{other:?}"),
         }

@@ -10,7 +10,7 @@ use crate::ldl::Ldl;
 use crate::scalar::sqrt;
 use crate::{Jacobian, JointVector};
 
-/// Rotation block and origin of a frame, in base axes and from the shoulder.
+/// Rotation block and origin of a frame, in base axes and relative to the shoulder.
 pub(crate) struct Placement {
     pub(crate) rotation: Matrix3<f64>,
     pub(crate) origin: Vector3<f64>,
@@ -37,7 +37,7 @@ impl Placement {
         }
     }
 
-    /// The homogeneous matrix from the base.
+    /// Returns the homogeneous matrix in the base frame.
     #[inline(always)]
     pub(crate) fn pose(&self) -> Matrix4<f64> {
         let (r, p) = (&self.rotation, &self.origin);
@@ -74,7 +74,7 @@ impl Placement {
     }
 }
 
-/// Jacobian of a point that moves with the first `joints` joints, in base axes.
+/// Returns the Jacobian of a point that moves with the first `joints` joints, in base axes.
 #[inline(always)]
 pub(crate) fn zero_jacobian(chain: &Chain, joints: usize, point: &Vector3<f64>) -> Jacobian {
     let mut jacobian = Jacobian::zeros();
@@ -92,7 +92,8 @@ pub(crate) fn zero_jacobian(chain: &Chain, joints: usize, point: &Vector3<f64>) 
     jacobian
 }
 
-/// Speed of the fastest of the origins of the joint frames, the flange and the end effector.
+/// Returns the speed of the fastest of the origins of the joint frames, the flange and the end
+/// effector.
 pub(crate) fn fastest_point(chain: &Chain, dq: &JointVector, ee: &EndEffector) -> f64 {
     let (mut turning, mut moment) = (Vector3::zeros(), Vector3::zeros());
     let squared_speed = |turning: &Vector3<f64>, moment: &Vector3<f64>, point: &Vector3<f64>| {
@@ -111,7 +112,7 @@ pub(crate) fn fastest_point(chain: &Chain, dq: &JointVector, ee: &EndEffector) -
     sqrt(fastest)
 }
 
-/// The same twist in the frame's own axes.
+/// Returns the same twist in the frame's own axes.
 pub(crate) fn body_jacobian(zero: &Jacobian, rotation: &Matrix3<f64>) -> Jacobian {
     let mut body = *zero;
     for mut column in body.column_iter_mut() {
@@ -123,20 +124,20 @@ pub(crate) fn body_jacobian(zero: &Jacobian, rotation: &Matrix3<f64>) -> Jacobia
     body
 }
 
-/// Yoshikawa's manipulability `sqrt(det(J Jᵀ))`: zero in a singularity, the same for every point
-/// of the last link.
+/// Returns Yoshikawa's manipulability `sqrt(det(J Jᵀ))`: zero in a singularity, the same for every
+/// point of the last link.
 ///
 /// Units follow the Jacobian (metres and radians mixed); 0.080 at the ready pose.
 pub fn manipulability(jacobian: &Jacobian) -> f64 {
     sqrt(squared_manipulability(jacobian))
 }
 
-/// `det(J Jᵀ)`, zero where rounding leaves no positive definite matrix.
+/// Returns `det(J Jᵀ)`; zero if rounding makes the matrix indefinite.
 pub(crate) fn squared_manipulability(jacobian: &Jacobian) -> f64 {
     squared_manipulabilities(jacobian)[1]
 }
 
-/// `det(J Jᵀ)` of the first three rows and of all.
+/// Returns `det(J Jᵀ)` of the first three rows and of all rows.
 pub(crate) fn squared_manipulabilities(jacobian: &Jacobian) -> [f64; 2] {
     let mut gram = [[0.0; 6]; 6];
     for column in &jacobian.data.0 {

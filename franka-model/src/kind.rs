@@ -1,6 +1,6 @@
-//! Which robots there are. Their constants are in [`robots`](crate::robots).
+//! The kinds of robot. Their constants are in [`robots`](crate::robots).
 
-/// The kinds of robot that the crate describes.
+/// The kinds of robot supported by the crate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

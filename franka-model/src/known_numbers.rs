@@ -8,7 +8,7 @@ use crate::{
     manipulability,
 };
 
-/// Digits that the expected values are given with.
+/// Tolerance from the digits of the expected values.
 const NINE: f64 = 6e-10;
 const SIX: f64 = 6e-7;
 
@@ -21,7 +21,7 @@ pub(crate) fn hand_load() -> Load {
     }
 }
 
-/// The hand: an eighth of a turn, its tip 0.1034 m from the flange.
+/// The Hand: an eighth of a turn, its tip 0.1034 m from the flange.
 pub(crate) fn hand() -> EndEffector {
     let r = core::f64::consts::FRAC_1_SQRT_2;
     let mut f_t_ee = Matrix4::identity();
@@ -208,7 +208,7 @@ fn dynamics_of_the_fer() {
             ],
         ],
     );
-    // The rigid composition, which the vendor's library of the FER does not have.
+    // The rigid composition, which the vendor's library of the FER does not use.
     let rigid = Model {
         merge: Merge::Rigid,
         ..Model::fer().clone()

@@ -1,4 +1,4 @@
-//! Arrays as libfranka has them: column by column.
+//! Conversions to and from libfranka's arrays, which are column-major.
 //!
 //! | quantity | array | index of row `r`, column `c` |
 //! |---|---|---|
@@ -7,8 +7,8 @@
 //! | mass matrix | `[f64; 49]` | `7 c + r` |
 //! | inertia of a load | `[f64; 9]` | `3 c + r` |
 //!
-//! Vectors convert by themselves (`q.into()`), and a state's `O_ddP_O` is the gravitational
-//! acceleration that the model's functions take: `Vector3::from(state.O_ddP_O)`.
+//! Vectors convert with `q.into()`. A state's `O_ddP_O` is the gravitational acceleration for the
+//! model's functions: `Vector3::from(state.O_ddP_O)`.
 //!
 //! ```
 //! use franka_model::{EndEffector, Frame, Load, Model, READY, layout};
@@ -28,23 +28,23 @@ use nalgebra::{Matrix3, Matrix4, SMatrix, Vector3};
 
 use crate::{EndEffector, Jacobian, Load, MassMatrix};
 
-/// A homogeneous matrix, as in `O_T_EE`.
+/// Returns a homogeneous matrix as an array, as in `O_T_EE`.
 pub fn pose(matrix: &Matrix4<f64>) -> [f64; 16] {
     columns(matrix)
 }
 
-/// A Jacobian, as `zeroJacobian` and `bodyJacobian` give it.
+/// Returns a Jacobian as an array, as from `zeroJacobian` and `bodyJacobian`.
 pub fn jacobian(jacobian: &Jacobian) -> [f64; 42] {
     columns(jacobian)
 }
 
-/// A mass matrix, as `mass` gives it.
+/// Returns a mass matrix as an array, as from `mass`.
 pub fn mass(mass: &MassMatrix) -> [f64; 49] {
     columns(mass)
 }
 
 impl EndEffector {
-    /// From `F_T_EE` and `EE_T_K` of a state, used as they are.
+    /// Creates the frames from `F_T_EE` and `EE_T_K` of a state, unchanged.
     pub fn from_arrays(f_t_ee: &[f64; 16], ee_t_k: &[f64; 16]) -> Self {
         Self {
             f_t_ee: Matrix4::from_column_slice(f_t_ee),
@@ -54,8 +54,9 @@ impl EndEffector {
 }
 
 impl Load {
-    /// From mass `[kg]`, centre of mass in the flange frame `[m]` and inertia about it `[kg·m²]`:
-    /// `m_total`, `F_x_Ctotal` and `I_total` of a state, or those of one of its loads.
+    /// Creates a load from mass `[kg]`, centre of mass in the flange frame `[m]` and inertia about
+    /// it `[kg·m²]`: `m_total`, `F_x_Ctotal` and `I_total` of a state, or the values of one of its
+    /// loads.
     pub fn from_arrays(mass: f64, com: &[f64; 3], inertia: &[f64; 9]) -> Self {
         Self {
             mass,
@@ -65,7 +66,7 @@ impl Load {
     }
 }
 
-/// All numbers of a matrix, of which there are `N`.
+/// Returns all `N` numbers of a matrix.
 fn columns<const R: usize, const C: usize, const N: usize>(
     matrix: &SMatrix<f64, R, C>,
 ) -> [f64; N] {

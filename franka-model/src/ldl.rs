@@ -1,11 +1,11 @@
-//! `L D Lᵀ` of small symmetric matrices, of a size known to the compiler.
+//! `L D Lᵀ` factorisation of small symmetric matrices, with a size known at compile time.
 //!
-//! Without square roots, and with loops that unroll: half the time of a general factorisation.
+//! It avoids square roots, and its loops unroll: half the time of a general factorisation.
 
 /// A factorisation of a positive definite matrix.
 #[derive(Debug)]
 pub(crate) struct Ldl<const N: usize> {
-    /// Below the diagonal.
+    /// The triangle below the diagonal.
     lower: [[f64; N]; N],
     /// Reciprocals of the pivots.
     reciprocals: [f64; N],
@@ -14,15 +14,16 @@ pub(crate) struct Ldl<const N: usize> {
 
 #[allow(clippy::needless_range_loop)] // indices are those of the textbook
 impl<const N: usize> Ldl<N> {
-    /// The factorisation of the matrix with this lower triangle, by rows; `None` if it is not
-    /// positive definite.
+    /// Factorises the matrix with this lower triangle, by rows; `None` if it is not positive
+    /// definite.
     #[inline(always)]
     pub(crate) fn of(matrix: &[[f64; N]; N]) -> Option<Self> {
         let (factor, positive) = Self::regardless(matrix);
         positive.then_some(factor)
     }
 
-    /// Determinants of the leading blocks of size 1 to N, from where one is not positive on zero.
+    /// Returns the determinants of the leading blocks of size 1 to N; zero from the first
+    /// non-positive one.
     #[inline(always)]
     pub(crate) fn leading_minors(matrix: &[[f64; N]; N]) -> [f64; N] {
         let (factor, _) = Self::regardless(matrix);
@@ -33,7 +34,7 @@ impl<const N: usize> Ldl<N> {
         })
     }
 
-    /// The factorisation as far as it exists, and whether it does.
+    /// Returns the factorisation up to the first failure, and true if it is complete.
     #[inline(always)]
     fn regardless(matrix: &[[f64; N]; N]) -> (Self, bool) {
         let mut factor = Self {
@@ -43,7 +44,7 @@ impl<const N: usize> Ldl<N> {
         };
         let mut positive = true;
         for j in 0..N {
-            // Row j of L D, then its pivot.
+            // Computes row j of L D, then its pivot.
             let mut row = [0.0; N];
             let mut pivot = matrix[j][j];
             for k in 0..j {
@@ -64,7 +65,7 @@ impl<const N: usize> Ldl<N> {
         (factor, positive)
     }
 
-    /// The solution for a right-hand side.
+    /// Returns the solution for a right-hand side.
     #[inline(always)]
     pub(crate) fn solve(&self, right: &[f64; N]) -> [f64; N] {
         let mut x = *right;

@@ -8,9 +8,9 @@
 //! ```
 //!
 //! Everything is a function of constants ([`Model`]) and arguments: no workspace, no state, no
-//! allocation, no panic, and a bounded amount of work, so that all of it may run inside a
-//! real-time cycle. What a control law needs in one cycle comes from one call,
-//! [`Model::dynamics`].
+//! allocation, no panic, and a bounded amount of work. All of it may therefore run in a real-time
+//! cycle. One call, [`Model::dynamics`], returns all quantities that a control law needs in one
+//! cycle.
 //!
 //! | module | content |
 //! |---|---|
@@ -21,27 +21,26 @@
 //! | [`transform`] | column-major arrays and 4×4 matrices to isometries and back |
 //! | [`differential_ik`] | joint velocities for a twist, exactly inside a box |
 //! | [`inverse_kinematics`] | joint positions for a pose or a point, by iteration |
-//! | [`analytic_ik`] | every joint position for a pose and a redundancy parameter, and what is within reach |
+//! | [`analytic_ik`] | every joint position for a pose and a redundancy parameter, and reachability |
 //! | [`elbow`] | the vendor's elbow parameter, and the swivel angle |
-//! | [`operational_space`] | the inertia that is felt at a point and in a direction |
-//! | [`layout`] | arrays as libfranka has them |
-//! | [`collision`] | distances to itself, planes and boxes, with gradients |
-//! | [`contact`] | where a contact is, and its force, from external torques |
-//! | `urdf` (a feature) | models from the description that a robot serves |
-//! | `model_library` (a feature) | the code that a Franka Emika Robot computes with |
+//! | [`operational_space`] | the apparent inertia at a point and in a direction |
+//! | [`layout`] | conversions to libfranka's arrays |
+//! | [`collision`] | distances within the arm, to planes and to boxes, with gradients |
+//! | [`contact`] | place and force of a contact, from external torques |
+//! | `urdf` (a feature) | models from the description that a robot provides |
+//! | `model_library` (a feature) | the compiled model code of a Franka Emika Robot |
 //!
 //! Control uses `frame` to `elbow`, the dynamics and `collision`. [`analytic_ik`],
-//! [`manipulability`] and [`JointMargins`] are for the program around it: which postures reach a
-//! pose, whether a target can be reached before anything moves, and how close to its limits an arm
-//! is. They cost a program that does not call them nothing: there is no static data and no
-//! dependency behind them, so they have no feature of their own.
+//! [`manipulability`] and [`JointMargins`] are for the rest of a program: postures for a pose,
+//! reachability of a target before a motion, and distances to the limits. Unused, they cost
+//! nothing: they have no static data and no dependencies, so they have no separate feature.
 //!
 //! # Conventions
 //!
-//! SI units and radians. The base frame O is that of link 0: at the centre of the base, z along the
-//! axis of joint 1. Twists and wrenches are `[linear; angular]`. Poses are homogeneous 4×4
-//! matrices, since the vendor's end-effector frame may be slightly off a rotation and is used as
-//! it stands; [`transform::isometry`] is the way to [`nalgebra::Isometry3`].
+//! SI units and radians. The base frame O is the frame of link 0: at the centre of the base, z
+//! along the axis of joint 1. Twists and wrenches are `[linear; angular]`. Poses are homogeneous
+//! 4×4 matrices, because the vendor's end-effector frame may deviate slightly from a rotation and
+//! is used unchanged. [`transform::isometry`] converts to [`nalgebra::Isometry3`].
 //!
 //! # Example
 //!
@@ -62,8 +61,8 @@
 //!
 //! # What it does not do
 //!
-//! Friction, rotor inertia and joint elasticity are not part of the model, as they are not part of
-//! the vendor's.
+//! Friction, rotor inertia and joint elasticity are not part of the model, as in the vendor's
+//! model.
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
 #![cfg_attr(not(feature = "model-library"), forbid(unsafe_code))]
@@ -127,7 +126,7 @@ pub use operational_space::OperationalSpace;
 
 use nalgebra::{ArrayStorage, SMatrix, SVector, Vector3};
 
-// The program in the README compiles.
+// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
@@ -135,25 +134,25 @@ struct Readme;
 /// One number per joint, base to flange.
 pub type JointVector = SVector<f64, 7>;
 
-/// 6×7: joint velocities to a twist `[linear; angular]`.
+/// A 6×7 matrix that maps joint velocities to a twist `[linear; angular]`.
 pub type Jacobian = SMatrix<f64, 6, 7>;
 
 /// Joint-space inertia, `[kg·m²]`, symmetric and positive definite.
 pub type MassMatrix = SMatrix<f64, 7, 7>;
 
-/// `[linear; angular]` velocity, `[m/s, rad/s]`, or its derivative.
+/// A velocity `[linear; angular]`, `[m/s, rad/s]`, or its derivative.
 pub type Twist = SVector<f64, 6>;
 
-/// `[force; torque]`, `[N, N·m]`.
+/// A wrench `[force; torque]`, `[N, N·m]`.
 pub type Wrench = SVector<f64, 6>;
 
-/// Duration of a control cycle, `[s]`: the time from one state of the robot to the next, and from
-/// one command to the next, also after lost states.
+/// Duration of a control cycle, `[s]`: the time between two consecutive states of the robot, and
+/// between two commands, also after lost states.
 pub const CYCLE: f64 = 1e-3;
 
 /// Gravitational acceleration in the base frame of an upright robot, `[m/s²]`.
 ///
-/// The value that the vendor's model takes by default (libfranka 0.21, `model.h`).
+/// The default value of the vendor's model (libfranka 0.21, `model.h`).
 pub const GRAVITY_EARTH: Vector3<f64> = Vector3::new(0.0, 0.0, -9.81);
 
 /// The ready pose of the vendor's examples, `[rad]`: hand in front of the arm, pointing down, far
@@ -171,7 +170,7 @@ pub const READY: JointVector = {
     ])
 };
 
-/// A [`JointVector`] from an array, usable in constants.
+/// Creates a [`JointVector`] from an array, usable in constants.
 pub const fn joint_vector(values: [f64; 7]) -> JointVector {
     JointVector::from_array_storage(ArrayStorage([values]))
 }

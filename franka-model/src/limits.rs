@@ -1,43 +1,43 @@
-//! Limits of joints, end effector and elbow. The numbers and their sources are with the constants
-//! of each robot.
+//! Limits of joints, end effector and elbow. The constants of each robot state the numbers and
+//! their sources.
 //!
-//! All values are nominal, the ones that the robot checks against. A client stays below them by
+//! All values are nominal: the robot checks against them. A client stays below them by
 //! [`CLIENT_MARGIN`] (libfranka 0.21, `rate_limiting.h`, `kLimitEps`).
 
 use crate::JointVector;
 use crate::scalar::sqrt;
 
-/// The margin that libfranka keeps to every limit: the same number in every unit
-/// (libfranka 0.21, `rate_limiting.h`).
+/// The margin that libfranka keeps from every limit: the same number in every unit (libfranka 0.21,
+/// `rate_limiting.h`).
 pub const CLIENT_MARGIN: f64 = 1e-3;
 
 /// Limits of the seven joints.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointLimits {
-    /// Least position to command, `[rad]`, a little inside [`hard_lower`](Self::hard_lower).
+    /// Smallest commanded position, `[rad]`, slightly inside [`hard_lower`](Self::hard_lower).
     pub lower: JointVector,
-    /// Greatest position to command, `[rad]`, a little inside [`hard_upper`](Self::hard_upper).
+    /// Largest commanded position, `[rad]`, slightly inside [`hard_upper`](Self::hard_upper).
     pub upper: JointVector,
-    /// Position, `[rad]`, where the velocity envelope towards it ends.
+    /// Lower end of the velocity envelope, `[rad]`.
     pub hard_lower: JointVector,
-    /// Position, `[rad]`, where the velocity envelope towards it ends.
+    /// Upper end of the velocity envelope, `[rad]`.
     pub hard_upper: JointVector,
-    /// Greatest speed anywhere, `[rad/s]`; near the position limits see
+    /// Largest speed at any position, `[rad/s]`; near the position limits see
     /// [`velocity_envelope`](Self::velocity_envelope).
     pub velocity: JointVector,
-    /// How the speed is bounded near the position limits; `None` where it is the same everywhere.
+    /// Speed bound near the position limits; `None` if the limit is the same at all positions.
     pub envelope: Option<BrakingEnvelope>,
-    /// Greatest acceleration of a commanded motion, `[rad/s²]`.
+    /// Largest acceleration of a commanded motion, `[rad/s²]`.
     pub acceleration: JointVector,
-    /// Greatest jerk of a commanded motion, `[rad/s³]`.
+    /// Largest jerk of a commanded motion, `[rad/s³]`.
     pub jerk: JointVector,
-    /// Greatest torque, `[N·m]`.
+    /// Largest torque, `[N·m]`.
     pub torque: JointVector,
-    /// Greatest rate of a commanded torque, `[N·m/s]`.
+    /// Largest rate of a commanded torque, `[N·m/s]`.
     pub torque_rate: JointVector,
 }
 
-/// The speed limit near a position limit: the speed from which a joint can still brake.
+/// The speed limit near a position limit: the largest speed from which a joint can still brake.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BrakingEnvelope {
     /// Deceleration of the parabola, `[rad/s²]`.
@@ -47,7 +47,7 @@ pub struct BrakingEnvelope {
 }
 
 impl BrakingEnvelope {
-    /// Speed of joint `i`, `[rad/s]`, at `distance` `[rad]` from its position limit.
+    /// Returns the speed of joint `i`, `[rad/s]`, at `distance` `[rad]` from its position limit.
     fn speed(&self, i: usize, distance: f64) -> f64 {
         let parabola = sqrt((2.0 * self.deceleration[i] * distance).max(0.0));
         (parabola - self.offset[i]).max(0.0)
@@ -55,15 +55,17 @@ impl BrakingEnvelope {
 }
 
 impl JointLimits {
-    /// Velocities allowed at the positions `q`: `(lower, upper)`, `[rad/s]`.
+    /// Returns the velocities allowed at the positions `q`: `(lower, upper)`, `[rad/s]`.
     ///
-    /// With a [`BrakingEnvelope`] the speed towards a position limit is bounded by what stops
-    /// before the hard limit; without one it is [`velocity`](Self::velocity) everywhere, also
-    /// beyond the limits. `margin` `[rad/s]` then comes off both sides: the robot checks with 0,
-    /// libfranka limits with [`CLIENT_MARGIN`]. At and beyond a position limit with an envelope the
-    /// bound towards it is `-margin` inwards: only motion away from the limit is allowed.
+    /// With a [`BrakingEnvelope`], the speed towards a position limit is bounded so that the joint
+    /// stops before the hard limit. Without one, the bound is [`velocity`](Self::velocity)
+    /// everywhere, also beyond the limits. `margin` `[rad/s]` is then subtracted on both sides: the
+    /// robot checks with 0, libfranka limits with [`CLIENT_MARGIN`]. At and beyond a position limit
+    /// with an envelope, the bound towards it is `-margin`: only motion away from the limit is
+    /// allowed.
     ///
-    /// Formula and operation order of libfranka 0.21, whose results it meets to the last digit.
+    /// Formula and operation order are those of libfranka 0.21; the results are identical to the
+    /// last digit.
     pub fn velocity_envelope(&self, q: &JointVector, margin: f64) -> (JointVector, JointVector) {
         let speed = |i: usize, distance: f64| {
             let nominal = self.velocity[i];
@@ -81,7 +83,8 @@ impl JointLimits {
         (0..7).all(|i| self.lower[i] <= q[i] && q[i] <= self.upper[i])
     }
 
-    /// The first joint (0 to 6) that is not within `hard_lower` and `hard_upper`, also for NaN.
+    /// Returns the first joint (0 to 6) outside `hard_lower` and `hard_upper`, or with a NaN
+    /// position.
     pub fn outside_hard(&self, q: &JointVector) -> Option<usize> {
         (0..7).find(|&i| !(self.hard_lower[i]..=self.hard_upper[i]).contains(&q[i]))
     }
@@ -90,22 +93,22 @@ impl JointLimits {
 /// Bounds on a motion along one coordinate, or on the norm of a vector of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionLimits {
-    /// Per second: `[m/s]` or `[rad/s]`.
+    /// Velocity, `[m/s]` or `[rad/s]`.
     pub velocity: f64,
-    /// `[m/s²]` or `[rad/s²]`.
+    /// Acceleration, `[m/s²]` or `[rad/s²]`.
     pub acceleration: f64,
-    /// `[m/s³]` or `[rad/s³]`.
+    /// Jerk, `[m/s³]` or `[rad/s³]`.
     pub jerk: f64,
 }
 
 /// Limits of Cartesian motion commands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CartesianLimits {
-    /// Of the end effector's position: bounds on the norm.
+    /// Limits of the end effector's position: bounds on the norm.
     pub translation: MotionLimits,
-    /// Of the end effector's orientation: bounds on the norm.
+    /// Limits of the end effector's orientation: bounds on the norm.
     pub rotation: MotionLimits,
-    /// Of the elbow angle (joint 3).
+    /// Limits of the elbow angle (joint 3).
     pub elbow: MotionLimits,
 }
 
@@ -141,7 +144,7 @@ mod tests {
 
     #[test]
     fn one_value_of_the_vendors_library_is_met_exactly() {
-        // libfranka 0.21.3 on its FR3 description, joint 3 near its upper limit.
+        // libfranka 0.21.3 with its FR3 description, joint 3 near its upper limit.
         let mut q = READY;
         q[2] = 2.8408030722477107;
         let limits = JointLimits::of(RobotKind::Fr3);

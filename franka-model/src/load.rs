@@ -5,28 +5,29 @@ use nalgebra::{Matrix3, Vector3};
 use crate::geometry::FLANGE;
 use crate::inertia::{RigidBody, Symmetric3};
 
-/// A rigid payload on the flange: the tool, what it holds, or both combined.
+/// A rigid payload on the flange: the tool, the object it holds, or both combined.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Load {
-    /// Mass, `[kg]`. A load without (positive) mass does not exist for the dynamics.
+    /// Mass, `[kg]`. The dynamics ignore a load without positive mass.
     pub mass: f64,
     /// Centre of mass in the flange frame, `[m]`.
     pub com: Vector3<f64>,
-    /// Inertia about the centre of mass, in flange axes, `[kg·m²]`; its symmetric part counts.
+    /// Inertia about the centre of mass, in flange axes, `[kg·m²]`; only its symmetric part is
+    /// used.
     pub inertia: Matrix3<f64>,
 }
 
 impl Load {
-    /// Nothing.
+    /// No load.
     pub const NONE: Self = Self {
         mass: 0.0,
         com: Vector3::new(0.0, 0.0, 0.0),
         inertia: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
     };
 
-    /// Both loads as one rigid body, with the rules of the vendor's totals (`m_total`,
-    /// `F_x_Ctotal`, `I_total` of libfranka 0.21) to the last bit: the inertia of a load without
-    /// mass counts as zero, the centre of mass of a total without mass is zero.
+    /// Returns both loads as one rigid body, with the rules of the vendor's totals (`m_total`,
+    /// `F_x_Ctotal`, `I_total` of libfranka 0.21) to the last bit. The inertia of a load without
+    /// mass counts as zero, and the centre of mass of a total without mass is zero.
     pub fn combine(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
         let com = if mass > 0.0 {
@@ -42,7 +43,7 @@ impl Load {
         Self { mass, com, inertia }
     }
 
-    /// The load as a body in the frame of link 7.
+    /// Returns the load as a body in the frame of link 7.
     pub(crate) fn on_link_7(&self) -> Option<RigidBody> {
         (self.mass > 0.0).then(|| RigidBody {
             mass: self.mass,
@@ -67,7 +68,7 @@ impl Default for Load {
 }
 
 /// `mass * S(r)^2` with the skew matrix `S`: minus the inertia of a point mass at `r` about the
-/// origin. The vendor multiplies the first factor by the mass, which decides the last bit.
+/// origin. The vendor multiplies the first factor by the mass, which determines the last bit.
 fn skew_squared(mass: f64, r: &Vector3<f64>) -> Matrix3<f64> {
     let skew = r.cross_matrix();
     skew * mass * skew

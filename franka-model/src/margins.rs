@@ -1,26 +1,28 @@
-//! How far the joints are from their limits, at rest and in motion.
+//! Distances of the joints from their limits, at rest and in motion.
 
 use crate::JointVector;
 use crate::limits::JointLimits;
 
-/// Distances of one state of the joints from their limits. Nothing is clamped: a negative
-/// margin says by how much a limit is passed.
+/// Distances of one state of the joints from their limits. Values are not clamped: a negative
+/// margin is the excess over a limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointMargins {
-    /// To the least position to command, `[rad]`.
+    /// Distance to the smallest commanded position, `[rad]`.
     pub to_lower: JointVector,
-    /// To the greatest position to command, `[rad]`.
+    /// Distance to the largest commanded position, `[rad]`.
     pub to_upper: JointVector,
-    /// To the nearer of the two, as a share of half the range: 1 in the middle, 0 at a limit.
+    /// Distance to the nearer of the two, as a share of half the range: 1 in the middle, 0 at a
+    /// limit.
     pub normalised: JointVector,
-    /// The distance, `[rad]`, to the limit that the joint moves towards, after braking from its
-    /// velocity; at rest the distance to the nearer limit. The joint slows down at the
-    /// deceleration of its [envelope](crate::limits::BrakingEnvelope), or at its greatest
-    /// acceleration where it has none, from now on: a bound on jerk takes a little more.
+    /// Distance, `[rad]`, to the limit in the direction of motion, after braking from the current
+    /// velocity; at rest, the distance to the nearer limit. The joint decelerates at the value of
+    /// its [envelope](crate::limits::BrakingEnvelope), or at its largest acceleration without an
+    /// envelope. A bound on jerk makes the braking distance slightly longer.
     pub braking: JointVector,
-    /// To the least velocity allowed here, `[rad/s]`; see [`JointLimits::velocity_envelope`].
+    /// Distance to the smallest velocity allowed here, `[rad/s]`; see
+    /// [`JointLimits::velocity_envelope`].
     pub to_least_velocity: JointVector,
-    /// To the greatest velocity allowed here, `[rad/s]`.
+    /// Distance to the largest velocity allowed here, `[rad/s]`.
     pub to_greatest_velocity: JointVector,
 }
 
@@ -39,8 +41,8 @@ impl JointMargins {
 }
 
 impl JointLimits {
-    /// The margins at positions `q` `[rad]` and velocities `dq` `[rad/s]`; zeros for an arm at
-    /// rest.
+    /// Returns the margins at positions `q` `[rad]` and velocities `dq` `[rad/s]`; pass zeros for
+    /// an arm at rest.
     pub fn margins(&self, q: &JointVector, dq: &JointVector) -> JointMargins {
         let (to_lower, to_upper) = (q - self.lower, self.upper - q);
         let nearer = to_lower.zip_map(&to_upper, f64::min);
@@ -68,7 +70,7 @@ impl JointLimits {
         }
     }
 
-    /// The deceleration of a braking joint, `[rad/s²]`.
+    /// Returns the deceleration of a braking joint, `[rad/s²]`.
     fn deceleration(&self, i: usize) -> f64 {
         match &self.envelope {
             Some(envelope) => envelope.deceleration[i],
@@ -123,7 +125,7 @@ mod tests {
             let (q, dq) = (random.posture(model), random.joints(2.0));
             let margins = limits.margins(&q, &dq);
             for i in 0..7 {
-                // Small steps of constant deceleration.
+                // Integrates small steps of constant deceleration.
                 let deceleration = match &limits.envelope {
                     Some(envelope) => envelope.deceleration[i],
                     None => limits.acceleration[i],

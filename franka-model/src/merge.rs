@@ -1,21 +1,22 @@
-//! How a load and link 7 become one body.
+//! Composition of a load and link 7 into one body.
 
 use nalgebra::Vector3;
 
 use crate::inertia::{RigidBody, Symmetric3};
 
-/// A rule of composition. Mass and first moment, and so gravity, are the same under both.
+/// A rule of composition. Mass and first moment, and therefore gravity, are the same for both
+/// rules.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Merge {
-    /// That of mechanics: inertias about the common centre of mass add up.
+    /// The rule of mechanics: inertias about the common centre of mass add up.
     Rigid,
-    /// That of the FER's model library: link 7, which has this mass and centre of mass in there,
-    /// keeps its inertia about its own centre, without the lever to the common one.
+    /// The rule of the FER's model library: link 7 has this mass and centre of mass in the library.
+    /// It keeps its inertia about its own centre, without the lever to the common centre.
     WithoutOwnLever((f64, [f64; 3])),
 }
 
 impl Merge {
-    /// `link` and `load`, both in the axes of link 7, as one.
+    /// Returns `link` and `load`, both in the axes of link 7, as one body.
     pub(crate) fn join(&self, link: &RigidBody, load: &RigidBody) -> RigidBody {
         let mut joined = link.joined(load);
         if let Self::WithoutOwnLever((mass, com)) = *self {

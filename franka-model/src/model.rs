@@ -1,4 +1,4 @@
-//! The constant description of one kind of robot, and the questions it answers.
+//! The constant description of one kind of robot, and the functions on it.
 
 use core::fmt;
 
@@ -19,8 +19,8 @@ use crate::{Jacobian, JointVector, MassMatrix};
 /// A robot's constants: kinematics, bodies and limits.
 ///
 /// The vendor's numbers are static values ([`of`](Self::of),
-/// [`physically_consistent`](Self::physically_consistent)); a description that a robot serves gives
-/// a value of its own. Both answer the same questions, and take the same time to do so.
+/// [`physically_consistent`](Self::physically_consistent)). A robot's own description yields a
+/// separate value. Both have the same functions, with the same run time.
 ///
 /// Throughout, `q` are joint positions `[rad]`, `dq` velocities `[rad/s]`, `ddq` accelerations
 /// `[rad/s²]`, torques are in `[N·m]`, and `gravity_earth` is the gravitational acceleration in the
@@ -34,12 +34,12 @@ pub struct Model {
     pub(crate) merge: Merge,
     pub(crate) joints: JointLimits,
     pub(crate) lengths: Lengths,
-    /// Joint frames that these lengths do not have, for simulation: rotation and translation in the
-    /// frame of the link before.
+    /// Joint frames that deviate from these lengths, for simulation: rotation and translation in
+    /// the frame of the previous link.
     pub(crate) origins: Option<[(Matrix3<f64>, Vector3<f64>); 7]>,
 }
 
-/// The kind alone: errors hold a model, and its numbers would bury their text.
+/// Prints only the kind: errors contain a model, and its numbers would hide their text.
 impl fmt::Debug for Model {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut model = f.debug_struct("Model");
@@ -48,12 +48,12 @@ impl fmt::Debug for Model {
 }
 
 impl Model {
-    /// Which robot this is.
+    /// The kind of robot.
     pub fn kind(&self) -> RobotKind {
         self.kind
     }
 
-    /// The body that stands still, in the base frame. No dynamics depends on it.
+    /// The fixed body, in the base frame. No dynamics depend on it.
     pub fn base(&self) -> &RigidBody {
         &self.base
     }
@@ -63,12 +63,12 @@ impl Model {
         &self.links
     }
 
-    /// What its joints may do.
+    /// The limits of its joints.
     pub fn joint_limits(&self) -> &JointLimits {
         &self.joints
     }
 
-    /// The same robot with these joint limits.
+    /// Returns the same robot with these joint limits.
     #[must_use]
     pub fn with_joint_limits(self, limits: JointLimits) -> Self {
         Self {
@@ -82,8 +82,8 @@ impl Model {
         &self.lengths
     }
 
-    /// The same robot with an upper arm and a forearm of these lengths, and with the joint frames
-    /// that belong to them.
+    /// Returns the same robot with an upper arm and a forearm of these lengths, and with the
+    /// corresponding joint frames.
     #[must_use]
     pub fn with_lengths(self, lengths: Lengths) -> Self {
         Self {
@@ -93,12 +93,13 @@ impl Model {
         }
     }
 
-    /// The same robot with joint frames that are off by `deviations`: entry `i` is the pose of the
-    /// new frame of joint `i + 1`, at joint position zero, in the frame that the joint has now. The
-    /// errors of a joint move all that follows.
+    /// Returns the same robot with joint frames displaced by `deviations`: entry `i` is the pose of
+    /// the new frame of joint `i + 1`, at joint position zero, in its current frame. The errors of
+    /// a joint move all later frames.
     ///
-    /// For simulation: kinematics and dynamics follow, [analytic IK](crate::analytic_ik) and
-    /// [capsules](crate::collision) keep the frames of the [`lengths`](Self::lengths).
+    /// For simulation: kinematics and dynamics use the deviations; [analytic
+    /// IK](crate::analytic_ik) and [capsules](crate::collision) keep the frames of the
+    /// [`lengths`](Self::lengths).
     #[must_use]
     pub fn with_deviations(mut self, deviations: &[Isometry3<f64>; 7]) -> Self {
         if deviations.iter().any(|d| *d != Isometry3::identity()) {
@@ -112,7 +113,8 @@ impl Model {
         self
     }
 
-    /// Pose of each joint's frame, with the joint at zero, in the frame of the link before.
+    /// Returns the pose of each joint's frame, with the joint at zero, in the frame of the previous
+    /// link.
     pub fn joint_origins(&self) -> [Isometry3<f64>; 7] {
         match &self.origins {
             None => self.lengths.joint_origins().map(|origin| {
@@ -134,21 +136,21 @@ impl Model {
         }
     }
 
-    /// Pose of `frame` in the base frame.
+    /// Returns the pose of `frame` in the base frame.
     pub fn pose(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Matrix4<f64> {
         Placement::of(&self.chain(q), frame, ee).pose()
     }
 
-    /// Velocity of the frame's origin and angular velocity of the frame per joint velocity, both
-    /// in base axes. Columns of joints beyond the frame are zero.
+    /// Returns the velocity of the frame's origin and the angular velocity of the frame per joint
+    /// velocity, both in base axes. Columns of joints after the frame are zero.
     pub fn zero_jacobian(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Jacobian {
         let chain = self.chain(q);
         let placement = Placement::of(&chain, frame, ee);
         jacobian::zero_jacobian(&chain, frame.joints(), &placement.origin)
     }
 
-    /// [`pose`](Self::pose) and [`zero_jacobian`](Self::zero_jacobian), from one pass along the
-    /// chain.
+    /// Returns [`pose`](Self::pose) and [`zero_jacobian`](Self::zero_jacobian), from one pass along
+    /// the chain.
     pub fn pose_and_jacobian(
         &self,
         frame: Frame,
@@ -161,13 +163,13 @@ impl Model {
         (placement.pose(), jacobian)
     }
 
-    /// Speed of the fastest of the centres of the joints, the flange and the end effector, `[m/s]`:
-    /// the origins of the first nine frames of [`Frame::ALL`].
+    /// Returns the speed of the fastest of the centres of the joints, the flange and the end
+    /// effector, `[m/s]`: the origins of the first nine frames of [`Frame::ALL`].
     pub fn fastest_point(&self, q: &JointVector, dq: &JointVector, ee: &EndEffector) -> f64 {
         jacobian::fastest_point(&self.chain(q), dq, ee)
     }
 
-    /// [`zero_jacobian`](Self::zero_jacobian) in the frame's own axes.
+    /// Returns the [`zero_jacobian`](Self::zero_jacobian) in the frame's own axes.
     pub fn body_jacobian(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Jacobian {
         let chain = self.chain(q);
         let placement = Placement::of(&chain, frame, ee);
@@ -175,17 +177,17 @@ impl Model {
         jacobian::body_jacobian(&zero, &placement.rotation)
     }
 
-    /// Joint-space inertia, without rotors, `[kg·m²]`.
+    /// Returns the joint-space inertia, without rotors, `[kg·m²]`.
     pub fn mass(&self, q: &JointVector, load: &Load) -> MassMatrix {
         dynamics::mass(&self.chain(q), &self.links_with(load))
     }
 
-    /// Torques of Coriolis and centrifugal forces, `C(q, dq) dq`.
+    /// Returns the torques of Coriolis and centrifugal forces, `C(q, dq) dq`.
     pub fn coriolis(&self, q: &JointVector, dq: &JointVector, load: &Load) -> JointVector {
         dynamics::coriolis(&self.chain(q), &self.links_with(load), dq)
     }
 
-    /// Torques that hold the arm still against gravity.
+    /// Returns the torques that hold the arm still against gravity.
     pub fn gravity(
         &self,
         q: &JointVector,
@@ -195,7 +197,8 @@ impl Model {
         dynamics::gravity(&self.chain(q), &self.links_with(load), gravity_earth)
     }
 
-    /// Torques for the acceleration `ddq`: `M ddq + C dq + g`, by recursive Newton-Euler.
+    /// Returns the torques for the acceleration `ddq`: `M ddq + C dq + g`, by recursive
+    /// Newton-Euler.
     pub fn inverse_dynamics(
         &self,
         q: &JointVector,
@@ -213,11 +216,12 @@ impl Model {
         )
     }
 
-    /// Accelerations under the torques `tau`: solves `(M + diag(armature)) ddq = tau − C dq − g`.
+    /// Returns the accelerations under the torques `tau`: solves `(M + diag(armature)) ddq = tau −
+    /// C dq − g`.
     ///
-    /// `armature` is the rotor inertia felt at each joint `[kg·m²]`. `None` if the matrix is not
-    /// positive definite, which takes a non-finite number, a negative armature, or a load that no
-    /// rigid body has.
+    /// `armature` is the reflected rotor inertia of each joint `[kg·m²]`. `None` if the matrix is
+    /// not positive definite: because of a non-finite number, a negative armature, or a load that
+    /// is not physical.
     #[allow(clippy::too_many_arguments)] // the terms of the equation of motion
     pub fn forward_dynamics(
         &self,
@@ -238,7 +242,7 @@ impl Model {
         )
     }
 
-    /// Everything that a control law needs in one cycle, each part computed once.
+    /// Returns all quantities that a control law needs in one cycle, each part computed once.
     pub fn dynamics(
         &self,
         q: &JointVector,

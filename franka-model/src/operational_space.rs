@@ -1,16 +1,16 @@
-//! The inertia that is felt at the end effector, or at another point of the arm.
+//! The apparent inertia at the end effector, or at another point of the arm.
 //!
-//! A push against a point of the arm meets a mass that depends on the posture and on the direction.
-//! In the terms of the operational space formulation (Khatib, IEEE Journal on Robotics and
-//! Automation 3(1), 1987; effective mass: Khatib, International Journal of Robotics Research 14(1),
-//! 1995), with the Jacobian `J` of the point and the joint-space inertia `M`:
+//! The apparent mass at a point of the arm depends on the posture and on the direction of a push.
+//! The operational space formulation (Khatib, IEEE Journal on Robotics and Automation 3(1), 1987;
+//! effective mass: Khatib, International Journal of Robotics Research 14(1), 1995) describes it
+//! with the Jacobian `J` of the point and the joint-space inertia `M`:
 //!
 //! - `J M⁻¹ Jᵀ` is the **mobility**: the acceleration per wrench. It exists at every posture.
 //! - Its inverse is the **operational-space inertia** `Λ`: the wrench per acceleration, if the
-//!   point is made to accelerate in this way *and in no other*. In a singularity there is none.
+//!   point is made to accelerate in this way *and in no other*. It does not exist in a singularity.
 //! - The **effective mass** along a direction `u` is `1 / (uᵀ J M⁻¹ Jᵀ u)`: the inertia against a
-//!   force along `u` while the point is free to move in every direction. It is never above the
-//!   number of `Λ` in the same direction.
+//!   force along `u` while the point is free to move in every direction. It never exceeds the value
+//!   of `Λ` in the same direction.
 
 use nalgebra::{Cholesky, Matrix3, SMatrix, UnitVector3, Vector3};
 
@@ -26,16 +26,17 @@ pub struct OperationalSpace {
 }
 
 impl OperationalSpace {
-    /// The operational space of a point with this Jacobian, on an arm with this joint-space
+    /// Creates the operational space of a point with this Jacobian, on an arm with this joint-space
     /// inertia.
     ///
     /// The point is the origin of the Jacobian's frame, the axes are those of the Jacobian: base
-    /// axes for a zero Jacobian. For another point of the last link move the end effector there
+    /// axes for a zero Jacobian. For another point of the last link, move the end effector to it
     /// ([`EndEffector::f_t_ee`]).
     ///
-    /// `None` if `mass` is not positive definite, which no posture of a physical arm gives.
+    /// `None` if `mass` is not positive definite, which is impossible for a physical arm.
     pub fn new(jacobian: &Jacobian, mass: &MassMatrix) -> Option<Self> {
-        // With M = L Lᵀ the mobility is a square, and stays symmetric to the last digit.
+        // With M = L Lᵀ, the mobility is a product of a matrix and its transpose, so it is
+        // symmetric to the last digit.
         let factor = Cholesky::new(*mass)?;
         let root = factor
             .l_dirty()
@@ -45,44 +46,44 @@ impl OperationalSpace {
         })
     }
 
-    /// `J M⁻¹ Jᵀ`: acceleration `[m/s², rad/s²]` per wrench `[N, N·m]`, the joints being free of
-    /// other torques.
+    /// Returns `J M⁻¹ Jᵀ`: acceleration `[m/s², rad/s²]` per wrench `[N, N·m]`, without other joint
+    /// torques.
     pub fn mobility(&self) -> &Matrix6 {
         &self.mobility
     }
 
-    /// `Λ`, the inverse of the mobility: wrench per acceleration when all six components are given.
-    /// `None` in a singularity.
+    /// Returns `Λ`, the inverse of the mobility: wrench per acceleration when all six components
+    /// are prescribed. `None` in a singularity.
     pub fn inertia(&self) -> Option<Matrix6> {
         Cholesky::new(self.mobility).map(|factor| factor.inverse())
     }
 
-    /// `(Jv M⁻¹ Jvᵀ)⁻¹`, `[kg]`: force per acceleration of the point, its rotation left free.
-    /// `None` where the point cannot move in some direction.
+    /// Returns `(Jv M⁻¹ Jvᵀ)⁻¹`, `[kg]`: force per acceleration of the point, with free rotation.
+    /// `None` if the point cannot move in some direction.
     pub fn translational_inertia(&self) -> Option<Matrix3<f64>> {
         let block: Matrix3<f64> = self.mobility.fixed_view::<3, 3>(0, 0).into();
         Cholesky::new(block).map(|factor| factor.inverse())
     }
 
-    /// `(Jw M⁻¹ Jwᵀ)⁻¹`, `[kg·m²]`: torque per angular acceleration, the point left free. `None`
-    /// where the body cannot turn about some axis.
+    /// Returns `(Jw M⁻¹ Jwᵀ)⁻¹`, `[kg·m²]`: torque per angular acceleration, with a free point.
+    /// `None` if the body cannot turn about some axis.
     pub fn rotational_inertia(&self) -> Option<Matrix3<f64>> {
         let block: Matrix3<f64> = self.mobility.fixed_view::<3, 3>(3, 3).into();
         Cholesky::new(block).map(|factor| factor.inverse())
     }
 
-    /// Effective mass along `direction`, `[kg]`: a force of 1 N along it accelerates the point
-    /// along it by one over this. Infinite where the point cannot move that way.
+    /// Returns the effective mass along `direction`, `[kg]`: the ratio of a force along it to the
+    /// acceleration of the point along it. Infinite if the point cannot move in this direction.
     pub fn effective_mass(&self, direction: &UnitVector3<f64>) -> f64 {
         self.effective_inertia(&Self::twist(direction, &Vector3::zeros()))
     }
 
-    /// Effective moment of inertia about `axis` through the point, `[kg·m²]`.
+    /// Returns the effective moment of inertia about `axis` through the point, `[kg·m²]`.
     pub fn effective_moment(&self, axis: &UnitVector3<f64>) -> f64 {
         self.effective_inertia(&Self::twist(&Vector3::zeros(), axis))
     }
 
-    /// Effective inertia along any unit twist, such as a screw: `1 / (uᵀ J M⁻¹ Jᵀ u)`.
+    /// Returns the effective inertia along any unit twist, such as a screw: `1 / (uᵀ J M⁻¹ Jᵀ u)`.
     pub fn effective_inertia(&self, unit: &Twist) -> f64 {
         unit.dot(&(self.mobility * unit)).recip()
     }
@@ -95,9 +96,8 @@ impl OperationalSpace {
 }
 
 impl Model {
-    /// The operational space of the origin of `frame`, in base axes. `None` for a load that no
-    /// rigid body has, and for joints that stand still for the frame: see
-    /// [`OperationalSpace::new`].
+    /// Returns the operational space of the origin of `frame`, in base axes. `None` for a load that
+    /// is not physical: see [`OperationalSpace::new`].
     pub fn operational_space(
         &self,
         frame: Frame,
@@ -110,7 +110,7 @@ impl Model {
 }
 
 impl Dynamics {
-    /// The operational space of the end effector, in base axes.
+    /// Returns the operational space of the end effector, in base axes.
     pub fn operational_space(&self) -> Option<OperationalSpace> {
         OperationalSpace::new(&self.jacobian, &self.mass)
     }
@@ -137,7 +137,7 @@ mod tests {
             space.translational_inertia().expect("regular").diagonal(),
             space.inertia().expect("regular").diagonal(),
         );
-        // Six digits are given.
+        // The expected values have six digits.
         for i in 0..3 {
             assert!((space.effective_mass(&axes[i]) - along[i]).abs() < 6e-7);
             assert!((space.effective_moment(&axes[i]) - along[3 + i]).abs() < 6e-7);
@@ -148,7 +148,7 @@ mod tests {
         }
     }
 
-    /// Computed from the same parameters with Pinocchio 4.1.
+    /// The values were computed from the same parameters with Pinocchio 4.1.
     #[test]
     fn the_fr3_at_the_ready_posture() {
         let (model, none, payload) = (Model::fr3(), &Load::NONE, &hand_load());
@@ -194,8 +194,8 @@ mod tests {
         );
     }
 
-    /// Likewise, with the rigid composition of link and load, which the vendor's library does not
-    /// have.
+    /// The values were computed in the same way, with the rigid composition of link and load, which
+    /// the vendor's library does not use.
     #[test]
     fn the_fer_at_the_ready_posture() {
         let rigid = Model {
@@ -272,7 +272,7 @@ mod tests {
 
     #[test]
     fn along_a_direction_that_is_lost_the_effective_mass_is_infinite() {
-        // Joint 1 turns its frame about z and moves its origin nowhere.
+        // Joint 1 turns its frame about z and does not move its origin.
         let still = EndEffector::default();
         let space = Model::fr3()
             .operational_space(Frame::Joint1, &READY, &still, &Load::NONE)

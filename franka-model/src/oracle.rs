@@ -1,4 +1,4 @@
-//! A slow way to the minimum in a box, for tests: every active set is tried.
+//! A slow search for the minimum in a box, for tests: it tries every active set.
 
 use std::vec::Vec;
 
@@ -9,11 +9,11 @@ use crate::box_qp::{JointBox, Problem};
 const ROWS: usize = 6 + 7;
 type Column = [f64; ROWS];
 
-/// The minimum, from all 3⁷ ways to hold variables on their bounds: of those that are within the
-/// box and whose gradient does not point into it, the one that is so best.
+/// Returns the minimum, from all 3⁷ ways to hold variables on their bounds: the best point within
+/// the box whose gradient does not point into it.
 ///
-/// The least squares of each way are solved by orthogonalisation of the columns of
-/// `[A; sqrt(d) 1]`, without normal equations.
+/// The least squares of each way are solved by orthogonalising the columns of `[A; sqrt(d) 1]`,
+/// without normal equations.
 pub(crate) fn minimum_by_enumeration(problem: &Problem<'_>, bounds: &JointBox) -> JointVector {
     let root = problem.damping.sqrt();
     let column = |i: usize| -> Column {
@@ -59,7 +59,8 @@ pub(crate) fn minimum_by_enumeration(problem: &Problem<'_>, bounds: &JointBox) -
     best.1
 }
 
-/// How far free variables are out of the box, or the gradient of held ones points into it.
+/// Returns the violation: the distance of free variables from the box, or the gradient of held
+/// variables that points into it.
 fn fault(
     columns: &[Column; 7],
     target: &Column,
@@ -91,10 +92,10 @@ fn fault(
     (0..7).map(fault).fold(0.0, f64::max)
 }
 
-/// Columns as orthonormal ones times a triangle, by the modified Gram-Schmidt method.
+/// Columns as a product of orthonormal columns and a triangle, by the modified Gram-Schmidt method.
 struct Orthogonal {
     columns: Vec<Column>,
-    /// Row by row.
+    /// The triangle, row by row.
     triangle: Vec<Vec<f64>>,
 }
 
@@ -120,7 +121,7 @@ impl Orthogonal {
         }
     }
 
-    /// The least squares solution.
+    /// Returns the least squares solution.
     fn solve(&self, mut right: Column) -> Vec<f64> {
         let count = self.columns.len();
         let mut x = std::vec![0.0; count];

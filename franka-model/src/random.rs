@@ -1,4 +1,4 @@
-//! Seeded numbers for tests, so that a failure repeats.
+//! Seeded random numbers for tests, so that a failure can be repeated.
 
 use nalgebra::{Matrix3, Vector3};
 use rand::{Rng, SeedableRng, rngs::SmallRng};
@@ -28,13 +28,13 @@ impl Random {
         JointVector::from_fn(|_, _| self.uniform(-bound, bound))
     }
 
-    /// Positions within the limits.
+    /// Returns positions within the limits.
     pub(crate) fn posture(&mut self, model: &Model) -> JointVector {
         let limits = model.joint_limits();
         JointVector::from_fn(|i, _| self.uniform(limits.lower[i], limits.upper[i]))
     }
 
-    /// A box of some density off the flange, as a physical load is.
+    /// Returns a physical load: a box of some density away from the flange.
     pub(crate) fn load(&mut self) -> Load {
         let mass = self.uniform(0.1, 3.0);
         let side = self.vector3(0.2);

@@ -1,4 +1,4 @@
-//! Rotation vectors: orientation as three numbers, with their rates.
+//! Rotation vectors: orientations as three numbers, with their rates.
 //!
 //! A rotation vector `phi` is axis times angle. A path of orientations is `R(t) = exp(phi(t)) R0`
 //! with a fixed anchor `R0`; then, in base axes,
@@ -17,7 +17,7 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::scalar::{atan2, sin_cos, sqrt};
 
-/// The rotation about `phi` by `|phi|` radians.
+/// Returns the rotation about `phi` by `|phi|` radians.
 pub fn exp(phi: &Vector3<f64>) -> UnitQuaternion<f64> {
     let half = phi * 0.5;
     let c = Stumpff::at(half.norm_squared());
@@ -25,14 +25,14 @@ pub fn exp(phi: &Vector3<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::new_unchecked(Quaternion::new(c.c0, v.x, v.y, v.z))
 }
 
-/// The shortest rotation vector of `rotation`, of length at most π.
+/// Returns the shortest rotation vector of `rotation`, of length at most π.
 ///
-/// At exactly half a turn both directions are right; the one of the quaternion is taken.
+/// At exactly half a turn both directions are right; the quaternion's direction is returned.
 pub fn log(rotation: &UnitQuaternion<f64>) -> Vector3<f64> {
     let v = rotation.imag();
     let w = rotation.w;
     let sine = v.norm();
-    // Below this the square of the norm underflows; sin(a/2) = a/2 far above it already.
+    // Below this the square of the norm underflows; sin(a/2) = a/2 holds far above it.
     let scale = if sine < 1e-150 {
         2.0
     } else {
@@ -41,26 +41,26 @@ pub fn log(rotation: &UnitQuaternion<f64>) -> Vector3<f64> {
     v * if w < 0.0 { -scale } else { scale }
 }
 
-/// The rotation vector, in base axes, that turns `actual` into `target`.
+/// Returns the rotation vector, in base axes, that turns `actual` into `target`.
 pub fn error(target: &UnitQuaternion<f64>, actual: &UnitQuaternion<f64>) -> Vector3<f64> {
     log(&(target * actual.inverse()))
 }
 
-/// `J(phi)`: rate of the rotation vector to angular velocity in base axes.
+/// Returns `J(phi)`, which maps the rate of the rotation vector to angular velocity in base axes.
 pub fn left_jacobian(phi: &Vector3<f64>) -> Matrix3<f64> {
     let c = Stumpff::at(phi.norm_squared());
     let k = phi.cross_matrix();
     Matrix3::identity() + k * c.c2 + k * k * c.c3
 }
 
-/// The inverse of [`left_jacobian`]; it exists for `|phi| < 2π`.
+/// Returns the inverse of [`left_jacobian`]; it exists for `|phi| < 2π`.
 pub fn left_jacobian_inverse(phi: &Vector3<f64>) -> Matrix3<f64> {
     let c = Stumpff::at(phi.norm_squared());
     let k = phi.cross_matrix();
     Matrix3::identity() - k * 0.5 + k * k * ((c.c3 - 2.0 * c.c4) / (2.0 * c.c2))
 }
 
-/// Time derivative of [`left_jacobian`] while `phi` changes at `rate`.
+/// Returns the time derivative of [`left_jacobian`] while `phi` changes at `rate`.
 pub fn left_jacobian_rate(phi: &Vector3<f64>, rate: &Vector3<f64>) -> Matrix3<f64> {
     let c = Stumpff::at(phi.norm_squared());
     let (k, dk) = (phi.cross_matrix(), rate.cross_matrix());
@@ -71,12 +71,13 @@ pub fn left_jacobian_rate(phi: &Vector3<f64>, rate: &Vector3<f64>) -> Matrix3<f6
         + (dk * k + k * dk) * c.c3
 }
 
-/// Angular velocity `[rad/s]`, in base axes, while `phi` changes at `rate`.
+/// Returns the angular velocity `[rad/s]`, in base axes, while `phi` changes at `rate`.
 pub fn angular_velocity(phi: &Vector3<f64>, rate: &Vector3<f64>) -> Vector3<f64> {
     left_jacobian(phi) * rate
 }
 
-/// Angular acceleration `[rad/s²]`, in base axes, from the rotation vector and its derivatives.
+/// Returns the angular acceleration `[rad/s²]`, in base axes, from the rotation vector and its
+/// derivatives.
 pub fn angular_acceleration(
     phi: &Vector3<f64>,
     rate: &Vector3<f64>,
@@ -85,8 +86,8 @@ pub fn angular_acceleration(
     left_jacobian(phi) * second + left_jacobian_rate(phi, rate) * rate
 }
 
-/// First and second derivative of the rotation vector at `phi` that mean the angular velocity
-/// `omega` and acceleration `alpha`; for `|phi| < 2π`.
+/// Returns the first and second derivative of the rotation vector at `phi` for the angular velocity
+/// `omega` and acceleration `alpha`; valid for `|phi| < 2π`.
 pub fn derivatives(
     phi: &Vector3<f64>,
     omega: &Vector3<f64>,
@@ -98,7 +99,7 @@ pub fn derivatives(
     (rate, second)
 }
 
-/// Stumpff's functions of `x = angle²`: cosine, sine over angle, and what follows.
+/// Stumpff's functions of `x = angle²`: cosine, sine over angle, and higher ones.
 struct Stumpff {
     c0: f64,
     c1: f64,
@@ -138,7 +139,7 @@ impl Stumpff {
     }
 }
 
-/// `k! c_k(x)` for `0 <= x < 1`, where the first term left out is below 1e-19.
+/// Returns `k! c_k(x)` for `0 <= x < 1`; the first omitted term is below 1e-19.
 fn series(k: f64, x: f64) -> f64 {
     let mut sum = 1.0;
     for term in (1..=8).rev() {
@@ -148,7 +149,7 @@ fn series(k: f64, x: f64) -> f64 {
     sum
 }
 
-/// Angle of 1 rad: the quotients lose no more than two digits beyond it.
+/// Square of an angle of 1 rad; above it the quotients lose at most two digits.
 const SERIES_BELOW: f64 = 1.0;
 
 #[cfg(test)]
@@ -157,7 +158,8 @@ mod tests {
     use crate::random::Random;
     use core::f64::consts::PI;
 
-    /// Rotation vectors of many lengths below `limit`, zero and the switch of formulas included.
+    /// Returns rotation vectors of many lengths below `limit`, including zero and the switch of
+    /// formulas.
     fn samples(limit: f64) -> std::vec::Vec<Vector3<f64>> {
         let mut random = Random::new(11);
         let lengths = [

@@ -1,6 +1,6 @@
 //! Elementary functions, from the platform's library with `std` and from `libm` without.
 //!
-//! `core` has none of them: the methods are those of `std`, or of nalgebra's traits.
+//! `core` has no such functions: the methods come from `std`, or from nalgebra's traits.
 
 #[cfg(not(any(test, feature = "std")))]
 use nalgebra::{ComplexField, RealField};

@@ -1,18 +1,18 @@
-//! Homogeneous matrices to isometries and back.
+//! Conversions between homogeneous matrices and isometries.
 //!
 //! The robot's matrices are column-major, may come from `f32` fields, and need not be exactly
-//! rigid: a pose with the vendor's 0.7071 for sqrt(1/2) is 1e-5 off. The nearest rotation in the
-//! least-squares sense (the polar factor) is what stands in for the rotation block.
+//! rigid: a pose with the vendor's 0.7071 for sqrt(1/2) is 1e-5 off. The rotation block is replaced
+//! by the nearest rotation in the least-squares sense (the polar factor).
 
 use nalgebra::{Isometry3, Matrix3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 
-/// How far an element of a rotation block may be from the nearest rotation to count as a pose.
+/// Largest deviation of an element of a rotation block from the nearest rotation.
 ///
-/// A hundred times what the vendor's rounded constants need; a transposed or sheared matrix is far
-/// beyond.
+/// This is a hundred times the deviation of the vendor's rounded constants; a transposed or sheared
+/// matrix deviates far more.
 pub const DISTORTION_MAX: f64 = 1e-3;
 
-/// The rigid transform nearest to `matrix`.
+/// Returns the rigid transform nearest to `matrix`.
 ///
 /// `None` if an element is not finite, the last row is not `0 0 0 1`, or the rotation block is
 /// further than `DISTORTION_MAX` (1e-3) from every rotation (mirrored, scaled, sheared).
@@ -31,28 +31,29 @@ pub fn isometry(matrix: &Matrix4<f64>) -> Option<Isometry3<f64>> {
     })
 }
 
-/// [`isometry`] of 16 numbers, column-major, as in `O_T_EE`.
+/// Like [`isometry`], for 16 numbers, column-major, as in `O_T_EE`.
 pub fn isometry_from_array(column_major: &[f64; 16]) -> Option<Isometry3<f64>> {
     isometry(&Matrix4::from_column_slice(column_major))
 }
 
-/// The homogeneous matrix of a rigid transform.
+/// Returns the homogeneous matrix of a rigid transform.
 pub fn matrix(isometry: &Isometry3<f64>) -> Matrix4<f64> {
     isometry.to_homogeneous()
 }
 
-/// 16 numbers, column-major, as in `O_T_EE_c`.
+/// Returns 16 numbers, column-major, as in `O_T_EE_c`.
 pub fn array(isometry: &Isometry3<f64>) -> [f64; 16] {
     let mut column_major = [0.0; 16];
     column_major.copy_from_slice(matrix(isometry).as_slice());
     column_major
 }
 
-/// Rotation part of the polar decomposition, by Newton's iteration `X <- (X + X⁻ᵀ) / 2`.
+/// Returns the rotation part of the polar decomposition, by Newton's iteration `X <- (X + X⁻ᵀ) /
+/// 2`.
 ///
 /// It converges for every matrix of positive determinant, quadratically near a rotation (Higham,
-/// Functions of Matrices, 2008, section 8.3). `None` for others, and where 20 steps are
-/// not enough, which takes a matrix close to singular.
+/// Functions of Matrices, 2008, section 8.3). `None` for other matrices, and if 20 steps are not
+/// enough, which happens only close to a singular matrix.
 pub fn nearest_rotation(block: &Matrix3<f64>) -> Option<Rotation3<f64>> {
     let determinant = block.determinant();
     if determinant.is_nan() || determinant <= 0.0 {
@@ -64,7 +65,8 @@ pub fn nearest_rotation(block: &Matrix3<f64>) -> Option<Rotation3<f64>> {
         let change = (next - x).amax();
         x = next;
         if change < 1e-9 {
-            // Quadratic: one more step would change less than a unit in the last place.
+            // Quadratic convergence: another step would change less than one unit in the last
+            // place.
             return Some(Rotation3::from_matrix_unchecked(x));
         }
     }

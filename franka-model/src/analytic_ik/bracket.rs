@@ -1,9 +1,9 @@
-//! Roots of a smooth function between samples of it. Points are `(x, f(x))`.
+//! Roots of a smooth function between its samples. Points are `(x, f(x))`.
 
-/// The root between two points with values of opposite signs, to the last digits of x.
+/// Returns the root between two points with values of opposite signs, to the last digits of x.
 ///
-/// False position; where one end stays, its value is halved (the Illinois variant: Dowell and
-/// Jarratt, 1971), and every third step is a bisection, which bounds their number.
+/// The method is false position. If one end stays, its value is halved (the Illinois variant:
+/// Dowell and Jarratt, 1971). Every third step is a bisection, which bounds the number of steps.
 pub(super) fn root(
     f: impl Fn(f64) -> f64,
     (mut a, mut fa): (f64, f64),
@@ -39,8 +39,9 @@ pub(super) fn root(
     if fa.abs() < fb.abs() { a } else { b }
 }
 
-/// Looks for roots around the middle one of three ascending or descending points, whose values
-/// have one sign and of which it is nearest to zero: two, one where they touch, or none.
+/// Searches for roots around the middle one of three ascending or descending points. Their values
+/// have the same sign, and the middle value is nearest to zero. Finds two roots, one double root,
+/// or none.
 pub(super) fn dip(
     f: impl Fn(f64) -> f64,
     [mut a, mut b, mut c]: [(f64, f64); 3],
@@ -50,7 +51,7 @@ pub(super) fn dip(
     let mut settled = 0;
     for step in 0..STEPS_MAX {
         let (vertex, expected) = vertex(a, b, c);
-        // Golden section where the parabola leads nowhere new.
+        // Golden section if the parabola gives no new point.
         let wide = if (b.0 - a.0).abs() > (c.0 - b.0).abs() {
             a
         } else {
@@ -63,7 +64,7 @@ pub(super) fn dip(
         let x = if usable { vertex } else { golden };
         let point = (x, f(x));
         if point.1 * sign <= 0.0 {
-            // The extremum is beyond zero: a root on either side.
+            // The extremum is beyond zero: one root on either side.
             visit(root(&f, a, point));
             visit(root(&f, point, c));
             return;
@@ -76,7 +77,7 @@ pub(super) fn dip(
             settled = 0;
         }
         if settled == SETTLED {
-            return; // away from zero: where the function touches it, the values fall ever faster
+            return; // away from zero: near a double root, the values fall ever faster
         }
         let nearer = value < least;
         let towards_c = (x - b.0) * (c.0 - b.0) > 0.0;
@@ -95,7 +96,7 @@ pub(super) fn dip(
     }
 }
 
-/// [`dip`] between the end of an interval and the next point, which is further from zero.
+/// Like [`dip`], between the end of an interval and the next point, which is further from zero.
 pub(super) fn dip_at_end(
     f: impl Fn(f64) -> f64,
     end: (f64, f64),
@@ -121,7 +122,7 @@ pub(super) fn dip_at_end(
     }
 }
 
-/// Extremum of the parabola through three points and its value there.
+/// Returns the extremum of the parabola through three points, and its value.
 fn vertex(a: (f64, f64), b: (f64, f64), c: (f64, f64)) -> (f64, f64) {
     let (left, right) = (a.0 - b.0, c.0 - b.0);
     let (down, up) = ((a.1 - b.1) / left, (c.1 - b.1) / right);
@@ -132,15 +133,15 @@ fn vertex(a: (f64, f64), b: (f64, f64), c: (f64, f64)) -> (f64, f64) {
 }
 
 const STEPS_MAX: u32 = 60;
-/// Steps that find what they foresaw, and nothing nearer to zero, after which a search ends.
+/// Number of steps without improvement, as predicted, after which a search ends.
 const SETTLED: u32 = 3;
-/// Looks between an end and the point next to it.
+/// Number of samples between an end and the point next to it.
 const END_STEPS: u32 = 5;
-/// Distance of points, in radians, that makes no difference.
+/// Distance of points below which they count as equal, `[rad]`.
 const RESOLUTION: f64 = 1e-16;
-/// Width of a bracket within which a smooth function differs from its extremum by rounding.
+/// Width of a bracket within which a smooth function differs from its extremum only by rounding.
 const NARROW: f64 = 1e-8;
-/// An extremum nearer to zero than this touches it.
+/// Bound below which an extremum counts as a root.
 const TOUCH: f64 = 1e-14;
 
 #[cfg(test)]

@@ -9,10 +9,10 @@ use crate::geometry::{Lengths, WRIST};
 use crate::inertia::dot;
 use crate::scalar::{acos, atan2, sqrt};
 
-/// All solutions with joint 4 at `q4`: at most eight.
+/// Returns all solutions with joint 4 at `q4`: at most eight.
 ///
-/// The wrist is on a circle about axis 7; joint 4 tells its distance from the shoulder, and a
-/// circle has two points at a distance.
+/// The wrist is on a circle about axis 7. Joint 4 determines its distance from the shoulder, and at
+/// most two points of a circle have a given distance.
 pub(super) fn all(lengths: &Lengths, flange: &Isometry3<f64>, q4: f64) -> Solutions {
     let mut found = Solutions::NONE;
     let flange = Flange::of(flange);
@@ -27,14 +27,14 @@ pub(super) fn all(lengths: &Lengths, flange: &Isometry3<f64>, q4: f64) -> Soluti
     found
 }
 
-/// Angles of joint 7 with the wrist at a distance from the shoulder.
+/// Returns the angles of joint 7 that place the wrist at a distance from the shoulder.
 fn circle(flange: &Flange, squared_distance: f64) -> [Option<f64>; 2] {
     let d = &flange.from_shoulder;
     let (p, q) = (dot(d, &flange.x), dot(d, &flange.y));
     let radius = sqrt(p * p + q * q);
     let along = (dot(d, d) + WRIST * WRIST - squared_distance) / (2.0 * WRIST);
     if radius < AXIS {
-        // Shoulder on axis 7: all angles do, or none.
+        // The shoulder is on axis 7: all angles are solutions, or none.
         return [(along.abs() < AXIS).then_some(0.0), None];
     }
     let Some(cos) = cosine(along / radius) else {
@@ -44,5 +44,5 @@ fn circle(flange: &Flange, squared_distance: f64) -> [Option<f64>; 2] {
     [Some(wrapped(nearest + off)), Some(wrapped(nearest - off))]
 }
 
-/// Distance from axis 7, `[m]`, below which the shoulder is on it.
+/// Distance from axis 7, `[m]`, below which the shoulder counts as on the axis.
 const AXIS: f64 = 1e-12;

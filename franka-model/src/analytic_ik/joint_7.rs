@@ -1,4 +1,4 @@
-//! The steps from joint 7 on, in closed form.
+//! The steps after joint 7, in closed form.
 
 use nalgebra::{Isometry3, Vector3};
 
@@ -7,7 +7,7 @@ use crate::geometry::{ELBOW, FLANGE, Lengths, SHOULDER, WRIST};
 use crate::inertia::{cross, dot};
 use crate::scalar::{atan2, sin_cos, sqrt};
 
-/// All solutions with joint 7 at `q7`: none, four or eight.
+/// Returns all solutions with joint 7 at `q7`: none, four or eight.
 pub(super) fn all(lengths: &Lengths, flange: &Isometry3<f64>, q7: f64) -> Solutions {
     let mut found = Solutions::NONE;
     let hand = Hand::of(&Flange::of(flange), q7);
@@ -18,14 +18,14 @@ pub(super) fn all(lengths: &Lengths, flange: &Isometry3<f64>, q7: f64) -> Soluti
     found
 }
 
-/// The solutions with joints 4 and 7 known.
+/// Adds the solutions for known joints 4 and 7.
 pub(super) fn push_all(found: &mut Solutions, hand: &Hand, elbow: &Elbow, q4: f64) {
     for forearm in Forearm::both(hand, elbow).into_iter().flatten() {
         push_both(found, hand, elbow, q4, &forearm);
     }
 }
 
-/// The solutions with all but the shoulder known.
+/// Adds the solutions for known joints 4 to 7.
 pub(super) fn push_both(
     found: &mut Solutions,
     hand: &Hand,
@@ -47,7 +47,7 @@ pub(super) fn push_both(
     }
 }
 
-/// The flange's axes, and the way from the shoulder to where frame 7 has its origin.
+/// The flange's axes, and the vector from the shoulder to the origin of frame 7.
 pub(super) struct Flange {
     pub(super) x: Vector3<f64>,
     pub(super) y: Vector3<f64>,
@@ -70,7 +70,7 @@ impl Flange {
     }
 }
 
-/// Axes of frame 6 in base axes, and the way from the wrist to the shoulder.
+/// Axes of frame 6 in base axes, and the vector from the wrist to the shoulder.
 pub(super) struct Hand {
     pub(super) q7: f64,
     pub(super) x6: Vector3<f64>,
@@ -99,18 +99,18 @@ pub(super) struct Elbow {
     pub(super) above: bool,
     sin: f64,
     cos: f64,
-    /// Wrist to shoulder in frame 4: along x, along y.
+    /// Vector from wrist to shoulder in frame 4: components along x and y.
     pub(super) f: f64,
     pub(super) h: f64,
 }
 
-/// Squares of the distances from the shoulder to axis 4 and from there to the wrist, `[m²]`.
+/// Squares of the distances from the shoulder to axis 4 and from axis 4 to the wrist, `[m²]`.
 fn squared_sides(lengths: &Lengths) -> [f64; 2] {
     [lengths.upper_arm, lengths.forearm].map(|length| length * length + ELBOW * ELBOW)
 }
 
 impl Elbow {
-    /// From the squared distance between shoulder and wrist: both answers, or none.
+    /// Returns both answers for the squared distance between shoulder and wrist, or none.
     fn both(lengths: &Lengths, squared_distance: f64) -> [Option<Self>; 2] {
         match cosine(Self::from_flip(lengths, squared_distance)) {
             // With the shoulder on the axis of joint 5, far outside the limits, f vanishes.
@@ -122,13 +122,13 @@ impl Elbow {
         }
     }
 
-    /// The answer on one side, for a distance that the arm has up to rounding.
+    /// Returns the answer on one side, for a distance that is possible within rounding.
     pub(super) fn on_side(lengths: &Lengths, above: bool, squared_distance: f64) -> Self {
         let cos = Self::from_flip(lengths, squared_distance).clamp(-1.0, 1.0);
         Self::turned(lengths, above, cos)
     }
 
-    /// With joint 4 as given.
+    /// Returns the answer with the given joint 4.
     pub(super) fn at(lengths: &Lengths, q4: f64) -> Option<Self> {
         let above = sin_cos(q4 - lengths.flip_angle()).0 > 0.0;
         let elbow = Self::of(lengths, above, sin_cos(q4));
@@ -186,8 +186,8 @@ pub(super) struct Forearm {
 }
 
 impl Forearm {
-    /// From the axis of joint 5, which is in the plane of x6 and y6 and whose part of the way to
-    /// the shoulder the elbow says.
+    /// Computes both answers from the axis of joint 5. This axis is in the plane of x6 and y6, and
+    /// the elbow determines its component of the vector to the shoulder.
     pub(super) fn both(hand: &Hand, elbow: &Elbow) -> [Option<Self>; 2] {
         let v = &hand.to_shoulder;
         let (along, across) = (dot(&hand.x6, v), dot(&hand.y6, v));
@@ -204,8 +204,8 @@ impl Forearm {
         })
     }
 
-    /// With sine and cosine of joint 6 known, whose squares add up to one; `straight` is read off
-    /// joint 5 if it is not.
+    /// Computes the answer for known sine and cosine of joint 6, whose squares add up to one. If
+    /// `straight` is `None`, it is derived from joint 5.
     pub(super) fn of(
         hand: &Hand,
         elbow: &Elbow,
@@ -215,8 +215,8 @@ impl Forearm {
         let (x6, y6, v) = (&hand.x6, &hand.y6, &hand.to_shoulder);
         let x5 = x6 * c6 - y6 * s6;
         let z5 = x6 * s6 + y6 * c6;
-        // Shoulder beside the axis of joint 5, in frame 5 (whose y axis is −z6), where it is at
-        // −q5 from x.
+        // Component of the shoulder perpendicular to the axis of joint 5, in frame 5 (whose y axis
+        // is −z6). Its angle from x is −q5.
         let beside = v - z5 * elbow.h;
         let (s5, c5) = (
             dot(&hand.z6, &beside) / elbow.f,
@@ -224,7 +224,7 @@ impl Forearm {
         );
         let norm = sqrt(s5 * s5 + c5 * c5);
         let (s5, c5) = (s5 / norm, c5 / norm);
-        // A direction is lost only with the solution itself.
+        // The direction is undefined only if the solution itself is.
         norm.is_normal().then(|| Self {
             straight: straight.unwrap_or(c5 * elbow.f > 0.0),
             q5: atan2(s5, c5),
@@ -234,7 +234,7 @@ impl Forearm {
         })
     }
 
-    /// Axes of frame 3 in base axes.
+    /// Returns the axes of frame 3 in base axes.
     fn upper_arm(&self, elbow: &Elbow) -> [Vector3<f64>; 3] {
         let (sin, cos) = (elbow.sin, elbow.cos);
         [
@@ -245,27 +245,27 @@ impl Forearm {
     }
 }
 
-/// The rotation that joints 1, 2 and 3 make, as sines and cosines of one answer.
+/// The rotation of joints 1, 2 and 3, as sines and cosines of one answer.
 struct Turn {
     one: (f64, f64),
     two: (f64, f64),
     three: (f64, f64),
-    /// Axes 1 and 3 are in line.
+    /// True if axes 1 and 3 are in line.
     shared: bool,
 }
 
 impl Turn {
-    /// From the axes of frame 3.
+    /// Computes the rotation from the axes of frame 3.
     fn of([x3, y3, z3]: &[Vector3<f64>; 3]) -> Self {
         let radius = sqrt(z3.x * z3.x + z3.y * z3.y);
         let in_line = radius <= SHOULDER_SINGULAR;
         let (s1, c1) = if in_line {
-            // Half of the sum of both angles; only their difference matters with joint 2 at π.
+            // Half of the sum of both angles. With joint 2 at π, only their difference matters.
             sin_cos(0.5 * atan2(x3.y - y3.x, x3.x + y3.y))
         } else {
             (z3.y / radius, z3.x / radius)
         };
-        // The turn of frame 3 in the plane that joint 2 moves: exact however small the radius.
+        // The rotation of frame 3 in the plane of joint 2's motion is exact for any radius.
         Self {
             one: (s1, c1),
             two: (z3.x * c1 + z3.y * s1, z3.z),
@@ -274,7 +274,8 @@ impl Turn {
         }
     }
 
-    /// Angles of joints 1, 2 and 3, with whether joint 2 is negative.
+    /// Returns the angles of joints 1, 2 and 3 for both signs of joint 2; the flag is true if joint
+    /// 2 is negative.
     fn both(&self) -> [(bool, [f64; 3]); 2] {
         let ((s1, c1), (s2, c2), (s3, c3)) = (self.one, self.two, self.three);
         [
@@ -284,13 +285,14 @@ impl Turn {
     }
 }
 
-/// `x` as a cosine, clamped where rounding moved it out of range; `None` if it is further out.
+/// Returns `x` as a cosine, clamped against rounding; `None` if it is further out of range.
 pub(super) fn cosine(x: f64) -> Option<f64> {
     (x.abs() <= 1.0 + FOLD).then(|| x.clamp(-1.0, 1.0))
 }
 
-/// How far beyond a double root a pose still counts as on it: some thousand roundings.
+/// Excess beyond a double root within which a pose still counts as on it: some thousand rounding
+/// errors.
 const FOLD: f64 = 1e-12;
-/// Sine of joint 2 below which axes 1 and 3 count as one. What this neglects in the pose is of the
+/// Sine of joint 2 below which axes 1 and 3 count as one. The resulting error of the pose has the
 /// same size, in radians.
 const SHOULDER_SINGULAR: f64 = 1e-13;

@@ -1,4 +1,4 @@
-//! The posture nearest to another among all that meet a pose.
+//! The nearest posture to a given one, among all postures for a pose.
 
 use nalgebra::Isometry3;
 
@@ -8,12 +8,13 @@ use crate::frame::EndEffector;
 use crate::inverse_kinematics::{self, IkError};
 use crate::model::Model;
 
-/// The posture within the limits, whatever its redundancy parameter, that brings the end effector
-/// to `target` and is nearest to `q` in the sense of the sum of squares; `None` if none was found.
+/// Returns the posture within the limits that brings the end effector to `target` and is nearest to
+/// `q` (least sum of squares), over all redundancy parameters. Returns `None` if no posture was
+/// found.
 ///
-/// Joint 7 is swept through its range and the best place of every branch refined, some 0.3 ms. A
-/// pose that only a hundredth of a radian of joint 7 can meet may be missed;
-/// [`reach`](super::reach) looks closer.
+/// Joint 7 is swept through its range, and the best posture of every branch is refined; this takes
+/// some 0.3 ms. The sweep may miss a pose that allows only a hundredth of a radian of joint 7;
+/// [`reach`](super::reach) searches more finely.
 ///
 /// # Errors
 /// [`IkError::NotFinite`] and [`IkError::EndEffectorNotRigid`].
@@ -28,7 +29,7 @@ pub fn nearest(
         return Err(IkError::NotFinite);
     }
     let limits = model.joint_limits();
-    // Per branch: along joint 7 the postures of one are continuous.
+    // The least per branch: along joint 7, the postures of one branch are continuous.
     let mut least = [None; 8];
     let near = inverse_kinematics::from_seed(model, &flange, q).unwrap_or(*q)[6];
     let places = [q[6], near].into_iter();
@@ -38,7 +39,7 @@ pub fn nearest(
         let place: &mut Option<Solution> = &mut least[solution.branch.index()];
         *place = best([*place, Some(solution)].into_iter().flatten(), q);
     }
-    // Between samples: steps that halve, downhill.
+    // Refines between samples with steps that halve, downhill.
     for found in least.iter_mut().flatten() {
         let mut step = (limits.upper[6] - limits.lower[6]) / f64::from(STEPS);
         while step > RESOLUTION {
@@ -71,7 +72,7 @@ fn distance(solution: &Solution, q: &JointVector) -> f64 {
     (solution.q - q).norm_squared()
 }
 
-/// Intervals of the sweep.
+/// Number of intervals of the sweep.
 const STEPS: u32 = 96;
-/// Of joint 7, `[rad]`.
+/// Resolution of joint 7, `[rad]`.
 const RESOLUTION: f64 = 1e-9;

@@ -1,7 +1,7 @@
-//! Whether a pose or a point is within reach, and how far it is from the boundary of what is.
+//! Reachability of a pose or a point, and its distance from the boundary of the reachable set.
 //!
-//! Both questions are for planning, not for a cycle: they take from some 10 µs (well inside) to
-//! some 10 ms (far outside).
+//! Both functions are for planning, not for a control cycle: they take from about 10 µs (well
+//! inside) to about 10 ms (far outside).
 
 use nalgebra::{Isometry3, Vector3};
 
@@ -13,28 +13,28 @@ use crate::inverse_kinematics::{self, IkError};
 use crate::limits::JointLimits;
 use crate::model::Model;
 
-/// What is known about a target.
+/// The reachability of a target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reach {
-    /// A posture within the limits that meets the target: of those looked at, the one whose joints
-    /// keep most off their limits. `None` if the target is out of reach.
+    /// A posture within the limits that meets the target: among the examined postures, the posture
+    /// with the largest distance to the limits. `None` if the target is out of reach.
     pub posture: Option<JointVector>,
-    /// How far, `[m]`, the target may move along the line through the shoulder, out or in, before
-    /// it leaves what can be reached, up to [`FAR`]; negative for a target out of reach, by how far
-    /// it has to move along that line to come within; −∞ where nothing on the line can be reached
-    /// with that orientation. Exact to a micrometre, if what can be reached has no gaps of less
-    /// than 5 mm on the line.
+    /// Distance, `[m]`, that the target may move along the line through the shoulder, out or in,
+    /// before it becomes unreachable; at most [`FAR`]. The value is negative for an unreachable
+    /// target: the distance along that line to the reachable set. It is −∞ if no point of the line
+    /// can be reached with that orientation. The value is exact to a micrometre, if the reachable
+    /// set has no gaps shorter than 5 mm on the line.
     pub margin: f64,
 }
 
 impl Reach {
-    /// True if there is a posture.
+    /// True if the target is within reach.
     pub fn within(&self) -> bool {
         self.posture.is_some()
     }
 }
 
-/// Whether the end effector can be brought to `target`, with its orientation.
+/// Computes the reachability of the pose `target` for the end effector.
 ///
 /// # Errors
 /// [`IkError::NotFinite`] and [`IkError::EndEffectorNotRigid`].
@@ -54,8 +54,8 @@ pub fn pose(model: &Model, target: &Isometry3<f64>, ee: &EndEffector) -> Result<
     Ok(Reach { posture, margin })
 }
 
-/// Whether the end effector's origin can be brought to `point` `[m]`, in the base frame, with any
-/// orientation.
+/// Computes the reachability of `point` `[m]`, in the base frame, for the end effector's origin
+/// with any orientation.
 ///
 /// The search is by iteration from several starts: a refusal is strong evidence, not a proof.
 ///
@@ -79,11 +79,10 @@ pub fn position(model: &Model, point: &Vector3<f64>, ee: &EndEffector) -> Result
     Ok(Reach { posture, margin })
 }
 
-/// Distances beyond this are not looked at, `[m]`: no point of the arm is further from the
-/// shoulder.
+/// Largest distance examined, `[m]`: no point of the arm is further from the shoulder.
 pub const FAR: f64 = 1.2;
 
-/// Postures for poses that are next to each other.
+/// Search for postures of neighbouring poses.
 struct PoseSearch<'a> {
     model: &'a Model,
     /// The last posture found.
@@ -92,7 +91,7 @@ struct PoseSearch<'a> {
 
 impl PoseSearch<'_> {
     fn reaches(&mut self, flange: &Isometry3<f64>, limits: &JointLimits) -> bool {
-        // Joint 7 where it last was, before all of its range.
+        // Tries the last angle of joint 7 before its whole range.
         if let Some(q) = self.seed {
             let found = joint_7::all(self.model.lengths(), flange, q[6])
                 .within(&limits.lower, &limits.upper);
@@ -110,8 +109,8 @@ impl PoseSearch<'_> {
         }
     }
 
-    /// By iteration from the last posture: the boundary is where joint 7 has one angle left, which
-    /// no sweep meets.
+    /// Iterates from the last posture: at the boundary, joint 7 has only one possible angle, which
+    /// a sweep misses.
     fn posture(&self, flange: &Isometry3<f64>) -> Option<JointVector> {
         let seed = self.seed.unwrap_or(crate::READY);
         inverse_kinematics::from_seed(self.model, flange, &seed).ok()
@@ -124,7 +123,8 @@ fn max_margin(model: &Model, flange: &Isometry3<f64>) -> Option<Solution> {
         .max_by(|a, b| a.limit_margin(limits).total_cmp(&b.limit_margin(limits)))
 }
 
-/// Signed distance along the line through the shoulder at which `reaches(shift)` changes.
+/// Returns the signed distance along the line through the shoulder at which `reaches(shift)`
+/// changes.
 fn margin(
     inside: bool,
     point: &Vector3<f64>,
@@ -144,7 +144,7 @@ fn margin(
             if reaches(&(outward * (direction * far))) == inside {
                 continue;
             }
-            // Between the last place that was like the target and this one.
+            // The change is between the last place with the target's answer and this place.
             let (mut same, mut other) = (far - STRIDE, far);
             while other - same > PRECISION {
                 let middle = 0.5 * (same + other);
@@ -160,11 +160,11 @@ fn margin(
     if inside { FAR } else { f64::NEG_INFINITY }
 }
 
-/// Intervals of a sweep of joint 7.
+/// Number of intervals of a sweep of joint 7.
 const STEPS: u32 = 32;
-/// Distance of the places looked at, `[m]`.
+/// Distance between examined places, `[m]`.
 const STRIDE: f64 = 5e-3;
-/// `[m]`.
+/// Length, `[m]`.
 const PRECISION: f64 = 1e-6;
 
 #[cfg(test)]
@@ -190,8 +190,9 @@ mod tests {
 
     #[test]
     fn the_margin_of_a_pose_ends_at_the_stretched_arm() {
-        // Hand forward, axis 7 on the line from the shoulder through a wrist on the level of it:
-        // the wrist's distance is then a right triangle's with the offset of the wrist.
+        // The hand points forward, with axis 7 on the line from the shoulder through a wrist at the
+        // same height. The wrist's distance is then a side of a right triangle with the offset of
+        // the wrist.
         let forward = nalgebra::UnitQuaternion::from_axis_angle(
             &Vector3::y_axis(),
             core::f64::consts::FRAC_PI_2,
@@ -254,7 +255,7 @@ mod tests {
             assert!((found.fixed_view::<3, 1>(0, 3) - point).norm() < 2e-9);
             assert!(reach.margin >= 0.0);
         }
-        // Beyond everything: the two ends of the negative margin meet at the boundary.
+        // Beyond everything: both ends of the negative margin meet at the boundary.
         let near = position(model, &Vector3::new(1.1, 0.0, 0.4), &ee).expect("finite");
         let far = position(model, &Vector3::new(1.3, 0.0, 0.4), &ee).expect("finite");
         assert!(!near.within() && !far.within());

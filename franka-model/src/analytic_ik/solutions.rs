@@ -1,4 +1,4 @@
-//! Solutions, what is known about each, and lists of them.
+//! Solutions with their properties, and lists of solutions.
 
 use core::f64::consts::{FRAC_PI_2, TAU};
 use core::ops::Deref;
@@ -7,19 +7,20 @@ use crate::JointVector;
 use crate::elbow::FLIP_ANGLE;
 use crate::limits::JointLimits;
 
-/// Which of the two answers of each step a solution takes.
+/// The choice of a solution between the two answers of each step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Branch {
-    /// Joint 4 above the [flip angle](crate::elbow::FLIP_ANGLE).
+    /// True if joint 4 is above the [flip angle](crate::elbow::FLIP_ANGLE).
     pub elbow: bool,
-    /// Joint 5 within a quarter turn of zero, for positions of joint 4 within its limits.
+    /// True if joint 5 is within a quarter turn of zero, for positions of joint 4 within its
+    /// limits.
     pub wrist: bool,
-    /// Joint 2 negative.
+    /// True if joint 2 is negative.
     pub shoulder: bool,
 }
 
 impl Branch {
-    /// From 0 to 7, a number for each.
+    /// Returns the number of the branch, 0 to 7.
     pub fn index(self) -> usize {
         usize::from(self.elbow) * 4 + usize::from(self.wrist) * 2 + usize::from(self.shoulder)
     }
@@ -30,36 +31,38 @@ impl Branch {
 pub struct Solution {
     /// Joint positions, `[rad]`.
     pub q: JointVector,
-    /// Which one it is: the same along a path that crosses no singularity.
+    /// The branch: constant along a path that crosses no singularity.
     pub branch: Branch,
-    /// With axes 1 and 3 in line (joint 2 at zero): how far, `[rad]`, joint 1 may turn on while
-    /// joint 3 turns back without moving the hand, as a lower and an upper bound. Within the
-    /// limits if the solution was sought there. `None` anywhere else.
+    /// Range of joint 1, `[rad]`, if axes 1 and 3 are in line (joint 2 at zero): a lower and an
+    /// upper bound. Joint 1 may turn by an amount in this range while joint 3 turns back, without
+    /// moving the hand. The range respects the limits if the solution was sought within limits.
+    /// `None` in all other postures.
     pub slide: Option<[f64; 2]>,
 }
 
 impl Solution {
-    /// Distance of each joint to the nearer of its limits, `[rad]`, negative beyond it.
+    /// Returns the distance of each joint to the nearer of its limits, `[rad]`, negative beyond it.
     pub fn limit_distances(&self, limits: &JointLimits) -> JointVector {
         (self.q - limits.lower).inf(&(limits.upper - self.q))
     }
 
-    /// The least of [`limit_distances`](Self::limit_distances), `[rad]`.
+    /// Returns the least of [`limit_distances`](Self::limit_distances), `[rad]`.
     pub fn limit_margin(&self, limits: &JointLimits) -> f64 {
         self.limit_distances(limits).min()
     }
 
-    /// Distance to the three singularities of the arm.
+    /// Returns the distance to the three singularities of the arm.
     pub fn singularity(&self) -> Singularity {
         Singularity::of(&self.q)
     }
 
-    /// The same pose with joints 1 and 3 as near to those of `q` as [`slide`](Self::slide) allows.
+    /// Returns the same pose with joints 1 and 3 as near to their values in `q` as
+    /// [`slide`](Self::slide) allows.
     pub(super) fn slid_towards(&self, q: &JointVector) -> Self {
         let Some([back, on]) = self.slide else {
             return *self;
         };
-        // Both joints then miss `q` by the same.
+        // Both joints then deviate from `q` by the same amount.
         let ideal = 0.5 * ((q[0] - self.q[0]) - (q[2] - self.q[2]));
         let step = ideal.clamp(back, on);
         let mut slid = *self;
@@ -69,7 +72,8 @@ impl Solution {
         slid
     }
 
-    /// Angles taken a turn on, or joints 1 and 3 slid, where that brings them within the limits.
+    /// Returns the solution within the limits: angles are shifted by a turn, or joints 1 and 3
+    /// slid, if necessary.
     fn within(&self, lower: &JointVector, upper: &JointVector) -> Option<Self> {
         let mut moved = *self;
         for i in 0..7 {
@@ -86,7 +90,7 @@ impl Solution {
         (0..7).all(inside).then_some(moved)
     }
 
-    /// `moved` with joints 1 and 3 as near to their half of the turn as the limits allow.
+    /// Returns `moved` with joints 1 and 3 as near to their half of the turn as the limits allow.
     fn slid_within(&self, moved: &Self, lower: &JointVector, upper: &JointVector) -> Option<Self> {
         let (q1, q3) = (self.q[0], self.q[2]);
         let back = (lower[0] - q1).max(q3 - upper[2]);
@@ -96,7 +100,7 @@ impl Solution {
         }
         let step = 0_f64.clamp(back, on);
         let mut slid = *moved;
-        // The sum of two roundings must not step over a limit.
+        // Two rounded sums must not exceed a limit.
         slid.q[0] = (q1 + step).clamp(lower[0], upper[0]);
         slid.q[2] = (q3 - step).clamp(lower[2], upper[2]);
         slid.slide = Some([back - step, on - step]);
@@ -104,24 +108,25 @@ impl Solution {
     }
 }
 
-/// How far joints are, `[rad]`, from where two solutions meet and the six joints without joint 7
-/// lose a direction: each is the angle of one joint to the place where a factor of their
-/// determinant `L1 L2 sin(elbow) · sin(shoulder) · f(q4) sin(wrist)` vanishes.
+/// Distances of joints, `[rad]`, from postures where two solutions meet and the six joints without
+/// joint 7 lose a direction. Each is the angle of one joint to the position at which a factor of
+/// their determinant `L1 L2 sin(elbow) · sin(shoulder) · f(q4) sin(wrist)` vanishes.
 ///
-/// The whole arm can be regular there, its seventh joint helping out;
-/// [`manipulability`](crate::manipulability) tells.
+/// The whole arm can still be regular there, because of its seventh joint; see
+/// [`manipulability`](crate::manipulability).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Singularity {
-    /// Of joint 2 from zero, where axes 1 and 3 are in line.
+    /// Distance of joint 2 from zero, where axes 1 and 3 are in line.
     pub shoulder: f64,
-    /// Of joint 4 from the [flip angle](crate::elbow::FLIP_ANGLE), where the arm is stretched.
+    /// Distance of joint 4 from the [flip angle](crate::elbow::FLIP_ANGLE), where the arm is
+    /// stretched.
     pub elbow: f64,
-    /// Of joint 5 from a quarter turn either way.
+    /// Distance of joint 5 from a quarter turn in either direction.
     pub wrist: f64,
 }
 
 impl Singularity {
-    /// At joint positions within the limits.
+    /// Computes the distances at joint positions within the limits.
     pub fn of(q: &JointVector) -> Self {
         Self {
             shoulder: q[1].abs(),
@@ -130,21 +135,21 @@ impl Singularity {
         }
     }
 
-    /// The least of the three.
+    /// Returns the least of the three.
     pub fn least(&self) -> f64 {
         self.shoulder.min(self.elbow).min(self.wrist)
     }
 }
 
-/// Solutions, as a slice.
+/// A list of solutions, usable as a slice.
 #[derive(Debug, Clone, Copy)]
 pub struct Solutions {
     list: [Solution; CAPACITY],
     count: usize,
 }
 
-/// Room in a list: four times what joints 7 and 4 can give. Of two million swivel problems none had
-/// more than 12 solutions within the limits.
+/// Capacity of a list: four times the number of solutions for a given joint 7 or 4. In two million
+/// swivel problems, none had more than 12 solutions within the limits.
 const CAPACITY: usize = 32;
 
 impl Solutions {
@@ -161,7 +166,7 @@ impl Solutions {
         count: 0,
     };
 
-    /// Appends, unless the list is full.
+    /// Appends a solution, unless the list is full.
     pub(super) fn push(&mut self, solution: Solution) {
         if let Some(place) = self.list.get_mut(self.count) {
             *place = solution;
@@ -169,9 +174,10 @@ impl Solutions {
         }
     }
 
-    /// Those within `lower` and `upper` `[rad]`, angles taken a turn on where that brings them in.
+    /// Returns the solutions within `lower` and `upper` `[rad]`; angles are shifted by a turn if
+    /// necessary.
     ///
-    /// No joint of these robots has a range of a turn, so the place within it is unique.
+    /// No joint of these robots has a range of a full turn, so the position within it is unique.
     pub fn within(mut self, lower: &JointVector, upper: &JointVector) -> Self {
         let found = self.count;
         self.count = 0;
@@ -183,8 +189,8 @@ impl Solutions {
         self
     }
 
-    /// The solution whose largest joint displacement from `q` is least, slid towards `q` where it
-    /// can be ([`Solution::slide`]).
+    /// Returns the solution with the least largest joint displacement from `q`, slid towards `q` if
+    /// possible ([`Solution::slide`]).
     pub fn nearest(&self, q: &JointVector) -> Option<Solution> {
         let distance = |solution: &Solution| (solution.q - q).amax();
         self.iter()
@@ -192,7 +198,7 @@ impl Solutions {
             .min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
-    /// The solution with the greatest [`Solution::limit_margin`].
+    /// Returns the solution with the greatest [`Solution::limit_margin`].
     pub fn max_margin(&self, limits: &JointLimits) -> Option<Solution> {
         self.iter()
             .max_by(|a, b| a.limit_margin(limits).total_cmp(&b.limit_margin(limits)))

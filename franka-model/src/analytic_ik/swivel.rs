@@ -1,18 +1,19 @@
 //! Joint 7 from the swivel angle: the roots of one equation.
 //!
-//! With joint 7 at some angle the wrist is known, with it the bend of the elbow, and the swivel
-//! angle then places the elbow: the axis of the forearm, y4, follows. It is the axis of joint 5,
-//! so it has to be at right angles to that of joint 6:
+//! A given angle of joint 7 determines the wrist and the bend of the elbow. The swivel angle then
+//! places the elbow, which determines the axis of the forearm, y4. This is the axis of joint 5, so
+//! it must be at right angles to the axis of joint 6:
 //!
 //! ```text
 //! g(q7) = y4 · z6 = 0        one equation for each side of the elbow
 //! ```
 //!
-//! `g` is sought on the arcs of joint 7 on which shoulder and wrist are as far apart as joint 4
-//! allows. It is sampled there, densely where the half plane of the elbow turns quickly (the wrist
-//! passes near axis 1); sign changes are bracketed, and between samples that approach zero without
-//! reaching it the extremum is looked up, so that two close roots are not missed. At the ends of an
-//! arc `g` behaves like a square root; the samples are spaced like a cosine, which undoes that.
+//! The roots of `g` are sought on the arcs of joint 7 on which the distance of shoulder and wrist
+//! suits the range of joint 4. The samples are dense where the half plane of the elbow turns
+//! quickly (the wrist passes near axis 1). Sign changes are bracketed. Between samples that
+//! approach zero without reaching it, the extremum is computed, so that two close roots are not
+//! missed. At the ends of an arc `g` behaves like a square root; cosine spacing of the samples
+//! compensates for this.
 
 use core::f64::consts::PI;
 
@@ -25,8 +26,8 @@ use crate::geometry::{Lengths, WRIST};
 use crate::inertia::dot;
 use crate::scalar::{acos, atan2, sin_cos, sqrt};
 
-/// All solutions with the elbow at `angle` and joint 4 within `q4_range`, a part of the turn about
-/// the flip angle.
+/// Returns all solutions with the elbow at `angle` and joint 4 within `q4_range`, a part of the
+/// turn about the flip angle.
 pub(super) fn all(
     lengths: &Lengths,
     flange: &Isometry3<f64>,
@@ -39,7 +40,7 @@ pub(super) fn all(
     let [lower, upper] = q4_range;
     for (above, far) in [(false, lower), (true, upper)] {
         if above == (far < lengths.flip_angle()) {
-            continue; // nothing of the range on this side
+            continue; // no part of the range on this side
         }
         let side = Side {
             lengths,
@@ -60,7 +61,7 @@ struct Side<'a> {
     lengths: &'a Lengths,
     flange: &'a Flange,
     above: bool,
-    /// Of the swivel angle.
+    /// Sine of the swivel angle.
     sin: f64,
     cos: f64,
 }
@@ -71,7 +72,7 @@ struct Forming {
     elbow: Elbow,
     y4: Vector3<f64>,
     g: f64,
-    /// Horizontal way from the shoulder to the wrist, `[m]`.
+    /// Horizontal vector from the shoulder to the wrist, `[m]`.
     horizontal: [f64; 2],
 }
 
@@ -82,7 +83,8 @@ impl Side<'_> {
         let squared = dot(&w, &w);
         let elbow = Elbow::on_side(self.lengths, self.above, squared);
         let (length, offset) = (sqrt(squared), sqrt(w.x * w.x + w.y * w.y));
-        // Unit vector at right angles to w, towards the elbow: up, and turned about w.
+        // The unit vector at right angles to w, towards the elbow: its parts up, and turned about
+        // w.
         let (up, turned) = (self.cos / (length * offset), self.sin / offset);
         let towards = Vector3::new(
             -w.x * w.z * up + w.y * turned,
@@ -104,7 +106,7 @@ impl Side<'_> {
         let Forming {
             hand, elbow, y4, g, ..
         } = self.at(q7);
-        // Where the half plane jumps there is a change of sign without a root.
+        // If the half plane jumps, the sign changes without a root.
         if g.abs() > JUMP || g.is_nan() {
             return;
         }
@@ -112,8 +114,8 @@ impl Side<'_> {
         let norm = sqrt(s6 * s6 + c6 * c6);
         let mut forearm = Forearm::of(&hand, &elbow, (s6 / norm, c6 / norm), None);
         if g.abs() > ROUNDING {
-            // The equation is so steep that no number is closer to its root. Meet the pose exactly
-            // then, and the swivel angle as it comes.
+            // The equation is so steep that no number is closer to its root. The pose is met
+            // exactly; the swivel angle is approximate.
             let same =
                 |other: &Forearm| Some(other.straight) == forearm.as_ref().map(|f| f.straight);
             let exact = Forearm::both(&hand, &elbow).into_iter().flatten();
@@ -124,7 +126,7 @@ impl Side<'_> {
         }
     }
 
-    /// Where joint 4 is between the flip angle and `far`.
+    /// Returns the arcs on which joint 4 is between the flip angle and `far`.
     fn arcs(&self, far: f64) -> [Option<Arc>; 2] {
         let d = &self.flange.from_shoulder;
         let (p, q) = (dot(d, &self.flange.x), dot(d, &self.flange.y));
@@ -145,7 +147,7 @@ impl Side<'_> {
             off(reach(self.lengths.flip_angle()) + slack),
         );
         if least >= most {
-            return [None, None]; // also for NaN
+            return [None, None]; // true for NaN also
         }
         let nearest = atan2(-q, p);
         [1.0, -1.0].map(|direction| {
@@ -157,13 +159,13 @@ impl Side<'_> {
     }
 }
 
-/// An interval of joint 7, walked through by an angle from 0 to π.
+/// An interval of joint 7, parametrised by an angle from 0 to π.
 struct Arc {
     middle: f64,
     half: f64,
 }
 
-/// The equation at one place of the walk.
+/// The equation at one sample of the interval.
 #[derive(Clone, Copy)]
 struct Sample {
     place: f64,
@@ -172,8 +174,8 @@ struct Sample {
 }
 
 impl Sample {
-    /// On the way to `other` the half plane of the elbow turns by much, or there is a root or
-    /// nearly one, which may not be the only one.
+    /// True if the interval to `other` may contain undetected roots: the half plane of the elbow
+    /// turns by a large angle, or a root or near-root suggests another one.
     fn hides_something_before(&self, other: &Self) -> bool {
         let ([a, b], [c, d]) = (self.horizontal, other.horizontal);
         let (along, across) = (a * c + b * d, a * d - b * c);
@@ -213,7 +215,7 @@ impl Arc {
         let mut before: Option<Sample> = None;
         let mut left = sample(0.0);
         for step in 1..=STEPS {
-            // Samples to come, the nearest last.
+            // The samples to visit, the next one last.
             let mut pending = [sample(PI * f64::from(step) / f64::from(STEPS)); HALVINGS + 1];
             let mut count = 1;
             while count > 0 {
@@ -250,15 +252,16 @@ impl Arc {
     }
 }
 
-/// Samples of an arc beyond its first.
+/// Number of samples of an arc after its first.
 const STEPS: u32 = 24;
-/// How often an interval between samples is halved at most.
+/// Largest number of halvings of an interval between samples.
 const HALVINGS: usize = 24;
-/// Distance of samples around a root, `[rad]` of the walk.
+/// Distance of samples around a root, `[rad]` of the interval's parameter.
 const FINE: f64 = 0.13 * PI / STEPS as f64;
-/// Tangent of the angle by which the half plane of the elbow turns between samples at most.
+/// Tangent of the largest turn of the elbow's half plane between samples.
 const TURN: f64 = 0.3;
-/// What `g` is at a root, unless it is steep there: the wrist within millimetres of axis 1.
+/// Typical value of `g` at a root. It is larger at steep roots, with the wrist within millimetres
+/// of axis 1.
 const ROUNDING: f64 = 1e-14;
-/// What `g` is at any root at most.
+/// Largest value of `g` at any root.
 const JUMP: f64 = 1e-9;

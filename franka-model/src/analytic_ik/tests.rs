@@ -4,7 +4,8 @@ use crate::{Frame, JointVector, READY, RobotKind, elbow, rotation};
 use core::f64::consts::{FRAC_PI_2, TAU};
 use nalgebra::{Matrix4, Translation3, Vector3};
 
-/// Poses per robot and parameter: with `--release` as many as the figures in the docs are for.
+/// Number of poses per robot and parameter; with `--release`, the number behind the figures in the
+/// docs.
 const CASES: usize = if cfg!(debug_assertions) {
     2_000
 } else {
@@ -16,7 +17,8 @@ pub(super) fn flange(q: &JointVector) -> Isometry3<f64> {
     transform::isometry(&pose).expect("a rigid frame")
 }
 
-/// Metres and radians between the flange at `q` and `target`, the larger.
+/// Returns the larger of the distances between the flange at `q` and `target`, in metres and
+/// radians.
 pub(super) fn miss(q: &JointVector, target: &Isometry3<f64>) -> f64 {
     let reached = flange(q);
     let distance = (reached.translation.vector - target.translation.vector).norm();
@@ -31,10 +33,10 @@ fn branch(q: &JointVector) -> Branch {
     }
 }
 
-/// A redundancy parameter, with what computes it of a posture.
+/// A redundancy parameter, and the function that computes it from a posture.
 type Parameter = (Redundancy, fn(&JointVector) -> f64);
 
-/// The parameter of every kind that a posture has.
+/// Returns the parameters of all kinds for a posture.
 fn parameters(q: &JointVector) -> [Parameter; 3] {
     let swivel = |q: &JointVector| elbow::swivel(&Lengths::DESCRIBED, q).expect("defined");
     [
@@ -44,7 +46,7 @@ fn parameters(q: &JointVector) -> [Parameter; 3] {
     ]
 }
 
-/// How far the parameter of a posture is from the one given.
+/// Returns the difference between a posture's parameter and the given one.
 fn parameter_miss(q: &JointVector, given: Redundancy, of: fn(&JointVector) -> f64) -> f64 {
     let (Redundancy::Joint7(angle) | Redundancy::Joint4(angle) | Redundancy::Swivel(angle)) = given;
     let off = of(q) - angle;
@@ -69,10 +71,12 @@ fn every_solution_meets_pose_and_limits_and_the_seeding_posture_is_among_them() 
                     assert!(limits.contains(&solution.q));
                     assert_eq!(solution.branch, branch(&solution.q), "{case} {given:?}");
                     let off = parameter_miss(&solution.q, given, of);
-                    // The swivel of a wrist some micrometres off axis 1 is known no better.
+                    // If the wrist is some micrometres off axis 1, the swivel is not known more
+                    // exactly.
                     assert!(off < 1e-7, "{kind:?} {case} {given:?}: {off:e} rad");
                 }
-                // Near a double root an angle is known to the root of the rounding.
+                // Near a double root, the error of an angle is the square root of the rounding
+                // error.
                 let seed = found
                     .nearest(&q)
                     .unwrap_or_else(|| panic!("{case} {given:?}"));
@@ -104,8 +108,8 @@ fn joint_7_gives_none_four_or_eight_solutions_with_the_seed_among_them() {
     }
 }
 
-/// Swivel angles of all postures of a pose along joint 7, per branch, counted where they pass the
-/// one given: what a search that knows nothing of the equation finds.
+/// Counts, per branch, how often the swivel angle along joint 7 passes the given one. This search
+/// does not use the equation.
 fn count_by_scanning(target: &Isometry3<f64>, angle: f64, steps: u32) -> usize {
     let mut last: [Option<f64>; 8] = [None; 8];
     let mut count = 0;
@@ -137,7 +141,7 @@ fn the_solutions_for_a_swivel_angle_are_those_that_a_scan_of_joint_7_finds() {
         let angle = random.uniform(-PI, PI);
         let found = all(&Lengths::DESCRIBED, &target, Redundancy::Swivel(angle)).len();
         let scanned = count_by_scanning(&target, angle, 20_000);
-        // A scan misses what lies between its last step and the end of a branch.
+        // A scan misses roots between its last step and the end of a branch.
         assert!(scanned <= found, "{scanned} scanned, {found} found");
         fewer += found - scanned;
         total += found;
@@ -197,7 +201,7 @@ fn with_joint_2_at_zero_joints_1_and_3_share_the_turn_and_slide() {
     let target = flange(&q);
     for (given, _) in &parameters(&q)[..2] {
         let found = all(&Lengths::DESCRIBED, &target, *given).within(&limits.lower, &limits.upper);
-        // Rounding leaves a sine of about 1e-16, or none.
+        // Rounding leaves a sine of about 1e-16, or zero.
         let half = found.iter().find(|s| (s.q[0] - 0.4).abs() < 1e-12);
         let half = half.expect("a solution");
         assert!((half.q[2] - 0.4).abs() < 1e-12);
@@ -234,7 +238,7 @@ fn a_turn_that_joints_1_and_3_cannot_share_evenly_is_shared_as_the_limits_let() 
 
 #[test]
 fn a_path_straight_through_the_shoulder_singularity_is_followed_without_a_jump() {
-    // Joint 2 goes through zero, the others move on evenly.
+    // Joint 2 passes through zero; the others move evenly.
     let at = |step: i32| {
         let share = f64::from(step) * 1e-3;
         let mut q = READY + JointVector::repeat(0.2 * share);
@@ -303,10 +307,10 @@ fn two_solutions_meet_like_square_roots_at_a_stretched_elbow_and_a_turned_wrist(
 
 #[test]
 fn with_the_shoulder_on_axis_7_joint_4_leaves_joint_7_at_zero() {
-    // The flange straight above the shoulder, its axis down through it.
+    // The flange is straight above the shoulder, and its axis points down through the shoulder.
     let down = rotation::exp(&(Vector3::x() * PI));
     let pose = Isometry3::from_parts(Translation3::new(0.0, 0.0, 0.333 + 0.6), down);
-    // The wrist is then the same distance off for every angle of joint 7.
+    // The wrist then has the same distance for every angle of joint 7.
     let posture = all(&Lengths::DESCRIBED, &pose, Redundancy::Joint7(1.0))[0].q;
     let found = all(&Lengths::DESCRIBED, &pose, Redundancy::Joint4(posture[3]));
     assert!(!found.is_empty());
@@ -329,9 +333,9 @@ fn the_nearest_posture_is_no_further_than_the_one_that_the_pose_is_of() {
         let found = found.expect("the posture itself is one");
         assert!(model.joint_limits().contains(&found.q));
         assert!(miss(&found.q, &target) < 1e-12);
-        // A sweep misses minima that are narrow.
+        // A sweep misses narrow minima.
         further += usize::from((found.q - from).norm() > (q - from).norm() + 1e-6);
-        // From a posture of the pose, it is that.
+        // From a posture of the pose, the nearest posture is that posture.
         let same = nearest(model, &target, &ee, &q)
             .expect("finite")
             .expect("one");

@@ -2,15 +2,15 @@
 
 use crate::JointVector;
 
-/// Which bound holds a variable.
+/// The bound that holds a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Side {
-    /// None: the variable is inside its interval.
+    /// No bound: the variable is inside its interval.
     #[default]
     Free,
-    /// The lower one.
+    /// The lower bound.
     Lower,
-    /// The upper one.
+    /// The upper bound.
     Upper,
 }
 
@@ -22,11 +22,11 @@ pub struct JointBox {
 }
 
 impl JointBox {
-    /// The box between `lower` and `upper`; an infinite bound does not bind.
+    /// Creates the box between `lower` and `upper`; an infinite bound is never active.
     ///
-    /// Where they cross, as rounding can make them in an interval of no width, both become their
-    /// midpoint: the variable is then fixed. A caller whose bounds can contradict each other by
-    /// more than that has to decide beforehand which one to drop.
+    /// Bounds can cross through rounding in an interval without width. Both then become their
+    /// midpoint, and the variable is fixed. If bounds can contradict each other by more than that,
+    /// the caller must first decide which bound to drop.
     pub fn new(lower: &JointVector, upper: &JointVector) -> Self {
         let mut bounds = Self {
             lower: *lower,
@@ -42,7 +42,7 @@ impl JointBox {
         bounds
     }
 
-    /// The same interval `[-bound, bound]` for each variable.
+    /// Creates a box with the interval `[-bound, bound]` for each variable.
     pub fn symmetric(bound: &JointVector) -> Self {
         Self::new(&-bound, bound)
     }
@@ -57,12 +57,12 @@ impl JointBox {
         &self.upper
     }
 
-    /// The point of the box nearest to `x`.
+    /// Returns the point of the box nearest to `x`.
     pub fn clamp(&self, x: &JointVector) -> JointVector {
         JointVector::from_fn(|i, _| x[i].max(self.lower[i]).min(self.upper[i]))
     }
 
-    /// The bound of variable `i` that the value `x` is beyond.
+    /// Returns the bound of variable `i` that the value `x` exceeds.
     pub(super) fn side_beyond(&self, i: usize, x: f64) -> Side {
         if x < self.lower[i] {
             Side::Lower

@@ -1,4 +1,4 @@
-//! The search against an enumeration of all active sets and the conditions of optimality.
+//! Compares the search with an enumeration of all active sets and with the optimality conditions.
 
 use super::*;
 use crate::oracle::minimum_by_enumeration;
@@ -14,8 +14,8 @@ struct Case {
 }
 
 impl Case {
-    /// Like those of differential IK: rank 6 and damping; some intervals without width, some
-    /// bounds infinite, some touching where the free minimum is.
+    /// Returns a problem like those of differential IK: rank 6 and damping. Some intervals have no
+    /// width, some bounds are infinite, and some bounds are at the free minimum.
     fn random(random: &mut Random, damping: f64) -> Self {
         let rows = Jacobian::from_fn(|_, _| random.uniform(-1.0, 1.0));
         let bound = JointVector::from_fn(|_, _| match random.bits() % 8 {
@@ -45,8 +45,8 @@ impl Case {
         self.bounds.clamp(x) == *x
     }
 
-    /// The largest violation of the optimality conditions: a gradient that points into the box,
-    /// or any at all inside it.
+    /// Returns the largest violation of the optimality conditions: a gradient that points into the
+    /// box, or any gradient inside it.
     fn fault(&self, x: &JointVector) -> f64 {
         let residual = self.rows * x - self.task;
         let gradient = self.rows.tr_mul(&residual) + (x - self.posture) * self.damping;
@@ -67,7 +67,7 @@ fn sides(random: &mut Random) -> [Side; 7] {
     })
 }
 
-/// With `--release` as many as the figures in the docs are for.
+/// Number of cases; with `--release`, the number behind the figures in the docs.
 const CASES: usize = if cfg!(debug_assertions) { 300 } else { 10_000 };
 
 #[test]

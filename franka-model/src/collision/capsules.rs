@@ -1,4 +1,4 @@
-//! The capsules of the arm and of the Hand, and which of them can meet.
+//! The capsules of the arm and of the Hand, and the pairs of capsules that can meet.
 
 use super::shape::Capsule;
 
@@ -7,8 +7,8 @@ use super::shape::Capsule;
 pub(super) struct LinkCapsule {
     pub(super) link: u8,
     pub(super) capsule: Capsule,
-    /// By how much its radius is larger than that of the capsule that is nearest to the surface of
-    /// the link, `[m]`; 0 where no such fit is known.
+    /// Excess of the radius over the least-squares fit to the surface of the link, `[m]`; 0 if no
+    /// such fit is known.
     pub(super) margin: f64,
 }
 
@@ -20,8 +20,8 @@ const fn link(link: u8, start: [f64; 3], end: [f64; 3], radius: f64) -> LinkCaps
     }
 }
 
-/// A capsule that was fitted to the surface of a link with the radius `fit`, made thicker by
-/// `margin` so that it contains it.
+/// Returns a capsule that was fitted to the surface of a link with the radius `fit`, enlarged by
+/// `margin` so that it contains the link.
 const fn covering(link: u8, start: [f64; 3], end: [f64; 3], fit: f64, margin: f64) -> LinkCapsule {
     LinkCapsule {
         link,
@@ -30,13 +30,14 @@ const fn covering(link: u8, start: [f64; 3], end: [f64; 3], fit: f64, margin: f6
     }
 }
 
-/// Capsules of the arm with the most of them.
+/// Largest number of capsules of an arm.
 pub(super) const ARM_MAX: usize = FR3.len();
 
-/// The outermost link that a tool is checked against. It moves against it by the last two joints.
+/// The outermost link that a tool is checked against. Only the last two joints move the tool
+/// against this link.
 pub(super) const TOOL_MEETS: u8 = 5;
 
-/// See [`Shape::vendor`] for the rule; the tests repeat the search.
+/// Pairs of the vendor's capsules. See [`Shape::vendor`] for the rule; the tests repeat the search.
 pub(super) static VENDOR_PAIRS: [(u8, u8); 23] = pairs(
     &VENDOR,
     &[
@@ -55,7 +56,7 @@ pub(super) static VENDOR_PAIRS: [(u8, u8); 23] = pairs(
     ],
 );
 
-/// Of both robots; see [`Shape::covering`].
+/// Pairs of the covering capsules of both robots; see [`Shape::covering`].
 pub(super) static COVERING_PAIRS: [(u8, u8); 42] = pairs(
     &FR3,
     &[
@@ -81,7 +82,7 @@ const _: () = {
     }
 };
 
-/// The pairs of capsules on pairs of links; there are `N`.
+/// Returns the `N` pairs of capsules on the given pairs of links.
 const fn pairs<const N: usize>(capsules: &[LinkCapsule], links: &[(u8, u8)]) -> [(u8, u8); N] {
     let mut pairs = [(0, 0); N];
     let mut count = 0;
@@ -109,7 +110,7 @@ const fn pairs<const N: usize>(capsules: &[LinkCapsule], links: &[(u8, u8)]) -> 
 /// Sine and cosine of the Hand's turn on the flange.
 const HALF: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
-/// A capsule of the Hand in the flange frame: `RotZ(-45°)` applied.
+/// Returns a capsule of the Hand in the flange frame: `RotZ(-45°)` applied.
 const fn on_hand(start: [f64; 3], end: [f64; 3], radius: f64) -> Capsule {
     const fn turned([x, y, z]: [f64; 3]) -> [f64; 3] {
         [HALF * (x + y), HALF * (y - x), z]
@@ -124,8 +125,8 @@ pub(super) static VENDOR_HAND: [Capsule; 2] = [
     on_hand([0.0, -0.05, 0.1], [0.0, 0.05, 0.1], 0.02),
 ];
 
-/// The body fitted as the links are; the fingers as the vendor's capsule has them, and another one
-/// for where they leave the body.
+/// The body is fitted in the same way as the links. The fingers have the vendor's capsule, and
+/// another one at their connection to the body.
 pub(super) static COVERING_HAND: [Capsule; 3] = [
     on_hand(
         [-0.0007, -0.0702, 0.0228],
@@ -137,8 +138,8 @@ pub(super) static COVERING_HAND: [Capsule; 3] = [
 ];
 
 /// `franka_description` 1.0.1, `robots/common/franka_arm.xacro` with a safety distance of 0, the
-/// same for the FER and the FR3; the second capsule of link 7 with the turn of 45° of its sub-link
-/// applied.
+/// same for the FER and the FR3. The 45° turn of link 7's sub-link is applied to its second
+/// capsule.
 pub(super) static VENDOR: [LinkCapsule; 10] = [
     link(0, [-0.09, 0.0, 0.06], [-0.06, 0.0, 0.06], 0.06),
     link(1, [0.0, 0.0, -0.333], [0.0, 0.0, -0.05], 0.06),
@@ -158,8 +159,8 @@ pub(super) static VENDOR: [LinkCapsule; 10] = [
 ];
 
 /// Franka Research 3: capsules fitted to the surface of the collision meshes of
-/// `franka_description` 1.0.1 by least squares. The margin is the largest distance, rounded
-/// up, at which the surface of the link's collision and visual meshes sticks out of the fit.
+/// `franka_description` 1.0.1 by least squares. The margin is the largest distance, rounded up, of
+/// the link's collision and visual meshes outside the fit.
 pub(super) static FR3: [LinkCapsule; 17] = [
     covering(
         0,
@@ -283,8 +284,8 @@ pub(super) static FR3: [LinkCapsule; 17] = [
 ];
 
 /// Franka Emika Robot: capsules fitted to the surface of the collision meshes of
-/// `franka_description` 1.0.1 by least squares. The margin is the largest distance, rounded
-/// up, at which the surface of the link's visual mesh sticks out of the fit.
+/// `franka_description` 1.0.1 by least squares. The margin is the largest distance, rounded up, of
+/// the link's visual mesh outside the fit.
 pub(super) static FER: [LinkCapsule; 17] = [
     covering(
         0,

@@ -1,4 +1,4 @@
-//! Distances of the arm to itself, to planes and to boxes, each with its gradient.
+//! Distances between the arm's links, and from the arm to planes and boxes, each with its gradient.
 //!
 //! ```text
 //! Shape (capsules on links, pairs that can meet)
@@ -9,27 +9,27 @@
 //! ```
 //!
 //! The bodies are [capsules](Capsule): all points within a radius of a segment. Distances are
-//! exact, between surfaces, in metres; where bodies overlap they are negative, the length of the
-//! shortest shift that separates the two. Gradients are with respect to the joint positions, in
-//! m/rad. Work and memory are bounded; nothing is allocated.
+//! exact, between surfaces, in metres. The distance of overlapping bodies is negative: minus the
+//! length of the shortest shift that separates them. Gradients are with respect to the joint
+//! positions, in m/rad. Work and memory are bounded; nothing is allocated.
 //!
 //! # Kinks
 //!
-//! Each distance is continuous in `q` and changes by no more than the points move, but it is not
-//! smooth everywhere:
+//! Each distance is continuous in `q` and changes by at most the motion of the points, but it is
+//! not smooth everywhere:
 //!
-//! - Between two segments that are parallel and side by side, or that cross (distance
-//!   `-(r1 + r2)`), the nearest points jump. The gradient given is one of those that occur around
-//!   that posture: at parallel segments that of the middle of the overlap; at crossing ones along
-//!   the common normal of the segments, which of its two directions is a matter of rounding.
-//! - An axis that crosses a box may be as far from one of its faces, or edges, as from another; one
-//!   parallel to a face, or to a plane, has both ends as near. The gradient is that of one of them,
-//!   in the latter case that of the middle.
-//! - The least distance over pairs has a kink where another pair becomes the nearest. For a
-//!   smooth constraint, take every pair's distance and gradient ([`Placed::pairs`]) as one
-//!   constraint each.
+//! - Between two segments that are parallel and side by side, or that cross (distance `-(r1 +
+//!   r2)`), the nearest points jump. The gradient is then one of the gradients around that posture.
+//!   For parallel segments, it is the gradient at the middle of the overlap. For crossing segments,
+//!   it is along their common normal; rounding determines which of its two directions.
+//! - The axis of a capsule that crosses a box may have equal distances to several faces or edges.
+//!   An axis parallel to a face or a plane has equal distances at both ends. The gradient is one of
+//!   the possible ones; for a parallel axis, it is the gradient at the middle.
+//! - The least distance over all pairs has a kink where another pair becomes the nearest. For a
+//!   smooth constraint, use every pair's distance and gradient ([`Placed::pairs`]) as a separate
+//!   constraint.
 //!
-//! Away from these sets (which have no volume) the gradient is the derivative.
+//! Outside these sets (which have no volume), the gradient is the derivative.
 //!
 //! # Example
 //!
@@ -70,18 +70,18 @@ use crate::inertia::{cross, dot};
 use capsules::LinkCapsule;
 use segment::Segment;
 
-/// What a capsule belongs to.
+/// The body that a capsule belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Body {
     /// Link 0 (the base) to 7.
     Link(u8),
-    /// What is mounted on the flange.
+    /// The tool on the flange.
     Tool,
 }
 
 impl Body {
-    /// Its number along the arm: links count from the base, and the tool is number 8.
+    /// Number of the body along the arm: links count from the base, and the tool is number 8.
     #[must_use]
     pub fn number(self) -> u8 {
         match self {
@@ -90,7 +90,7 @@ impl Body {
         }
     }
 
-    /// The number of joints that move it.
+    /// Number of joints that move the body.
     pub(crate) fn joints(self) -> usize {
         match self {
             Self::Link(link) => usize::from(link),
@@ -99,21 +99,21 @@ impl Body {
     }
 }
 
-/// How far two bodies are apart, and how that changes. `P` names them: `(Body, Body)` inside the
-/// arm, inner one first; [`Body`] towards an obstacle.
+/// The distance of two bodies, and its derivative. `P` names the bodies: `(Body, Body)` inside the
+/// arm, the inner one first; [`Body`] for an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Proximity<P> {
     /// The bodies.
     pub bodies: P,
-    /// Between the surfaces, `[m]`; negative: the bodies overlap.
+    /// Distance between the surfaces, `[m]`; negative if the bodies overlap.
     pub distance: f64,
     /// Change of the distance per joint position, `[m/rad]`.
     pub gradient: JointVector,
     /// Direction in which the distance grows, in base axes: from the inner body, or the obstacle,
     /// to the outer body. Length 1.
     pub normal: Vector3<f64>,
-    /// The nearest points of the axes, `[m]`, in the base frame: of the inner body, or on the
-    /// surface of the obstacle, and of the outer body.
+    /// The nearest points of the axes, `[m]`, in the base frame: on the inner body's axis or on the
+    /// surface of the obstacle, then on the outer body's axis.
     pub points: [Vector3<f64>; 2],
 }
 
@@ -125,11 +125,11 @@ pub struct Placed<'a> {
     segments: [Segment; CAPACITY],
 }
 
-/// Capsules of any shape: those of the largest arm and of a tool.
+/// Largest number of capsules of a shape: the largest arm and a tool.
 pub(crate) const CAPACITY: usize = capsules::ARM_MAX + shape::TOOL_MAX;
 
 impl<'a> Shape<'a> {
-    /// The shape at the joint positions `q`, `[rad]`.
+    /// Places the shape at the joint positions `q`, `[rad]`.
     pub fn at(&self, q: &JointVector) -> Placed<'a> {
         let chain = Chain::at(&self.lengths, q);
         let mut segments = [Segment::EMPTY; CAPACITY];
@@ -153,7 +153,7 @@ impl<'a> Shape<'a> {
         }
     }
 
-    /// Indices of the capsules that can meet, inner one first.
+    /// Returns the indices of the pairs of capsules that can meet, the inner one first.
     fn indices(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let (arm, tool) = (self.arm, self.arm.len()..self.len());
         let within = self.pairs.iter().map(|&(a, b)| (a.into(), b.into()));
@@ -164,7 +164,7 @@ impl<'a> Shape<'a> {
 }
 
 impl Placed<'_> {
-    /// Every pair that can meet.
+    /// Returns every pair that can meet.
     pub fn pairs(&self) -> impl Iterator<Item = Proximity<(Body, Body)>> + '_ {
         self.shape.indices().map(|(a, b)| {
             let nearest = self.segments[a].nearest(&self.segments[b]);
@@ -172,8 +172,8 @@ impl Placed<'_> {
         })
     }
 
-    /// The distance of every pair that can meet, `[m]`, in the order of [`pairs`](Self::pairs).
-    /// Costs less: there are no gradients.
+    /// Returns the distance of every pair that can meet, `[m]`, in the order of
+    /// [`pairs`](Self::pairs). Cheaper, because no gradients are computed.
     pub fn distances(&self) -> impl Iterator<Item = ((Body, Body), f64)> + '_ {
         self.shape.indices().map(|(a, b)| {
             let nearest = self.segments[a].nearest(&self.segments[b]);
@@ -181,8 +181,8 @@ impl Placed<'_> {
         })
     }
 
-    /// The pair with the least distance. Costs less than [`pairs`](Self::pairs): there is one
-    /// gradient.
+    /// Returns the pair with the least distance. Cheaper than [`pairs`](Self::pairs), because one
+    /// gradient is computed.
     pub fn nearest_pair(&self) -> Proximity<(Body, Body)> {
         let distances = self.shape.indices().map(|(a, b)| {
             let nearest = self.segments[a].nearest(&self.segments[b]);
@@ -192,8 +192,8 @@ impl Placed<'_> {
         self.pair_proximity(a, b, &nearest)
     }
 
-    /// Every capsule that moves, against an obstacle. The base stands where it stands: it is left
-    /// out.
+    /// Returns the distances of every moving capsule to an obstacle. The base does not move and is
+    /// omitted.
     pub fn to<'o>(&'o self, obstacle: &'o Obstacle) -> impl Iterator<Item = Proximity<Body>> + 'o {
         self.moving().map(move |i| {
             let nearest = obstacle.nearest(&self.segments[i]);
@@ -201,8 +201,8 @@ impl Placed<'_> {
         })
     }
 
-    /// The moving capsule that is nearest to an obstacle. To a floor at the height of the base this
-    /// is link 1 in most postures, which turns in place a decimetre above it.
+    /// Returns the moving capsule that is nearest to an obstacle. For a floor at the height of the
+    /// base, this is link 1 in most postures, which turns in place a decimetre above it.
     pub fn nearest_to(&self, obstacle: &Obstacle) -> Proximity<Body> {
         let distances = self.moving().map(|i| {
             let nearest = obstacle.nearest(&self.segments[i]);
@@ -212,13 +212,14 @@ impl Placed<'_> {
         self.obstacle_proximity(i, &nearest)
     }
 
-    /// The capsules in the base frame, base to tool.
+    /// Returns the capsules in the base frame, from base to tool.
     pub fn capsules(&self) -> impl Iterator<Item = (Body, Capsule)> + '_ {
         (0..self.shape.len()).map(|i| (self.body(i), self.segments[i].capsule()))
     }
 
-    /// Capsules along the surface of the arm, for what lies on it: as [`Self::capsules`], without
-    /// what makes them contain the links. From the shoulder.
+    /// Returns capsules along the surface of the arm, relative to the shoulder, for contacts on the
+    /// surface. They are the [`Self::capsules`] without the margins that make them contain the
+    /// links.
     pub(crate) fn surfaces(&self) -> impl Iterator<Item = (Body, Capsule)> + '_ {
         (0..self.shape.len()).map(|i| {
             let segment = &self.segments[i];
@@ -266,10 +267,10 @@ impl Placed<'_> {
         self.proximity(body, 0..body.joints(), nearest)
     }
 
-    /// `joints` move the second point and not the first.
+    /// `joints` move the second point but not the first.
     ///
-    /// The nearest points stay the nearest to first order, so the distance changes by the velocity
-    /// of the second along the normal: `n · (axis × p + moment) = axis · (p × n) + moment · n`.
+    /// The nearest points stay nearest to first order. So the distance changes by the velocity of
+    /// the second along the normal: `n · (axis × p + moment) = axis · (p × n) + moment · n`.
     #[inline(always)]
     fn proximity<P>(
         &self,
@@ -294,7 +295,7 @@ impl Placed<'_> {
     }
 }
 
-/// The item with the least distance; one whose distance is NaN comes before all others.
+/// Returns the item with the least distance; an item with a NaN distance comes before all others.
 fn least<T>(items: impl Iterator<Item = (f64, T)>) -> Option<T> {
     let nearer = |best: (f64, T), next: (f64, T)| {
         if next.0 < best.0 || next.0.is_nan() {

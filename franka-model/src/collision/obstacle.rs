@@ -1,4 +1,4 @@
-//! Planes and boxes, and how far a capsule is from them.
+//! Planes and boxes, and their distances from capsules.
 
 use nalgebra::{Isometry3, UnitVector3, Vector3};
 
@@ -7,7 +7,7 @@ use crate::geometry::SHOULDER;
 use crate::inertia::{cross, dot};
 use crate::scalar::sqrt;
 
-/// A region that the arm has to keep out of, in the base frame.
+/// A region that the arm must avoid, in the base frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Obstacle {
     /// All points with `normal · p < offset`.
@@ -21,13 +21,13 @@ pub enum Obstacle {
     Box {
         /// Pose of its centre.
         pose: Isometry3<f64>,
-        /// Half of its sides, `[m]`, along the axes of `pose`; none is negative.
+        /// Half of its sides, `[m]`, along the axes of `pose`; not negative.
         half: Vector3<f64>,
     },
 }
 
 impl Obstacle {
-    /// Everything below the height `z`, `[m]`.
+    /// Returns the region below the height `z`, `[m]`.
     pub fn floor(z: f64) -> Self {
         Self::Plane {
             normal: Vector3::z_axis(),
@@ -35,9 +35,9 @@ impl Obstacle {
         }
     }
 
-    /// Nearest points of the obstacle and a capsule. All distances are exact: apart, the least
-    /// between any two points; overlapping, the length of the shortest shift that separates them,
-    /// negative.
+    /// Returns the nearest points of the obstacle and a capsule. All distances are exact. Apart, it
+    /// is the least distance between any two points. If they overlap, it is minus the length of the
+    /// shortest shift that separates them.
     #[inline(always)]
     pub(super) fn nearest(&self, segment: &Segment) -> Nearest {
         match self {
@@ -49,7 +49,7 @@ impl Obstacle {
 
 #[inline(always)]
 fn nearest_to_plane(normal: &UnitVector3<f64>, offset: f64, segment: &Segment) -> Nearest {
-    // The segment counts from the shoulder.
+    // The segment is relative to the shoulder.
     let offset = offset - normal.z * SHOULDER;
     let rise = normal.dot(&segment.along);
     let t = if rise > 0.0 {
@@ -102,14 +102,14 @@ const TOUCHING: f64 = 1e-12;
 /// The axis of a capsule in the axes of a box.
 pub(super) struct Axis {
     pub(super) start: Vector3<f64>,
-    /// End less start.
+    /// End minus start.
     pub(super) along: Vector3<f64>,
     /// Half of the box's sides.
     pub(super) half: Vector3<f64>,
 }
 
 impl Axis {
-    /// The distance to the box; inside, minus the length of the shortest way out.
+    /// Returns the distance to the box; inside, minus the length of the shortest way out.
     pub(super) fn distance(&self) -> f64 {
         let t = self.one_nearest_outside();
         let gap = self.at(t) - self.clamped(t);
@@ -121,9 +121,9 @@ impl Axis {
         }
     }
 
-    /// A parameter with the least distance to the box; see
-    /// [`nearest_outside`](Self::nearest_outside). Between the ends only the bends matter that lie
-    /// where the slope has not been found to fall yet, or to rise already.
+    /// Returns a parameter with the least distance to the box; see
+    /// [`nearest_outside`](Self::nearest_outside). Only bends at which the sign of the slope is not
+    /// known yet are examined.
     fn one_nearest_outside(&self) -> f64 {
         let mut low = (0.0, self.slope(0.0));
         if low.1 >= 0.0 {
@@ -153,7 +153,7 @@ impl Axis {
         self.start + self.along * t
     }
 
-    /// The point of the box nearest to the point at `t`.
+    /// Returns the point of the box nearest to the point at `t`.
     fn clamped(&self, t: f64) -> Vector3<f64> {
         // Unlike `f64::clamp` this does not panic for a NaN side, and a NaN coordinate stays NaN.
         let clamp = |x: f64, half: f64| {
@@ -168,20 +168,20 @@ impl Axis {
         self.at(t).zip_map(&self.half, clamp)
     }
 
-    /// Half the derivative of the square of the distance from outside: piecewise linear, and never
-    /// falling, since the distance to a convex body is convex.
+    /// Returns half the derivative of the squared distance from outside. It is piecewise linear and
+    /// never decreases, because the distance to a convex body is convex.
     fn slope(&self, t: f64) -> f64 {
         (self.at(t) - self.clamped(t)).dot(&self.along)
     }
 
-    /// The parameter with the least distance to the box; the middle of them if there are many.
+    /// Returns the parameter with the least distance to the box; the middle if several exist.
     ///
-    /// The slope bends where a coordinate passes a face. Between two bends its root is that of a
-    /// straight line.
+    /// The slope bends where a coordinate passes a face. Between two bends it is a straight line.
     fn nearest_outside(&self) -> f64 {
         let bends = self.bends();
         let slopes = bends.map(|t| self.slope(t));
-        // The last with a negative slope and the first with a positive one enclose all roots.
+        // The last bend with a negative slope and the first with a positive slope enclose all
+        // roots.
         let below = slopes.iter().rposition(|&slope| slope < 0.0);
         let above = slopes.iter().position(|&slope| slope > 0.0);
         match (below, above) {
@@ -196,14 +196,14 @@ impl Axis {
         }
     }
 
-    /// The ends, and where a coordinate passes a face, in order.
+    /// Returns the ends, and the parameters where a coordinate passes a face, in order.
     fn bends(&self) -> [f64; BENDS] {
         let mut bends = [1.0; BENDS];
         bends[0] = 0.0;
         for i in 0..3 {
             for (k, face) in [self.half[i], -self.half[i]].into_iter().enumerate() {
                 let t = (face - self.start[i]) / self.along[i];
-                // Not a number, or infinite, where the axis runs along the face.
+                // Non-finite if the axis runs along the face.
                 if t > 0.0 && t < 1.0 {
                     bends[1 + 2 * i + k] = t;
                 }
@@ -213,18 +213,18 @@ impl Axis {
         bends
     }
 
-    /// The shortest shift out of the box, given that the axis meets it: the parameter of the point
-    /// that touches the box last, the direction, and the length, which is negative.
+    /// Returns the shortest shift out of the box, given that the axis meets it: the parameter of
+    /// the point that leaves the box last, the direction, and the negative length.
     ///
-    /// All positions at which the two meet fill a polytope: the box swept by the segment. Its faces
-    /// are those of the box, and those that the segment sweeps from the box's edges; the nearest of
-    /// them is the way out (Gottschalk, Lin and Manocha, OBBTree, 1996).
+    /// The relative positions at which the two meet fill a polytope: the box swept by the segment.
+    /// Its faces are those of the box, and the faces that the segment sweeps from the box's edges.
+    /// The nearest of them is the way out (Gottschalk, Lin and Manocha, OBBTree, 1996).
     fn shortest_way_out(&self) -> (f64, Vector3<f64>, f64) {
         let mut best = (0.0, Vector3::zeros(), f64::NEG_INFINITY);
         for i in 0..3 {
             let face = unit(i);
             for normal in [face, -face] {
-                // The end that leaves last; the middle where both do.
+                // The end that leaves last; the middle if both leave together.
                 let t = 0.5 - 0.5 * sign(normal.dot(&self.along));
                 self.consider(&mut best, t, normal);
             }
@@ -239,24 +239,24 @@ impl Axis {
         best
     }
 
-    /// Replaces `best` where leaving along `normal` is shorter, which the point at `t` does last.
+    /// Replaces `best` if leaving along `normal` is shorter; the point at `t` then leaves last.
     fn consider(&self, best: &mut (f64, Vector3<f64>, f64), t: f64, normal: Vector3<f64>) {
         let reach = normal.abs().dot(&self.half);
-        // Of the lower end: right for a direction that rounding has turned, too.
+        // Uses the lower end: also correct for a direction turned by rounding.
         let height = normal.dot(&self.start) + normal.dot(&self.along).min(0.0) - reach;
         if height > best.2 || height.is_nan() {
             *best = (t, normal, height);
         }
     }
 
-    /// Where the axis passes the edge of the box along coordinate `i` that is outermost along
-    /// `normal`, a direction perpendicular to both.
+    /// Returns the parameter at which the axis passes the edge of the box along coordinate `i` that
+    /// is outermost along `normal`, a direction perpendicular to both.
     fn beside_edge(&self, i: usize, normal: &Vector3<f64>) -> f64 {
         let edge = normal.zip_map(&self.half, |n, half| sign(n) * half);
         // Seen along the edge, the axis passes a point.
         let (mut gap, mut along) = (edge - self.start, self.along);
         (gap[i], along[i]) = (0.0, 0.0);
-        // On the way out it is between the ends but for rounding.
+        // On the way out it is between the ends, up to rounding.
         (gap.dot(&along) / along.norm_squared()).clamp(0.0, 1.0)
     }
 }
@@ -265,7 +265,7 @@ fn unit(i: usize) -> Vector3<f64> {
     Vector3::from_fn(|row, _| if row == i { 1.0 } else { 0.0 })
 }
 
-/// -1, 0 or 1.
+/// Returns -1, 0 or 1.
 fn sign(x: f64) -> f64 {
     if x > 0.0 {
         1.0
@@ -277,7 +277,7 @@ fn sign(x: f64) -> f64 {
 }
 
 /// Square of the sine of an angle below which an axis counts as parallel to an edge: it then sweeps
-/// no face of its own from it.
+/// no separate face from the edge.
 const PARALLEL: f64 = 1e-24;
 
 /// Two ends and two faces per coordinate.

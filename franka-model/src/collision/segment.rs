@@ -11,21 +11,21 @@ use crate::scalar::sqrt;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Segment {
     pub(super) start: Vector3<f64>,
-    /// End less start.
+    /// End minus start.
     pub(super) along: Vector3<f64>,
     /// Square of the length of `along`.
     square: f64,
     pub(super) radius: f64,
 }
 
-/// Where two bodies are nearest. Points from the shoulder.
+/// The nearest points of two bodies, relative to the shoulder.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Nearest {
-    /// Between the surfaces.
+    /// Distance between the surfaces.
     pub(super) distance: f64,
     /// Direction from the first body to the second.
     pub(super) normal: Vector3<f64>,
-    /// On the first and on the second body.
+    /// Points on the first and on the second body.
     pub(super) points: [Vector3<f64>; 2],
 }
 
@@ -37,7 +37,7 @@ impl Segment {
         radius: 0.0,
     };
 
-    /// The capsule with its ends moved by `place`.
+    /// Returns the capsule with its ends transformed by `place`.
     #[inline(always)]
     pub(super) fn of(capsule: &Capsule, place: impl Fn(Vector3<f64>) -> Vector3<f64>) -> Self {
         let start = place(capsule.start);
@@ -50,7 +50,8 @@ impl Segment {
         }
     }
 
-    /// The capsule with this radius whose axis goes `half` either way from its middle.
+    /// Returns the capsule with this radius whose axis extends by `half` in both directions from
+    /// its middle.
     #[inline(always)]
     pub(super) fn around(middle: &Vector3<f64>, half: &Vector3<f64>, radius: f64) -> Self {
         Self {
@@ -61,7 +62,7 @@ impl Segment {
         }
     }
 
-    /// The capsule in the base frame.
+    /// Returns the capsule in the base frame.
     pub(super) fn capsule(&self) -> Capsule {
         let start = self.start + Vector3::new(0.0, 0.0, SHOULDER);
         Capsule {
@@ -76,10 +77,10 @@ impl Segment {
         self.start + self.along * t
     }
 
-    /// Nearest points of two axes, and the distance of the surfaces.
+    /// Returns the nearest points of two axes, and the distance of the surfaces.
     ///
-    /// Both parameters minimise one convex quadratic in a square: solve for the first, clamp it,
-    /// solve for the second given it, clamp, and solve for the first again (Ericson, Real-Time
+    /// Both parameters minimise one convex quadratic in a square. Solve for the first and clamp it;
+    /// solve for the second with it and clamp; then solve for the first again (Ericson, Real-Time
     /// Collision Detection, 2004, section 5.1.9).
     #[inline(always)]
     pub(super) fn nearest(&self, other: &Self) -> Nearest {
@@ -113,12 +114,11 @@ impl Segment {
         }
     }
 
-    /// Where on this segment another one is nearest that is parallel to it. `ends` are the
+    /// Returns the parameter on this segment that is nearest to a parallel segment. `ends` are the
     /// parameters of the other's ends.
     ///
-    /// Along the stretch beside the other the distance is the same, and the middle is the one
-    /// choice that is symmetric; or it falls by a rounding's worth of slope, and an end of the
-    /// stretch is right.
+    /// Along the overlap, the distance is constant, and the middle is the only symmetric choice. If
+    /// the distance falls by a slope of rounding size, an end of the overlap is right.
     #[cold]
     fn beside(&self, other: &Self, ends: [f64; 2]) -> f64 {
         let [from, to] = ends.map(clamp);
@@ -134,7 +134,7 @@ impl Segment {
         let mut best = (middle, square(middle));
         for end in [from, to] {
             let candidate = square(end);
-            // Not for what is equal but for the last digits.
+            // Ignores differences in the last digits.
             if candidate < best.1 * (1.0 - 1e-14) {
                 best = (end, candidate);
             }
@@ -143,7 +143,8 @@ impl Segment {
     }
 }
 
-/// A direction perpendicular to both, where the segments touch: no other is special.
+/// Returns a direction perpendicular to both segments, which touch: no other direction is
+/// distinguished.
 #[cold]
 fn common_normal(first: &Vector3<f64>, second: &Vector3<f64>) -> Vector3<f64> {
     let unit = |v: Vector3<f64>| v.try_normalize(f64::MIN_POSITIVE);
@@ -163,7 +164,7 @@ fn clamp(t: f64) -> f64 {
     t.clamp(0.0, 1.0)
 }
 
-/// A quotient, and 0 for a segment without length, of which every parameter is the same point.
+/// Returns a quotient, or 0 for a segment without length, whose parameters all mean the same point.
 #[inline(always)]
 fn ratio(numerator: f64, square: f64) -> f64 {
     if square > 0.0 {
@@ -173,9 +174,9 @@ fn ratio(numerator: f64, square: f64) -> f64 {
     }
 }
 
-/// Square of the sine of an angle below which segments count as parallel: with less, the solution
-/// for two parameters is rounding.
+/// Square of the sine of an angle below which segments count as parallel: below it, the solution
+/// for two parameters is rounding error.
 const PARALLEL: f64 = 1e-12;
 
-/// Length, `[m]`, below which the direction of a gap is rounding.
+/// Length, `[m]`, below which the direction of a gap is rounding error.
 const CROSSING: f64 = 1e-12;

@@ -1,4 +1,4 @@
-//! What can collide: capsules on the links and on the flange.
+//! The colliding parts: capsules on the links and on the flange.
 
 use nalgebra::Vector3;
 
@@ -8,19 +8,19 @@ use super::capsules::{
 use crate::geometry::Lengths;
 use crate::kind::RobotKind;
 
-/// All points within `radius` of a segment. With both ends alike: a ball.
+/// All points within `radius` of a segment; a ball if both ends coincide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capsule {
     /// One end of the axis, `[m]`.
     pub start: Vector3<f64>,
     /// The other end, `[m]`.
     pub end: Vector3<f64>,
-    /// `[m]`.
+    /// Radius, `[m]`.
     pub radius: f64,
 }
 
 impl Capsule {
-    /// From the ends of the axis and the radius, `[m]`.
+    /// Creates a capsule from the ends of the axis and the radius, `[m]`.
     pub const fn new(start: [f64; 3], end: [f64; 3], radius: f64) -> Self {
         let ([a, b, c], [x, y, z]) = (start, end);
         Self {
@@ -40,30 +40,30 @@ impl Capsule {
 /// Capsules on the links of the arm and on the flange.
 ///
 /// Two sets describe the arm, for different questions. Both are the same for every end effector;
-/// the [Hand](Self::with_hand) or [another tool](Self::with_tool) comes on top.
+/// the [Hand](Self::with_hand) or [another tool](Self::with_tool) is added to either.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape<'a> {
     /// By link, the base first.
     pub(super) arm: &'static [LinkCapsule],
     /// Indices into `arm` of capsules that can meet, the inner one first.
     pub(super) pairs: &'static [(u8, u8)],
-    /// In the flange frame.
+    /// Capsules in the flange frame.
     pub(super) tool: &'a [Capsule],
-    /// The Hand in the manner of `arm`, in the flange frame.
+    /// The Hand's capsules of the same set as `arm`, in the flange frame.
     hand: &'static [Capsule],
     pub(super) lengths: Lengths,
 }
 
 impl Shape<'static> {
-    /// The vendor's capsules for self-collision, the same for both robots.
+    /// Returns the vendor's capsules for self-collision, the same for both robots.
     ///
     /// They are made for links that are far from each other along the chain, and **do not cover**
-    /// the links: the elbow, for one, sticks out by several centimetres. Towards obstacles take
-    /// [`covering`](Self::covering).
+    /// the links: the elbow, for example, extends several centimetres beyond them. For obstacles
+    /// use [`covering`](Self::covering).
     ///
     /// The pairs are those that come within 5 cm of each other somewhere within the position limits
-    /// of either robot, of links with another link between them. Links 1 and 3 are left out: their
-    /// capsules overlap around the shoulder, where the links themselves fit each other.
+    /// of either robot, with at least one link between their links. Links 1 and 3 are excluded:
+    /// their capsules overlap around the shoulder, where the links themselves fit together.
     pub const fn vendor() -> Self {
         Self {
             arm: &VENDOR,
@@ -74,16 +74,16 @@ impl Shape<'static> {
         }
     }
 
-    /// Capsules that contain the links: what has to stay out of obstacles.
+    /// Returns capsules that contain the links, for the distance to obstacles.
     ///
-    /// They contain the whole surface of the vendor's meshes, of the FR3 the collision and the
-    /// visual ones, of the FER the visual ones. With the [Hand](Self::with_hand) that holds for its
-    /// body and for the fingers at any width. Nothing else that is mounted on an arm is contained:
-    /// cables, cameras, covers.
+    /// They contain the whole surface of the vendor's meshes: collision and visual meshes of the
+    /// FR3, visual meshes of the FER. With the [Hand](Self::with_hand), this includes its body, and
+    /// its fingers at any width. Other parts mounted on an arm are not included: cables, cameras,
+    /// covers.
     ///
-    /// They are up to 3.5 cm thicker than the links. So a small negative distance need not be a
-    /// collision, and its pairs of links are only those of the base, link 1 and link 2 with links 5
-    /// to 7: closer ones touch in postures that the arm takes every day.
+    /// They are up to 3.5 cm thicker than the links, so a small negative distance need not be a
+    /// collision. The pairs are the base, link 1 and link 2 with links 5 to 7: capsules of closer
+    /// links touch in common postures.
     pub const fn covering(kind: RobotKind) -> Self {
         let arm: &[LinkCapsule] = match kind {
             RobotKind::Fr3 => &FR3,
@@ -98,14 +98,13 @@ impl Shape<'static> {
         }
     }
 
-    /// On an arm with these lengths: [`Model::lengths`](crate::Model::lengths). Without this it has
+    /// Sets the lengths of the arm: [`Model::lengths`](crate::Model::lengths). The default is
     /// [`Lengths::DESCRIBED`].
     pub const fn with_lengths(self, lengths: Lengths) -> Self {
         Self { lengths, ..self }
     }
 
-    /// With the Franka Hand on the flange, mounted as the vendor does: turned by -45° about its
-    /// axis.
+    /// Adds the Franka Hand on the flange, mounted as by the vendor: turned by -45° about its axis.
     pub const fn with_hand(self) -> Self {
         Self {
             tool: self.hand,
@@ -115,7 +114,7 @@ impl Shape<'static> {
 }
 
 impl Shape<'_> {
-    /// With the given capsules on the flange, in the flange frame, instead of any tool before.
+    /// Replaces any tool with the given capsules, in the flange frame.
     ///
     /// A tool is checked against links 0 to 5.
     ///
@@ -142,13 +141,13 @@ impl Shape<'_> {
         })
     }
 
-    /// How many capsules there are.
+    /// Number of capsules.
     pub(super) fn len(&self) -> usize {
         self.arm.len() + self.tool.len()
     }
 }
 
-/// Why capsules are not accepted as a tool.
+/// The reason why capsules are not accepted as a tool.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum ToolError {
@@ -186,5 +185,5 @@ impl core::fmt::Display for ToolError {
 
 impl core::error::Error for ToolError {}
 
-/// Capsules that a tool may have.
+/// Largest number of capsules of a tool.
 pub(super) const TOOL_MAX: usize = 8;

@@ -1,4 +1,4 @@
-//! Where on the arm a contact is, and its force, from the external joint torques.
+//! Estimates the place and the force of a contact on the arm from the external joint torques.
 //!
 //! ```text
 //! tau_ext ──> Tare (what the torques read while nothing touches) ──> external torque
@@ -6,35 +6,37 @@
 //!                                   └──────────> locate ──> Contact | Unknown
 //! ```
 //!
-//! A point force `f` on link `k` turns joints 1 to `k`, each by `axis · ((p − origin) × f)`, and
-//! no joint further out. [`locate`] asks of every patch of the surface of the arm (1.5 to 4
-//! centimetres wide, on the capsules that were fitted to the links) which force there explains the
-//! torques best, and how well. A contact pushes: the force points into the surface, and is the less
-//! likely the more it leans away from the normal. The probabilities of the patches of a body add up
-//! to that of the body, and the mean of those around the best one is the place.
+//! A point force `f` on link `k` turns joints 1 to `k`, each by `axis · ((p − origin) × f)`, and no
+//! joint further out. [`locate`] divides the surface of the arm into patches (1.5 to 4 centimetres
+//! wide, on the capsules that were fitted to the links). For each patch it computes the force that
+//! explains the torques best, and the quality of the explanation. A contact pushes: the force
+//! points into the surface, and its likelihood decreases with its angle from the normal. The
+//! probability of a body is the sum over its patches. The place is the mean of the patches around
+//! the best one.
 //!
 //! # What can be known
 //!
 //! Each joint between the base and the contact gives one equation; a place on a surface and a force
-//! are five unknowns. So the arm must be touched far enough from the base:
+//! are five unknowns. So the contact must be far enough from the base:
 //!
-//! - On links 1 and 2 one and two torques say neither place nor force: [`Unknown::Base`].
-//! - On link 3 three torques give the force along the normal and a place that is vague; on link 4
-//!   the place depends on how the force leans. [`Contact::spread`] says how vague.
-//! - Forces whose torques are within the errors of the estimate: [`Unknown::Weak`].
+//! - On links 1 and 2, one or two torques determine neither place nor force: [`Unknown::Base`].
+//! - On link 3, three torques determine the force along the normal and an inexact place. On link 4,
+//!   the place depends on the angle of the force. [`Contact::spread`] is the uncertainty.
+//! - Forces whose torques are within the errors of the estimate cannot be detected:
+//!   [`Unknown::Weak`].
 //! - A force along a line that crosses the axes of the outer joints looks the same on several
 //!   links: [`Unknown::Tie`].
-//! - A force is known but for a shift along its own line: the place is where that line enters the
-//!   arm.
+//! - A force can be shifted along its own line without changing the torques: the place is the point
+//!   where that line enters the arm.
 //!
-//! Two contacts at once are taken for one, and a torque without a force (a firm grip) does not
-//! exist here: both leave a residual, or [`Unknown::Unexplained`].
+//! Two simultaneous contacts are treated as one. A torque without a force (a firm grip) is not
+//! modelled. Both leave a residual, or give [`Unknown::Unexplained`].
 //!
 //! # Errors of external torques
 //!
-//! What an arm reads without any contact is an error of its model, of its sensors' zero and the
-//! friction between the sensor and the link. [`Tare`] takes off what is constant; friction takes up
-//! part of a contact's torque, too, and [`TorqueError`] says how much to expect.
+//! External torques measured without a contact are errors: of the arm's model, of the sensors'
+//! zero, and of the friction between the sensor and the link. [`Tare`] removes the constant part.
+//! Friction also takes up part of a contact's torque; [`TorqueError`] states the expected amount.
 
 mod patches;
 mod tare;
@@ -52,45 +54,45 @@ use crate::inertia::{cross, dot};
 use crate::scalar::{exp, ln, sqrt};
 use patches::Patch;
 
-/// How far external torques are off, joint by joint.
+/// Error of the external torques, joint by joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TorqueError {
-    /// Standard deviation whatever the torque, `[N·m]`.
+    /// Standard deviation independent of the torque, `[N·m]`.
     pub floor: JointVector,
-    /// Standard deviation as a part of the torque, 0 to 1.
+    /// Standard deviation as a share of the torque, 0 to 1.
     pub share: f64,
-    /// Friction between the sensor and the link, `[N·m]`. At rest it takes up part of what a
-    /// contact does, so that its torque reads too small by up to so much.
+    /// Friction between the sensor and the link, `[N·m]`. At rest it takes up part of a contact's
+    /// torque, so that the measured torque is too small by at most this value.
     pub friction: JointVector,
 }
 
 impl TorqueError {
-    /// Of an arm at rest after [`Tare`].
+    /// Errors of an arm at rest after [`Tare`].
     ///
-    /// The floor is the noise of the sensors and the drift of a few seconds: a joint that nothing
-    /// turns keeps its friction. The friction is that which Gaz et al. 2019 (Dynamic Identification
-    /// of the Franka Emika Panda Robot With Retrieval of Feasible Parameters) fitted on the link's
-    /// side of the sensors.
+    /// The floor is the noise of the sensors and the drift of a few seconds: a joint without motion
+    /// keeps its friction. The friction was fitted on the link's side of the sensors by Gaz et al.
+    /// 2019 (Dynamic Identification of the Franka Emika Panda Robot With Retrieval of Feasible
+    /// Parameters).
     pub const AT_REST: Self = Self {
         floor: crate::joint_vector([0.08, 0.08, 0.08, 0.08, 0.05, 0.05, 0.05]),
         share: 0.03,
         friction: crate::joint_vector([0.27, 0.44, 0.32, 0.64, 0.42, 0.15, 0.28]),
     };
 
-    /// Of a moving arm after [`Tare`]: friction is that of sliding whatever touches, but changes
-    /// with velocity and posture.
+    /// Errors of a moving arm after [`Tare`]: sliding friction does not depend on contacts, but
+    /// changes with velocity and posture.
     ///
-    /// The floor is about what was left of the torques of simulated arms that stick and flex, whose
-    /// joints swung at up to 0.25 rad/s: a root mean square of 0.13 N·m (joint 7) to 0.55 N·m
-    /// (joint 2). With two thirds of it, one told body in thirteen was wrong.
+    /// The floor is close to the residual torques of simulated arms with stiction and elasticity,
+    /// whose joints swung at up to 0.25 rad/s: a root mean square of 0.13 N·m (joint 7) to 0.55 N·m
+    /// (joint 2). With two thirds of it, one reported body in thirteen was wrong.
     pub const IN_MOTION: Self = Self {
         floor: crate::joint_vector([0.35, 0.4, 0.3, 0.4, 0.3, 0.15, 0.14]),
         share: 0.05,
         friction: crate::joint_vector([0.0; 7]),
     };
 
-    /// What a torque that reads `read` probably is, and the reciprocal of its variance: what
-    /// friction took up is between nothing and all that it can.
+    /// Returns the probable torque for the measured torque `read`, and the reciprocal of its
+    /// variance. Friction took up between zero and its full value.
     fn correct(&self, i: usize, read: f64) -> (f64, f64) {
         let friction = self.friction[i];
         let taken = if friction > 0.0 {
@@ -107,66 +109,66 @@ impl TorqueError {
 /// A contact at one point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
-    /// The link, or what is mounted on the flange.
+    /// The touched body: a link or the tool on the flange.
     pub body: Body,
-    /// Where the force acts on the surface, `[m]`, in the base frame.
+    /// Point of the force on the surface, `[m]`, in the base frame.
     pub point: Vector3<f64>,
-    /// The direction out of the arm there, of length 1, in base axes.
+    /// Outward direction at that point, of length 1, in base axes.
     pub normal: Vector3<f64>,
-    /// On the arm, `[N]`, in base axes.
+    /// Force on the arm, `[N]`, in base axes.
     pub force: Vector3<f64>,
     /// External torques that the force does not explain, `[N·m]`.
     pub residual: JointVector,
-    /// How likely the contact is on this body rather than another, 0 to 1.
+    /// Probability that the contact is on this body, 0 to 1.
     pub probability: f64,
-    /// Root mean square distance of the places on this body that explain the torques as well,
-    /// `[m]`, from [`point`](Self::point).
+    /// Uncertainty of the place, `[m]`: root mean square distance from [`point`](Self::point) of
+    /// the places on this body that explain the torques equally well.
     pub spread: f64,
-    /// The next likely body and its probability.
+    /// The second most probable body and its probability.
     pub next: Option<(Body, f64)>,
 }
 
-/// Why the place of a contact is not known.
+/// The reason why the place of a contact is unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Unknown {
     /// The torques are not finite.
     NotFinite,
-    /// Nothing touches, or with a force whose torques are within their errors.
+    /// No contact, or a force whose torques are within their errors.
     Weak {
-        /// Root mean square of torques over their standard deviations.
+        /// Root mean square of the torques divided by their standard deviations.
         ratio: f64,
     },
-    /// Probably on link 1 or 2, of which too few joints show anything.
+    /// The contact is probably on link 1 or 2, for which too few joints react.
     Base {
-        /// The more likely of the two.
+        /// The more probable of the two.
         body: Body,
-        /// How likely it is to be on either, 0 to 1.
+        /// Probability that it is on either, 0 to 1.
         probability: f64,
     },
-    /// Several bodies explain the torques about as well.
+    /// Several bodies explain the torques about equally well.
     Tie {
-        /// What a contact on the likeliest would be.
+        /// The contact, if it is on the most probable body.
         likeliest: Contact,
     },
-    /// No force at one point explains the torques: several contacts, or a grip that turns.
+    /// No force at one point explains the torques: several contacts, or a grip that twists.
     Unexplained {
-        /// Root mean square of what the best force leaves, over the standard deviations.
+        /// Root mean square of the residual of the best force, divided by the standard deviations.
         ratio: f64,
-        /// That force.
+        /// The contact with that force.
         nearest: Contact,
     },
 }
 
-/// The contact on an `arm` that explains the external torques, `[N·m]`: those that the environment
-/// exerts on the joints, less what they read without contact. `tau_ext_hat_filtered` of a state has
-/// the other sign.
+/// Returns the contact on an `arm` that explains the external torques, `[N·m]`: the torques of the
+/// environment on the joints, minus their values without contact. `tau_ext_hat_filtered` of a state
+/// has the opposite sign.
 ///
-/// Bounded work, 0.4 ms of a processor, and no allocation; not for the control thread.
+/// Bounded work, 0.4 ms of a processor, without allocation; not for the control thread.
 ///
 /// # Errors
-/// [`Unknown`] where the torques do not tell.
-// There is no heap here to box the contact in.
+/// [`Unknown`] if the torques do not determine the contact.
+// The crate has no heap to box the contact.
 #[allow(clippy::result_large_err)]
 pub fn locate(
     arm: &Placed<'_>,
@@ -210,22 +212,22 @@ pub fn locate(
     Ok(contact)
 }
 
-/// The torques, and where they may come from.
+/// The torques, and the bodies that they may come from.
 struct Search<'a> {
     arm: &'a Placed<'a>,
     surfaces: [Option<(Body, Capsule)>; SURFACES],
     /// Corrected for friction.
     torque: JointVector,
     weights: [f64; 7],
-    /// Weighted square of the torques of joint `i` and those further out.
+    /// Weighted square of the torques of joint `i` and of the joints further out.
     beyond: [f64; 8],
 }
 
-/// The force at a patch that explains the torques best.
+/// The force on a patch that explains the torques best.
 struct Fit {
     force: Vector3<f64>,
-    /// Logarithm of how probable the torques are with a force on this patch, but for a constant;
-    /// it grows with the patch.
+    /// Logarithm of the probability of the torques with a force on this patch, up to a constant; it
+    /// grows with the area of the patch.
     evidence: f64,
 }
 
@@ -261,7 +263,7 @@ impl<'a> Search<'a> {
         self.surfaces.iter().flatten()
     }
 
-    /// Visits the patches of the free surface of a moving body.
+    /// Visits the patches of the uncovered surface of a moving body.
     fn visit(&self, of: Body, spacing: f64, mut each: impl FnMut(&Patch)) {
         for (index, (body, capsule)) in self.surfaces().enumerate() {
             if *body != of {
@@ -280,9 +282,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// How probable the torques are with a contact on each body, by its number, as a multiple of
-    /// the most probable one, and the best patch of each. Bodies are taken to be touched equally
-    /// often, all places on one likewise.
+    /// Returns, for each body by its number, the probability of the torques with a contact on it,
+    /// relative to the most probable body, and its best patch. All bodies, and all places on a
+    /// body, are assumed equally probable.
     fn bodies(&self) -> [(f64, Vector3<f64>); BODIES] {
         let mut logarithms = [f64::NEG_INFINITY; BODIES];
         let mut places = [Vector3::zeros(); BODIES];
@@ -309,7 +311,7 @@ impl<'a> Search<'a> {
         core::array::from_fn(|i| (exp(logarithms[i] - most), places[i]))
     }
 
-    /// The contact on this body: the mean of the places around its best patch.
+    /// Returns the contact on this body: the mean of the places around its best patch.
     fn contact(&self, of: Body, around: &Vector3<f64>) -> Contact {
         let (mut most, mut sum) = (f64::NEG_INFINITY, 0.0);
         let (mut point, mut normal) = (Vector3::zeros(), Vector3::zeros());
@@ -364,11 +366,11 @@ impl<'a> Search<'a> {
         cross(&chain.axis[i], point) + chain.moment[i]
     }
 
-    /// The force on a patch that explains the torques best; `None` if that pulls.
+    /// Returns the force on a patch that explains the torques best; `None` if it pulls.
     ///
-    /// Minimises the weighted square of what is left of the torques, with a force across the normal
-    /// as another measurement: it is about zero, with a deviation in proportion to the force along
-    /// the normal, which two passes find.
+    /// Minimises the weighted square of the residual torques. The force across the normal is an
+    /// additional measurement: it is about zero, with a deviation in proportion to the force along
+    /// the normal, which two passes determine.
     fn fit(&self, of: Body, patch: &Patch) -> Option<Fit> {
         let joints = of.joints();
         let (mut normal_matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
@@ -408,12 +410,12 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The inverse of a symmetric positive definite matrix, and its determinant.
+/// Returns the inverse of a symmetric positive definite matrix, and its determinant.
 fn inverse(m: &Matrix3<f64>) -> Option<(Matrix3<f64>, f64)> {
     let (c0, c1, c2) = (m.column(0), m.column(1), m.column(2));
     let (a, b, c) = (c1.cross(&c2), c2.cross(&c0), c0.cross(&c1));
     let determinant = c0.dot(&a);
-    // Of a symmetric matrix the adjugate is symmetric, too.
+    // The adjugate of a symmetric matrix is symmetric too.
     (determinant > 0.0).then(|| (Matrix3::from_columns(&[a, b, c]) / determinant, determinant))
 }
 
@@ -425,7 +427,7 @@ fn body(number: usize) -> Body {
     }
 }
 
-/// The largest, other than the one excepted.
+/// Returns the largest value, ignoring the body `except`.
 fn largest(values: &[f64; BODIES], except: Option<usize>) -> usize {
     (1..BODIES)
         .filter(|&i| Some(i) != except)
@@ -435,40 +437,39 @@ fn largest(values: &[f64; BODIES], except: Option<usize>) -> usize {
 /// The base, seven links and a tool.
 const BODIES: usize = 9;
 
-/// Capsules of an arm with a tool.
+/// Number of capsules of an arm with a tool.
 const SURFACES: usize = crate::collision::CAPACITY;
 
-/// Width of the patches that decide on the body, by its number, `[m]`. A force on the next patch
-/// changes the torques by less than their errors where the errors are large, which is near the
-/// base; with 25 mm everywhere, one body in 40 was wrong that is right with these.
+/// Width of the patches for the choice of the body, by body number, `[m]`. A force on the next
+/// patch changes the torques by less than their errors. The errors are larger near the base. With
+/// 25 mm everywhere, one body in 40 was wrong that is right with these widths.
 const COARSE: [f64; BODIES] = [1.0, 0.04, 0.04, 0.03, 0.03, 0.025, 0.018, 0.015, 0.015];
 
-/// And on the place: finer than it can be known.
+/// Width of the patches for the place, `[m]`: finer than the precision of the place.
 const FINE: f64 = 0.012;
 
-/// How deep inside another capsule a patch is covered by it, `[m]`.
+/// Depth inside another capsule from which a patch counts as covered, `[m]`.
 const SKIN: f64 = 0.003;
 
-/// From the best patch, `[m]`: places further away are another explanation and not the same one,
-/// seen less clearly.
+/// Distance from the best patch, `[m]`, within which places count as the same explanation.
 const NEAR: f64 = 0.06;
 
-/// Standard deviation of the force across the normal over that along it: hands and edges push
-/// within about 30 degrees of the normal.
+/// Standard deviation of the force across the normal, relative to the force along it: hands and
+/// edges push within about 30 degrees of the normal.
 const LEAN: f64 = 0.35;
 
-/// Forces that are looked for, `[N]`.
+/// Smallest force of the search, `[N]`.
 const PUSH_LEAST: f64 = 1.0;
 const PUSH_MOST: f64 = 200.0;
 
-/// Passes for the force along the normal.
+/// Number of passes for the force along the normal.
 const PASSES: usize = 3;
 
-/// Torques below so many standard deviations, root mean square, are no contact.
+/// Root mean square of the torques, in standard deviations, below which there is no contact.
 const WEAK: f64 = 1.5;
 
-/// Above so many, what is left is no error of the torques.
+/// Root mean square of the residual, in standard deviations, above which it is not a torque error.
 const UNEXPLAINED: f64 = 3.0;
 
-/// The probability from which on a body is told as known.
+/// Probability from which a body is reported as known.
 const SURE: f64 = 0.75;

@@ -11,16 +11,16 @@ use crate::scalar::{sin_cos, sqrt};
 /// A piece of a surface.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Patch {
-    /// Its middle, in the frame of the capsule's ends.
+    /// Middle of the patch, in the frame of the capsule's ends.
     pub(super) point: Vector3<f64>,
-    /// Outwards, of length 1.
+    /// Outward direction, of length 1.
     pub(super) normal: Vector3<f64>,
-    /// `[m²]`
+    /// Area, `[m²]`.
     pub(super) area: f64,
 }
 
 /// Visits patches about `spacing` metres wide that cover the capsule: bands around its axis, from
-/// pole to pole, each cut into as many pieces as fit.
+/// pole to pole, each cut into equal pieces.
 pub(super) fn visit(capsule: &Capsule, spacing: f64, mut each: impl FnMut(Patch)) {
     let along = capsule.end - capsule.start;
     let length = sqrt(dot(&along, &along));
@@ -36,9 +36,10 @@ pub(super) fn visit(capsule: &Capsule, spacing: f64, mut each: impl FnMut(Patch)
     let bands = pieces(whole, spacing, BANDS_MAX);
     let width = whole / bands as f64;
     for band in 0..bands {
-        // Where the middle of the band is along the capsule's profile.
+        // Position of the middle of the band along the capsule's profile.
         let way = (band as f64 + 0.5) * width;
-        // Height over the start, the radius of the band, and the normal's part along the axis.
+        // Height above the start, the radius of the band, and the normal's component along the
+        // axis.
         let (height, around, lean) = if way < quarter {
             let (sin, cos) = sin_cos(way / radius);
             (-radius * cos, radius * sin, -cos)
@@ -80,13 +81,13 @@ pub(super) fn contains(capsule: &Capsule, skin: f64, point: &Vector3<f64>) -> bo
     dot(&off, &off) < reach * reach
 }
 
-/// How many pieces of about `spacing` a length is cut into.
+/// Returns the number of pieces of about `spacing` in a length.
 fn pieces(length: f64, spacing: f64, most: usize) -> usize {
     // The cast saturates, also for NaN.
     ((length / spacing + 0.5) as usize).clamp(1, most)
 }
 
-/// Two directions across an axis and each other.
+/// Returns two directions perpendicular to an axis and to each other.
 fn across(axis: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     let mut other = Vector3::zeros();
     other[axis.iamin()] = 1.0;
@@ -95,13 +96,14 @@ fn across(axis: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     (first, cross(axis, &first))
 }
 
-/// A length, `[m]`, whose direction is rounding.
+/// Length, `[m]`, below which a direction is rounding error.
 const SHORT: f64 = 1e-9;
 
-/// Bound on the work for a tool of absurd size: a capsule 2 m long in bands of 2 cm.
+/// Largest number of bands, which bounds the work for an absurdly large tool: a capsule 2 m long in
+/// bands of 2 cm.
 const BANDS_MAX: usize = 100;
 
-/// And of a radius of 0.1 m.
+/// Largest number of pieces of a band: a radius of 0.1 m.
 const AROUND_MAX: usize = 32;
 
 #[cfg(test)]

@@ -1,29 +1,30 @@
-//! What the external torques read while nothing touches.
+//! Baseline of the external torques without contact.
 
 use crate::JointVector;
 use crate::scalar::tanh;
 
-/// A running baseline of the external torques, to be taken off them.
+/// A running baseline, to be subtracted from the external torques.
 ///
-/// Per joint it is an offset, which follows slowly what the torques read while nothing touches, and
-/// a friction, which changes its sign with the velocity. Torques that leave the baseline by more
-/// than a gate are a contact: until they are back, and for a while after, nothing is learned.
+/// Each joint has an offset, which slowly follows the torques measured without contact, and a
+/// friction, which changes its sign with the velocity. Torques that leave the baseline by more than
+/// a gate indicate a contact: until they return, and for a while afterwards, the baseline is
+/// frozen.
 ///
-/// The first state counts as free of contact. A push that grows by less than the gate over the time
-/// constant (0.4 N·m/s at joint 1) is taken for drift.
+/// The first state counts as free of contact. A push that grows by less than the gate per time
+/// constant (0.4 N·m/s at joint 1) is treated as drift.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tare {
     offset: JointVector,
     friction: JointVector,
-    /// How long it has learned, `[s]`, at most the time constant.
+    /// Learning time, `[s]`, at most the time constant.
     learned: f64,
-    /// How long nothing has touched, `[s]`.
+    /// Time since the last contact, `[s]`.
     free: f64,
     started: bool,
 }
 
 impl Tare {
-    /// Before the first state.
+    /// Creates a baseline without data.
     pub fn new() -> Self {
         Self {
             offset: JointVector::zeros(),
@@ -34,9 +35,9 @@ impl Tare {
         }
     }
 
-    /// Takes in the torques of one state, `[N·m]`, its joint velocities, `[rad/s]`, and the time
-    /// since the one before, `[s]`; returns the torques less the baseline. Non-finite numbers are
-    /// returned as they come and change nothing.
+    /// Updates the baseline with the torques of one state, `[N·m]`, its joint velocities,
+    /// `[rad/s]`, and the time since the previous state, `[s]`. Returns the torques minus the
+    /// baseline. Non-finite numbers are returned unchanged and change nothing.
     pub fn update(&mut self, torque: &JointVector, dq: &JointVector, dt: f64) -> JointVector {
         let usable = torque.iter().chain(dq).all(|x| x.is_finite());
         if usable && !self.started {
@@ -63,12 +64,12 @@ impl Tare {
         left
     }
 
-    /// Whether the last state was taken for one of a contact, or came shortly after one.
+    /// True if the last state was classified as a contact, or followed one shortly afterwards.
     pub fn is_touched(&self) -> bool {
         self.free < QUIET
     }
 
-    /// Over how long the baseline was learned, `[s]`, at most its time constant of 1.5 s.
+    /// Learning time of the baseline, `[s]`, at most its time constant of 1.5 s.
     pub fn learned(&self) -> f64 {
         self.learned
     }
@@ -80,16 +81,16 @@ impl Default for Tare {
     }
 }
 
-/// Of the offset, `[s]`: longer than a push takes to come, shorter than a motion takes to another
-/// posture, where the arm's model has another error.
+/// Time constant of the offset, `[s]`: longer than the onset of a push, shorter than a motion to
+/// another posture with another error of the arm's model.
 const TIME_CONSTANT: f64 = 1.5;
 
-/// How long after a contact the baseline stays as it is, `[s]`.
+/// Time after a contact in which the baseline stays frozen, `[s]`.
 const QUIET: f64 = 0.3;
 
-/// The velocity beyond which friction is that of sliding, `[rad/s]`.
+/// Velocity above which friction is sliding friction, `[rad/s]`.
 const SLIDING: f64 = 0.02;
 
-/// Per joint, `[N·m]`: what changes of friction and posture do to the torques of an arm that
-/// nothing touches. FER at one posture before and after a motion: up to 0.6 N·m on joint 2.
+/// Gate per joint, `[N·m]`: the effect of changing friction and posture on the torques of an arm
+/// without contact. FER at one posture before and after a motion: up to 0.6 N·m on joint 2.
 const GATE: [f64; 7] = [0.6, 0.75, 0.6, 0.9, 0.6, 0.4, 0.35];

@@ -1,4 +1,4 @@
-//! Contacts whose torques are computed exactly; with a simulated arm: `tests/lockstep/contact.rs`.
+//! Contacts with exactly computed torques; for a simulated arm see `tests/lockstep/contact.rs`.
 
 #![allow(clippy::result_large_err)] // See `locate`.
 
@@ -7,7 +7,7 @@ use crate::collision::Shape;
 use crate::random::Random;
 use crate::{Frame, Model, READY, RobotKind};
 
-/// Of torques that are exact but for the width of patches.
+/// Errors of torques that are exact except for the width of patches.
 const EXACT: TorqueError = TorqueError {
     floor: crate::joint_vector([0.05; 7]),
     share: 0.03,
@@ -18,7 +18,7 @@ fn arm(q: &JointVector) -> Placed<'static> {
     Shape::covering(RobotKind::Fr3).with_hand().at(q)
 }
 
-/// Joint torques of a force on a link at a point, both in the base frame.
+/// Returns the joint torques of a force on a link at a point, both in the base frame.
 fn torque(q: &JointVector, body: Body, point: &Vector3<f64>, force: &Vector3<f64>) -> JointVector {
     let frame = match body {
         Body::Link(link) => Frame::ALL[usize::from(link) - 1],
@@ -32,7 +32,7 @@ fn torque(q: &JointVector, body: Body, point: &Vector3<f64>, force: &Vector3<f64
     Model::fr3().zero_jacobian(frame, q, &ee).tr_mul(&wrench)
 }
 
-/// A push along the normal of a random place of a body, and its torques.
+/// Returns a push along the normal of a random place of a body, and its torques.
 fn push(
     random: &mut Random,
     placed: &Placed<'_>,
@@ -61,7 +61,7 @@ fn exact_torques_name_body_place_and_force() {
         };
         told += 1;
         assert!(contact.force.dot(&contact.normal) < 0.0);
-        // A force along the axis of the outermost joint is one on the link before, too.
+        // A force along the axis of the outermost joint is also a force on the previous link.
         if contact.body != body {
             continue;
         }
@@ -84,7 +84,7 @@ fn what_cannot_be_known_is_said() {
     assert_eq!(locate(torque), Err(Unknown::NotFinite));
     torque[0] = 5.0;
     assert!(matches!(locate(torque), Err(Unknown::Base { .. })));
-    // A grip that turns the last joint: no push on the surface gives so much.
+    // A grip that turns the last joint: no push on the surface causes such a torque.
     torque = JointVector::from([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 8.0]);
     let grip = locate(torque);
     assert!(matches!(grip, Err(Unknown::Unexplained { .. })), "{grip:?}");
@@ -99,7 +99,7 @@ fn a_force_that_pulls_is_not_taken_for_a_push_there() {
         let Ok(contact) = locate(&placed, &-torque, &EXACT) else {
             continue;
         };
-        // It may push the other side of the link, along the same line.
+        // The push may be on the other side of the link, along the same line.
         let way = contact.point - point;
         let beside = way - force * (way.dot(&force) / force.norm_squared());
         assert!((contact.force + force).norm() < 0.2 * force.norm());
@@ -125,7 +125,7 @@ fn the_tare_follows_offset_and_friction_and_not_a_contact() {
     let run = |tare: &mut Tare, milliseconds: u32, push: f64| {
         let mut left = JointVector::zeros();
         for i in 0..milliseconds {
-            // Forth and back, half a second each.
+            // Back and forth, half a second each.
             let v = if (i / 500) % 2 == 0 { 0.2 } else { -0.2 };
             let dq = JointVector::repeat(v);
             let read = offset + friction * (v / 0.2) + JointVector::repeat(push);
@@ -137,7 +137,7 @@ fn the_tare_follows_offset_and_friction_and_not_a_contact() {
     let left = run(&mut tare, 1000, 0.0);
     assert!(left.amax() < 0.1, "{left}");
     assert!(!tare.is_touched());
-    // For as long as it lasts.
+    // The baseline is frozen for any duration.
     for _ in 0..20 {
         let left = run(&mut tare, 1000, 4.0);
         assert!((left.add_scalar(-4.0)).amax() < 0.1, "{left}");

@@ -44,7 +44,7 @@ fn the_posture_moves_the_joints_without_moving_the_hand() {
         let solution = solve(&jacobian, &Twist::zeros(), &posture, &UNBOUNDED);
         assert!(solution.residual.norm() < 1e-3 * posture.norm());
         assert!(solution.residual.fixed_rows::<3>(0).norm() < 1e-8);
-        // What is left of the posture is its part in the nullspace: orthogonal to the rest.
+        // The rest of the posture is its part in the nullspace, orthogonal to the difference.
         let rest = posture - solution.velocity;
         assert!(solution.velocity.dot(&rest).abs() < 1e-3);
         let nullspace_share = jacobian
@@ -58,7 +58,7 @@ fn the_posture_moves_the_joints_without_moving_the_hand() {
 
 #[test]
 fn a_bound_joint_leaves_its_share_to_the_others() {
-    // The elbow may not move fast, yet the hand goes sideways as asked.
+    // The elbow may not move fast, but the hand moves sideways as commanded.
     let jacobian = jacobian(&READY);
     let twist = Twist::new(0.0, 0.1, 0.0, 0.0, 0.0, 0.0);
     let free = solve(&jacobian, &twist, &JointVector::zeros(), &UNBOUNDED);
@@ -110,7 +110,8 @@ fn damping_bounds_the_joint_velocities_near_singularities() {
         let direction = random.vector3(1.0).normalize();
         let twist = Twist::new(direction.x, direction.y, direction.z, 0.0, 0.0, 0.0);
         let solution = solve(&jacobian, &twist, &JointVector::zeros(), &UNBOUNDED);
-        // The position is kept at the cost of the orientation, also where that turns fast.
+        // The position is kept at the cost of the orientation, even if the orientation then changes
+        // fast.
         assert!(solution.velocity.norm() < 1000.0);
         let turn = Twist::new(0.0, 0.0, 0.0, direction.x, direction.y, direction.z);
         let solution = solve(&jacobian, &turn, &JointVector::zeros(), &UNBOUNDED);
@@ -131,7 +132,7 @@ fn damping_bounds_the_joint_velocities_near_singularities() {
 #[test]
 fn damping_is_smooth_along_a_path_into_a_singularity() {
     let ik = DifferentialIk::default();
-    // With all angles zero no axis points along x: the hand cannot roll.
+    // With all angles zero, no axis points along x: the hand cannot roll.
     let at = |s: f64| ik.squared_damping(&jacobian(&(READY * (1.0 - s))));
     let steps = 2000;
     let values: std::vec::Vec<f64> = (0..=steps)
@@ -142,14 +143,14 @@ fn damping_is_smooth_along_a_path_into_a_singularity() {
     assert!((values[0] / least - 1.0).abs() < 1e-12);
     let top = values[values.len() - 1];
     assert!(top > (0.99 * ik.orientation_weight * ceiling).powi(2));
-    // First differences change gradually: no step in the derivative.
+    // First differences change gradually: the derivative has no step.
     for window in values.windows(3) {
         let bend = window[0] - 2.0 * window[1] + window[2];
         assert!(bend.abs() < 1e-4 * top, "{bend:e}");
     }
 }
 
-/// With `--release` as many as the figures in the docs are for.
+/// Number of cases; with `--release`, the number behind the figures in the docs.
 const CASES: usize = if cfg!(debug_assertions) { 300 } else { 100_000 };
 
 #[test]
@@ -161,7 +162,7 @@ fn the_answer_is_the_minimum_that_an_enumeration_of_all_active_sets_finds() {
         let model = Model::of(RobotKind::ALL[case % 2]);
         let q = random.posture(model);
         let jacobian = jacobian(&q);
-        // Boxes that do not contain zero are among them, and joints that may not move at all.
+        // Some boxes do not contain zero, and some joints may not move at all.
         let middle = random.joints(0.3);
         let width = JointVector::from_fn(|_, _| match random.bits() % 8 {
             0 => 0.0,
@@ -196,16 +197,16 @@ fn the_answer_is_the_minimum_that_an_enumeration_of_all_active_sets_finds() {
     assert!(passes < PASSES_MAX, "{passes} passes");
 }
 
-/// A loop of a millisecond that follows a pose with its joints inside their limits.
+/// A control loop of one millisecond that follows a pose with its joints inside their limits.
 struct Follower {
     q: JointVector,
     active: [Side; 7],
-    /// Cycles in which a bound of a joint's position held it.
+    /// Number of cycles in which a position limit held a joint.
     pinned: u32,
 }
 
 impl Follower {
-    /// Rate at which errors are fed back, `[1/s]`.
+    /// Feedback rate of errors, `[1/s]`.
     const FEEDBACK: f64 = 100.0;
     /// Deceleration of the braking envelope, `[rad/s²]`.
     const BRAKING: f64 = 8.0;
@@ -218,7 +219,8 @@ impl Follower {
         }
     }
 
-    /// One cycle towards `target`, which moves at `velocity` without turning; the distance left.
+    /// Computes one cycle towards `target`, which moves at `velocity` without turning; returns the
+    /// remaining distance.
     fn step(&mut self, model: &Model, target: &Isometry3<f64>, velocity: &Vector3<f64>) -> f64 {
         let here = flange(&self.q);
         let offset = target.translation.vector - here.translation.vector;
@@ -253,8 +255,8 @@ impl Follower {
         (flange(&self.q).translation.vector - target.translation.vector - velocity * CYCLE).norm()
     }
 
-    /// Follows a straight line of `length` at `speed` from where it is, orientation kept; the
-    /// greatest distance from where it should have been.
+    /// Follows a straight line of `length` at `speed` from the current position with constant
+    /// orientation; returns the greatest distance from the reference.
     fn line(&mut self, model: &Model, direction: &Vector3<f64>, length: f64, speed: f64) -> f64 {
         let mut target = flange(&self.q);
         let velocity = direction * speed;
@@ -273,14 +275,14 @@ fn flange(q: &JointVector) -> Isometry3<f64> {
     crate::transform::isometry(&pose).expect("rigid")
 }
 
-/// Millimetre fraction within which lines keep their position, `[m]`.
+/// Largest position error on a line, `[m]`.
 const POSITION: f64 = 1e-4;
 /// Length of a line, `[m]`.
 const LINE: f64 = 0.12;
-/// Lines of each kind.
+/// Number of lines of each kind.
 const LINES: usize = if cfg!(debug_assertions) { 28 } else { 140 };
 
-/// True if every point of a line is more than three centimetres within what the flange can reach.
+/// True if every point of a line is at least three centimetres within the reach of the flange.
 fn reachable(from: &JointVector, direction: &Vector3<f64>, length: f64) -> bool {
     let start = flange(from).translation.vector;
     (0..=5).all(|k| {
@@ -312,14 +314,15 @@ fn a_line_along_a_joint_limit_keeps_the_position_and_lets_the_orientation_give()
         let turn = rotation::error(&flange(&q).rotation, &flange(&follower.q).rotation);
         turned += usize::from(turn.norm() > 0.05);
     }
-    // It was a test of limits only if they bound, and of the priority if something gave.
+    // The test covers limits only if they were active, and the priority only if a part of the task
+    // failed.
     assert!(
         3 * pinned > lines && 20 * turned > lines,
         "{pinned}, {turned} of {lines}"
     );
 }
 
-/// A posture with joint 5 a quarter turn off, of least manipulability around a random one.
+/// Returns a posture with joint 5 a quarter turn off, of least manipulability around a random one.
 fn singular_wrist(random: &mut Random) -> JointVector {
     let limits = Model::fr3().joint_limits();
     let mut q = random.posture(Model::fr3());
@@ -344,8 +347,8 @@ fn a_line_through_a_wrist_singularity_keeps_the_position() {
     let model = Model::fr3();
     let (mut lines, mut crossed, mut singular) = (0, 0, 0);
     while lines < LINES {
-        // Joint 7 locked, the wrist is singular in all of these; every second one is singular with
-        // all joints, or as near to that as the limits let it come.
+        // With joint 7 locked, the wrist is singular in all of these postures. In every second one
+        // all joints are singular, or as nearly as the limits allow.
         let mut q = READY + random.joints(0.4);
         q[4] = core::f64::consts::FRAC_PI_2;
         if lines % 2 == 1 {

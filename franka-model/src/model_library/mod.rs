@@ -1,11 +1,10 @@
-//! The FER's own model library: compiled code that a robot of FCI version 5 hands to its clients.
+//! The FER's own model library: compiled code that a robot of FCI version 5 sends to its clients.
 //!
-//! [`Model::fer`](crate::Model::fer) meets that library to the last digits in everything that was
-//! compared (the book's page on the model). This module is for comparisons on a particular robot,
-//! and for programs that do not rely on that comparison. Needs the feature `model-library`, and
-//! Linux.
+//! [`Model::fer`](crate::Model::fer) matches that library to the last digits in all comparisons
+//! (the book's page on the model). This module is for comparisons on a particular robot, and for
+//! programs that do not rely on that comparison. Needs the feature `model-library`, and Linux.
 //!
-//! The code is loaded into this process. It runs with its rights, unchecked: hence
+//! The code is loaded into this process. It runs unchecked, with the rights of the process: hence
 //! [`ModelLibrary::load`] is `unsafe`.
 
 mod error;
@@ -26,12 +25,12 @@ use std::{env, fmt, format, process};
 use crate::{EndEffector, Frame, Jacobian, JointVector, Load, MassMatrix};
 use symbols::{Jacobians, Symbols};
 
-/// A library that is loaded, and unloaded when this is dropped.
+/// A loaded library; dropping it unloads the library.
 ///
-/// It answers the questions that [`Model`](crate::Model) answers, with the same arguments.
+/// It has the same functions as [`Model`](crate::Model), with the same arguments.
 pub struct ModelLibrary {
     symbols: Symbols,
-    /// The symbols point into it.
+    /// The symbols point into this library.
     _library: Library,
 }
 
@@ -42,21 +41,21 @@ impl fmt::Debug for ModelLibrary {
 }
 
 impl ModelLibrary {
-    /// Loads the bytes that the robot sent, by way of a temporary file that only this user can read
-    /// and that is gone when this returns.
+    /// Loads the bytes sent by the robot through a temporary file. Only this user can read the
+    /// file, and it is deleted before this function returns.
     ///
     /// # Errors
     /// [`LibraryError`].
     ///
     /// # Safety
-    /// The bytes must be the vendor's model library, or another one whose initialisers and
-    /// functions may be run, from any thread and at any time, and whose functions called `M_NE`,
-    /// `c_NE`, `g_NE`, `O_T_J*`, `Ji_J_J*` and `O_J_J*` have the vendor's signatures. Loading
-    /// what a robot sends trusts that robot, and every host that can pose as it on the network,
-    /// with this process.
+    /// The bytes must be the vendor's model library, or another library. Its initialisers and
+    /// functions must be safe to run from any thread at any time. Its functions named `M_NE`,
+    /// `c_NE`, `g_NE`, `O_T_J*`, `Ji_J_J*` and `O_J_J*` must have the vendor's signatures. Loading
+    /// a robot's library means trusting that robot, and every host that can impersonate it on the
+    /// network, with this process.
     pub unsafe fn load(bytes: &[u8]) -> Result<Self, LibraryError> {
         let file = Temporary::with(bytes).map_err(LibraryError::Save)?;
-        // SAFETY: the caller vouches for the initialisers.
+        // SAFETY: the caller guarantees safe initialisers.
         let library = unsafe { Library::new(&file.path) }.map_err(|error| match error {
             Error::DlOpen { source } => LibraryError::Load {
                 reason: source.to_string(),
@@ -65,7 +64,7 @@ impl ModelLibrary {
                 reason: other.to_string(),
             },
         })?;
-        // SAFETY: the caller vouches for the signatures.
+        // SAFETY: the caller guarantees the signatures.
         let symbols = unsafe { Symbols::of(&library) }?;
         Ok(Self {
             symbols,
@@ -73,12 +72,12 @@ impl ModelLibrary {
         })
     }
 
-    /// Pose of `frame` in the base frame.
+    /// Returns the pose of `frame` in the base frame.
     pub fn pose(&self, frame: Frame, q: &JointVector, ee: &EndEffector) -> Matrix4<f64> {
         let mut pose = Matrix4::zeros();
         let out = pose.as_mut_slice().as_mut_ptr();
-        // SAFETY: `load` was told the signatures; 7 and 16 numbers go in, 16 come out, and the
-        // library is loaded as long as `self` is there.
+        // SAFETY: the caller of `load` guarantees the signatures; 7 and 16 numbers are read, 16 are
+        // written, and the library stays loaded as long as `self` exists.
         unsafe {
             match on_flange(frame, ee) {
                 Some(f_t_frame) => {
@@ -100,10 +99,10 @@ impl ModelLibrary {
         jacobian(&self.symbols.body_jacobians, frame, q, ee)
     }
 
-    /// Joint-space inertia, without rotors, `[kg·m²]`.
+    /// Returns the joint-space inertia, without rotors, `[kg·m²]`.
     pub fn mass(&self, q: &JointVector, load: &Load) -> MassMatrix {
         let mut mass = MassMatrix::zeros();
-        // SAFETY: as in `pose`; 7, 9 and 3 numbers go in, 49 come out.
+        // SAFETY: as in `pose`; 7, 9 and 3 numbers are read, 49 are written.
         unsafe {
             (self.symbols.mass)(
                 q.as_ptr(),
@@ -116,10 +115,10 @@ impl ModelLibrary {
         mass
     }
 
-    /// Torques of Coriolis and centrifugal forces, `C(q, dq) dq`, `[N·m]`.
+    /// Returns the torques of Coriolis and centrifugal forces, `C(q, dq) dq`, `[N·m]`.
     pub fn coriolis(&self, q: &JointVector, dq: &JointVector, load: &Load) -> JointVector {
         let mut torques = JointVector::zeros();
-        // SAFETY: as in `pose`; 7, 7, 9 and 3 numbers go in, 7 come out.
+        // SAFETY: as in `pose`; 7, 7, 9 and 3 numbers are read, 7 are written.
         unsafe {
             (self.symbols.coriolis)(
                 q.as_ptr(),
@@ -133,7 +132,7 @@ impl ModelLibrary {
         torques
     }
 
-    /// Torques that hold the arm still against gravity, `[N·m]`.
+    /// Returns the torques that hold the arm still against gravity, `[N·m]`.
     pub fn gravity(
         &self,
         q: &JointVector,
@@ -141,7 +140,7 @@ impl ModelLibrary {
         gravity_earth: &Vector3<f64>,
     ) -> JointVector {
         let mut torques = JointVector::zeros();
-        // SAFETY: as in `pose`; 7, 3 and 3 numbers go in, 7 come out.
+        // SAFETY: as in `pose`; 7, 3 and 3 numbers are read, 7 are written.
         unsafe {
             (self.symbols.gravity)(
                 q.as_ptr(),
@@ -158,7 +157,7 @@ impl ModelLibrary {
 fn jacobian(symbols: &Jacobians, frame: Frame, q: &JointVector, ee: &EndEffector) -> Jacobian {
     let mut jacobian = Jacobian::zeros();
     let out = jacobian.as_mut_slice().as_mut_ptr();
-    // SAFETY: as in `ModelLibrary::pose`; at most 7 and 16 numbers go in, 42 come out.
+    // SAFETY: as in `ModelLibrary::pose`; at most 7 and 16 numbers are read, 42 are written.
     unsafe {
         match (on_flange(frame, ee), frame) {
             (Some(f_t_frame), _) => {
@@ -171,7 +170,7 @@ fn jacobian(symbols: &Jacobians, frame: Frame, q: &JointVector, ee: &EndEffector
     jacobian
 }
 
-/// Where a frame is on the flange, for those that the user places.
+/// Returns the pose of a frame on the flange, for the frames that the user defines.
 fn on_flange(frame: Frame, ee: &EndEffector) -> Option<Matrix4<f64>> {
     match frame {
         Frame::EndEffector => Some(ee.f_t_ee),
@@ -180,13 +179,14 @@ fn on_flange(frame: Frame, ee: &EndEffector) -> Option<Matrix4<f64>> {
     }
 }
 
-/// A file that is removed when this is dropped.
+/// A file that is removed when this value is dropped.
 struct Temporary {
     path: PathBuf,
 }
 
 impl Temporary {
-    /// Writes a new file: a file that exists already is left alone, and another name is tried.
+    /// Writes a new file. If the name exists, it tries another name and leaves the existing file
+    /// unchanged.
     fn with(bytes: &[u8]) -> io::Result<Self> {
         loop {
             let number = COUNT.fetch_add(1, Ordering::Relaxed);
@@ -207,17 +207,17 @@ impl Temporary {
     }
 }
 
-/// Files made by this process.
+/// Number of files created by this process.
 static COUNT: AtomicU64 = AtomicU64::new(0);
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        // One that has gone by itself is gone.
+        // A missing file needs no removal.
         let _ = fs::remove_file(&self.path);
     }
 }
 
-/// Handles go anywhere: the functions are of their arguments alone.
+/// Handles may be sent and shared: the functions depend on their arguments only.
 const _: () = {
     const fn shared<T: Send + Sync + 'static>() {}
     shared::<ModelLibrary>();

@@ -6,18 +6,18 @@ use std::string::ToString;
 
 use super::LibraryError;
 
-/// Of nothing: what is the same at every posture.
+/// A function without inputs: the same result at every posture.
 pub(super) type OfNothing = unsafe extern "C" fn(*mut f64);
-/// Of `q`.
+/// A function of `q`.
 pub(super) type OfPosture = unsafe extern "C" fn(*const f64, *mut f64);
-/// Of `q` and `F_T_EE`.
+/// A function of `q` and `F_T_EE`.
 pub(super) type OfFrame = unsafe extern "C" fn(*const f64, *const f64, *mut f64);
-/// Of `q`, `I_total`, `m_total` and `F_x_Ctotal`.
+/// A function of `q`, `I_total`, `m_total` and `F_x_Ctotal`.
 pub(super) type Mass = unsafe extern "C" fn(*const f64, *const f64, f64, *const f64, *mut f64);
-/// Of `q`, `dq`, `I_total`, `m_total` and `F_x_Ctotal`.
+/// A function of `q`, `dq`, `I_total`, `m_total` and `F_x_Ctotal`.
 pub(super) type Coriolis =
     unsafe extern "C" fn(*const f64, *const f64, *const f64, f64, *const f64, *mut f64);
-/// Of `q`, the gravitational acceleration, `m_total` and `F_x_Ctotal`.
+/// A function of `q`, the gravitational acceleration, `m_total` and `F_x_Ctotal`.
 pub(super) type Gravity = unsafe extern "C" fn(*const f64, *const f64, f64, *const f64, *mut f64);
 
 /// Addresses in a library; valid while it is loaded.
@@ -25,7 +25,7 @@ pub(super) struct Symbols {
     pub(super) mass: Mass,
     pub(super) coriolis: Coriolis,
     pub(super) gravity: Gravity,
-    /// Joints 1 to 7 and the flange.
+    /// Poses of joints 1 to 7 and the flange.
     pub(super) poses: [OfPosture; 8],
     pub(super) pose_ee: OfFrame,
     pub(super) body_jacobians: Jacobians,
@@ -33,9 +33,9 @@ pub(super) struct Symbols {
 }
 
 pub(super) struct Jacobians {
-    /// Of joint 1: its axis does not move.
+    /// Jacobian of joint 1, whose axis does not move.
     pub(super) first: OfNothing,
-    /// Of joints 2 to 7 and the flange.
+    /// Jacobians of joints 2 to 7 and the flange.
     pub(super) others: [OfPosture; 7],
     pub(super) ee: OfFrame,
 }
@@ -44,7 +44,7 @@ impl Symbols {
     /// # Safety
     /// Functions that the library has under these names must have these signatures.
     pub(super) unsafe fn of(library: &Library) -> Result<Self, LibraryError> {
-        // SAFETY: the caller vouches for every name and signature below.
+        // SAFETY: the caller guarantees every name and signature below.
         unsafe {
             Ok(Self {
                 mass: get(library, "M_NE")?,
@@ -61,9 +61,9 @@ impl Symbols {
 
 impl Jacobians {
     /// # Safety
-    /// As [`Symbols::of`].
+    /// The conditions of [`Symbols::of`].
     unsafe fn of(library: &Library, name: &str) -> Result<Self, LibraryError> {
-        // SAFETY: the caller vouches for every name and signature below.
+        // SAFETY: the caller guarantees every name and signature below.
         unsafe {
             Ok(Self {
                 first: get(library, &format!("{name}1"))?,
@@ -74,29 +74,29 @@ impl Jacobians {
     }
 }
 
-/// The functions called `name` and a number, counted from `first`.
+/// Returns the functions named `name` and a number, counted from `first`.
 ///
 /// # Safety
-/// As [`Symbols::of`].
+/// The conditions of [`Symbols::of`].
 unsafe fn numbered<const N: usize>(
     library: &Library,
     name: &str,
     first: usize,
 ) -> Result<[OfPosture; N], LibraryError> {
-    // A function to begin with; every place gets one of its own.
-    // SAFETY: the caller vouches for the signature.
+    // Fills the array with one function; every place is then replaced. SAFETY: the caller
+    // guarantees the signature.
     let mut found = [unsafe { get(library, &format!("{name}{first}"))? }; N];
     for (i, place) in found.iter_mut().enumerate() {
-        // SAFETY: likewise.
+        // SAFETY: the caller guarantees the signature.
         *place = unsafe { get(library, &format!("{name}{}", first + i))? };
     }
     Ok(found)
 }
 
 /// # Safety
-/// The symbol, if there is one, must be a function that `F` is the type of a pointer to.
+/// If the symbol exists, it must be a function with the pointer type `F`.
 unsafe fn get<F: Copy>(library: &Library, name: &str) -> Result<F, LibraryError> {
-    // SAFETY: the caller vouches for the type.
+    // SAFETY: the caller guarantees the type.
     let symbol = unsafe { library.get::<F>(name) };
     symbol.map(|symbol| *symbol).map_err(|error| match error {
         Error::DlSym { source } => LibraryError::Symbol {

@@ -1,8 +1,8 @@
 //! The Franka Emika Robot (FER, Panda).
 //!
-//! Its controller holds a compiled model library whose numbers no set of seven physical bodies
-//! gives: hence one model that meets the library, for clients, and one that an arm could have, for
-//! simulation.
+//! Its controller contains a compiled model library whose numbers do not correspond to any set of
+//! seven physical bodies. Hence there are two models: a client model that matches the library, and
+//! a physically possible model for simulation.
 
 use super::Description;
 use crate::geometry::Lengths;
@@ -19,11 +19,11 @@ pub(super) static FER: Description = Description {
     cartesian: CARTESIAN,
 };
 
-/// Meets the vendor's model library (libfranka 0.9, FCI version 5).
+/// Matches the vendor's model library (libfranka 0.9, FCI version 5).
 ///
-/// Source: `fer.urdf` of the crate franka-rs 0.4.0, identified from that library up to what joint
-/// torques can tell. Without a load it meets the library to 4e-15 kg·m² and 3e-14 N·m. Some
-/// moments are negative: only sums along the chain mean something.
+/// Source: `fer.urdf` of the crate franka-rs 0.4.0, identified from that library as exactly as
+/// joint torques allow. Without a load it matches the library to 4e-15 kg·m² and 3e-14 N·m. Some
+/// moments are negative: only sums along the chain are meaningful.
 static CLIENT: Model = Model {
     kind: RobotKind::Fer,
     base: BASE,
@@ -147,12 +147,11 @@ static CLIENT: Model = Model {
     origins: None,
 };
 
-/// Link 7 as the vendor's library has it inside, in link axes; nothing but its merging with
-/// a load depends on it.
+/// Link 7 as in the vendor's library, in link axes; only its composition with a load depends on it.
 ///
-/// Source: fitted to what the library's mass matrices do under one load of 1.23 kg, three equations
-/// for two unknowns with a residual of 4e-15 kg·m². For other loads it rests on one published
-/// figure (7e-4 kg·m², met with 7.1e-4).
+/// Source: fitted to the library's mass matrices under one load of 1.23 kg: three equations for two
+/// unknowns with a residual of 4e-15 kg·m². For other loads, the only confirmation is one published
+/// figure (7e-4 kg·m², against 7.1e-4 here).
 const LINK_7_INSIDE: (f64, [f64; 3]) = (
     0.536221593609,
     [
@@ -162,12 +161,13 @@ const LINK_7_INSIDE: (f64, [f64; 3]) = (
     ],
 );
 
-/// Close to the vendor's library, with bodies that exist: without a load within 0.018 kg·m² (mass),
+/// Close to the vendor's library, with physical bodies: without a load within 0.018 kg·m² (mass),
 /// 0.013 N·m (gravity) and 0.083 N·m (Coriolis) at the 40 reference states.
 ///
 /// Source: a least-squares fit to the library's torques at 300 random states with every body's
-/// pseudo-inertia kept positive definite, drawn towards the feasible set of Gaz, Cognetti, Oliva,
-/// Robuffo Giordano and De Luca, Dynamic Identification of the Franka Emika Panda Robot, 2019.
+/// pseudo-inertia kept positive definite, regularised towards the feasible set of Gaz, Cognetti,
+/// Oliva, Robuffo Giordano and De Luca, Dynamic Identification of the Franka Emika Panda Robot,
+/// 2019.
 static PHYSICALLY_CONSISTENT: Model = Model {
     kind: RobotKind::Fer,
     base: BASE,
@@ -259,8 +259,8 @@ const BASE: RigidBody = RigidBody::new(
 );
 
 /// Positions, velocities and torques: limits table of the FCI documentation for the FER
-/// (`franka_description` 1.0.1, `robots/fer/joint_limits.yaml`), which knows one pair of position
-/// limits. The others: libfranka 0.9, `rate_limiting.h`.
+/// (`franka_description` 1.0.1, `robots/fer/joint_limits.yaml`), which has one pair of position
+/// limits. The other limits: libfranka 0.9, `rate_limiting.h`.
 const JOINTS: JointLimits = JointLimits {
     lower: LOWER,
     upper: UPPER,
@@ -279,8 +279,8 @@ const LOWER: JointVector = joint_vector([
 ]);
 const UPPER: JointVector = joint_vector([2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973]);
 
-/// libfranka 0.9, `rate_limiting.h`. The limits table of the FCI documentation for the FER gives
-/// 1.7 m/s for the translation, where the vendor's client limits to 2.0 m/s.
+/// libfranka 0.9, `rate_limiting.h`. The limits table of the FCI documentation for the FER states
+/// 1.7 m/s for the translation; the vendor's client limits to 2.0 m/s.
 const CARTESIAN: CartesianLimits = CartesianLimits {
     translation: MotionLimits {
         velocity: 2.0,

@@ -1,4 +1,4 @@
-//! Masses, and which of them move together.
+//! Masses, and the bodies that move together.
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::borrow::ToOwned;
@@ -9,7 +9,7 @@ use super::element::{self, Element};
 use super::tree::{Link, Tree};
 use crate::inertia::{RigidBody, Symmetric3};
 
-/// The base and links 1 to 7, each with everything that is fixed to it.
+/// Returns the base and links 1 to 7, each with all links fixed to it.
 pub(super) fn bodies(tree: &Tree<'_, '_>) -> Result<[RigidBody; 8], UrdfError> {
     let mut bodies = [NOTHING; 8];
     for moved in tree.moved_links() {
@@ -22,7 +22,7 @@ pub(super) fn bodies(tree: &Tree<'_, '_>) -> Result<[RigidBody; 8], UrdfError> {
     for attached in tree.links.iter().filter(|link| link.place.is_fixed) {
         let whole = &mut bodies[attached.place.moved_by];
         match read(attached, Weight::Optional)? {
-            // Joining nothing, or to nothing, could change the last digits.
+            // Joining a body without mass could change the last digits.
             Some(part) if part.mass == 0.0 => {}
             Some(part) if whole.mass == 0.0 => *whole = part,
             Some(part) => *whole = whole.joined(&part),
@@ -43,14 +43,14 @@ pub(super) fn bodies(tree: &Tree<'_, '_>) -> Result<[RigidBody; 8], UrdfError> {
 
 const NOTHING: RigidBody = RigidBody::new(0.0, [0.0; 3], [0.0; 6]);
 
-/// Whether a link may be without mass.
+/// The requirement on a link's mass.
 #[derive(Clone, Copy, PartialEq)]
 enum Weight {
     Needed,
     Optional,
 }
 
-/// The body of a link, where the link is attached.
+/// Returns the body of a link, in the place where the link is attached.
 fn read(link: &Link<'_, '_>, weight: Weight) -> Result<Option<RigidBody>, UrdfError> {
     let owner = format!("link: {}", link.name);
     let Some(inertial) = Element::find(link.node, "inertial", &owner) else {
@@ -75,7 +75,7 @@ fn read(link: &Link<'_, '_>, weight: Weight) -> Result<Option<RigidBody>, UrdfEr
         &inertia,
         "none of them to be negative",
         |least, largest| {
-            // The least of a rod is zero but for rounding.
+            // The least moment of a rod is zero up to rounding.
             least >= -1e-12 * largest
         },
     )?;
@@ -88,10 +88,10 @@ fn read(link: &Link<'_, '_>, weight: Weight) -> Result<Option<RigidBody>, UrdfEr
     Ok(Some(moved(&on_link, &link.place.pose)))
 }
 
-/// A body given in the axes of a frame, in the axes that the frame's pose is given in.
+/// Returns a body, given in the axes of a frame, in the axes of the frame's pose.
 fn moved(body: &RigidBody, pose: &Isometry3<f64>) -> RigidBody {
     let turn = pose.rotation.to_rotation_matrix();
-    // A turn by nothing must not change the last digits.
+    // An identity rotation must not change the last digits.
     if *turn.matrix() == Matrix3::identity() {
         return RigidBody {
             com: body.com + pose.translation.vector,

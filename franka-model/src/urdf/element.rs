@@ -7,7 +7,7 @@ use std::string::String;
 
 use super::UrdfError;
 
-/// An element, and where it is: for messages.
+/// An element and its owner, for messages.
 #[derive(Clone, Copy)]
 pub(super) struct Element<'a, 'n> {
     node: Node<'a, 'n>,
@@ -16,7 +16,7 @@ pub(super) struct Element<'a, 'n> {
 }
 
 impl<'a, 'n> Element<'a, 'n> {
-    /// The direct child called `name` of a joint or link, which `owner` names.
+    /// Returns the direct child named `name` of the joint or link `owner`.
     pub(super) fn child(
         parent: Node<'a, 'n>,
         name: &'static str,
@@ -28,13 +28,13 @@ impl<'a, 'n> Element<'a, 'n> {
         })
     }
 
-    /// The same, if it is there.
+    /// Returns the same child, if it exists.
     pub(super) fn find(parent: Node<'a, 'n>, name: &'static str, owner: &'a str) -> Option<Self> {
         let node = parent.children().find(|node| node.has_tag_name(name))?;
         Some(Self { node, name, owner })
     }
 
-    /// The direct child called `name` of this element.
+    /// Returns the direct child named `name` of this element.
     pub(super) fn inner(&self, name: &'static str) -> Result<Self, UrdfError> {
         Self::child(self.node, name, self.owner)
     }
@@ -53,13 +53,13 @@ impl<'a, 'n> Element<'a, 'n> {
             })
     }
 
-    /// A [plausible](plausible) number.
+    /// Returns a [plausible](plausible) number.
     pub(super) fn number(&self, attribute: &'static str) -> Result<f64, UrdfError> {
         let text = self.text(attribute)?;
         plausible(text.trim()).ok_or_else(|| self.unexpected(attribute, text, ONE_NUMBER))
     }
 
-    /// A number that meets a condition, which `expected` tells.
+    /// Returns a number that meets a condition; `expected` describes it.
     pub(super) fn number_where(
         &self,
         attribute: &'static str,
@@ -74,7 +74,7 @@ impl<'a, 'n> Element<'a, 'n> {
         }
     }
 
-    /// Three numbers.
+    /// Returns three numbers.
     pub(super) fn vector(&self, attribute: &'static str) -> Result<[f64; 3], UrdfError> {
         let text = self.text(attribute)?;
         let mut numbers = text.split_whitespace().map(plausible);
@@ -98,16 +98,16 @@ impl<'a, 'n> Element<'a, 'n> {
 const ONE_NUMBER: &str = "a number of at most 1e6 in size";
 const THREE_NUMBERS: &str = "three numbers of at most 1e6 in size";
 
-/// A number of at most 1e6: larger ones have no place in a robot in SI units, and products of these
-/// stay finite.
+/// Returns a number of at most 1e6: larger values do not occur in a robot in SI units, and products
+/// of such numbers stay finite.
 fn plausible(text: &str) -> Option<f64> {
     let number: f64 = text.parse().ok()?;
     // False for NaN.
     (number.abs() <= 1e6).then_some(number)
 }
 
-/// The pose in the direct child `origin`: a translation `xyz`, and `rpy` about the fixed axes x, y
-/// and z in this order. What is left out is zero.
+/// Returns the pose in the direct child `origin`: a translation `xyz`, and `rpy` about the fixed
+/// axes x, y and z in this order. Missing attributes count as zero.
 pub(super) fn origin(parent: Node<'_, '_>, owner: &str) -> Result<Isometry3<f64>, UrdfError> {
     let Some(element) = Element::find(parent, "origin", owner) else {
         return Ok(Isometry3::identity());
@@ -123,7 +123,7 @@ pub(super) fn origin(parent: Node<'_, '_>, owner: &str) -> Result<Isometry3<f64>
     ))
 }
 
-/// The `name` of a joint or link.
+/// Returns the `name` of a joint or link.
 pub(super) fn name<'a>(node: Node<'a, '_>, element: &'static str) -> Result<&'a str, UrdfError> {
     node.attribute("name")
         .ok_or_else(|| UrdfError::MissingAttribute {

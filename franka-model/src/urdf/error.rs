@@ -1,29 +1,28 @@
-//! What can be wrong with a description.
+//! Errors of a robot description.
 
 use std::string::String;
 use std::vec::Vec;
 
-/// Why a text is not accepted as a description of the arm. Each variant holds what was found, its
-/// text says what was expected.
+/// The reason why a text is not accepted as a description of the arm. Each variant holds the found
+/// value; its text also states the expected value.
 ///
-/// Where libfranka has a text for the case (its velocity-limit parser, 0.21), the text begins with
-/// it.
+/// If libfranka has a text for the case (its velocity-limit parser, 0.21), the text begins with it.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum UrdfError {
-    /// It is not XML.
+    /// The text is not XML.
     #[error("Failed to parse URDF: {reason}; expected an XML document")]
     Xml {
-        /// What the parser says, and where.
+        /// Message and position from the parser.
         reason: String,
     },
-    /// It is another kind of document.
+    /// The document is of another kind.
     #[error("Failed to parse URDF: no <robot> element exists; the root element is <{got}>")]
     Root {
         /// Name of the root element.
         got: String,
     },
-    /// It describes a mobile robot, by its name.
+    /// The name indicates a mobile robot.
     #[error(
         "the URDF describes the mobile robot '{name}', expected an arm; \
          libfranka: loadModel() is not available for mobile robots. \
@@ -40,48 +39,48 @@ pub enum UrdfError {
         if .got.is_empty() { String::from("none") } else { .got.join(" ") }
     )]
     MissingJoints {
-        /// Which, of `joint1` to `joint7`.
+        /// The missing names, of `joint1` to `joint7`.
         missing: Vec<&'static str>,
-        /// The names of all joints that there are.
+        /// The names of all joints in the text.
         got: Vec<String>,
     },
     /// A joint of the arm is not a hinge with limits.
     #[error("joint {joint} is of type '{got}', expected 'revolute'")]
     JointType {
-        /// Its name.
+        /// Name of the joint.
         joint: String,
-        /// Its type.
+        /// Type of the joint.
         got: String,
     },
-    /// There is a movable joint besides the seven of the arm, such as that of a finger.
+    /// A movable joint exists besides the seven of the arm, such as the joint of a finger.
     #[error(
         "joint {joint} of type '{got}' is one too many, expected seven movable joints, joint1 to joint7"
     )]
     ExtraJoint {
-        /// Its name.
+        /// Name of the joint.
         joint: String,
-        /// Its type.
+        /// Type of the joint.
         got: String,
     },
     /// An element is missing.
     #[error("Missing <{element}> element for {owner}")]
     MissingElement {
-        /// Its name.
+        /// Name of the element.
         element: &'static str,
-        /// Which joint or link lacks it, such as `joint: joint3`.
+        /// The joint or link that lacks it, such as `joint: joint3`.
         owner: String,
     },
     /// An attribute is missing.
     #[error("Missing '{attribute}' attribute in <{element}> for {owner}")]
     MissingAttribute {
-        /// Its name.
+        /// Name of the attribute.
         attribute: &'static str,
-        /// The element that should have it.
+        /// The element that lacks it.
         element: &'static str,
-        /// Where the element is.
+        /// Owner of the element.
         owner: String,
     },
-    /// Two joints or two links have one name.
+    /// Two joints or two links have the same name.
     #[error("two elements <{element}> have the name '{name}', expected one")]
     Duplicate {
         /// `joint` or `link`.
@@ -89,24 +88,24 @@ pub enum UrdfError {
         /// The name.
         name: String,
     },
-    /// A value is not what it should be a list of.
+    /// A value is invalid.
     #[error("'{attribute}' in <{element}> for {owner} is '{got}', expected {expected}")]
     Value {
         /// Name of the attribute.
         attribute: &'static str,
         /// The element that has it.
         element: &'static str,
-        /// Where the element is.
+        /// Owner of the element.
         owner: String,
         /// The value.
         got: String,
-        /// What it should be.
+        /// Description of the expected value.
         expected: &'static str,
     },
-    /// The lower position limit is not below the upper one.
+    /// The lower position limit is not below the upper limit.
     #[error("the limits of joint {joint} are {lower} to {upper} rad, expected the lower one first")]
     LimitsCrossed {
-        /// Its name.
+        /// Name of the joint.
         joint: String,
         /// `lower`, `[rad]`.
         lower: f64,
@@ -119,63 +118,63 @@ pub enum UrdfError {
          expected {least:.4} rad or more, since margins are kept at both ends", .upper - .lower
     )]
     RangeTooNarrow {
-        /// Its name.
+        /// Name of the joint.
         joint: String,
         /// `lower`, `[rad]`.
         lower: f64,
         /// `upper`, `[rad]`.
         upper: f64,
-        /// The least range that is accepted, `[rad]`.
+        /// Smallest accepted range, `[rad]`.
         least: f64,
     },
-    /// No body has such an inertia.
+    /// The inertia is not physical.
     #[error(
         "the inertia of link {link} has principal moments of {} {} {} kg m^2, expected {expected}",
         .moments[0], .moments[1], .moments[2]
     )]
     Inertia {
-        /// Its name.
+        /// Name of the link.
         link: String,
-        /// In ascending order, `[kg·m²]`.
+        /// Principal moments in ascending order, `[kg·m²]`.
         moments: [f64; 3],
-        /// What they should be.
+        /// Description of the expected moments.
         expected: &'static str,
     },
-    /// A joint names a link that is not there.
+    /// A joint names a link that does not exist.
     #[error("joint {joint} has the {role} '{got}', expected the name of a <link>")]
     UnknownLink {
         /// Name of the joint.
         joint: String,
         /// `parent` or `child`.
         role: &'static str,
-        /// The name given.
+        /// Name of the link.
         got: String,
     },
-    /// A link hangs on two joints.
+    /// A link is the child of two joints.
     #[error("link {link} is the child of the joints {first} and {second}, expected one of them")]
     TwoParents {
         /// Name of the link.
         link: String,
-        /// The joint that comes first in the text.
+        /// Name of the first joint in the text.
         first: String,
-        /// The other.
+        /// Name of the other joint.
         second: String,
     },
-    /// There is not one link that carries all others.
+    /// The text does not have exactly one root link.
     #[error("the links without a joint above are: {}; expected one", .got.join(" "))]
     Roots {
-        /// Their names: none, or several.
+        /// Names of the root links: none, or several.
         got: Vec<String>,
     },
-    /// Joints run in a circle.
+    /// The joints form a circle.
     #[error("link {link} does not hang on {root}, expected every link to")]
     Circle {
-        /// Name of a link in the circle, or behind it.
+        /// Name of a link in the circle, or after it.
         link: String,
         /// Name of the root.
         root: String,
     },
-    /// The joints do not follow one another.
+    /// The joints are not in sequence.
     #[error(
         "joint {joint} has the parent {got}, which {} moves, expected a link that {} moves",
         mover(*.moved_by),
@@ -188,29 +187,29 @@ pub enum UrdfError {
         got: String,
         /// Number of the joint that moves the parent; 0 is the base.
         moved_by: usize,
-        /// Number of the joint that should.
+        /// Expected number of the joint.
         expected: usize,
     },
-    /// A joint is not where the arm has it.
+    /// A joint frame is not in its expected place.
     #[error("the frame of {owner} is {:?} m with rpy {:?} rad off its place, expected less than {} and {}",
         .translation, .rotation, super::TRANSLATION_OFF, super::ROTATION_OFF)]
     Origin {
-        /// Which joint, or the flange.
+        /// Name of the joint, or the flange.
         owner: String,
-        /// From where it should be to where it is, `[m]`.
+        /// Vector from the expected to the actual place, `[m]`.
         translation: [f64; 3],
-        /// Likewise, as roll, pitch and yaw, `[rad]`.
+        /// Rotation from the expected to the actual orientation, as roll, pitch and yaw, `[rad]`.
         rotation: [f64; 3],
     },
     /// A joint does not turn about z.
     #[error("joint {joint} has the axis {got:?}, expected [0, 0, 1]")]
     Axis {
-        /// Its name.
+        /// Name of the joint.
         joint: String,
-        /// Its axis.
+        /// Axis of the joint.
         got: [f64; 3],
     },
-    /// There is no flange.
+    /// The text has no flange.
     #[error("there is no link 'link8', expected one fixed to link 7; the links are: {}", .got.join(" "))]
     NoFlange {
         /// Names of the links.

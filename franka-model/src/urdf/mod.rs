@@ -1,36 +1,34 @@
-//! A model from the description that a robot serves: URDF.
+//! A model from the robot's own description: URDF.
 //!
-//! Robots that speak FCI version 10 give this text to a client that asks for it (`GetRobotModel`).
-//! It holds what may differ from one arm to the next: masses, position limits, speeds, torques, and
-//! the velocity envelope, which is an element of the vendor's own.
+//! Robots with FCI version 10 send this text on request (`GetRobotModel`). It contains the values
+//! that may differ between arms: masses, position limits, speeds, torques, and the velocity
+//! envelope, a vendor-specific element.
 //!
 //! # What is read, and what is not
 //!
-//! | of the text | becomes |
+//! | part of the text | becomes |
 //! |---|---|
-//! | `inertial` of the links | [`Model::links`]; everything fixed to a link is part of it, as for libfranka |
+//! | `inertial` of the links | [`Model::links`]; all links fixed to a link are part of it, as in libfranka |
 //! | `limit`, `position_based_velocity_limits` | position, velocity, torque and envelope of [`Model::joint_limits`] |
 //! | `origin`, `axis` of the joints, `link8` | [`Model::lengths`]; checked against the [geometry](crate::geometry) |
 //!
-//! The geometry is that of the crate, with one of the sets of lengths that robots are
-//! [known](crate::geometry::Lengths::KNOWN) to have: inverse kinematics and capsules are made for
-//! it. A text with another one is refused rather than computed with half of it. Up to 1 µm and
-//! 10 µrad, which is what rounded numbers may be off, the crate's numbers replace those of the
-//! text.
+//! The geometry is the crate's own, with one of the [known](crate::geometry::Lengths::KNOWN) sets
+//! of lengths, because inverse kinematics and capsules depend on it. A text with another geometry
+//! is refused rather than used in part. Within 1 µm and 10 µrad, the error of rounded numbers, the
+//! crate's numbers replace the text's.
 //!
-//! The text has no limits of acceleration, jerk and torque rate, and none for the end effector:
-//! those of the FR3 are taken. Nor has it the positions to command
+//! The text has no limits of acceleration, jerk and torque rate, and no end-effector limits: the
+//! FR3's limits are used. It has no commanded position range either
 //! ([`lower`](crate::limits::JointLimits::lower), [`upper`](crate::limits::JointLimits::upper)).
-//! They are as far inside the text's limits as the documented ones are inside the vendor's, in a
-//! range that is wider as well as in a narrower one.
+//! Its distance from the text's limits is the same as the documented distance from the vendor's
+//! limits, in wider and in narrower ranges.
 //!
 //! # What is refused
 //!
-//! [`UrdfError`] has the list. The vendor's parsers let some of it pass: an inertia that cannot be
-//! read makes a link without mass there, and the last of two joints with one name counts. Numbers
-//! have to be numbers to their end. Inertias have to be positive; that the largest moment is at
-//! most the sum of the others is not asked for, as the vendor's own descriptions of other arms
-//! break it.
+//! [`UrdfError`] lists the errors. The vendor's parsers accept some of these texts: they treat an
+//! unreadable inertia as a link without mass, and use the last of two joints with the same name.
+//! Here, numbers must be complete and inertias must be positive. The triangle inequality of the
+//! moments is not checked, because the vendor's own descriptions of other arms violate it.
 //!
 //! # Example
 //!
@@ -61,21 +59,20 @@ use crate::{JointVector, Model, RobotKind};
 use element::Element;
 use tree::Tree;
 
-/// How far a frame may be from its place in the [geometry](crate::geometry), `[m]`.
+/// Largest translation of a frame from its place in the [geometry](crate::geometry), `[m]`.
 pub const TRANSLATION_OFF: f64 = 1e-6;
 
-/// How far a frame may be turned against the [geometry](crate::geometry), `[rad]`.
+/// Largest rotation of a frame from its place in the [geometry](crate::geometry), `[rad]`.
 pub const ROTATION_OFF: f64 = 1e-5;
 
-/// Elements and attributes' texts beyond this are refused: the vendor's description has a few
-/// hundred.
+/// Largest number of elements and attribute texts: the vendor's description has a few hundred.
 const NODES_MAX: u32 = 100_000;
 
 impl Model {
-    /// A model from the URDF that a Franka Research 3 serves. Needs the feature `urdf`.
+    /// Creates a model from the URDF of a Franka Research 3. Needs the feature `urdf`.
     ///
-    /// The text of an arm with the vendor's numbers gives a model that equals
-    /// [`Model::fr3`] to the last bit. See [`urdf`](crate::urdf) for what is read.
+    /// The text of an arm with the vendor's numbers gives a model that equals [`Model::fr3`] to the
+    /// last bit. See [`urdf`](crate::urdf) for the parts that are read.
     ///
     /// # Errors
     /// [`UrdfError`].
@@ -107,7 +104,7 @@ impl Model {
         let joints = joint_limits(&tree)?;
         let [base, links @ ..] = body::bodies(&tree)?;
         Ok(Self {
-            // The only kind of arm that serves a description.
+            // The only kind of arm that provides a description.
             kind: RobotKind::Fr3,
             base,
             links,
@@ -119,7 +116,7 @@ impl Model {
     }
 }
 
-/// What the names of the vendor's mobile robots begin with (libfranka 0.21).
+/// Prefix of the names of the vendor's mobile robots (libfranka 0.21).
 const MOBILE: &str = "tmr";
 
 fn joint_limits(tree: &Tree<'_, '_>) -> Result<JointLimits, UrdfError> {
@@ -130,7 +127,7 @@ fn joint_limits(tree: &Tree<'_, '_>) -> Result<JointLimits, UrdfError> {
         offset: JointVector::zeros(),
     };
     for (i, joint) in tree.joints.iter().enumerate() {
-        // In the order in which the vendor's client looks.
+        // The order of the vendor's client.
         let braking = Element::child(joint.node, "position_based_velocity_limits", &joint.owner)?;
         let limit = Element::child(joint.node, "limit", &joint.owner)?;
         limits.velocity[i] = limit.number_where("velocity", POSITIVE, |x| x > 0.0)?;
@@ -148,7 +145,7 @@ fn joint_limits(tree: &Tree<'_, '_>) -> Result<JointLimits, UrdfError> {
         }
         limits.torque[i] = limit.number_where("effort", POSITIVE, |x| x > 0.0)?;
         (limits.hard_lower[i], limits.hard_upper[i]) = (lower, upper);
-        // In this order nominal limits keep every bit.
+        // This order of operations preserves every bit of nominal limits.
         limits.lower[i] = nominal.lower[i] + (lower - nominal.hard_lower[i]);
         limits.upper[i] = nominal.upper[i] + (upper - nominal.hard_upper[i]);
         // The envelope allows no speed within this distance from an end.
@@ -170,10 +167,11 @@ fn joint_limits(tree: &Tree<'_, '_>) -> Result<JointLimits, UrdfError> {
 
 const POSITIVE: &str = "a number above 0";
 
-/// Least deceleration of an envelope, `[rad/s²]`. Controllers brake with half of what the vendor's
-/// gentlest joint has (2.585), or more gently near the ends of a range, never with nothing.
+/// Smallest deceleration of an envelope, `[rad/s²]`. Controllers brake with half of the lowest
+/// deceleration of the vendor's joints (2.585), or less near the ends of a range, but never with
+/// zero.
 const BRAKING_LEAST: f64 = 1.2;
 const BRAKING: &str = "a number of at least 1.2";
 
-/// Least range between the margins, `[rad]`. Controllers keep 0.05 rad from both ends of it.
+/// Smallest range between the margins, `[rad]`. Controllers keep 0.05 rad from both ends.
 const ROOM_LEAST: f64 = 0.2;

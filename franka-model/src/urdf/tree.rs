@@ -1,4 +1,4 @@
-//! Links and joints: which joint moves which link, and where everything is attached.
+//! Links and joints: the joint that moves each link, and the places of all frames.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use roxmltree::Node;
@@ -11,13 +11,13 @@ use super::element::{self, Element};
 use super::{ROTATION_OFF, TRANSLATION_OFF, UrdfError};
 use crate::geometry::{FLANGE, JointOrigin, Lengths};
 
-/// What the robot is made of, checked against the arm that the crate knows.
+/// The parts of the robot, checked against the crate's arm.
 pub(super) struct Tree<'a, 'n> {
     /// Joints 1 to 7.
     pub(super) joints: [Joint<'a, 'n>; 7],
-    /// In the order of the text.
+    /// Links in the order of the text.
     pub(super) links: Vec<Link<'a, 'n>>,
-    /// The known set that its frames have.
+    /// The known set of lengths that matches its frames.
     pub(super) lengths: Lengths,
 }
 
@@ -38,12 +38,12 @@ pub(super) struct Link<'a, 'n> {
     pub(super) place: Place,
 }
 
-/// Where a link is: in the frame of the link that a joint moves, or of the base.
+/// The place of a link, in the frame of the link that a joint moves, or of the base.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
-    /// Number of the last joint that moves it; 0 if none does.
+    /// Number of the last joint that moves it; 0 for none.
     pub(super) moved_by: usize,
-    /// Whether it is fixed to what that joint moves, or is part of the base.
+    /// True if it is fixed to the link that the joint moves, or part of the base.
     pub(super) is_fixed: bool,
     pub(super) pose: Isometry3<f64>,
 }
@@ -81,7 +81,7 @@ impl<'a, 'n> Tree<'a, 'n> {
         })
     }
 
-    /// The links that the seven joints move, without what is fixed to them.
+    /// Returns the links that the seven joints move, without the links fixed to them.
     pub(super) fn moved_links(&self) -> impl Iterator<Item = &Link<'a, 'n>> {
         self.links.iter().filter(|link| !link.place.is_fixed)
     }
@@ -97,7 +97,7 @@ impl<'a, 'n> Joint<'a, 'n> {
         })?;
         let link = |role: &'static str| -> Result<usize, UrdfError> {
             let element = Element::child(node, role, &owner)?;
-            // The owner does not live as long as the text does.
+            // The owner lives shorter than the text.
             let got = element.text("link")?;
             links
                 .iter()
@@ -121,7 +121,7 @@ impl<'a, 'n> Joint<'a, 'n> {
         })
     }
 
-    /// Whether it turns about z of its frame.
+    /// Checks that the joint turns about z of its frame.
     fn check_axis(&self) -> Result<(), UrdfError> {
         let got = Element::child(self.node, "axis", &self.owner)?.vector("xyz")?;
         let axis = Vector3::from(got).try_normalize(0.0);
@@ -136,7 +136,7 @@ impl<'a, 'n> Joint<'a, 'n> {
     }
 }
 
-/// The elements called `element`, with their names, each once.
+/// Returns the elements named `element`, with their unique names.
 fn named<'a, 'n>(
     robot: Node<'a, 'n>,
     element: &'static str,
@@ -155,10 +155,10 @@ fn named<'a, 'n>(
     Ok(found)
 }
 
-/// Which of the joints is which of the arm, 1 to 7.
+/// Assigns the joints of the text to joints 1 to 7 of the arm.
 ///
-/// A name counts that is the joint's, or else contains it, as in the vendor's client. Fixed joints
-/// have names of their own.
+/// A name matches if it is the joint's name or contains it, as in the vendor's client. Fixed joints
+/// have other names.
 fn arm(joints: &[Joint<'_, '_>]) -> Result<Vec<Option<usize>>, UrdfError> {
     let mut numbers = vec![None; joints.len()];
     let mut missing = Vec::new();
@@ -191,7 +191,7 @@ fn arm(joints: &[Joint<'_, '_>]) -> Result<Vec<Option<usize>>, UrdfError> {
     Ok(numbers)
 }
 
-/// The places of the links, with the known lengths that put every frame there.
+/// Returns the places of the links, with the known lengths that match every frame.
 fn known_places(
     links: &[&str],
     joints: &[Joint<'_, '_>],
@@ -211,7 +211,7 @@ fn known_places(
     })
 }
 
-/// Walks from the root outwards.
+/// Computes the places from the root outwards.
 fn places(
     links: &[&str],
     joints: &[Joint<'_, '_>],
@@ -245,7 +245,7 @@ fn places(
 }
 
 impl Joint<'_, '_> {
-    /// Where its child is, given where its parent is.
+    /// Returns the place of the joint's child, given the place of its parent.
     fn place_beyond(
         &self,
         number: Option<usize>,
@@ -281,7 +281,7 @@ impl Joint<'_, '_> {
     }
 }
 
-/// The one link that no joint carries.
+/// Returns the only link that is not the child of a joint.
 fn root(links: &[&str], joints: &[Joint<'_, '_>]) -> Result<usize, UrdfError> {
     let mut carriers: Vec<Option<&str>> = vec![None; links.len()];
     for joint in joints {
@@ -306,7 +306,7 @@ fn root(links: &[&str], joints: &[Joint<'_, '_>]) -> Result<usize, UrdfError> {
     }
 }
 
-/// The flange is called `link8`, or has a name that ends so.
+/// Checks for the flange: `link8`, or a name that ends with it.
 fn check_flange(links: &[&str], places: &[Place]) -> Result<(), UrdfError> {
     const NAME: &str = "link8";
     let found = links

@@ -1,4 +1,4 @@
-//! Which distances of an arm to itself and to regions are below their minimum.
+//! Detects the distances within an arm, and from the arm to regions, that are below their minimum.
 //!
 //! ```text
 //! Spacing (pairs and their minimum distances; made once)
@@ -9,9 +9,9 @@
 //! ```
 //!
 //! Most distances are large at most postures. One pass places the capsules; bounding balls and
-//! boxes rule out the large distances, and the others are measured. The bounds found at one posture
-//! are kept as its [`MotionBound`], which at nearby postures rules out most distances, or all,
-//! without another pass.
+//! boxes exclude the large distances, and the others are measured. The bounds found at one posture
+//! are kept as its [`MotionBound`]. At nearby postures it excludes most distances, or all, without
+//! another pass.
 
 mod motion_bound;
 mod mounted;
@@ -33,19 +33,20 @@ use crate::geometry::Lengths;
 use crate::inertia::dot;
 use crate::scalar::sqrt;
 
-/// The most regions that a [`Spacing`] holds.
+/// Largest number of regions of a [`Spacing`].
 pub const REGIONS_MAX: usize = 4;
 
-/// The most pairs of capsules that a shape has.
+/// Largest number of pairs of capsules of a shape.
 const PAIRS_MAX: usize = capsules::COVERING_PAIRS.len() + capsules::ARM_MAX * shape::TOOL_MAX;
 
-/// Margins above this, `[m]`, are bounded and not measured: it takes many cycles to use them up.
+/// Margins above this value, `[m]`, are bounded, not measured: many cycles are needed to use them
+/// up.
 const AMPLE: f64 = 0.15;
 
-/// Pairs and their minimum distances: of an arm to itself, and to regions.
+/// Pairs and their minimum distances: within an arm, and to regions.
 ///
-/// The distances are those of [`Placed`](super::Placed). The margin of one is how much it is above
-/// its minimum, `[m]`; negative below it.
+/// The distances are those of [`Placed`](super::Placed). The margin of a distance is its excess
+/// over the minimum, `[m]`; negative below the minimum.
 #[derive(Debug, Clone)]
 pub struct Spacing {
     lengths: Lengths,
@@ -55,7 +56,7 @@ pub struct Spacing {
     pair_count: usize,
     /// The minimum distance of the pairs, `[m]`.
     apart: f64,
-    /// The capsules whose distance to regions counts: all but the base, which never moves. Empty
+    /// The capsules that are checked against regions: all except the base, which never moves. Empty
     /// without regions.
     cover: LinkCapsules,
     regions: [Region; REGIONS_MAX],
@@ -78,8 +79,8 @@ enum Kind {
 }
 
 impl Item {
-    /// The index of the region whose distance it is, among those that were given; `None` for a
-    /// distance within the arm.
+    /// The index of the region of this distance, among the given regions; `None` for a distance
+    /// within the arm.
     pub fn region(self) -> Option<usize> {
         match self.0 {
             Kind::Pair(_) => None,
@@ -111,7 +112,7 @@ impl LinkCapsules {
         count: 0,
     };
 
-    /// Base to tool.
+    /// Returns the capsules from base to tool.
     fn of(shape: &Shape<'_>) -> Self {
         let links = shape.arm.iter();
         let links = links.map(|c| Mounted::on_link(c.link, &c.capsule));
@@ -142,9 +143,9 @@ impl LinkCapsules {
 }
 
 impl Spacing {
-    /// A spacing with the minimum `distance`, `[m]`, for those pairs of `arm` that can meet and are
-    /// `links` or more links apart along the chain; a tool comes after link 7. Pairs closer along
-    /// the chain may touch.
+    /// Creates a spacing with the minimum `distance`, `[m]`, for those pairs of `arm` that can meet
+    /// and are at least `links` links apart along the chain. A tool comes after link 7. Closer
+    /// pairs may touch.
     pub fn within(arm: &Shape<'_>, distance: f64, links: u8) -> Self {
         let mut this = Self {
             lengths: arm.lengths,
@@ -178,8 +179,8 @@ impl Spacing {
         this
     }
 
-    /// This spacing with the minimum `distance`, `[m]`, of everything in `cover` that moves to each
-    /// of `regions`. The arm keeps its lengths.
+    /// Adds the minimum `distance`, `[m]`, of all moving capsules in `cover` to each of `regions`.
+    /// The arm keeps its lengths.
     #[must_use]
     pub fn out_of(
         mut self,
@@ -204,7 +205,7 @@ impl Spacing {
         self
     }
 
-    /// The distances in the groups of `candidates`.
+    /// Returns the distances in the groups of `candidates`.
     #[inline]
     pub fn items(&self, candidates: CandidateMask) -> impl Iterator<Item = Item> + '_ {
         let pairs = self.pairs[..self.pair_count].iter().enumerate();
@@ -219,7 +220,7 @@ impl Spacing {
         pairs.chain(regions).map(Item)
     }
 
-    /// The capsules at the joint positions `q`, `[rad]`.
+    /// Places the capsules at the joint positions `q`, `[rad]`.
     pub fn at(&self, q: &JointVector) -> Arrangement<'_> {
         let chain = Chain::at(&self.lengths, q);
         Arrangement {
@@ -241,7 +242,7 @@ pub struct Arrangement<'a> {
 }
 
 impl Arrangement<'_> {
-    /// The margin of `item`, `[m]`, if it is less than `limit` or NaN; `None` otherwise.
+    /// Returns the margin of `item`, `[m]`, if it is less than `limit` or NaN; `None` otherwise.
     #[inline]
     pub fn margin_below(&self, item: Item, limit: f64) -> Option<f64> {
         let margin = match item.0 {
@@ -264,7 +265,7 @@ impl Arrangement<'_> {
         if margin >= limit { None } else { Some(margin) }
     }
 
-    /// The margin of `item`, `[m]`.
+    /// Returns the margin of `item`, `[m]`.
     pub fn margin(&self, item: Item) -> f64 {
         self.margin_below(item, f64::INFINITY)
             .unwrap_or(f64::INFINITY)
@@ -275,8 +276,8 @@ impl Arrangement<'_> {
         axis(pair.inner).nearest(&axis(pair.outer)).distance - self.spacing.apart
     }
 
-    /// A bound on how far the joints may turn from here before any margin can fall below `limit`,
-    /// `[m]`.
+    /// Returns a bound on the joint motion from this posture within which no margin falls below
+    /// `limit`, `[m]`.
     pub fn motion_bound(&self, limit: f64) -> MotionBound {
         let mut spare = [f64::INFINITY; GROUPS_MAX];
         let mut bound = |group: usize, margin: f64| spare[group] = spare[group].min(margin - limit);
@@ -301,7 +302,7 @@ impl Arrangement<'_> {
 }
 
 impl Location {
-    /// The axis of `capsule` at this location.
+    /// Returns the axis of `capsule` at this location.
     #[inline(always)]
     fn axis(&self, capsule: &Mounted) -> Segment {
         Segment::around(&self.middle, &self.half, capsule.radius)

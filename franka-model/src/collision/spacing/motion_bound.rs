@@ -1,19 +1,19 @@
-//! Bounds on how fast distances shrink when joints turn.
+//! Bounds on the decrease of distances when joints turn.
 //!
 //! A joint between two bodies changes their distance by at most its angle times its lever: the
 //! greatest distance of the outer body from the joint's axis. Distances between the same two bodies
-//! have the same joints in between and form a group.
+//! have the same joints in between; they form a group.
 
 use super::mounted::Mounted;
 use crate::JointVector;
 use crate::geometry::Lengths;
 
-/// A bound on the margins around a posture: as long as the joints have turned by less than this
-/// allows, every margin is above the limit for which it was made.
+/// A bound on the margins around a posture: while the joints have turned by less than this allows,
+/// every margin is above the limit of the bound.
 #[derive(Debug, Clone)]
 pub struct MotionBound {
     q: JointVector,
-    /// By group, how far its least margin is above that limit, `[m]`.
+    /// Excess of each group's least margin over that limit, `[m]`.
     spare: [f64; GROUPS_MAX],
 }
 
@@ -22,7 +22,7 @@ impl MotionBound {
         Self { q, spare }
     }
 
-    /// The distances whose margin may be below the limit at some posture that is within `turns`,
+    /// Returns the distances whose margin may be below the limit at some posture within `turns`,
     /// `[rad]`, of `q`; `turns` must not be negative.
     #[must_use]
     pub fn candidates(
@@ -49,7 +49,7 @@ impl MotionBound {
     }
 }
 
-/// A set of groups of distances of a [`Spacing`](super::Spacing): those that have to be measured.
+/// A set of groups of distances of a [`Spacing`](super::Spacing) that must be measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CandidateMask(u64);
 
@@ -57,7 +57,7 @@ impl CandidateMask {
     /// Every distance.
     pub const ALL: Self = Self(u64::MAX);
 
-    /// True if no distance has to be measured.
+    /// True if no distance must be measured.
     #[must_use]
     pub const fn is_empty(self) -> bool {
         self.0 == 0
@@ -75,7 +75,7 @@ pub(super) struct Groups {
     /// Numbers of the bodies, the inner one first. Regions do not move and count as the base, 0.
     numbers: [(u8, u8); GROUPS_MAX],
     count: usize,
-    /// By joint and group: how far a turn moves the outer body relative to the inner one, at most,
+    /// Largest motion of the outer body relative to the inner one per turn, by joint and group,
     /// `[m/rad]`.
     levers: [[f64; GROUPS_MAX]; 7],
 }
@@ -87,13 +87,13 @@ impl Groups {
         levers: [[0.0; GROUPS_MAX]; 7],
     };
 
-    /// One bit for each group.
+    /// Returns one bit for each group.
     const fn mask(&self) -> u64 {
         (1 << self.count) - 1
     }
 
-    /// The group of the distances from `outer` to the body with the number `inner`; adds it if it
-    /// is new, and widens its levers.
+    /// Returns the group of the distances from `outer` to the body with the number `inner`; adds a
+    /// new group if necessary, and enlarges its levers.
     pub(super) fn join(&mut self, lengths: &Lengths, inner: u8, outer: &Mounted) -> usize {
         let numbers = (inner, outer.number);
         let known = self.numbers[..self.count].iter();
@@ -111,5 +111,5 @@ impl Groups {
     }
 }
 
-/// The most groups: all pairs of the base, seven links and a tool.
+/// Largest number of groups: all pairs of the base, seven links and a tool.
 pub(super) const GROUPS_MAX: usize = 36;

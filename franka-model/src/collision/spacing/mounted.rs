@@ -1,4 +1,4 @@
-//! A capsule in the frame of its link: everything that does not depend on the posture.
+//! A capsule in the frame of its link: all its data that do not depend on the posture.
 
 use nalgebra::Vector3;
 
@@ -13,20 +13,19 @@ use crate::scalar::sqrt;
 pub(super) struct Mounted {
     /// Number of the link, counted from the base; 8 for a tool.
     pub(super) number: u8,
-    /// Middle of the axis, `[m]`: in the frame of the link that it moves with; of the base, from
-    /// the shoulder.
+    /// Middle of the axis, `[m]`, in the frame of its link; for the base, relative to the shoulder.
     middle: Vector3<f64>,
-    /// From there to the end of the axis, `[m]`.
+    /// Vector from the middle to the end of the axis, `[m]`.
     half: Vector3<f64>,
     /// Length of `half`, `[m]`.
     pub(super) reach: f64,
-    /// `[m]`.
+    /// Radius, `[m]`.
     pub(super) radius: f64,
     /// Group of its distances to regions.
     pub(super) group: usize,
 }
 
-/// Where a capsule is: relative to the shoulder, in base axes.
+/// The location of a capsule: relative to the shoulder, in base axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Location {
     pub(super) middle: Vector3<f64>,
@@ -74,7 +73,7 @@ impl Mounted {
         }
     }
 
-    /// How many joints move it.
+    /// Number of joints that move the capsule.
     pub(super) fn joints(&self) -> usize {
         match self.number {
             TOOL => Body::Tool.joints(),
@@ -99,8 +98,8 @@ impl Mounted {
         }
     }
 
-    /// How far any point of the axis moves, `[m/rad]`, when joint number `joint` turns; the most
-    /// over all postures.
+    /// Largest motion of any point of the axis, `[m/rad]`, when joint number `joint` turns, over
+    /// all postures.
     pub(super) fn lever(&self, lengths: &Lengths, joint: usize) -> f64 {
         let ends = [self.middle - self.half, self.middle + self.half];
         let levers = ends.map(|end| lever(lengths, self.joints(), &end, joint));
@@ -108,20 +107,19 @@ impl Mounted {
     }
 }
 
-/// The greatest distance of `point`, in the frame of a link, from the axis of joint number `joint`,
-/// which is the link's own or an earlier one.
+/// Returns the greatest distance of `point`, in the frame of a link, from the axis of joint number
+/// `joint`: the link's own joint or an earlier one.
 ///
-/// Turning a joint keeps the distance of a point from every point of that joint's axis. So the
-/// distance to an earlier axis is at most the distance to the axis named here plus the distances
-/// between the points in which the axes meet.
+/// Turning a joint preserves the distances of a point from all points of that joint's axis. So the
+/// distance to an earlier axis is at most the distance to the later axis plus the distances between
+/// the points where the axes meet.
 fn lever(lengths: &Lengths, link: usize, point: &Vector3<f64>, joint: usize) -> f64 {
     let (upper_arm, forearm) = (lengths.upper_arm, lengths.forearm);
     let aside = length(point.x, point.y);
     let (away, axis) = match (link, joint) {
         _ if link == joint => return aside,
         (3, _) => (length(aside, point.z + upper_arm), 3),
-        // Each of these axes is at right angles with the one before, and with the line between
-        // them.
+        // Each of these axes is at right angles to the previous one, and to the line between them.
         (4, 3) => return length(ELBOW + aside, point.z),
         (4, _) => (length(length(upper_arm, ELBOW) + aside, point.z), 3),
         (5, _) => (length(ELBOW + aside, forearm + point.z), 4),
@@ -131,8 +129,9 @@ fn lever(lengths: &Lengths, link: usize, point: &Vector3<f64>, joint: usize) -> 
     away + (joint..axis).map(|joint| step(lengths, joint)).sum::<f64>()
 }
 
-/// The distance from the reference point of the axis of joint number `joint` to that of the next:
-/// the shoulder for the first three, the elbow for the fourth, the wrist for the fifth and sixth.
+/// Returns the distance from the reference point of the axis of joint number `joint` to that of the
+/// next. The reference point is the shoulder for the first three, the elbow for the fourth, and the
+/// wrist for the fifth and sixth.
 fn step(lengths: &Lengths, joint: usize) -> f64 {
     match joint {
         3 => length(lengths.upper_arm, ELBOW),

@@ -9,7 +9,7 @@ use crate::geometry::SHOULDER;
 use crate::inertia::dot;
 use crate::scalar::sqrt;
 
-/// A region to keep out of: relative to the shoulder, in base axes.
+/// A region to avoid: relative to the shoulder, in base axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Region {
     Plane {
@@ -17,7 +17,7 @@ pub(super) enum Region {
         offset: f64,
     },
     Box {
-        /// From base axes to those of the box.
+        /// Rotation from base axes to the axes of the box.
         turn: Matrix3<f64>,
         centre: Vector3<f64>,
         half: Vector3<f64>,
@@ -25,7 +25,7 @@ pub(super) enum Region {
 }
 
 impl Region {
-    /// A region infinitely far from everything.
+    /// A region infinitely far from every point.
     pub(super) const NONE: Self = Self::Plane {
         normal: Vector3::new(0.0, 0.0, 0.0),
         offset: f64::NEG_INFINITY,
@@ -46,7 +46,7 @@ impl Region {
         }
     }
 
-    /// The distance of a capsule, `[m]`; `None` if it is certainly not below `limit`.
+    /// Returns the distance of a capsule, `[m]`; `None` if it is certainly not below `limit`.
     #[inline(always)]
     pub(super) fn distance_below(
         &self,
@@ -77,8 +77,8 @@ impl Region {
         }
     }
 
-    /// A lower bound on the distance of a capsule, `[m]`: −∞ where a box around its axis meets the
-    /// region.
+    /// Returns a lower bound on the distance of a capsule, `[m]`: −∞ if a box around its axis meets
+    /// the region.
     #[inline(always)]
     pub(super) fn distance_at_least(&self, location: &Location, capsule: &Mounted) -> f64 {
         match self {
@@ -97,14 +97,14 @@ impl Region {
     }
 }
 
-/// Distance to a plane: that of the end nearer to it.
+/// Returns the distance to a plane, from the nearer end.
 #[inline(always)]
 fn from_plane(normal: &Vector3<f64>, offset: f64, location: &Location, capsule: &Mounted) -> f64 {
     dot(normal, &location.middle) - dot(normal, &location.half).abs() - offset - capsule.radius
 }
 
-/// The square of the distance between two boxes with parallel axes; `gaps` are the gaps along
-/// these, negative where the boxes overlap.
+/// Returns the square of the distance between two boxes with parallel axes; `gaps` are the gaps
+/// along the axes, negative where the boxes overlap.
 #[inline(always)]
 fn beyond(gaps: &Vector3<f64>) -> f64 {
     let gaps = gaps.map(|x| if x > 0.0 { x } else { 0.0 });

@@ -41,7 +41,7 @@ fn random_regions(random: &mut Random) -> [Option<Obstacle>; REGIONS_MAX] {
     })
 }
 
-/// All margins by the distances of all pairs, in the order of the items.
+/// Returns all margins from the distances of all pairs, in the order of the items.
 fn plain(
     (arm, cover): &(Shape<'_>, Shape<'_>),
     links: u8,
@@ -150,7 +150,7 @@ fn small_margins_and_nan_postures_stay_candidates() {
     assert!(moving.count() > 10);
 }
 
-/// The ends of the axes, from the shoulder.
+/// Returns the ends of the axes, relative to the shoulder.
 fn ends(capsules: &LinkCapsules, q: &JointVector) -> Vec<[Vector3<f64>; 2]> {
     let locations = capsules.at(&Chain::at(&Lengths::DESCRIBED, q));
     let locations = locations.iter().take(capsules.count);

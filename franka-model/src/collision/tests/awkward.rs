@@ -62,7 +62,7 @@ fn crossing_axes_have_a_normal_perpendicular_to_both() {
     let nearest = a.nearest(&b);
     assert_eq!(nearest.distance, 0.0);
     assert_eq!(nearest.normal.z.abs(), 1.0);
-    // On one line there is no common normal, and any perpendicular will do.
+    // Segments on one line have no common normal; any perpendicular is right.
     let nearest = a.nearest(&segment([0.5, 0.0, 0.0], [2.0, 0.0, 0.0]));
     assert_eq!((nearest.distance, nearest.normal.x), (0.0, 0.0));
     assert!((nearest.normal.norm() - 1.0).abs() < 1e-15);
@@ -133,7 +133,7 @@ fn a_position_that_is_no_number_gives_no_distance_that_looks_like_one() {
         let mut q = READY;
         q[i] = f64::NAN;
         let placed = Shape::vendor().with_hand().at(&q);
-        // Joint 1 turns everything but the base and itself.
+        // Joint 1 turns everything except the base and itself.
         assert!(placed.nearest_pair().distance.is_nan(), "joint {}", i + 1);
         assert!(placed.nearest_to(&Obstacle::floor(0.0)).distance.is_nan());
         let pose = Isometry3::translation(0.5, 0.0, 0.5);
@@ -186,7 +186,7 @@ fn the_way_out_of_a_box_is_exact_for_axes_almost_parallel_to_an_edge() {
     let obstacle = Obstacle::Box { pose, half };
     for _ in 0..CASES {
         let tilt = random.vector3(1.0) * 10.0_f64.powf(random.uniform(-17.0, -3.0));
-        // Both ends are inside, so the way out is that of the end nearer to a face: 0.05 along x.
+        // Both ends are inside, so the way out is from the end nearer to a face: 0.05 along x.
         let start = Vector3::new(0.15, random.uniform(-0.2, 0.2), -0.1);
         let end = start + Vector3::z() * 0.3 + Vector3::new(-tilt.x.abs(), tilt.y, tilt.z);
         let axis = Segment::of(

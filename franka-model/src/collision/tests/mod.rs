@@ -1,5 +1,5 @@
-//! Distances against minimisers that share nothing with the code but the numbers of the capsules,
-//! gradients against differences.
+//! Compares distances with independent minimisers, which share only the numbers of the capsules,
+//! and gradients with differences.
 
 mod awkward;
 mod obstacles;
@@ -12,16 +12,16 @@ use crate::geometry::FLANGE;
 use crate::random::Random;
 use crate::{EndEffector, Frame, JointVector, Model, RobotKind, transform};
 
-/// Postures, or placements of an obstacle, that a distance is compared at.
+/// Number of postures, or obstacle placements, for the comparison of a distance.
 const CASES: usize = 10_000;
 
-/// What the minimisers leave: they bracket the parameter to 1e-9.
+/// Error of the minimisers: they bracket the parameter to 1e-9.
 const DISTANCE: f64 = 1e-9;
 
-/// Steps of the minimisers.
+/// Number of steps of the minimisers.
 const STEPS: usize = 50;
 
-/// The least value of a convex function on [0, 1], by ternary search.
+/// Returns the least value of a convex function on [0, 1], by ternary search.
 fn least_of(f: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..STEPS {
@@ -40,19 +40,19 @@ fn point_on(capsule: &Capsule, t: f64) -> Vector3<f64> {
     capsule.start.lerp(&capsule.end, t)
 }
 
-/// Distance of a point from the axis of a capsule.
+/// Returns the distance of a point from the axis of a capsule.
 fn from_axis(capsule: &Capsule, point: &Vector3<f64>) -> f64 {
     let along = capsule.end - capsule.start;
     let t = (point - capsule.start).dot(&along) / along.norm_squared();
     (point_on(capsule, t.clamp(0.0, 1.0)) - point).norm()
 }
 
-/// Distance of two capsules.
+/// Returns the distance of two capsules.
 fn oracle(a: &Capsule, b: &Capsule) -> f64 {
     least_of(|s| from_axis(b, &point_on(a, s))) - a.radius - b.radius
 }
 
-/// The capsules of a shape in the base frame, by the poses of the model.
+/// Returns the capsules of a shape in the base frame, from the poses of the model.
 fn placed_by_poses(shape: &Shape<'_>, q: &JointVector) -> Vec<(Body, Capsule)> {
     let model = Model::fr3();
     let pose = |frame| {
@@ -78,8 +78,8 @@ fn placed_by_poses(shape: &Shape<'_>, q: &JointVector) -> Vec<(Body, Capsule)> {
 
 use std::vec::Vec;
 
-/// Compares the gradients of all distances at `q` with differences, and gives how many it compared
-/// and how many lie within a step of a kink.
+/// Compares the gradients of all distances at `q` with differences. Returns the number of
+/// comparisons and the number of distances within a step of a kink.
 fn compare_gradients<P: PartialEq + core::fmt::Debug>(
     shape: &Shape<'_>,
     q: &JointVector,
@@ -101,7 +101,7 @@ fn compare_gradients<P: PartialEq + core::fmt::Debug>(
             // The second derivative is the square of a lever, up to 1 m, over the gap of the axes.
             if (right - left).abs() > 1e-3 {
                 kinks += 1;
-                // A gradient at a kink is one of those around it.
+                // The gradient at a kink is one of the gradients around it.
                 let (low, high) = (left.min(right), left.max(right));
                 assert!((low - 1e-3..=high + 1e-3).contains(&at.gradient[i]));
                 continue;

@@ -3,7 +3,8 @@ use crate::collision::Obstacle;
 use crate::rotation;
 use nalgebra::UnitVector3;
 
-/// Distance of a point from a box: the length of what sticks out, or the least depth.
+/// Returns the distance of a point from a box: outside, the distance to it; inside, the least
+/// depth.
 fn from_box(pose: &Isometry3<f64>, half: &Vector3<f64>, point: &Vector3<f64>) -> f64 {
     let local = pose.inverse_transform_point(&(*point).into()).coords;
     let beyond = local.abs() - half;
@@ -11,8 +12,7 @@ fn from_box(pose: &Isometry3<f64>, half: &Vector3<f64>, point: &Vector3<f64>) ->
     outside + beyond.max().min(0.0)
 }
 
-/// How far the axis of a capsule has to move along `direction` (length 1) until it is out of the
-/// box.
+/// Returns the shift of a capsule's axis along `direction` (length 1) that moves it out of the box.
 fn way_out(
     pose: &Isometry3<f64>,
     half: &Vector3<f64>,
@@ -24,7 +24,8 @@ fn way_out(
     turned.dot(half) - along(&capsule.start).min(along(&capsule.end))
 }
 
-/// `shift` separates the two, and a local search from many directions finds no shorter one.
+/// Checks that `shift` separates the two, and that a local search from many directions finds no
+/// shorter shift.
 fn assert_is_the_shortest_way_out(
     pose: &Isometry3<f64>,
     half: &Vector3<f64>,
@@ -65,7 +66,7 @@ fn random_box(random: &mut Random) -> (Isometry3<f64>, Vector3<f64>) {
         random.vector3(0.8).into(),
         rotation::exp(&random.vector3(3.0)),
     );
-    // From a board to a cabinet; some are aligned with the base, as a table is.
+    // Sizes from a board to a cabinet; some are aligned with the base, like a table.
     let half = random.vector3(0.5).abs();
     if random.uniform(0.0, 1.0) < 0.2 {
         (pose.translation.into(), half)

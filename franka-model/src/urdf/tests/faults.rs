@@ -1,4 +1,4 @@
-//! Texts with one fault each, and what is said about it.
+//! Texts with one fault each, and their error messages.
 
 use super::*;
 

@@ -28,7 +28,7 @@ fn inertial(body: &crate::RigidBody) -> String {
     )
 }
 
-/// The FR3 with what a vendor's text has around it: a `base` link, meshes, dampings,
+/// Returns the FR3 with the other parts of a vendor's text: a `base` link, meshes, dampings,
 /// accelerometers.
 fn text() -> String {
     let model = Model::fr3();
@@ -87,7 +87,7 @@ fn fixed(name: &str, parent: &str, child: &str, xyz: &str, rpy: &str) -> String 
     )
 }
 
-/// The text with one passage replaced, which has to be there.
+/// Returns the text with one passage replaced, which must exist.
 fn with(from: &str, to: &str) -> String {
     let text = text();
     assert!(text.contains(from), "{from} is not in the text");
@@ -172,7 +172,7 @@ fn numbers_of_the_text_are_those_of_the_model() {
         ),
         (-1.0, 2.0, 1.5)
     );
-    // As far inside as the documented positions are.
+    // The same distance from the limits as the documented positions.
     assert!((limits.lower[0] + 1.0 - 0.0064).abs() < 1e-15);
     assert!((limits.upper[0] - 2.0 + 0.0064).abs() < 1e-15);
     let (_, upper) = limits.velocity_envelope(&READY, 0.0);
@@ -219,8 +219,7 @@ fn no_prefix_and_no_single_deletion_of_a_text_panics() {
     for start in (0..text.len() - 40).step_by(7) {
         let mut damaged = text.clone();
         damaged.replace_range(start..start + 1 + start % 37, "");
-        // Some of it is white space or a mesh: then it is the same robot, or one with another
-        // number.
+        // Damage to white space or a mesh gives the same robot; other damage may change a number.
         let _ = Model::from_urdf(&damaged);
     }
 }
