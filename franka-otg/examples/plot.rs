@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The new target in a cycle, if there is one: steps, then bursts of noisy targets, then a moving
+/// Returns the new target in a cycle, if any: steps, then bursts of noisy targets, then a moving
 /// target whose updates stop.
 fn target(cycle: usize) -> Option<State<1>> {
     let t = cycle as f64 * CYCLE;

@@ -1,4 +1,5 @@
-//! One axis from its state to its target: brake, least time, given duration, laid out as a profile.
+//! One axis from its state to its target: brake, least time, given duration, and the resulting
+//! profile.
 
 use crate::brake::{Pieces, into_limits};
 use crate::cycle::CYCLE;
@@ -34,7 +35,7 @@ enum ToTarget {
     Moving(MovingTarget),
 }
 
-/// Why an axis has no plan.
+/// The reason why an axis has no plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Refusal {
     /// The numbers are too far apart.
@@ -57,7 +58,7 @@ impl Axis {
         } else {
             let v = target.velocity / (limits.acceleration * unit);
             let a = target.acceleration / limits.acceleration;
-            // The target has to be reached from inside the limits, and left again.
+            // The target must be reached from inside the limits, and must be left inside them.
             let fastest = v.abs() + 0.5 * a * a;
             if a.abs() > 1.0 + AT_LIMIT || fastest > task.top * (1.0 + AT_LIMIT) {
                 return Err(Refusal::TargetMotion);
@@ -81,7 +82,7 @@ impl Axis {
         })
     }
 
-    /// Its least duration, in seconds.
+    /// Returns its least duration, in seconds.
     pub(crate) fn least_duration(&self) -> f64 {
         let least = match &self.motion {
             ToTarget::AtRest(least) => least.duration,
@@ -90,8 +91,8 @@ impl Axis {
         self.unit * (self.braking + least)
     }
 
-    /// The least duration that it can take and that is not less than `duration`, which is not less
-    /// than the least.
+    /// Returns the least feasible duration that is at least `duration`; `duration` is at least the
+    /// least duration.
     pub(crate) fn from(&self, duration: f64) -> f64 {
         let ToTarget::Moving(moving) = &self.motion else {
             return duration;
@@ -105,7 +106,7 @@ impl Axis {
         }
     }
 
-    /// The last duration before `duration` that it can take, if it cannot take `duration`.
+    /// Returns the last feasible duration before `duration`, if `duration` is not feasible.
     pub(crate) fn before(&self, duration: f64) -> Option<f64> {
         let ToTarget::Moving(moving) = &self.motion else {
             return None;
@@ -114,7 +115,7 @@ impl Axis {
         Some(self.unit * (self.braking + earlier))
     }
 
-    /// True if it can be at its target after `duration`, but for rounding.
+    /// True if the axis can be at its target after `duration`, within rounding.
     pub(crate) fn can_take(&self, duration: f64) -> bool {
         let left = duration / self.unit - self.braking;
         match &self.motion {
@@ -123,8 +124,7 @@ impl Axis {
         }
     }
 
-    /// Replaces a motion to rest that takes longer than `duration` by rounding alone with one that
-    /// does not.
+    /// Replaces a motion to rest that exceeds `duration` only by rounding.
     pub(crate) fn round_to(&mut self, duration: f64) {
         let left = duration / self.unit - self.braking;
         if let ToTarget::AtRest(least) = &mut self.motion
@@ -135,10 +135,9 @@ impl Axis {
         }
     }
 
-    /// Lays out the profile that takes `duration` seconds, or the least-time one if that takes
-    /// longer.
+    /// Lays out the profile of `duration` seconds, or the least-time profile if that takes longer.
     ///
-    /// After a target in motion it goes on for a cycle and then comes to rest in the least time.
+    /// After a target in motion, the axis continues for a cycle and then stops in the least time.
     pub(crate) fn lay_out(&self, duration: f64, profile: &mut Profile) {
         let left = duration / self.unit - self.braking;
         match &self.motion {
@@ -171,7 +170,7 @@ impl Axis {
         profile.push_pieces(&self.brake, self.limits.jerk, self.unit);
     }
 
-    /// A motion that gets `beyond` the target in a direction.
+    /// Returns a motion that ends `beyond` the target in a direction.
     fn extremal(&self, sign: f64, shape: &Shape, beyond: f64) -> Profile {
         let mut profile = Profile::at_rest(0.0);
         self.begin(&mut profile);
@@ -179,8 +178,8 @@ impl Axis {
         profile
     }
 
-    /// Appends a shape in the direction of `sign` that leads as far `beyond` the target, in units
-    /// of the axis.
+    /// Appends a shape in the direction of `sign` that ends `beyond` the target, in units of the
+    /// axis.
     fn lay_out_shape(&self, sign: f64, shape: &Shape, beyond: f64, profile: &mut Profile) {
         let unit = self.unit;
         let up = sign * self.limits.jerk;
@@ -196,11 +195,11 @@ impl Axis {
     }
 }
 
-/// The least-time motion to a position that differs from the target by rounding alone, if that
-/// motion takes no longer than `duration` but for rounding.
+/// Returns the least-time motion to a position that differs from the target only by rounding, if
+/// that motion takes at most `duration`, within rounding.
 ///
-/// Near the end of a motion the least duration is uncertain by the third root of the rounding of
-/// positions: microseconds, which are micrometres of an axis that moves.
+/// Near the end of a motion, the least duration is uncertain by the cube root of the rounding of
+/// positions: microseconds, which are micrometres of an axis in motion.
 fn earlier(least: &LeastTime, duration: f64) -> Option<LeastTime> {
     let feasible = FeasibleDurations::new(&least.task, 0.0, 0.0);
     let d = least.task.d - feasible.drift(least.duration);
@@ -220,19 +219,19 @@ pub(crate) fn can_stop(start: AxisState, limits: AxisLimits) -> bool {
     Task::new(start, start.position, limits).is_some()
 }
 
-/// Lays out the least-time stop, from a state that [`can_stop`] or that a plan from such a state
-/// leads to.
+/// Lays out the least-time stop, from a state that passes [`can_stop`] or lies on a plan from such
+/// a state.
 pub(crate) fn lay_out_stop(start: AxisState, limits: AxisLimits, profile: &mut Profile) {
     profile.begin(start);
     append_stop(limits, profile);
 }
 
-/// Appends what follows a target in motion: a cycle and what counts as together more of its
-/// acceleration, if the limits allow it, and the least-time stop.
+/// Appends the motion after a target in motion. Its acceleration continues for a cycle plus the
+/// tolerance for simultaneous arrival, if the limits allow it. The least-time stop follows.
 ///
-/// The first command that counts as at the target is sent up to one cycle after the last axis is
-/// there. A target that is set then finds the axis where the old target would be, not already
-/// slowing down.
+/// The first command that counts as at the target is sent up to one cycle after the last axis
+/// arrives. A target that is then set finds the axis on the old target's motion, before it slows
+/// down.
 fn lay_out_beyond(limits: AxisLimits, profile: &mut Profile) {
     let AxisState {
         velocity,
@@ -273,8 +272,8 @@ pub fn rest_of(start: AxisState, limits: AxisLimits) -> f64 {
     start.position + way.position
 }
 
-/// The jerks of the least-time stop and how long each lasts, in seconds: back into the acceleration
-/// limit first.
+/// Returns the jerks of the least-time stop and their durations, in seconds. The first piece
+/// returns into the acceleration limit.
 fn stop_pieces(front: AxisState, limits: AxisLimits) -> [(f64, f64); 4] {
     let (task, unit) = Task::unchecked(front, front.position, limits);
     let excess = task.a.abs() - 1.0;
@@ -293,5 +292,5 @@ fn stop_pieces(front: AxisState, limits: AxisLimits) -> [(f64, f64); 4] {
     ]
 }
 
-/// Relative excess over a limit that counts as rounding of a target that is at the limit.
+/// Relative excess over a limit that counts as rounding of a target at the limit.
 const AT_LIMIT: f64 = 1e-12;

@@ -1,16 +1,16 @@
-//! From outside the limits back into them.
+//! Returns a state outside the limits into them.
 //!
-//! States outside the limits come from measurements and from limits that were lowered. The
-//! convention is "inside again as early as possible": full jerk, then the acceleration limit, until
-//! the velocity is back at its limit and will stay there. It is a convention and not part of the
-//! optimum. A rule that only asks the velocity to converge to its limit can be shorter, but stays
-//! above the limit for longer. The state is never clamped, since a clamp is a step in what the
-//! robot receives.
+//! States outside the limits come from measurements and from lowered limits. The convention is
+//! "inside again as early as possible". It uses full jerk, then the acceleration limit, until the
+//! velocity is at its limit and will stay there. It is a convention and not part of the optimum. A
+//! rule that only makes the velocity converge to its limit can be shorter, but stays above the
+//! limit for longer. The state is never clamped, because a clamp is a step in the command to the
+//! robot.
 
 use crate::scalar::sqrt;
 use crate::task::Task;
 
-/// Jerks, in units of the limit, and how long each lasts: what comes before a shape.
+/// Jerks, in units of the limit, and their durations: the pieces before a shape.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pieces {
     list: [(f64, f64); 4],
@@ -27,14 +27,14 @@ impl Pieces {
         self.list[..self.len].iter().copied()
     }
 
-    /// Sum of the durations.
+    /// Returns the sum of the durations.
     pub(crate) fn duration(&self) -> f64 {
         self.iter().map(|(_, t)| t).sum()
     }
 
-    /// Appends a piece and returns what is left of the task after it.
+    /// Appends a piece and returns the remaining task.
     pub(crate) fn push(&mut self, task: Task, jerk: f64, t: f64) -> Task {
-        // Only positive times are pieces; NaN cannot occur here.
+        // Only positive durations are pieces; NaN cannot occur here.
         if t > 0.0 && self.len < self.list.len() {
             self.list[self.len] = (jerk, t);
             self.len += 1;
@@ -45,7 +45,7 @@ impl Pieces {
     }
 }
 
-/// Brakes the task into its limits; nothing if it is inside them and can stay there.
+/// Brakes the task into its limits; does nothing if it is inside them and can stay there.
 pub(crate) fn into_limits(task: Task) -> (Pieces, Task) {
     let mut pieces = Pieces::NONE;
     let mut task = task;
@@ -62,7 +62,7 @@ pub(crate) fn into_limits(task: Task) -> (Pieces, Task) {
     } else if too_low {
         task = slow_down(&mut pieces, task, -1.0);
     }
-    // A rounding error above the limit is accepted as the limit of this plan.
+    // If it exceeds the limit by rounding, this plan uses it as the limit.
     let coasting = task.coasting_velocity().abs();
     if coasting <= task.top * (1.0 + 4.0 * TOLERANCE) {
         task.top = task.top.max(coasting);
@@ -70,13 +70,13 @@ pub(crate) fn into_limits(task: Task) -> (Pieces, Task) {
     (pieces, task)
 }
 
-/// Brings a velocity that is, or will be, above the limit back to it, in the frame in which it is
-/// positive.
+/// Brings a velocity that exceeds the limit, or will exceed it, back to the limit. The frame is
+/// that of positive velocity.
 fn slow_down(pieces: &mut Pieces, task: Task, sign: f64) -> Task {
     let Task { v, a, top, .. } = task.mirrored(sign);
     let to_acceleration_limit = a + 1.0;
     let to_top = a + sqrt((a * a + 2.0 * (v - top)).max(0.0));
-    // Later, taking the deceleration back would undershoot the lower limit.
+    // Reducing the deceleration any later would undershoot the lower limit.
     let to_undershoot = a + sqrt((0.5 * a * a + v + top).max(0.0));
     let ramp = to_top.min(to_undershoot);
     if to_acceleration_limit >= ramp {
@@ -88,7 +88,7 @@ fn slow_down(pieces: &mut Pieces, task: Task, sign: f64) -> Task {
     pieces.push(task, 0.0, hold)
 }
 
-/// Excess over a limit that counts as rounding of a state that is at the limit.
+/// Excess over a limit that counts as rounding of a state at the limit.
 const TOLERANCE: f64 = 1e-12;
 
 #[cfg(test)]
@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn braking_ends_as_soon_as_the_velocity_is_back() {
-        // Ramp only, ramp and hold, and the hold cut short where undoing it would undershoot.
+        // Ramp only, ramp and hold, and a hold shortened because undoing it would undershoot.
         for (v, top, expected) in [(10.2, 10.0, 10.0), (12.0, 10.0, 10.0), (3.0, 0.1, 0.4)] {
             let (_, after) = into_limits(task(v, 0.0, top));
             assert!((after.v - expected).abs() < 1e-14, "{v} {top}: {after:?}");

@@ -1,15 +1,15 @@
-//! Why a state, target or limit is refused.
+//! Errors of states, targets and limits.
 
 use core::fmt;
 
-/// Why no plan is made. The motion in progress goes on.
+/// The reason why no plan was made. The current motion continues.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlanError {
     /// A non-finite value in a state or target.
     #[error("{quantity} of axis {axis} is not finite")]
     NotFinite {
-        /// What the number describes.
+        /// The quantity of the number.
         quantity: Quantity,
         /// Axis, from 1.
         axis: usize,
@@ -17,15 +17,16 @@ pub enum PlanError {
     /// A limit that is not positive and finite.
     #[error("{quantity} limit {value} of axis {axis} is not a positive finite number")]
     Limit {
-        /// What is limited.
+        /// The limited quantity.
         quantity: Quantity,
         /// Axis, from 1.
         axis: usize,
-        /// The limit as given.
+        /// The given limit.
         value: f64,
     },
-    /// The target's velocity and acceleration cannot be met inside the limits: the acceleration
-    /// exceeds its limit, or the velocity would exceed its own just before or after the target.
+    /// The target's velocity and acceleration are impossible inside the limits. Either the
+    /// acceleration exceeds its limit, or the velocity would exceed its limit just before or after
+    /// the target.
     #[error(
         "the target of axis {axis} moves faster than its limits allow: |velocity| + acceleration^2 / (2 jerk limit) and |acceleration| must not exceed the limits"
     )]
@@ -33,8 +34,8 @@ pub enum PlanError {
         /// Axis, from 1; 1 for a straight line, which is planned as one.
         axis: usize,
     },
-    /// Distance or velocity and the limits lie so far apart that `f64` cannot hold the powers that
-    /// the solution is made of: more than 100 decades in units of `A^3/J^2` or `A^2/J`.
+    /// Distance or velocity and the limits are so far apart that `f64` cannot hold the powers in
+    /// the solution: more than 100 decades in units of `A^3/J^2` or `A^2/J`.
     #[error("state, target and limits of axis {axis} lie too many orders of magnitude apart")]
     OutOfRange {
         /// Axis, from 1; 1 for a straight line, which is planned as one.
@@ -42,7 +43,7 @@ pub enum PlanError {
     },
 }
 
-/// The quantity that an error is about.
+/// The quantity of an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Quantity {

@@ -1,38 +1,38 @@
-//! The extremal profile: the motion that gets farthest in a given time and ends with a given
+//! The extremal profile: the motion with the farthest end in a given time, for a given final
 //! velocity and acceleration.
 //!
-//! In the frame in which "far" is upwards it is a push and a stop to the end's velocity, jerks
-//! `+ 0 - 0 - 0 +`: the costate of the acceleration is a parabola in time that opens upwards, so
-//! the jerk changes its sign at most twice, and there are holds where the acceleration or the
-//! velocity is at its limit. Nothing else is optimal, and there is one such motion per duration.
+//! In the frame in which "far" is upwards, it is a push and a stop to the end's velocity, with
+//! jerks `+ 0 - 0 - 0 +`. The costate of the acceleration is a parabola in time that opens upwards,
+//! so the jerk changes its sign at most twice. The acceleration or the velocity is held while it is
+//! at its limit. No other motion is optimal, and each duration has exactly one such motion.
 //!
-//! Both ends are extended by their jerk to the instant without acceleration, as in `least_time`:
+//! Both ends are extended by their jerk to the instant with zero acceleration, as in `least_time`:
 //!
 //! ```text
 //! c0 = v0 - a0^2/2 at pi0 = a0 (a0^2/3 - v0)     cf = vf - af^2/2 at pif = d + af (af^2/3 - vf)     D = pif - pi0
 //! ```
 //!
-//! Let `x` be the acceleration before the first negative jerk, `-y` the one before the last
-//! positive jerk, `w` the velocity between at zero acceleration, `e = cf - c0`, and `T` the
-//! duration counted from the extended ends. The integral of the acceleration requires
-//! `w = c0 + x^2 = cf + y^2`, so without holds `x + y = T/2` and `x - y = 2 e/T`. Where the larger
-//! of the two reaches the limit, the other one follows from `(1 + y)^2 = T - e` or
-//! `(1 + x)^2 = T + e`; where both do, from `2 w = T - 2 + c0 + cf`; at the velocity limit the
-//! remaining time is a cruise. All of it is closed, and continuous from case to case: there is no
+//! Let `x` be the acceleration before the first negative jerk and `-y` the acceleration before the
+//! last positive jerk. Let `w` be the velocity between them at zero acceleration, `e = cf - c0`,
+//! and `T` the duration counted from the extended ends. The integral of the acceleration requires
+//! `w = c0 + x^2 = cf + y^2`, so without holds `x + y = T/2` and `x - y = 2 e/T`. If the larger of
+//! the two reaches the limit, the other follows from `(1 + y)^2 = T - e` or `(1 + x)^2 = T + e`. If
+//! both do, they follow from `2 w = T - 2 + c0 + cf`. At the velocity limit the remaining time is a
+//! cruise. All cases have closed forms and are continuous across their boundaries: there is no
 //! search and no root to reject. `x` or `y` may be negative: an acceleration that never changes its
 //! sign.
 //!
 //! As the duration grows, the end moves at the rate `w + x y/2` (or the velocity limit, in a
-//! cruise). The rate may be negative: a motion that has to end with a negative velocity gets less
-//! far with more time, until there is time to go up in between. The zeros of the rate are closed
-//! too: see [`ExtremalProblem::turning_points`].
+//! cruise). The rate may be negative: a motion that must end with a negative velocity gets less far
+//! with more time, until there is time to move upwards in between. The zeros of the rate have
+//! closed forms too: see [`ExtremalProblem::turning_points`].
 
 use crate::scalar::sqrt;
 use crate::shape::Shape;
 use crate::task::Task;
 use crate::transfer::{change_of_ramp, ramp_and_hold, transfer_time};
 
-/// Both ends of a motion, in the frame in which it goes up, extended to zero acceleration.
+/// Both ends of a motion, in the frame in which it moves upwards, extended to zero acceleration.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ExtremalProblem {
     a0: f64,
@@ -44,13 +44,13 @@ pub(crate) struct ExtremalProblem {
     top: f64,
 }
 
-/// The extremal motion of one duration.
+/// The extremal motion for one duration.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ExtremalProfile {
-    /// How far beyond the target it ends.
+    /// Distance of its end beyond the target.
     pub(crate) beyond: f64,
-    /// Velocity between the two halves: the largest, where both have an acceleration of their own
-    /// sign.
+    /// Velocity between the two halves: the largest, if both halves have an acceleration of their
+    /// own sign.
     pub(crate) w: f64,
     first: (f64, f64),
     cruise: f64,
@@ -58,7 +58,7 @@ pub(crate) struct ExtremalProfile {
 }
 
 impl ExtremalProblem {
-    /// For a task whose target moves with velocity `vf` and acceleration `af`.
+    /// Creates the problem for a task whose target moves with velocity `vf` and acceleration `af`.
     pub(crate) fn new(task: &Task, vf: f64, af: f64) -> Self {
         let (v0, a0) = (task.v, task.a);
         let before = a0 * (a0 * a0 / 3.0 - v0);
@@ -73,21 +73,21 @@ impl ExtremalProblem {
         }
     }
 
-    /// The extremal motion that takes `t`, a time in which the end's velocity can be reached.
+    /// Returns the extremal motion of duration `t`, in which the end's velocity can be reached.
     pub(crate) fn profile(&self, t: f64) -> ExtremalProfile {
         let Self { a0, af, c0, cf, .. } = *self;
         let whole = (t + a0 - af).max(0.0);
         let e = cf - c0;
         let q = 0.5 * whole;
         let difference = if q > 0.0 { e / q } else { 0.0 };
-        // Rounding may give a little less than the accelerations of the ends; the sum is the time
+        // Rounding may give slightly less than the accelerations of the ends; the sum is the time
         // and is kept.
         let x = (0.5 * (q + difference)).max(a0).min(q + af);
         let y = q - x;
         let (x, first_hold, y, second_hold) = if x <= 1.0 && y <= 1.0 {
             (x, 0.0, y, 0.0)
         } else {
-            // Each hold is the time that the ramps leave.
+            // Each hold takes the time that remains after the ramps.
             let w = 0.5 * (whole - 2.0 + c0 + cf);
             let (first, second) = (w - c0 - 1.0, w - cf - 1.0);
             if first >= 0.0 && second >= 0.0 {
@@ -118,11 +118,11 @@ impl ExtremalProblem {
         }
     }
 
-    /// The same where the velocity limit is reached.
+    /// Returns the motion that reaches the velocity limit.
     fn cruising(&self, whole: f64) -> ExtremalProfile {
         let (c0, cf, w) = (self.c0, self.cf, self.top);
-        // The ramps are not shorter than those that the ends need already, which rounding of the
-        // velocities could make them: the cruise has to be the remaining time.
+        // The ramps must not be shorter than the ends require; rounding of the velocities could
+        // shorten them. The cruise must be the remaining time.
         let (x, first_hold) = ramp_and_hold((w - c0).max(change_of_ramp(self.a0)));
         let (y, second_hold) = ramp_and_hold((w - cf).max(change_of_ramp(-self.af)));
         let cruise = (whole - 2.0 * (x + y) - first_hold - second_hold).max(0.0);
@@ -136,13 +136,13 @@ impl ExtremalProblem {
         }
     }
 
-    /// Durations between which the end moves monotonically as the duration grows, unordered, some
-    /// superfluous; the last is where the cruise begins.
+    /// Returns durations between which the end moves monotonically as the duration grows,
+    /// unordered, some of them superfluous; the last is the beginning of the cruise.
     ///
-    /// Without holds the rate `w + x y/2` is zero where `3 s^2 + 4 (c0 + cf) s + e^2 = 0` with
-    /// `s = (x + y)^2`, with one hold where `y^2 + y/2 + cf = 0` or `x^2 + x/2 + c0 = 0`, with both
-    /// where `w = -1/2`. A root that belongs to another case than the one it is the root of divides
-    /// a monotone piece in two, which does no harm.
+    /// Without holds the rate `w + x y/2` is zero where `3 s^2 + 4 (c0 + cf) s + e^2 = 0` with `s =
+    /// (x + y)^2`. With one hold it is zero where `y^2 + y/2 + cf = 0` or `x^2 + x/2 + c0 = 0`, and
+    /// with both where `w = -1/2`. A root outside its own case only divides a monotone piece in
+    /// two, which is harmless.
     pub(crate) fn turning_points(&self) -> [Option<f64>; 6] {
         let Self {
             a0,
@@ -160,7 +160,7 @@ impl ExtremalProblem {
             wholes[0] = Some(2.0 * sqrt(s));
             wholes[1] = Some(2.0 * sqrt(e * e / (3.0 * s)));
         }
-        // The end with the smaller change of velocity is the one that does not hold.
+        // The end with the smaller change of velocity does not hold.
         let c = if e > 0.0 { cf } else { c0 };
         if c <= 1.0 / 16.0 {
             let root = sqrt(1.0 / 16.0 - c);
@@ -172,14 +172,15 @@ impl ExtremalProblem {
         wholes.map(|whole| whole.map(|whole| whole - a0 + af))
     }
 
-    /// When a motion that ends `short` of the target at `t`, cruising, reaches it if it cruises on.
+    /// Returns the time at which a motion that cruises `short` of the target at `t` reaches it, if
+    /// it continues to cruise.
     pub(crate) fn cruise_on(&self, t: f64, short: f64) -> f64 {
         t + short / self.top
     }
 }
 
 impl ExtremalProfile {
-    /// How fast the end moves as the duration grows.
+    /// Returns the velocity of the end as the duration grows.
     pub(crate) fn rate(&self) -> f64 {
         if self.cruise > 0.0 {
             self.w
@@ -188,10 +189,10 @@ impl ExtremalProfile {
         }
     }
 
-    /// The shape of the motion from acceleration `a0` to `af`.
+    /// Returns the shape of the motion from acceleration `a0` to `af`.
     pub(crate) fn shape(&self, ends: &ExtremalProblem) -> Shape {
         let ((x, first_hold), (y, second_hold)) = (self.first, self.second);
-        // Where an acceleration never changes its sign there is one negative jerk, from x to -y.
+        // If an acceleration never changes its sign, there is one negative jerk, from x to -y.
         let (t3, t5) = if x < 0.0 {
             (0.0, (x + y).max(0.0))
         } else if y < 0.0 {
@@ -208,9 +209,9 @@ impl ExtremalProfile {
     }
 }
 
-/// Displacement of the transfer between velocity `c` and the one that follows from the peak
-/// acceleration `x` and its hold, both without acceleration at the end. For a negative `x`, what
-/// the other half has too much.
+/// Returns the displacement of the transfer between velocity `c` and the velocity that follows from
+/// the peak acceleration `x` and its hold, both with zero acceleration at the end. For a negative
+/// `x`, returns the excess of the other half.
 fn half(c: f64, x: f64, hold: f64) -> f64 {
     let change = x * x + x * hold;
     (c + 0.5 * change) * (2.0 * x + hold)

@@ -1,4 +1,4 @@
-//! Which durations are feasible for a target in motion.
+//! The feasible durations for a target in motion.
 
 use crate::extremal_profile::{ExtremalProblem, ExtremalProfile};
 use crate::root::{Point, root};
@@ -6,11 +6,11 @@ use crate::task::{ROUNDING, Task};
 use crate::times::Times;
 use crate::velocity_change::{DRIFT, TIGHT, VelocityChange, typical_velocity};
 
-/// Decides which durations are feasible.
+/// Decides whether durations are feasible.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FeasibleDurations {
     pub(crate) up: ExtremalProblem,
-    /// The same with all directions reversed.
+    /// The same problem with all directions reversed.
     pub(crate) down: ExtremalProblem,
     change: VelocityChange,
     size: Size,
@@ -18,11 +18,12 @@ pub(crate) struct FeasibleDurations {
     af: f64,
 }
 
-/// Durations at which feasible ones begin or end.
+/// Durations at which feasible intervals begin or end.
 pub(crate) type Candidates = Times<CANDIDATES>;
 
 impl FeasibleDurations {
-    /// For a task inside its limits and a target with velocity `vf` and acceleration `af`.
+    /// Creates the decision for a task inside its limits and a target with velocity `vf` and
+    /// acceleration `af`.
     pub(crate) fn new(task: &Task, vf: f64, af: f64) -> Self {
         Self {
             up: ExtremalProblem::new(task, vf, af),
@@ -34,7 +35,7 @@ impl FeasibleDurations {
         }
     }
 
-    /// True if an axis that is at its target after `other` is there after `t`, too, but for
+    /// True if an axis that is at its target after `other` is also there after `t`, within the
     /// rounding of its position and velocity.
     pub(crate) fn are_same(&self, t: f64, other: f64) -> bool {
         let apart = (t - other).abs();
@@ -44,12 +45,12 @@ impl FeasibleDurations {
         position <= NEAR * self.drift(t) && velocity <= NEAR * DRIFT * self.change.size()
     }
 
-    /// The largest rounding of the target's position after a chain of plans.
+    /// Returns the largest rounding of the target's position after a chain of plans.
     pub(crate) fn drift(&self, t: f64) -> f64 {
         DRIFT * self.size.at(t, self.vf)
     }
 
-    /// True if a motion of duration `t` ends at the target but for rounding.
+    /// True if a motion of duration `t` ends at the target, within rounding.
     pub(crate) fn meets(&self, reach: &ExtremalProfile, t: f64) -> bool {
         reach.beyond <= TIGHT * self.size.at(t, reach.w)
     }
@@ -63,15 +64,15 @@ impl FeasibleDurations {
         }
     }
 
-    /// Durations at which feasible ones begin, and some at which they end.
+    /// Returns the durations at which feasible intervals begin, and some at which they end.
     pub(crate) fn candidates(&self) -> Candidates {
         let mut candidates = Candidates::NONE;
         let mut breaks = Times::<BREAKS>::NONE;
         for (t, rounding) in self.change.crossings().into_iter().flatten() {
             breaks.insert(t);
-            // On the last part of a plan both sides end at the target but for rounding, and
-            // removing the rounding could cost a detour. That of the velocity is the larger one,
-            // so the time is that at which the position is met.
+            // On the last part of a plan, both sides end at the target within rounding, and
+            // removing the rounding could cost a detour. The rounding of the velocity is larger, so
+            // the time is chosen so that the position is met.
             let up = self.up.profile(t);
             let later = -up.beyond / up.rate();
             if later.abs() <= rounding && t + later >= 0.0 {
@@ -94,7 +95,7 @@ impl FeasibleDurations {
         let mut left: Option<(f64, [ExtremalProfile; 2])> = None;
         for right in breaks.iter() {
             let reaches = [self.up.profile(right), self.down.profile(right)];
-            // The target may be at a turning point, but for rounding.
+            // The target may be at a turning point, within rounding.
             if reaches
                 .iter()
                 .any(|reach| reach.beyond.abs() <= TIGHT * self.size.at(right, reach.w))
@@ -115,7 +116,7 @@ impl FeasibleDurations {
             }
             left = Some((right, reaches));
         }
-        // After the last break both cruise, and reach the target if they have not passed it.
+        // After the last break both sides cruise, and reach the target if they have not passed it.
         let mut latest = 0.0_f64;
         if let Some((last, reaches)) = left {
             latest = last;
@@ -139,7 +140,8 @@ impl FeasibleDurations {
     }
 }
 
-/// The duration between two others at which the end of the extremal motion crosses the target.
+/// Returns the duration between two others at which the end of the extremal motion crosses the
+/// target.
 fn crossing(
     side: &ExtremalProblem,
     (left, from): (f64, &ExtremalProfile),
@@ -154,7 +156,7 @@ fn crossing(
     })
 }
 
-/// The magnitude to which the rounding of the distance from a motion's end to the target is
+/// The magnitude to which the rounding of the distance between a motion's end and the target is
 /// relative.
 #[derive(Debug, Clone, Copy)]
 struct Size {
@@ -179,18 +181,19 @@ impl Size {
     }
 }
 
-/// Part of the drift of a chain of plans by which a duration may differ from one that is feasible.
-/// The whole of it, just after the beginning of blocked durations, was a landing error above 1e-12
-/// relative in two of ten million plans; a quarter of it, a detour in one of ten million plans that
-/// were made anew in each cycle.
+/// Share of the drift of a chain of plans by which a duration may differ from a feasible one. With
+/// the whole drift, just after the beginning of blocked durations, two of ten million plans had a
+/// landing error above 1e-12 relative. With a quarter of it, one of ten million plans that were
+/// renewed in each cycle made a detour.
 const NEAR: f64 = 0.5;
 
-/// Four of the velocity and six turning points of each side.
+/// Four breaks of the velocity and six turning points of each side.
 const BREAKS: usize = 16;
 
 /// Each break may be a candidate, and between two breaks and after the last one each side may cross
 /// once.
 const FOUND: usize = 48;
 
-/// Feasible durations are three intervals at most; the rest is for ends that rounding finds twice.
+/// Feasible durations form at most three intervals; the remaining places are for ends that rounding
+/// finds twice.
 pub(crate) const CANDIDATES: usize = 8;

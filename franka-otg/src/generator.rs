@@ -1,4 +1,4 @@
-//! The generator: a plan, and the cycle that it has reached.
+//! The generator: a plan, and the current cycle of the plan.
 
 use crate::axis::can_stop;
 use crate::cycle::CYCLE;
@@ -7,19 +7,19 @@ use crate::limits::Limits;
 use crate::plan::{Plan, PlanStart, Synchronisation};
 use crate::state::{AxisState, State, check_finite};
 
-/// Moves `N` axes to a target that may change at any time, inside limits of velocity, acceleration
+/// Moves `N` axes to a target that may change at any time, within limits of velocity, acceleration
 /// and jerk.
 ///
 /// - Input: [`set_target`](Self::set_target), [`set_moving_target`](Self::set_moving_target),
-///   [`set_limits`](Self::set_limits), [`brake`](Self::brake), [`set_state`](Self::set_state).
-///   Each plans anew from the present state, unless nothing changes.
+///   [`set_limits`](Self::set_limits), [`brake`](Self::brake), [`set_state`](Self::set_state). Each
+///   creates a new plan from the current state, unless nothing changes.
 /// - Output: [`step`](Self::step) once per command, [`sample`](Self::sample) to look ahead.
 /// - Getters: [`state`](Self::state), [`target`](Self::target),
 ///   [`time_to_target`](Self::time_to_target), [`remaining`](Self::remaining),
 ///   [`is_done`](Self::is_done).
 ///
-/// All of it is bounded work without allocation, fit for the real-time thread. An error leaves the
-/// generator as it was.
+/// All methods take bounded time without allocation, so they suit the real-time thread. After an
+/// error the generator is unchanged.
 ///
 /// ```
 /// use franka_otg::{Generator, Limits, State};
@@ -39,37 +39,37 @@ pub struct Generator<const N: usize> {
     synchronisation: Synchronisation,
     heading: Heading<N>,
     plan: Plan<N>,
-    /// Cycles since the plan was made.
+    /// Cycles since the creation of the plan.
     cycle: u64,
     /// The state at that cycle.
     state: State<N>,
 }
 
-/// Where the plan leads.
+/// The end of the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Heading<const N: usize> {
     /// The target state.
     Target(State<N>),
-    /// Rest, in the least time.
+    /// Rest, reached in the least time.
     Rest,
 }
 
 impl<const N: usize> Generator<N> {
-    /// A generator at `state` without a target: if it moves, it comes to rest in the least time.
+    /// Creates a generator at `state` without a target: if it moves, it stops in the least time.
     ///
     /// Synchronisation is [`Synchronisation::Straight`].
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] for the state; [`PlanError::OutOfRange`] if it lies more than 100
-    /// decades from the limits.
+    /// [`PlanError::NotFinite`] for the state; [`PlanError::OutOfRange`] if it is more than 100
+    /// decades away from the limits.
     pub fn new(state: State<N>, limits: Limits<N>) -> Result<Self, PlanError> {
         Self::towards(state, limits, None)
     }
 
-    /// [`new`](Self::new), with a target at rest if there is one.
+    /// Like [`new`](Self::new), with an optional target at rest.
     ///
     /// # Errors
-    /// As [`new`](Self::new) and [`set_target`](Self::set_target).
+    /// The errors of [`new`](Self::new) and [`set_target`](Self::set_target).
     pub fn towards(
         state: State<N>,
         limits: Limits<N>,
@@ -88,10 +88,12 @@ impl<const N: usize> Generator<N> {
     }
 
     /// Replaces state, limits and target: the motion leads to rest at `target`, or to rest in the
-    /// least time. The same as a new generator, but in place: a generator is some kilobytes large.
+    /// least time. Equivalent to a new generator, but in place, because a generator has some
+    /// kilobytes.
     ///
     /// # Errors
-    /// As [`new`](Self::new) and [`set_target`](Self::set_target); the motion in progress goes on.
+    /// The errors of [`new`](Self::new) and [`set_target`](Self::set_target); the current motion
+    /// continues.
     pub fn restart(
         &mut self,
         state: State<N>,
@@ -132,18 +134,18 @@ impl<const N: usize> Generator<N> {
         Ok(())
     }
 
-    /// Sets how the axes move together, from the next plan on.
+    /// Sets the synchronisation of the axes, from the next plan on.
     #[must_use]
     pub fn with_synchronisation(mut self, synchronisation: Synchronisation) -> Self {
         self.synchronisation = synchronisation;
         self
     }
 
-    /// Moves to rest at `target` from the present state on. The target in force already is not
-    /// planned again.
+    /// Moves from the current state to rest at `target`. A call with the current target does not
+    /// create a new plan.
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; the motion in progress goes on.
+    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; the current motion continues.
     pub fn set_target(&mut self, target: &[f64; N]) -> Result<(), PlanError> {
         if let Heading::Target(now) = &self.heading
             && now.position == *target
@@ -155,23 +157,23 @@ impl<const N: usize> Generator<N> {
         self.plan_target(&State::at_rest(*target))
     }
 
-    /// Moves to `target`, to be there with its velocity and acceleration, in the least time in
-    /// which all axes can. The target in force already is not planned again.
+    /// Moves to `target` and arrives with its velocity and acceleration, in the least time that is
+    /// feasible for all axes. A call with the current target does not create a new plan.
     ///
-    /// For following an object in motion, with a new target before each arrival, and for passing
+    /// Use it to follow an object in motion, with a new target before each arrival, or to pass
     /// through points with a velocity. Without a new target the motion continues past the old one
-    /// for one cycle, and then comes to rest in the least time: a program that stalls does not keep
-    /// an arm moving.
+    /// for one cycle, and then stops in the least time: a stalled program does not keep an arm
+    /// moving.
     ///
     /// All axes are at the target at [`time_to_target`](Self::time_to_target). An axis that would
-    /// be early cannot wait at a moving target: it goes back and comes again, which may lead it
-    /// past the target first, and the others wait for it.
+    /// be early cannot wait at a moving target: it moves back and approaches again, possibly past
+    /// the target first, and the other axes wait for it.
     ///
     /// # Errors
     /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; [`PlanError::TargetMotion`] if the
-    /// limits do not allow the target's motion, which is if
-    /// `|velocity| + acceleration^2 / (2 jerk limit)` exceeds the velocity limit, or the
-    /// acceleration its own. The motion in progress goes on.
+    /// limits do not allow the target's motion. That is the case if `|velocity| + acceleration^2 /
+    /// (2 jerk limit)` exceeds the velocity limit, or the acceleration exceeds its limit. The
+    /// current motion continues.
     pub fn set_moving_target(&mut self, target: &State<N>) -> Result<(), PlanError> {
         if target.is_at_rest() {
             return self.set_target(&target.position);
@@ -185,14 +187,14 @@ impl<const N: usize> Generator<N> {
         self.plan_target(target)
     }
 
-    /// Changes the limits of the motion in progress, which keeps its target. Equal limits change
+    /// Changes the limits of the current motion, which keeps its target. Equal limits change
     /// nothing.
     ///
     /// A state outside the new limits brakes back into them.
     ///
     /// # Errors
     /// [`PlanError::OutOfRange`], or [`PlanError::TargetMotion`] if the target moves faster than
-    /// the new limits allow; the limits before stay in force.
+    /// the new limits allow; the previous limits then stay in force.
     pub fn set_limits(&mut self, limits: Limits<N>) -> Result<(), PlanError> {
         if limits == self.limits {
             return Ok(());
@@ -210,25 +212,25 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// Drops the target and comes to rest in the least time.
+    /// Drops the target and stops in the least time.
     ///
-    /// On a straight line the stop stays on it. That takes no longer than stopping each axis on its
-    /// own if the axes have the same ratio of acceleration to jerk, and about the difference of
-    /// these ratios longer otherwise. Off a line each axis stops by itself. Braking cannot fail:
-    /// state and limits were checked when they came in.
+    /// On a straight line the stop stays on the line. That takes no longer than separate stops if
+    /// the axes have the same ratio of acceleration to jerk. Otherwise it takes longer by about the
+    /// difference of these ratios. Off a line each axis stops separately. Braking cannot fail:
+    /// state and limits were checked when they were set.
     pub fn brake(&mut self) {
         if self.heading != Heading::Rest {
             self.plan_stop();
         }
     }
 
-    /// Takes the velocity down to `share` of it, from 0 to 1, and plans anew to the target if there
-    /// is one, else to rest. A motion on a straight line stays on it.
+    /// Multiplies the velocity by `share`, from 0 to 1, and creates a new plan to the target, or to
+    /// rest without a target. A motion on a straight line stays on it.
     ///
-    /// The velocity of the output steps: the caller ensures that `share` is close to 1.
+    /// The velocity of the output jumps: the caller must ensure that `share` is close to 1.
     ///
     /// # Errors
-    /// [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`]; the motion in progress goes on.
+    /// [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`]; the current motion continues.
     pub fn slow_down(&mut self, share: f64) -> Result<(), PlanError> {
         let state = State {
             velocity: self.state.velocity.map(|velocity| share * velocity),
@@ -252,29 +254,29 @@ impl<const N: usize> Generator<N> {
         Ok(())
     }
 
-    /// Re-anchors the generator at `state` and plans anew: to the target if there is one, else to
-    /// rest in the least time.
+    /// Re-anchors the generator at `state` and creates a new plan: to the target, or to rest in the
+    /// least time without a target.
     ///
-    /// The output steps to `state`: the caller ensures that it is close to the last output.
+    /// The output jumps to `state`: the caller must ensure that it is close to the last output.
     ///
     /// # Errors
-    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; the motion in progress goes on.
+    /// [`PlanError::NotFinite`] or [`PlanError::OutOfRange`]; the current motion continues.
     pub fn set_state(&mut self, state: State<N>) -> Result<(), PlanError> {
         self.begin(state, self.limits, self.heading)
     }
 
     /// Advances by one nominal cycle, [`CYCLE`], and returns the state to command.
     ///
-    /// The cycle in which the motion ends, and all after it, give exactly the target without
-    /// velocity and acceleration (the position past it at which the motion comes to rest, if the
-    /// target moves).
+    /// The cycle in which the motion ends, and all later cycles, return exactly the target with
+    /// zero velocity and acceleration. For a moving target they return the position behind it at
+    /// which the motion stops.
     pub fn step(&mut self) -> &State<N> {
         self.cycle = self.cycle.saturating_add(1);
         self.state = self.plan.sample(self.elapsed());
         &self.state
     }
 
-    /// The state `t` seconds from now if nothing changes; a negative `t` means now.
+    /// Returns the state `t` seconds from now if nothing changes; a negative `t` means now.
     #[must_use]
     pub fn sample(&self, t: f64) -> State<N> {
         if t > 0.0 {
@@ -284,13 +286,13 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// The present state.
+    /// The current state.
     #[must_use]
     pub const fn state(&self) -> &State<N> {
         &self.state
     }
 
-    /// Position of the target, or the position at which braking ends if there is none.
+    /// Position of the target, or the position at which braking ends without a target.
     #[must_use]
     pub const fn target(&self) -> &[f64; N] {
         match &self.heading {
@@ -299,8 +301,8 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// Position at which the motion in progress comes to rest if nothing changes: the target, a
-    /// position past it if it moves, or where braking ends.
+    /// Position at which the current motion stops if nothing changes: the target, a position behind
+    /// a moving target, or the end of braking.
     #[must_use]
     pub const fn end(&self) -> &[f64; N] {
         self.plan.end()
@@ -312,13 +314,13 @@ impl<const N: usize> Generator<N> {
         &self.limits
     }
 
-    /// Duration of the motion in progress from where it was planned, in seconds.
+    /// Duration of the current motion from the creation of its plan, in seconds.
     #[must_use]
     pub const fn duration(&self) -> f64 {
         self.plan.duration()
     }
 
-    /// Time in seconds until the target is met, or until rest if there is none; zero from then on.
+    /// Time in seconds until the target is met, or until rest without a target; then zero.
     #[must_use]
     pub fn time_to_target(&self) -> f64 {
         if self.is_done() {
@@ -328,8 +330,8 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// Time until rest, in seconds; zero once there. The output rests at the first whole cycle from
-    /// then.
+    /// Time until rest, in seconds; zero at rest. The output rests from the first whole cycle after
+    /// that.
     #[must_use]
     pub fn remaining(&self) -> f64 {
         if self.is_done() {
@@ -339,7 +341,7 @@ impl<const N: usize> Generator<N> {
         }
     }
 
-    /// True if the present state is at rest at the end of the motion.
+    /// True if the current state is at rest at the end of the motion.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.state.position == *self.plan.end() && self.state.is_at_rest()
@@ -373,7 +375,7 @@ impl<const N: usize> Generator<N> {
     }
 }
 
-/// Refuses a state too many orders of magnitude from its limits to stop from.
+/// Refuses a state that is too many orders of magnitude away from its limits to stop.
 fn check_range<const N: usize>(state: &State<N>, limits: &Limits<N>) -> Result<(), PlanError> {
     match (0..N).find(|&i| !can_stop(state.axis(i), limits.axis(i))) {
         Some(index) => Err(PlanError::OutOfRange { axis: index + 1 }),

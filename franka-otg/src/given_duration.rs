@@ -1,27 +1,27 @@
-//! Step two: a profile of exactly a given duration, not less than the least.
+//! Step two: a profile of exactly a given duration, which is at least the least duration.
 //!
 //! For targets at rest two families with one parameter each suffice.
 //!
 //! **Velocity cap.** Transfer to a velocity `w`, cruise, stop. Eliminating the cruise from the
-//! equations of time and distance leaves one equation, which needs no division by `w`. Upwards (`w`
-//! at or above the velocity that remains when the acceleration is ramped out), with `c, pi` the
+//! equations of time and distance leaves one equation, which needs no division by `w`. Upwards, `w`
+//! is at or above the velocity that remains when the acceleration is ramped out. With `c, pi` the
 //! start extended to zero acceleration as in step one and `A(d)` the area of
-//! [`stop_distance`](crate::transfer::stop_distance):
+//! [`stop_distance`](crate::transfer::stop_distance), the equation is
 //!
 //! ```text
 //! g(w) = A(w - c) + A(w) - (T + a) w + d - pi = 0
 //! ```
 //!
 //! and downwards `A(w) - A(c - w) - (T - a) w + d - pi`, with `c, pi` of a negative first jerk. `g`
-//! is convex or monotone where the cruise is not negative. If both transfers hold their
+//! is convex or monotone as long as the cruise is not negative. If both transfers hold their
 //! acceleration it is a quadratic or linear equation. The cruise follows from the time equation, so
-//! the duration is exact and rounding goes into the position, where it is smallest.
+//! the duration is exact, and the rounding affects the position, where it is smallest.
 //!
-//! **Stop, then go**, where no cruise fits: see [`crate::stop_then_go`].
+//! **Stop, then go**, if no cruise fits: see [`crate::stop_then_go`].
 //!
-//! Slowing time down instead (one factor for the whole profile) would change the velocity at the
-//! start, and lowering all three limits at once makes the duration discontinuous where a start no
-//! longer fits inside them.
+//! Slowing down time instead (one factor for the whole profile) would change the velocity at the
+//! start. Lowering all three limits at once makes the duration discontinuous where a start is no
+//! longer inside them.
 
 use crate::least_time::LeastTime;
 use crate::scalar::sqrt;
@@ -30,8 +30,8 @@ use crate::stop_then_go::stop_then_go;
 use crate::task::{SAME, Task};
 use crate::transfer::{ramp_and_hold, stop_distance_and_slope, transfer_time};
 
-/// Stretches a least-time solution to `duration`, in units of the axis; to its own if that is
-/// longer.
+/// Stretches a least-time solution to `duration`, in units of the axis; to its own duration if that
+/// is longer.
 pub(crate) fn stretched(least: &LeastTime, duration: f64) -> Stretched {
     if duration - least.duration <= SAME * duration {
         return Stretched::of(least.shape);
@@ -42,7 +42,7 @@ pub(crate) fn stretched(least: &LeastTime, duration: f64) -> Stretched {
     }
 }
 
-/// Transfer, cruise and stop; `None` if no cruise fits.
+/// Returns transfer, cruise and stop; `None` if no cruise fits.
 fn velocity_cap(task: &Task, peak: f64, duration: f64) -> Option<Shape> {
     let coasting = task.coasting_velocity();
     let low = coasting.max(0.0);
@@ -61,9 +61,9 @@ struct Cap {
     sign: f64,
     /// Start velocity, extended to zero acceleration.
     c: f64,
-    /// Distance from the start extended so.
+    /// Distance from the extended start.
     d: f64,
-    /// Duration from there.
+    /// Duration from the extended start.
     time: f64,
 }
 
@@ -78,7 +78,8 @@ impl Cap {
         }
     }
 
-    /// Distance still missing after `time` with cruise velocity `w`, and its derivative.
+    /// Returns the distance still missing after `time` with cruise velocity `w`, and its
+    /// derivative.
     fn excess(&self, w: f64) -> (f64, f64) {
         let (first, first_slope) = stop_distance_and_slope((self.sign * (w - self.c)).max(0.0));
         let (second, second_slope) = stop_distance_and_slope(w);
@@ -88,8 +89,8 @@ impl Cap {
         )
     }
 
-    /// The root of the excess between `low`, where it is not negative, and `high`, where it is not
-    /// positive.
+    /// Returns the root of the excess between `low`, where it is not negative, and `high`, where it
+    /// is not positive.
     fn solve(&self, low: f64, high: f64) -> f64 {
         let (mut low, mut high) = (low, high);
         let guess = self.with_holds();
@@ -124,8 +125,8 @@ impl Cap {
         w
     }
 
-    /// The root if both transfers hold their acceleration: a quadratic upwards, a linear equation
-    /// downwards.
+    /// Returns the root if both transfers hold their acceleration: a quadratic equation upwards, a
+    /// linear equation downwards.
     fn with_holds(&self) -> f64 {
         let c = self.c;
         if self.sign > 0.0 {
@@ -137,7 +138,7 @@ impl Cap {
         }
     }
 
-    /// The profile with cruise velocity `w`, if its cruise is not negative.
+    /// Returns the profile with cruise velocity `w`, if its cruise is not negative.
     fn shape(&self, a: f64, w: f64) -> Option<Shape> {
         let first = (self.sign * (w - self.c)).max(0.0);
         let cruise = self.time - transfer_time(first) - transfer_time(w);
@@ -167,7 +168,7 @@ mod tests {
     use super::*;
     use crate::least_time::least_time;
 
-    /// Follows a solution; returns its duration, the task left at its end, and the largest
+    /// Follows a solution; returns its duration, the task remaining at its end, and the largest
     /// acceleration, velocity and distance beyond the target between segments.
     fn follow(task: &Task, solution: &Stretched) -> (f64, Task, f64, f64, f64) {
         let Stretched {
@@ -184,7 +185,8 @@ mod tests {
         for (i, (jerk, t)) in before.iter().chain(segments).enumerate() {
             assert!(t >= 0.0);
             if i == cruise && t > 0.0 {
-                // As profiles do: a rounding left here would grow with the square of the cruise.
+                // As in profiles: a remaining rounding error would grow with the square of the
+                // cruise.
                 left.v = sign * shape.cruise;
                 left.a = 0.0;
             }
@@ -197,8 +199,8 @@ mod tests {
         (duration, left, a, v, beyond)
     }
 
-    /// A start inside its limits, with a target at a distance from the stop point that is small
-    /// more often than not.
+    /// Generates a start inside its limits, with a target whose distance from the stop point is
+    /// usually small.
     fn task() -> impl Strategy<Value = Task> {
         let distance = prop_oneof![1 => -5.0..-1.0, 1 => -1.0..2.0];
         let sign = prop_oneof![Just(1.0), Just(-1.0)];
@@ -233,7 +235,7 @@ mod tests {
             let solution = stretched(&least, duration);
             let (lasts, left, a, v, beyond) = follow(&least.task, &solution);
             let size = task.d.abs() + task.top * duration;
-            // Near a stop point the rounding of a position costs its root in time.
+            // Near a stop point, the rounding of a position costs its square root in time.
             let rounding = f64::EPSILON * size;
             let slack = 1e-13 * duration + 2.0 * rounding.sqrt();
             let waits = duration - lasts;

@@ -1,31 +1,32 @@
 //! Step one: the least-time profile of one axis.
 //!
-//! Waiting at rest is allowed, so the set of positions at which the axis can rest at time `T` grows
-//! with `T` and is an interval. The optimum is therefore "push towards one side, then stop": the
-//! side is that of the target as seen from where an immediate stop would end. A target inside the
+//! Waiting at rest is allowed, so the set of positions at which the axis can rest at time `T` is an
+//! interval that grows with `T`. The optimum is therefore "push towards one side, then stop". The
+//! side is the direction from the end of an immediate stop to the target. A target inside the
 //! braking distance needs no special case.
 //!
-//! In the frame in which the push is upwards the jerks are `+ 0 - 0 - 0 +` (seven durations).
-//! Extending the first jerk to the instant where the acceleration is zero turns the start `(v, a)`
-//! into `(c, 0)` with
+//! In the frame in which the push is upwards, the jerks are `+ 0 - 0 - 0 +` (seven durations).
+//! Extending the first jerk to the instant with zero acceleration turns the start `(v, a)` into
+//! `(c, 0)` with
 //!
 //! ```text
 //! c = v - a^2/2      at      pi = a (a^2/3 - v)
 //! ```
 //!
-//! With `x` the acceleration before the first negative jerk and `w = c + x^2 (+ hold)` the velocity
-//! between the two halves, the motion ends at `pi + (c + w)/2 * time(w - c) + stop(w)`, which grows
-//! with `w`. Comparing the target with that at the breakpoints names the one case that applies: a
-//! cruise or an acceleration hold, both closed, or neither, where the monotone and convex equation
+//! Let `x` be the acceleration before the first negative jerk and `w = c + x^2 (+ hold)` the
+//! velocity between the two halves. The motion ends at `pi + (c + w)/2 * time(w - c) + stop(w)`,
+//! which grows with `w`. Comparing the target with that value at the breakpoints determines the
+//! case. A cruise and an acceleration hold have closed forms. Without either, the monotone and
+//! convex equation
 //!
 //! ```text
 //! F(x) = pi + 2 c x + x^3 + stop(c + x^2) = d
 //! ```
 //!
 //! is solved by Newton steps from the right, which cannot leave the interval. `x` may be negative:
-//! an axis that brakes already and only needs to brake less. A search over peak velocities has no
-//! such profile, and is up to 28 % slower there. Trying all families and testing each result, the
-//! usual way, fails on their common boundaries by rounding.
+//! the axis already brakes and only needs to brake less. A search over peak velocities has no such
+//! profile, and is up to 28 % slower in this case. The usual way, trying all families and testing
+//! each result, fails on their common boundaries because of rounding.
 
 use crate::scalar::{cbrt, sqrt};
 use crate::shape::Shape;
@@ -35,7 +36,7 @@ use crate::transfer::{ramp_and_hold, stop_distance, transfer_distance};
 /// The least-time solution of a task inside its limits.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LeastTime {
-    /// Direction of the push, 1 or -1; the rest is in the frame in which it is upwards.
+    /// Direction of the push, 1 or -1; the other fields are in the frame in which it is upwards.
     pub(crate) sign: f64,
     /// The task in that frame.
     pub(crate) task: Task,
@@ -50,7 +51,7 @@ pub(crate) fn least_time(task: Task) -> LeastTime {
     let (stop, rounding) = task.stop_point();
     let fuzz = task.fuzz + if task.fuzz > 0.0 { rounding } else { 0.0 };
     let (sign, mut task, is_stop) = if (task.d - stop).abs() <= fuzz {
-        // Going for the last rounding would cost its square root in time.
+        // Removing the last rounding error would cost its square root in time.
         let sign = 1_f64.copysign(task.coasting_velocity());
         let stopping = Task { d: stop, ..task };
         (sign, stopping.mirrored(sign), true)
@@ -76,9 +77,9 @@ pub(crate) fn least_time(task: Task) -> LeastTime {
 /// A start with its first jerk extended to zero acceleration.
 struct ExtendedStart {
     a: f64,
-    /// Velocity there.
+    /// Velocity at the extended start.
     c: f64,
-    /// Position there.
+    /// Position of the extended start.
     pi: f64,
     top: f64,
 }
@@ -94,7 +95,7 @@ impl ExtendedStart {
         }
     }
 
-    /// The shape for the distance `d`, at or above the stop point.
+    /// Returns the shape for the distance `d`, at or above the stop point.
     fn solve(&self, d: f64) -> Shape {
         let Self { a, c, pi, top } = *self;
         let to_top = (top - c).max(0.0);
@@ -113,9 +114,9 @@ impl ExtendedStart {
         self.turning_at(self.solve_ramp(d, sqrt(to_top.min(1.0))))
     }
 
-    /// The first transfer holds its acceleration. With both transfers' areas added, `stop` of `w`
-    /// over the saturated first one is a perfect square in `sqrt(w)` below saturation of the
-    /// second, and a quadratic in `w` above.
+    /// Returns the shape whose first transfer holds its acceleration. With the areas of both
+    /// transfers added, `stop` of `w` over the saturated first one is a perfect square in `sqrt(w)`
+    /// below saturation of the second, and a quadratic in `w` above.
     fn with_hold(&self, d: f64) -> Shape {
         let Self { a, c, pi, .. } = *self;
         let q = (d - pi - 0.5 * c * (1.0 - c)).max(0.0);
@@ -131,13 +132,13 @@ impl ExtendedStart {
         Shape::two_transfers(a, up, (w, 0.0), down)
     }
 
-    /// The profile without cruise and first hold whose acceleration turns at `x`.
+    /// Returns the profile without cruise and first hold whose acceleration turns at `x`.
     fn turning_at(&self, x: f64) -> Shape {
         let w = (self.c + x * x).max(0.0);
         Shape::two_transfers(self.a, (x, 0.0), (w, 0.0), ramp_and_hold(w))
     }
 
-    /// The smallest acceleration to turn at: an immediate stop.
+    /// Returns the smallest acceleration to turn at: an immediate stop.
     fn least_ramp(&self) -> f64 {
         if self.c < 0.0 {
             self.a.max(sqrt(-self.c))
@@ -146,7 +147,7 @@ impl ExtendedStart {
         }
     }
 
-    /// `F(x)` and its derivative.
+    /// Returns `F(x)` and its derivative.
     fn end(&self, x: f64) -> (f64, f64) {
         let w = (self.c + x * x).max(0.0);
         let before = self.pi + x * (2.0 * self.c + x * x);
@@ -169,8 +170,8 @@ impl ExtendedStart {
         if gap <= 0.0 || most <= least {
             return least;
         }
-        // Upper bounds: the tangent at the left end, since F is convex; and F' >= 6 x^2 for c >= 0,
-        // F' >= x^2 otherwise.
+        // Upper bounds: the tangent at the left end, because F is convex; and F' >= 6 x^2 for c >=
+        // 0, F' >= x^2 otherwise.
         let mut x = most;
         if gap < slope * (most - least) {
             x = least + gap / slope;
@@ -189,7 +190,7 @@ impl ExtendedStart {
         for _ in 0..MAX_NEWTON {
             let (value, slope) = self.end(x);
             let step = (value - d) / slope;
-            // From the right all steps lead down until rounding reverses one.
+            // From the right all steps lead down until rounding reverses a step.
             if step > 2.0 * f64::EPSILON * x.abs() {
                 x = (x - step).max(least);
             } else {
@@ -200,6 +201,6 @@ impl ExtendedStart {
     }
 }
 
-/// Newton steps that a convex search may take. Three to five are usual; near a double root each
-/// step only halves the rest.
+/// Largest number of Newton steps of a convex search. Three to five are usual; near a double root
+/// each step only halves the remainder.
 const MAX_NEWTON: usize = 60;

@@ -2,9 +2,9 @@
 //!
 //! [`Generator`] moves `N` axes from any state to a target inside limits of velocity, acceleration
 //! and jerk, in the least time in which all axes arrive together. Targets are at rest or in motion.
-//! Target and limits may change in any cycle. A plan is made when one of them changes and is then
-//! followed: planning in every cycle would add a rounding error per cycle, a plan that is kept ends
-//! exactly at the target.
+//! Target and limits may change in any cycle. A plan is created when one of them changes and is
+//! then followed. Planning in every cycle would add a rounding error per cycle, but a plan that is
+//! kept ends exactly at the target.
 //!
 //! ```text
 //! state, target, limits -> plan          a straight line if the motion so far allows one, else each axis on its own
@@ -41,65 +41,66 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | `generator` | the public face: input, output, the plan in progress |
-//! | `state`, `limits`, `error`, `cycle` | what goes in and comes out |
+//! | `generator` | the public interface: input, output, the current plan |
+//! | `state`, `limits`, `error`, `cycle` | inputs and outputs |
 //! | `plan` | the motion of all axes, and their common duration |
 //! | `straight_line` | all axes as one scalar problem |
 //! | `axis` | one axis, from its state to its profile |
 //! | `task` | one axis in units of its limits |
-//! | `brake` | from outside the limits back into them |
+//! | `brake` | returns a state outside the limits into them |
 //! | `least_time` | step one, targets at rest |
 //! | `given_duration`, `stop_then_go` | step two, targets at rest: velocity cap, and stop first |
 //! | `moving_target` | targets in motion: a profile for each feasible duration |
-//! | `feasible_durations`, `velocity_change` | which durations are feasible |
-//! | `extremal_profile`, `plateau` | the motion that gets farthest in a given time; one by way of a constant velocity |
+//! | `feasible_durations`, `velocity_change` | the feasible durations |
+//! | `extremal_profile`, `plateau` | the motion with the farthest end in a given time; a motion through a constant velocity |
 //! | `shape`, `profile` | seven durations of jerk; segments over time |
 //! | `transfer`, `root`, `times`, `scalar` | velocity changes, root search, sorted lists, roots |
 //!
 //! # Targets at rest
 //!
-//! An axis may wait at rest, so the positions at which it can rest at time `T` are an interval that
-//! only grows with `T`. Three things follow. Every duration from the least one on is feasible, so
-//! the common duration is the longest of the least ones. The optimum is "push at the limits, then
-//! stop", its direction given by the position at which an immediate stop would end. And where the
-//! push ends is a monotone function of how long it lasts, so the case that applies is found by
-//! comparing the target with the breakpoints: closed forms or one short convex search
-//! (`least_time`).
+//! An axis may wait at rest, so the positions at which it can rest at time `T` form an interval
+//! that only grows with `T`. This has three consequences. Every duration from the least one on is
+//! feasible, so the common duration is the longest of the least ones. The optimum is "push at the
+//! limits, then stop", in the direction from the end of an immediate stop to the target. The end of
+//! the motion is a monotone function of the duration of the push. So comparing the target with the
+//! breakpoints determines the case: closed forms or one short convex search (`least_time`).
 //!
 //! # Targets in motion
 //!
 //! At a target in motion an axis cannot wait, and there may be *blocked* durations between feasible
 //! ones. But for one duration the reachable positions are still an interval, whose ends have closed
 //! forms, and the mean of two admissible motions is admissible. So two evaluations decide whether a
-//! duration is feasible, and a profile for it is a weighted mean: one short search per axis finds
-//! where feasible durations begin (`moving_target`).
+//! duration is feasible, and a profile for it is a weighted mean. One short search per axis finds
+//! the beginnings of the feasible durations (`moving_target`).
 //!
 //! # Guarantees
 //!
-//! - Velocity, acceleration and jerk keep their limits to rounding, from every state that can stay
-//!   inside them. Other states are brought back inside under the jerk limit, as early as possible;
-//!   the state is never clamped (`brake`).
-//! - All axes are at the target at the same time, to rounding. A target at rest that can be reached
-//!   without overshooting is not overshot because another axis takes longer. There is one
-//!   exception: an axis whose stop ends exactly at its target cannot arrive later without
-//!   overshooting, and waits there (`stop_then_go`).
+//! - Velocity, acceleration and jerk keep their limits within rounding, from every state that can
+//!   stay inside them. Other states are brought back inside under the jerk limit, as early as
+//!   possible; the state is never clamped (`brake`).
+//! - All axes are at the target at the same time, within rounding. A longer duration of another
+//!   axis never causes overshoot of a target at rest that can be reached without it. The one
+//!   exception is an axis whose stop ends exactly at its target. It cannot arrive later without
+//!   overshooting, so it waits at the target (`stop_then_go`).
 //! - From rest, and while new targets stay on the line, the path is straight (`straight_line`).
-//! - No allocation and no panic, for all finite inputs; input that `f64` cannot compute with is an
+//! - No allocation and no panic, for all finite inputs; input that is out of range for `f64` is an
 //!   error.
 //!
 //! # What it does not do
 //!
-//! - It knows no robot: joint ranges, collisions, kinematics and torques are the caller's.
+//! - It does not model the robot: joint ranges, collisions, kinematics and torques are the caller's
+//!   responsibility.
 //! - It reads no clock: [`Generator::step`] advances by [`CYCLE`], one millisecond. A machine with
 //!   another cycle calls [`Generator::sample`].
-//! - Limits are symmetric and bind each axis by itself; a limit of a norm is the caller's.
-//! - It plans to one target at a time. A path through waypoints is the caller's sequence of
+//! - Limits are symmetric and apply to each axis separately; a limit of a norm is the caller's
+//!   responsibility.
+//! - It plans to one target at a time. For a path through waypoints the caller sets a sequence of
 //!   targets.
 //!
 //! # Termination
 //!
 //! No function calls itself, directly or through others: the modules call each other in the order
-//! of the diagram. So the work is bounded if each loop is, and each loop counts:
+//! of the diagram. So the work is bounded if each loop is, and each loop has a bound:
 //!
 //! | loop | passes at most |
 //! |---|---|
@@ -113,11 +114,11 @@
 //! | `plateau`, one `root` | 100 evaluations |
 //! | `profile`, segments laid out, merged or skipped | 20, 40, 20 |
 //!
-//! Each search counts its passes, so it ends whatever is rounded, infinite or NaN. Accuracy is a
-//! separate question: bisection, into which the bracketed searches fall back, halves the bracket
-//! in each step and has no more than 53 bits to halve. On a grid over states, targets and limits,
-//! flat and double roots among them, `root` never takes 80 % of its passes (`tests/bounds.rs`);
-//! Newton steps may take all of theirs at a double root, where each halves the rest.
+//! Each search counts its passes, so it ends regardless of rounding, infinities or NaN. Accuracy is
+//! a separate question. The bracketed searches fall back to bisection, which halves the bracket in
+//! each step and has at most 53 bits to halve. On a grid over states, targets and limits, including
+//! flat and double roots, `root` never takes 80 % of its passes (`tests/bounds.rs`). Newton steps
+//! may take all their passes at a double root, where each step halves the remainder.
 //!
 //! # Sources
 //!
@@ -125,9 +126,9 @@
 //! Real-time Trajectory Generation with Arbitrary Target States*, RSS 2021, arXiv:2105.04830; T.
 //! Kröger, F. Wahl, *Online Trajectory Generation: Basic Concepts for Instantaneous Reactions to
 //! Unforeseen Events*, IEEE T-RO 26(1), 2010; R. Haschke, E. Weitnauer, H. Ritter, *On-Line
-//! Planning of Time-Optimal, Jerk-Limited Trajectories*, IROS 2008. The decision by breakpoints
-//! and the two families of step two are derived in these files; the tests hold them against plain
-//! bisection, and against vectors made with Ruckig 0.19.4.
+//! Planning of Time-Optimal, Jerk-Limited Trajectories*, IROS 2008. The decision by breakpoints and
+//! the two families of step two are derived in these files. The tests compare them with plain
+//! bisection, and with vectors computed by Ruckig 0.19.4.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![no_std]
@@ -170,7 +171,7 @@ pub use limits::{AxisLimits, Limits};
 pub use plan::Synchronisation;
 pub use state::{AxisState, State};
 
-// The program in the README compiles.
+// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -2,7 +2,8 @@
 
 use crate::error::{PlanError, Quantity};
 
-/// Limits of one axis, symmetric: velocity, acceleration and jerk stay within plus or minus these.
+/// Limits of one axis, symmetric: velocity, acceleration and jerk stay within plus or minus these
+/// values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisLimits {
     /// Largest velocity, in units per second.
@@ -37,7 +38,7 @@ impl AxisLimits {
 pub struct Limits<const N: usize>([AxisLimits; N]);
 
 impl<const N: usize> Limits<N> {
-    /// Limits given axis by axis.
+    /// Creates limits from one entry per axis.
     ///
     /// # Errors
     /// [`PlanError::Limit`] for a limit that is not a positive finite number.
@@ -48,7 +49,7 @@ impl<const N: usize> Limits<N> {
         Ok(Self(limits))
     }
 
-    /// Limits given quantity by quantity, as data sheets list them.
+    /// Creates limits from one array per quantity, as in data sheets.
     ///
     /// # Errors
     /// [`PlanError::Limit`] for a limit that is not a positive finite number.
@@ -64,19 +65,19 @@ impl<const N: usize> Limits<N> {
         }))
     }
 
-    /// Limits of one axis.
+    /// Returns the limits of one axis.
     ///
     /// # Panics
-    /// If there is no such axis.
+    /// If the axis does not exist.
     #[must_use]
     pub const fn axis(&self, axis: usize) -> AxisLimits {
         self.0[axis]
     }
 
-    /// Limits of the parameter `s` of a straight line `origin + s * direction` that keep every axis
-    /// inside its own.
+    /// Returns limits of the parameter `s` of a straight line `origin + s * direction` that keep
+    /// every axis inside its own limits.
     ///
-    /// A zero direction is not limited: infinite.
+    /// A zero component does not limit `s`: its bound is infinite.
     pub(crate) fn along(&self, direction: &[f64; N]) -> AxisLimits {
         let mut along = AxisLimits {
             velocity: f64::INFINITY,

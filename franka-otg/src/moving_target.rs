@@ -1,25 +1,26 @@
 //! Targets in motion: the feasible durations, and a profile for each.
 //!
-//! At a target with a velocity an axis cannot wait. An axis that would be early has to make room
-//! and come again, so there may be durations between feasible ones that are not feasible:
-//! *blocked* ones. For one duration the reachable positions are still an interval, since the
-//! dynamics are linear and the limits convex. Its ends are the extremal motions up and down
-//! (`extremal_profile`), in closed form. Hence
+//! At a target with a velocity an axis cannot wait. An axis that would be early must move back and
+//! approach again, so there may be infeasible (*blocked*) durations between feasible ones. For one
+//! duration the reachable positions are still an interval, because the dynamics are linear and the
+//! limits convex. Its ends are the extremal motions up and down (`extremal_profile`), in closed
+//! form. Therefore:
 //!
 //! - a duration is feasible if its interval contains the target: two evaluations;
-//! - the ends of the interval pass the target a few times at most, and between these durations
+//! - the ends of the interval pass the target only a few times, and between these durations
 //!   feasibility does not change. Each end is monotone between its turning points, which have
-//!   closed forms too, so one bracketed search per piece finds the least duration and the ends of
+//!   closed forms too. So one bracketed search per piece finds the least duration and the ends of
 //!   the blocked intervals (`feasible_durations`);
 //! - each feasible duration has a profile: the mean of the two extremal motions, weighted so that
-//!   it ends at the target. A mean of motions inside convex limits is inside them. It always
-//!   exists; where a constant velocity fits in between, that profile is better ([`Plateau`]).
+//!   it ends at the target. A mean of motions inside convex limits is inside them, so it always
+//!   exists. If a constant velocity fits in between, that profile is better ([`Plateau`]).
 //!
-//! The velocity of the target has to be reachable as well. That is the same problem one derivative
-//! lower, and has a blocked interval of its own if the target accelerates (`velocity_change`).
+//! The velocity of the target must be reachable as well. That is the same problem one derivative
+//! lower. It has a separate blocked interval if the target accelerates (`velocity_change`).
 //!
-//! The usual solution looks for all profiles that fit: quartic and sixth-order equations in eleven
-//! families per direction, half of which fail by rounding where two families meet.
+//! The usual solution searches for all profiles that fit. It solves quartic and sixth-order
+//! equations in eleven families per direction, half of which fail by rounding where two families
+//! meet.
 
 use crate::feasible_durations::{Candidates, FeasibleDurations};
 use crate::plateau::Plateau;
@@ -28,8 +29,8 @@ use crate::task::Task;
 
 /// One axis and a target that moves, in units of the axis.
 ///
-/// Quantities that follow from the task in a few operations are not stored: there is one of these
-/// for each axis of a plan, and most axes of most plans go to rest.
+/// Quantities that follow from the task in a few operations are not stored: each axis of a plan has
+/// one of these, and most axes of most plans move to rest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MovingTarget {
     task: Task,
@@ -38,25 +39,25 @@ pub(crate) struct MovingTarget {
     candidates: Candidates,
 }
 
-/// The motion of one duration.
+/// The motion for one duration.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Solution {
     /// One shape in a direction, 1 or -1.
     Shape(f64, Shape),
     /// The mean of two shapes.
     Mean {
-        /// The extremal motion upwards, and how far beyond the target it ends.
+        /// The extremal motion upwards, and the distance of its end beyond the target.
         up: (Shape, f64),
         /// The extremal motion downwards, in its own frame.
         down: (Shape, f64),
-        /// Weight of the first.
+        /// Weight of the motion upwards.
         weight: f64,
     },
 }
 
 impl MovingTarget {
-    /// The feasible durations of a task inside its limits, for a target with velocity `vf` and
-    /// acceleration `af` that can be met inside them.
+    /// Computes the feasible durations of a task inside its limits, for a target with velocity `vf`
+    /// and acceleration `af` that are possible inside them.
     pub(crate) fn new(task: &Task, vf: f64, af: f64) -> Self {
         Self {
             task: *task,
@@ -70,21 +71,21 @@ impl MovingTarget {
         FeasibleDurations::new(&self.task, self.vf, self.af)
     }
 
-    /// The least feasible duration.
+    /// Returns the least feasible duration.
     pub(crate) fn least(&self) -> f64 {
         self.candidates.iter().next().unwrap_or(0.0)
     }
 
-    /// The least feasible duration that is not less than `t`, but for rounding.
+    /// Returns the least feasible duration that is at least `t`, within rounding.
     pub(crate) fn from(&self, t: f64) -> f64 {
         if self.can_take(t) {
             return t;
         }
-        // After the last candidate all durations are feasible: rounding may deny it.
+        // After the last candidate all durations are feasible; rounding may suggest otherwise.
         self.candidates.iter().find(|&next| next > t).unwrap_or(t)
     }
 
-    /// The last candidate before `t`, if `t` itself is blocked.
+    /// Returns the last candidate before `t`, if `t` itself is blocked.
     pub(crate) fn before(&self, t: f64) -> Option<f64> {
         if self.can_take(t) {
             return None;
@@ -92,20 +93,20 @@ impl MovingTarget {
         self.candidates.iter().filter(|&earlier| earlier < t).last()
     }
 
-    /// True if the axis can be at its target after `t`, but for rounding.
+    /// True if the axis can be at its target after `t`, within rounding.
     pub(crate) fn can_take(&self, t: f64) -> bool {
         let feasible = self.feasible();
         feasible.is_feasible(t) || self.same(&feasible, t).is_some()
     }
 
-    /// The candidate that `t` is, but for rounding.
+    /// Returns the candidate that equals `t`, within rounding.
     fn same(&self, feasible: &FeasibleDurations, t: f64) -> Option<f64> {
         self.candidates
             .iter()
             .find(|&candidate| feasible.are_same(t, candidate))
     }
 
-    /// The motion for a duration that [`from`](Self::from) gives.
+    /// Returns the motion for a duration returned by [`from`](Self::from).
     pub(crate) fn solve(&self, t: f64) -> Solution {
         let feasible = self.feasible();
         let t = if feasible.is_feasible(t) {
@@ -146,7 +147,7 @@ mod tests {
     proptest! {
         #![proptest_config(cases(3000))]
 
-        /// Rest is a motion too: the other solution, which shares none of the equations, has to
+        /// Rest is also a motion: the other solution, which shares none of the equations, must
         /// agree.
         #[test]
         fn a_target_at_rest_takes_as_long_as_by_the_other_solution(
@@ -165,8 +166,8 @@ mod tests {
 
     #[test]
     fn an_axis_early_at_a_moving_target_has_durations_that_are_blocked() {
-        // At the target's velocity, a little short of its position: to be there later the axis has
-        // to go back first.
+        // At the target's velocity, slightly short of its position: to arrive later, the axis must
+        // first move back.
         let task = Task {
             d: 1e-3,
             v: 0.5,
@@ -179,7 +180,7 @@ mod tests {
         assert!(least < 2e-3, "{least}");
         let next = target.from(0.1);
         assert!(next > 2.0, "{next}");
-        // It slows down to nothing and less, and comes again with as much.
+        // The axis reverses, and approaches again with the same velocity.
         let feasible = target.feasible();
         let (low, high) = (feasible.down.profile(next), feasible.up.profile(next));
         assert!(low.beyond.abs() < 1e-12 && high.beyond > 0.0);

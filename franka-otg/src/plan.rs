@@ -8,41 +8,42 @@ use crate::profile::Profile;
 use crate::state::{AxisState, State};
 use crate::straight_line::StraightLine;
 
-/// How the axes of a motion to a target move together. All arrive at the same instant in any case.
+/// The synchronisation of the axes in a motion to a target. All axes always arrive at the same
+/// instant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Synchronisation {
-    /// In phase, on a straight line, wherever the motion so far allows it, which it does from rest;
-    /// else in time only.
+    /// In phase, on a straight line, if the current motion allows it; from rest it always does.
+    /// Otherwise in time only.
     #[default]
     Straight,
-    /// In time only: as early as the slowest axis can arrive, on a curved path.
+    /// In time only: at the earliest arrival of the slowest axis, on a curved path.
     Time,
 }
 
-/// A motion that is being followed, as a function of the time since it was planned.
+/// The current motion, as a function of the time since it was planned.
 #[derive(Debug, Clone)]
 pub(crate) struct Plan<const N: usize> {
     path: Path<N>,
     /// Motion along the straight line.
     along: Profile,
-    /// Motion of each axis on its own.
+    /// Separate motion of each axis.
     axes: [Profile; N],
-    /// When the target is met, in seconds from the start.
+    /// Time at which the target is met, in seconds from the start.
     arrival: f64,
-    /// Where it comes to rest: at the target, or past it if the target moves.
+    /// Position of rest: the target, or a position behind a moving target.
     end: [f64; N],
     duration: f64,
 }
 
 #[derive(Debug, Clone)]
 enum Path<const N: usize> {
-    /// Each axis on its own.
+    /// Each axis separately.
     PerAxis,
     /// On a straight line.
     Straight(StraightLine<N>),
 }
 
-/// What a plan starts from.
+/// The start of a plan.
 pub(crate) struct PlanStart<'a, const N: usize> {
     pub(crate) state: State<N>,
     /// The straight line that the state is on, and the state along it.
@@ -51,7 +52,7 @@ pub(crate) struct PlanStart<'a, const N: usize> {
 }
 
 impl<const N: usize> Plan<N> {
-    /// Staying at `position`.
+    /// Creates a plan that stays at `position`.
     pub(crate) fn at_rest(position: [f64; N]) -> Self {
         Self {
             path: Path::PerAxis,
@@ -63,7 +64,7 @@ impl<const N: usize> Plan<N> {
         }
     }
 
-    /// Replaces the plan by the motion to `target`, and to rest past it if it moves.
+    /// Replaces the plan with the motion to `target`, and to rest behind a moving target.
     ///
     /// # Errors
     /// [`PlanError::OutOfRange`] or [`PlanError::TargetMotion`]; the plan is then unchanged.
@@ -73,7 +74,7 @@ impl<const N: usize> Plan<N> {
         start: &PlanStart<'_, N>,
         synchronisation: Synchronisation,
     ) -> Result<(), PlanError> {
-        // A single axis is its own line.
+        // A single axis always moves on a line.
         if synchronisation == Synchronisation::Straight && N > 1 {
             let kept = start.line.as_ref().and_then(|(line, along)| {
                 let to = line.state_of(target)?;
@@ -117,7 +118,7 @@ impl<const N: usize> Plan<N> {
         Ok(())
     }
 
-    /// Lays out the axes so that all arrive when the slowest does, or as soon after as all of them
+    /// Lays out the axes so that all arrive with the slowest, or as soon afterwards as all of them
     /// can.
     fn move_axes(
         &mut self,
@@ -159,8 +160,8 @@ impl<const N: usize> Plan<N> {
         Ok(())
     }
 
-    /// Replaces the plan by the least-time stop: along the line that the state is on, else of each
-    /// axis on its own.
+    /// Replaces the plan with the least-time stop: along the line of the state, or of each axis
+    /// separately.
     pub(crate) fn stop(&mut self, start: &PlanStart<'_, N>) {
         if let Some((line, along)) = &start.line {
             lay_out_stop(
@@ -184,23 +185,24 @@ impl<const N: usize> Plan<N> {
         self.path = Path::PerAxis;
     }
 
-    /// The position at which it comes to rest.
+    /// Position of rest at the end.
     pub(crate) const fn end(&self) -> &[f64; N] {
         &self.end
     }
 
-    /// When the target is met, in seconds from its start: when all axes rest, unless the target
-    /// moves.
+    /// Time at which the target is met, in seconds from its start: the time of rest, unless the
+    /// target moves.
     pub(crate) const fn arrival(&self) -> f64 {
         self.arrival
     }
 
-    /// When all axes rest, in seconds from its start.
+    /// Time at which all axes rest, in seconds from its start.
     pub(crate) const fn duration(&self) -> f64 {
         self.duration
     }
 
-    /// The state `t >= 0` seconds after its start; exactly at rest at the end from the duration on.
+    /// Returns the state `t >= 0` seconds after its start; exactly at rest at the end from the
+    /// duration on.
     pub(crate) fn sample(&self, t: f64) -> State<N> {
         if t >= self.duration - SLACK {
             return State::at_rest(self.end);
@@ -219,7 +221,7 @@ impl<const N: usize> Plan<N> {
         state
     }
 
-    /// The straight line that the motion is on at `t`, and the state along it; `None` at rest.
+    /// Returns the straight line of the motion at `t`, and the state along it; `None` at rest.
     pub(crate) fn line_at(&self, t: f64) -> Option<(StraightLine<N>, AxisState)> {
         match &self.path {
             Path::Straight(line) if t < self.duration - SLACK => {
@@ -230,13 +232,13 @@ impl<const N: usize> Plan<N> {
     }
 }
 
-/// The least duration from `at_least` on that all axes can take.
+/// Returns the least duration, at least `at_least`, that is feasible for all axes.
 ///
-/// An axis that cannot take a duration asks for the next one that it can, which is one of its
-/// candidates; the duration only grows, so each candidate is asked for once at most.
+/// An axis for which a duration is infeasible requests its next feasible duration, which is one of
+/// its candidates. The duration only grows, so each candidate is requested at most once.
 ///
-/// Rounding alone must not cause a detour: the feasible durations of an axis may end just before a
-/// duration that another axis knows less exactly than that.
+/// Rounding alone must not cause a detour. The feasible durations of one axis may end just before a
+/// duration that another axis knows with less precision.
 fn common_duration<const N: usize>(axes: &[Result<Axis, Refusal>; N], at_least: f64) -> f64 {
     let axes = || axes.iter().flatten();
     let mut duration = at_least;
@@ -266,8 +268,8 @@ impl Refusal {
 }
 
 /// Time before the end, in seconds, from which a motion counts as ended, so that rounding of a
-/// duration costs no cycle.
+/// duration does not cost a cycle.
 ///
-/// A millionth of a cycle: the distance left then is its third power times a sixth of the jerk
+/// A millionth of a cycle: the remaining distance is then its third power times a sixth of the jerk
 /// limit.
 const SLACK: f64 = 1e-9;

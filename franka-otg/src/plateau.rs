@@ -1,9 +1,9 @@
-//! A motion of a given duration to a target in motion, by way of a constant velocity.
+//! A motion of a given duration to a target in motion, through a constant velocity.
 //!
-//! Transfer to a velocity `w`, cruise, transfer to the end's velocity. With the first transfer in
-//! direction `s` and the second in direction `u`, and both ends extended by their jerks to zero
-//! acceleration (`c0 = v0 - s a0^2/2`, `cf = vf + u af^2/2`), the time and the distance left over
-//! are
+//! The motion is a transfer to a velocity `w`, a cruise, and a transfer to the end's velocity. The
+//! first transfer has the direction `s`, the second the direction `u`. With both ends extended by
+//! their jerks to zero acceleration (`c0 = v0 - s a0^2/2`, `cf = vf + u af^2/2`), the remaining
+//! time and distance are
 //!
 //! ```text
 //! cruise(w) = T + s a0 + u af - time(w - c0) - time(cf - w)
@@ -11,13 +11,13 @@
 //! ```
 //!
 //! with `M` the displacement of a transfer. The extremal motions up and down are the two ends of
-//! this family, and where the cruise is not negative the excess grows with `w`: so there is one
-//! `w`, between theirs. A cruise is negative only for durations so close to that of the mere change
-//! of velocity that no plateau fits; then the mean of the two extremal motions is used.
+//! this family. As long as the cruise is not negative, the excess grows with `w`, so exactly one
+//! `w` between theirs is right. A cruise is negative only for durations so close to the duration of
+//! the change of velocity that no plateau fits; then the mean of the two extremal motions is used.
 //!
-//! The mean would do for every duration, without a search. But a plan made anew from a state on
+//! The mean would be valid for every duration, without a search. But a new plan from a state on
 //! this motion continues with the same velocity, while the mean of the extremal motions from there
-//! differs each time: planned anew in each cycle it swings from one end of the interval to the
+//! differs each time. With a new plan in each cycle it swings from one end of the interval to the
 //! other.
 
 use crate::root::{Point, root};
@@ -25,7 +25,7 @@ use crate::shape::Shape;
 use crate::task::Task;
 use crate::transfer::{change_of_ramp, ramp_and_hold, transfer_distance, transfer_time};
 
-/// The problem of one duration: the velocity is to be found.
+/// The problem of one duration, with the velocity as the unknown.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Plateau {
     task: Task,
@@ -44,7 +44,7 @@ impl Plateau {
         }
     }
 
-    /// The direction and the shape of the motion, if its velocity is between two others.
+    /// Returns the direction and the shape of the motion, if its velocity is between two others.
     pub(crate) fn between(&self, low: f64, high: f64) -> Option<(f64, Shape)> {
         let point = |at| Point {
             at,
@@ -61,8 +61,7 @@ impl Plateau {
     fn at(&self, w: f64) -> Transfers {
         let Task { d, v, a, .. } = self.task;
         let (vf, af) = (self.vf, self.af);
-        // Velocities that are left when the acceleration is ramped to zero, forwards and backwards
-        // in time.
+        // Velocities after ramping the acceleration to zero, forwards and backwards in time.
         let s = 1_f64.copysign(w - (v + 0.5 * a * a.abs()));
         let u = 1_f64.copysign((vf - 0.5 * af * af.abs()) - w);
         let (c0, cf) = (v - s * 0.5 * a * a, vf + u * 0.5 * af * af);
@@ -93,7 +92,7 @@ impl Plateau {
         let ((x, first_hold), (y, second_hold)) =
             (ramp_and_hold(changes.0), ramp_and_hold(changes.1));
         let (t1, t7) = ((x - s * self.task.a).max(0.0), (y - u * self.af).max(0.0));
-        // In the frame in which the second transfer leads downwards.
+        // In the frame in which the second transfer is downwards.
         let sign = -u;
         let shape = Shape {
             first: sign * s,
@@ -104,13 +103,13 @@ impl Plateau {
     }
 }
 
-/// The motion by way of one velocity.
+/// The motion through one velocity.
 struct Transfers {
     /// Directions of the first and the second transfer.
     signs: (f64, f64),
-    /// Velocity differences of the two, with extended ends.
+    /// Velocity changes of the two transfers, with extended ends.
     changes: (f64, f64),
     cruise: f64,
-    /// How far beyond the target it ends.
+    /// Distance of its end beyond the target.
     excess: f64,
 }

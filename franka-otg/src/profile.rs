@@ -5,10 +5,10 @@ use crate::state::AxisState;
 
 /// Up to [`MAX_SEGMENTS`] segments of constant jerk that end at rest.
 ///
-/// Positions are kept relative to the start, so that a large offset rounds the result once and not
-/// in each segment. The last three segments of a motion to a target are laid out backwards from the
-/// target: it is met exactly, and what rounding there is lies at full speed, where it is relatively
-/// smallest.
+/// Positions are relative to the start, so that a large offset rounds the result once and not in
+/// each segment. The last three segments of a motion to a target are laid out backwards from the
+/// target. The target is then met exactly, and the remaining rounding occurs at full speed, where
+/// it is relatively smallest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Profile {
     origin: f64,
@@ -29,14 +29,14 @@ struct Segment {
 }
 
 impl Segment {
-    /// The state `t` after the start of the profile, relative to the origin.
+    /// Returns the state `t` after the start of the profile, relative to the origin.
     fn at(&self, t: f64) -> AxisState {
         self.state.after(self.jerk, t - self.start)
     }
 }
 
 impl Profile {
-    /// No motion, at `position`.
+    /// Creates a profile without motion, at `position`.
     pub(crate) const fn at_rest(position: f64) -> Self {
         Self {
             origin: position,
@@ -72,11 +72,11 @@ impl Profile {
         }
     }
 
-    /// Appends `t` seconds of exactly constant `velocity`, which the segments before lead to but
-    /// for rounding.
+    /// Appends `t` seconds of exactly constant `velocity`. The previous segments lead to this
+    /// velocity within rounding.
     ///
-    /// A cruise may last millions of times longer than the ramps around it: the last bit of an
-    /// acceleration or velocity left from them would grow into a distance.
+    /// A cruise may last millions of times longer than the ramps around it: the last bit of a
+    /// remaining acceleration or velocity would grow into a distance.
     pub(crate) fn cruise(&mut self, velocity: f64, t: f64) {
         if t > 0.0 {
             self.front.velocity = velocity;
@@ -92,7 +92,7 @@ impl Profile {
         }
     }
 
-    /// Appends jerks `jerk, 0, -jerk` for the times `t` that lead to `target`, or to as far
+    /// Appends jerks `jerk, 0, -jerk` for the times `t` that lead to `target`, or to a point
     /// `beyond` it.
     pub(crate) fn lead_to(&mut self, target: AxisState, beyond: f64, jerk: f64, t: [f64; 3]) {
         self.end = target.position;
@@ -112,16 +112,16 @@ impl Profile {
         }
     }
 
-    /// Makes the position that the segments lead to the end, exactly at rest.
+    /// Makes the end position of the segments the end of the profile, exactly at rest.
     pub(crate) fn finish_here(&mut self) {
         self.end = self.origin + self.front.position;
     }
 
-    /// Becomes the mean of two motions from one state that take equally long, the first one with
-    /// `weight`, the other one with `1 - weight`, and leads to `target`.
+    /// Sets the profile to the mean of two motions from one state with the same duration, the first
+    /// with `weight`, the other with `1 - weight`. The mean leads to `target`.
     ///
-    /// The states of its segments are means of the states of theirs, not sums over the segments
-    /// before: they are as exact at the end as at the start, and after any cruise.
+    /// The states of its segments are means of the states of the two motions, not sums over the
+    /// previous segments: they are as exact at the end as at the start, and after any cruise.
     pub(crate) fn mean_of(&mut self, weight: f64, one: &Self, other: &Self, target: AxisState) {
         let mean = |a: f64, b: f64| weight * a + (1.0 - weight) * b;
         self.begin(AxisState {
@@ -149,7 +149,7 @@ impl Profile {
         self.lead_to(target, 0.0, 0.0, [0.0; 3]);
     }
 
-    /// When a segment ends.
+    /// Returns the end time of a segment.
     fn end_of(&self, segment: usize) -> f64 {
         match self.segments[..self.len].get(segment + 1) {
             Some(next) => next.start,
@@ -169,22 +169,22 @@ impl Profile {
         }
     }
 
-    /// The state after what is laid out forwards, relative to the origin.
+    /// The state after the segments laid out forwards, relative to the origin.
     pub(crate) const fn front(&self) -> AxisState {
         self.front
     }
 
-    /// Position at which it ends.
+    /// Final position.
     pub(crate) const fn end(&self) -> f64 {
         self.end
     }
 
-    /// When it ends, in seconds from its start.
+    /// Duration in seconds from its start.
     pub(crate) const fn duration(&self) -> f64 {
         self.duration
     }
 
-    /// The state `t >= 0` seconds after the start; exactly the end from the duration on.
+    /// Returns the state `t >= 0` seconds after the start; exactly the end from the duration on.
     pub(crate) fn sample(&self, t: f64) -> AxisState {
         if t >= self.duration {
             return AxisState::at_rest(self.end);
@@ -202,9 +202,9 @@ impl Profile {
     }
 }
 
-/// Three to brake into the limits, thirteen of the mean of two shapes, four to come to rest behind
-/// a target in motion. A motion that begins with a part of a stop has three less of one shape more:
-/// thirteen in all.
+/// Three segments to brake into the limits, thirteen of the mean of two shapes, and four to stop
+/// behind a target in motion. A motion that begins with a part of a stop has three plus one shape:
+/// at most thirteen in all.
 const MAX_SEGMENTS: usize = 20;
 
 #[cfg(test)]

@@ -2,25 +2,27 @@
 
 use crate::search_passes;
 
-/// A point and the value of the function there.
+/// A point and the value of the function at the point.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Point {
     pub(crate) at: f64,
     pub(crate) value: f64,
 }
 
-/// Finds where `function` is zero between two points at which it has different signs.
+/// Finds a zero of `function` between two points at which it has different signs.
 ///
-/// Chandrupatla's method: inverse quadratic interpolation where three points allow it, else
-/// bisection (T. R. Chandrupatla, Advances in Engineering Software 28(3), 1997). Ends where a value
-/// is at most `close`, where the bracket is as narrow as `f64` resolves, or after [`MAX_STEPS`].
+/// The method is Chandrupatla's: inverse quadratic interpolation if three points allow it,
+/// otherwise bisection (T. R. Chandrupatla, Advances in Engineering Software 28(3), 1997). The
+/// search ends when a value is at most `close`, when the bracket is as narrow as `f64` resolves, or
+/// after [`MAX_STEPS`].
 pub(crate) fn root(
     low: Point,
     high: Point,
     close: f64,
     mut function: impl FnMut(f64) -> f64,
 ) -> f64 {
-    // `a` and `b` bracket the root, `a` is the newest point, `c` the point that it or `b` replaced.
+    // `a` and `b` bracket the root, `a` is the newest point, and `c` is the point replaced by `a`
+    // or `b`.
     let (mut a, mut b) = (low, high);
     let mut part = 0.5_f64;
     for pass in 0..MAX_STEPS {
@@ -52,8 +54,8 @@ fn nearer(a: Point, b: Point) -> Point {
     if a.value.abs() < b.value.abs() { a } else { b }
 }
 
-/// Where between `a` and `b` the root lies, as a fraction, by the parabola through three points if
-/// it is monotone there.
+/// Returns the position of the root between `a` and `b`, as a fraction, by the parabola through
+/// three points if it is monotone there.
 fn interpolate(a: Point, b: Point, c: Point) -> f64 {
     let (fa, fb, fc) = (a.value, b.value, c.value);
     let xi = (a.at - b.at) / (c.at - b.at);
@@ -66,8 +68,8 @@ fn interpolate(a: Point, b: Point, c: Point) -> f64 {
     }
 }
 
-/// Bound of a search. Bisection alone, to which the method falls back wherever interpolation does
-/// not help, needs 53 steps from any bracket within a factor of two of its root; ten are usual.
+/// Bound of a search. If interpolation does not help, the method falls back to bisection, which
+/// alone needs 53 steps from any bracket within a factor of two of its root; ten are usual.
 const MAX_STEPS: usize = 100;
 
 #[cfg(test)]

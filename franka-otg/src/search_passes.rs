@@ -1,4 +1,4 @@
-//! How many passes the searches take, for the test that holds them against their ceilings. Nothing
+//! Counts the passes of the searches, for the test that compares them with their bounds. Empty
 //! outside of tests.
 
 #[cfg(test)]
@@ -9,14 +9,15 @@ std::thread_local! {
     static MOST: Cell<usize> = const { Cell::new(0) };
 }
 
-/// A search that may take `ceiling` passes is in its pass number `pass`, counted from zero.
+/// Records that a search with the bound `ceiling` is in its pass number `pass`, counted from zero.
 #[cfg_attr(not(test), expect(unused_variables, reason = "only tests count"))]
 pub(crate) fn count(pass: usize, ceiling: usize) {
     #[cfg(test)]
     MOST.set(MOST.get().max(100 * (pass + 1) / ceiling));
 }
 
-/// The most passes of a search in this thread since the last call, in percent of its ceiling.
+/// Returns the largest number of passes of a search in this thread since the last call, in percent
+/// of its bound.
 #[cfg(test)]
 pub(crate) fn take_most() -> usize {
     MOST.replace(0)

@@ -1,4 +1,4 @@
-//! The order of jerks that all motions have, and pieces before it.
+//! The common order of jerks of all motions, and the pieces before it.
 
 use crate::brake::Pieces;
 
@@ -15,13 +15,13 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
-    /// Sum of the durations.
+    /// Returns the sum of the durations.
     pub(crate) fn duration(&self) -> f64 {
         self.t.iter().sum()
     }
 
-    /// Transfer from acceleration `a` to the velocity `cruise`, held for `time`, and transfer to
-    /// rest; both as ramp and hold.
+    /// Returns the transfer from acceleration `a` to the velocity `cruise`, held for `time`, and
+    /// the transfer to rest; both as ramp and hold.
     pub(crate) fn two_transfers(
         a: f64,
         to_cruise: (f64, f64),
@@ -44,11 +44,10 @@ impl Shape {
     }
 }
 
-/// Some pieces and a shape: a motion of a given duration, in the frame of the least-time solution
-/// that it comes from.
+/// Some pieces and a shape: a motion of a given duration, in the frame of its least-time solution.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stretched {
-    /// What comes before the shape.
+    /// The pieces before the shape.
     pub(crate) before: Pieces,
     /// Direction of the shape.
     pub(crate) sign: f64,
@@ -57,7 +56,7 @@ pub(crate) struct Stretched {
 }
 
 impl Stretched {
-    /// The shape alone, in its own frame.
+    /// Creates a motion of the shape alone, in its own frame.
     pub(crate) fn of(shape: Shape) -> Self {
         Self {
             before: Pieces::NONE,

@@ -1,10 +1,10 @@
-//! Where the axes are and how they move.
+//! Positions, velocities and accelerations of the axes.
 
 use crate::error::{PlanError, Quantity};
 
 /// Position, velocity and acceleration of one axis.
 ///
-/// Units are the caller's: radians or metres, per second, per second squared.
+/// The caller chooses the units: radians or metres, per second, per second squared.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AxisState {
     /// Position.
@@ -16,7 +16,7 @@ pub struct AxisState {
 }
 
 impl AxisState {
-    /// At `position` without motion.
+    /// Creates a state at `position` without motion.
     #[must_use]
     pub const fn at_rest(position: f64) -> Self {
         Self {
@@ -26,7 +26,7 @@ impl AxisState {
         }
     }
 
-    /// The state after `t` seconds of constant `jerk`.
+    /// Returns the state after `t` seconds of constant `jerk`.
     pub(crate) fn after(self, jerk: f64, t: f64) -> Self {
         let Self {
             position: p,
@@ -40,7 +40,7 @@ impl AxisState {
         }
     }
 
-    /// True if nothing moves: velocity and acceleration are exactly zero.
+    /// True if the axis is at rest: velocity and acceleration are exactly zero.
     pub(crate) fn is_at_rest(self) -> bool {
         self.velocity == 0.0 && self.acceleration == 0.0
     }
@@ -58,7 +58,7 @@ pub struct State<const N: usize> {
 }
 
 impl<const N: usize> State<N> {
-    /// At `position` without motion.
+    /// Creates a state at `position` without motion.
     #[must_use]
     pub const fn at_rest(position: [f64; N]) -> Self {
         Self {
@@ -68,10 +68,10 @@ impl<const N: usize> State<N> {
         }
     }
 
-    /// State of one axis.
+    /// Returns the state of one axis.
     ///
     /// # Panics
-    /// If there is no such axis.
+    /// If the axis does not exist.
     #[must_use]
     pub const fn axis(&self, axis: usize) -> AxisState {
         AxisState {
@@ -81,7 +81,7 @@ impl<const N: usize> State<N> {
         }
     }
 
-    /// True if nothing moves: all velocities and accelerations are exactly zero.
+    /// True if all axes are at rest: all velocities and accelerations are exactly zero.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         (0..N).all(|i| self.axis(i).is_at_rest())
@@ -101,7 +101,7 @@ impl<const N: usize> State<N> {
     }
 }
 
-/// Refuses the first non-finite one of `values`.
+/// Refuses the first non-finite value of `values`.
 pub(crate) fn check_finite(values: &[f64], quantity: Quantity) -> Result<(), PlanError> {
     match values.iter().position(|value| !value.is_finite()) {
         Some(index) => Err(PlanError::NotFinite {

@@ -1,19 +1,19 @@
-//! Step two where no cruise fits: follow the stop for a while, then go to the target.
+//! Step two if no cruise fits: follow the stop for a while, then move to the target.
 //!
-//! Needed where an axis slows down into a target just past its stop point and should arrive a
-//! little later, by up to a fifth of the duration. It follows its least-time stop for a while, and
-//! then takes the least-time profile from there to the target. The total duration grows with that
-//! while: it is the least duration at zero, since a profile with its first piece fixed cannot be
-//! faster than one with a shorter piece fixed; and it is continuous, up to the duration of stopping
-//! and moving on from rest. For a longer duration the axis waits at that rest. So every duration
-//! has its profile. None overshoots: along a stop the stop point is constant and short of the
-//! target, and from there the rest is a push and a stop.
+//! This applies to an axis that slows down towards a target just past its stop point and must
+//! arrive slightly later, by up to a fifth of the duration. It follows its least-time stop for some
+//! time, and then takes the least-time profile from there to the target. The total duration grows
+//! with that time. At zero it is the least duration, because a profile with a longer fixed first
+//! piece cannot be faster. It is continuous, up to the duration of stopping and then moving from
+//! rest. For a longer duration the axis waits at that rest. So every duration has a profile. None
+//! overshoots: along a stop the stop point is constant and short of the target, and the rest of the
+//! motion is a push and a stop.
 //!
-//! A target that is the stop point itself cannot be reached later without overshooting; the rule
-//! above then gives the stop, and a wait at the target.
+//! A target exactly at the stop point cannot be reached later without overshooting. In this case
+//! the result is the stop, and a wait at the target.
 //!
-//! Lowering the acceleration limit instead slows down more gently, but past the gentlest stop
-//! that ends at the target there is nothing to lower: the axis would be early, or overshoot.
+//! Lowering the acceleration limit instead slows down more gently. But beyond the gentlest stop
+//! that ends at the target it has no solution: the axis would be early, or overshoot.
 
 use crate::brake::Pieces;
 use crate::least_time::{LeastTime, least_time};
@@ -22,8 +22,8 @@ use crate::shape::Stretched;
 use crate::task::{SAME, Task};
 use crate::transfer::stop;
 
-/// The profile of `duration` that follows the stop first, in the frame of `least`, which takes
-/// less.
+/// Returns the profile of `duration` that follows the stop first, in the frame of `least`, whose
+/// duration is shorter.
 pub(crate) fn stop_then_go(least: &LeastTime, duration: f64) -> Stretched {
     let task = least.task;
     let (sign, times) = stop(task.v, task.a);
@@ -64,7 +64,7 @@ struct Stop {
 }
 
 impl Stop {
-    /// The first `theta` of it, and what is left of the task then.
+    /// Returns the first `theta` of the stop, and the remaining task.
     fn after(&self, theta: f64) -> (Pieces, Task) {
         let (mut pieces, mut task, mut left) = (Pieces::NONE, self.task, theta);
         for (jerk, t) in [self.sign, 0.0, -self.sign].into_iter().zip(self.times) {

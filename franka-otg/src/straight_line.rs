@@ -1,12 +1,12 @@
-//! Straight lines: all axes as one.
+//! Straight lines: all axes as one axis.
 //!
 //! If the displacement to the target, the velocities and the accelerations of all axes, now and at
-//! the target, are multiples of one vector, one scalar problem along it moves them in phase, and
-//! the path is a straight line. From rest this is always so. Its duration equals the
-//! time-synchronised one when one axis binds in all three limits, and is longer otherwise.
+//! the target, are multiples of one vector, the motion is a straight line. One scalar problem along
+//! it then moves the axes in phase. From rest this is always possible. The duration equals the
+//! time-synchronised one if the same axis determines all three limits, and is longer otherwise.
 //!
-//! Rounding makes the axes of a moving line look not quite parallel, so the scalar state is kept
-//! and continued while targets stay on the line, instead of being derived from the axes again.
+//! Rounding makes the axes of a moving line slightly non-parallel. So the scalar state is kept and
+//! continued while targets stay on the line, instead of being derived from the axes again.
 
 use crate::state::{AxisState, State};
 
@@ -15,14 +15,14 @@ use crate::state::{AxisState, State};
 pub(crate) struct StraightLine<const N: usize> {
     origin: [f64; N],
     direction: [f64; N],
-    /// The axis whose component is the largest.
+    /// The axis with the largest component.
     main: usize,
 }
 
 impl<const N: usize> StraightLine<N> {
-    /// The line along which `state` moves and `target` lies, with the state along it.
+    /// Returns the line along which `state` moves and `target` lies, with the state along it.
     ///
-    /// `None` if there is no such line, or if the state and the target are the same at rest.
+    /// `None` if no such line exists, or if the state and the target are the same at rest.
     pub(crate) fn through(state: &State<N>, target: &State<N>) -> Option<(Self, AxisState)> {
         let displacement: [f64; N] =
             core::array::from_fn(|i| target.position[i] - state.position[i]);
@@ -62,7 +62,8 @@ impl<const N: usize> StraightLine<N> {
             })
     }
 
-    /// Component by component, so that no unit or limit of one axis judges another.
+    /// Compares each component separately, so that the unit or limit of one axis does not affect
+    /// another.
     fn is_parallel(&self, vector: &[f64; N]) -> bool {
         (0..N).all(|i| {
             let expected = vector[self.main] * self.direction[i];
@@ -70,7 +71,7 @@ impl<const N: usize> StraightLine<N> {
         })
     }
 
-    /// The state along the line of a `target` that lies on it and moves along it.
+    /// Returns the state along the line of a `target` that lies on it and moves along it.
     pub(crate) fn state_of(&self, target: &State<N>) -> Option<AxisState> {
         let to = target.axis(self.main);
         let s = to.position - self.origin[self.main];
@@ -83,7 +84,7 @@ impl<const N: usize> StraightLine<N> {
         (on_it && parallel).then_some(AxisState { position: s, ..to })
     }
 
-    /// The state of all axes where the line's own state is `along`.
+    /// Returns the state of all axes for the line's state `along`.
     pub(crate) fn state(&self, along: AxisState) -> State<N> {
         State {
             position: core::array::from_fn(|i| self.origin[i] + along.position * self.direction[i]),

@@ -1,8 +1,8 @@
 //! One axis and its target in units of its own limits.
 //!
 //! Fourth powers of raw quantities would mix fifteen decades. With the acceleration limit and the
-//! jerk as units only the velocity limit is left as a parameter, and positions count from where the
-//! axis is, so large offsets cost nothing.
+//! jerk as units, only the velocity limit remains as a parameter. Positions are relative to the
+//! axis, so large offsets cost no precision.
 
 use crate::limits::AxisLimits;
 use crate::state::AxisState;
@@ -19,14 +19,15 @@ pub(crate) struct Task {
     pub(crate) a: f64,
     /// Velocity limit.
     pub(crate) top: f64,
-    /// Rounding to expect of `d`; zero for a state at rest, from which every distance is moved.
+    /// Expected rounding error of `d`; zero for a state at rest, from which every distance is
+    /// moved.
     pub(crate) fuzz: f64,
 }
 
 impl Task {
-    /// The task in units of its limits, and the unit of time, `A/J`.
+    /// Returns the task in units of its limits, and the unit of time, `A/J`.
     ///
-    /// `None` if the quantities lie more than 100 decades apart: their squares could overflow.
+    /// `None` if the quantities are more than 100 decades apart: their squares could overflow.
     pub(crate) fn new(state: AxisState, target: f64, limits: AxisLimits) -> Option<(Self, f64)> {
         let (task, unit) = Self::unchecked(state, target, limits);
         let fits = |value: f64| value.abs() < FAR; // false for NaN
@@ -40,7 +41,7 @@ impl Task {
         representable.then_some((task, unit))
     }
 
-    /// The same for quantities known to be close enough together.
+    /// Like [`Task::new`], for quantities known to be close enough together.
     pub(crate) fn unchecked(state: AxisState, target: f64, limits: AxisLimits) -> (Self, f64) {
         let unit = limits.acceleration / limits.jerk;
         let per_velocity = 1.0 / (limits.acceleration * unit);
@@ -61,7 +62,7 @@ impl Task {
         (task, unit)
     }
 
-    /// The same with all directions reversed if `sign` is negative.
+    /// Returns the same task with all directions reversed if `sign` is negative.
     pub(crate) fn mirrored(self, sign: f64) -> Self {
         Self {
             d: sign * self.d,
@@ -71,7 +72,7 @@ impl Task {
         }
     }
 
-    /// What is left to do after `t` of constant `jerk`.
+    /// Returns the remaining task after `t` of constant `jerk`.
     pub(crate) fn after(self, jerk: f64, t: f64) -> Self {
         Self {
             d: self.d - t * (self.v + t * (0.5 * self.a + t * jerk / 6.0)),
@@ -81,12 +82,13 @@ impl Task {
         }
     }
 
-    /// The velocity left when the acceleration is ramped straight to zero.
+    /// Returns the velocity after the acceleration is ramped directly to zero.
     pub(crate) fn coasting_velocity(&self) -> f64 {
         self.v + 0.5 * self.a * self.a.abs()
     }
 
-    /// Where the least-time stop ends, relative to here, and the rounding to expect of it.
+    /// Returns the end of the least-time stop, relative to the current position, and its expected
+    /// rounding error.
     pub(crate) fn stop_point(&self) -> (f64, f64) {
         let sign = 1_f64.copysign(self.coasting_velocity());
         let (v, a) = (sign * self.v, sign * self.a);
@@ -96,10 +98,10 @@ impl Task {
     }
 }
 
-/// Relative rounding of a position that some ten operations led to.
+/// Relative rounding of a position after about ten operations.
 pub(crate) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Relative difference of durations that is rounding.
+/// Relative difference of durations that counts as rounding.
 pub(crate) const SAME: f64 = 1e-14;
 
 /// Bound of distances and velocities in units of the limits, chosen so that no product of the

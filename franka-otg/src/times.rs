@@ -1,6 +1,6 @@
 //! Short sorted lists of durations.
 
-/// Up to `C` times in ascending order. In a full list a new time replaces the last one.
+/// Up to `C` times in ascending order. In a full list, a new time replaces the last.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Times<const C: usize> {
     list: [f64; C],
@@ -8,13 +8,13 @@ pub(crate) struct Times<const C: usize> {
 }
 
 impl<const C: usize> Times<C> {
-    /// No time.
+    /// An empty list.
     pub(crate) const NONE: Self = Self {
         list: [0.0; C],
         len: 0,
     };
 
-    /// Adds a time unless the list has it.
+    /// Adds a time unless the list contains it.
     pub(crate) fn insert(&mut self, t: f64) {
         if self.iter().any(|other| other == t) {
             return;
@@ -28,7 +28,7 @@ impl<const C: usize> Times<C> {
         self.len = (self.len + 1).min(C);
     }
 
-    /// The times, the shortest first.
+    /// Returns the times, the shortest first.
     pub(crate) fn iter(&self) -> impl Iterator<Item = f64> + '_ {
         self.list[..self.len].iter().copied()
     }

@@ -1,8 +1,8 @@
 //! Transfers between two velocities, the building block of every profile.
 //!
-//! All in units in which the acceleration limit and the jerk are one: times in `A/J`, velocities in
-//! `A^2/J`, positions in `A^3/J^2`. A transfer that begins and ends without acceleration is
-//! point-symmetric, so its displacement is its mean velocity times its duration.
+//! All quantities are in units in which the acceleration limit and the jerk are one: times in
+//! `A/J`, velocities in `A^2/J`, positions in `A^3/J^2`. A transfer that begins and ends without
+//! acceleration is point-symmetric, so its displacement is its mean velocity times its duration.
 
 use crate::scalar::sqrt;
 
@@ -22,7 +22,7 @@ pub(crate) fn stop_distance(w: f64) -> f64 {
     stop_distance_and_slope(w).0
 }
 
-/// [`stop_distance`] and its derivative. It is continuously differentiable across `w = 1`.
+/// Like [`stop_distance`], with its derivative, which is continuous across `w = 1`.
 pub(crate) fn stop_distance_and_slope(w: f64) -> (f64, f64) {
     if w <= 1.0 {
         let root = sqrt(w);
@@ -32,7 +32,8 @@ pub(crate) fn stop_distance_and_slope(w: f64) -> (f64, f64) {
     }
 }
 
-/// Ramp time and hold time of the transfer over `d >= 0`: acceleration up, hold at one, down.
+/// Returns ramp time and hold time of the transfer over `d >= 0`: acceleration up, hold at one,
+/// down.
 pub(crate) fn ramp_and_hold(d: f64) -> (f64, f64) {
     if d <= 1.0 {
         (sqrt(d.max(0.0)), 0.0)
@@ -41,24 +42,25 @@ pub(crate) fn ramp_and_hold(d: f64) -> (f64, f64) {
     }
 }
 
-/// Change of velocity of the transfer, from and to zero acceleration, that ramps up to `a` and at
-/// once down; zero if `a` is not positive.
+/// Returns the change of velocity of a transfer, from and to zero acceleration, that ramps up to
+/// `a` and immediately down; zero if `a` is not positive.
 ///
-/// A transfer that begins or ends with the acceleration `a` changes the velocity by this at least.
+/// A transfer that begins or ends with the acceleration `a` changes the velocity by at least this
+/// value.
 pub(crate) fn change_of_ramp(a: f64) -> f64 {
     let a = a.max(0.0);
     a * a
 }
 
-/// The least-time stop from velocity `v` and acceleration `a`, `|a| <= 1`.
+/// Computes the least-time stop from velocity `v` and acceleration `a`, `|a| <= 1`.
 ///
 /// Returns the sign of its first jerk and three durations: jerk, hold, opposite jerk.
 pub(crate) fn stop(v: f64, a: f64) -> (f64, [f64; 3]) {
     let remaining = v + 0.5 * a * a.abs();
     let sign = if remaining > 0.0 { -1.0 } else { 1.0 };
     let (b, d) = (sign * a, -sign * v);
-    // Peak of the acceleration without a hold; at least |b|, since the sign is that of the missing
-    // velocity.
+    // Peak of the acceleration without a hold; at least |b|, because the sign is that of the
+    // missing velocity.
     let square = (d + 0.5 * b * b).max(0.0);
     if square <= 1.0 {
         let peak = sqrt(square);

@@ -1,19 +1,20 @@
-//! When the velocity and the acceleration of a target can be met, wherever the axis is then.
+//! The durations in which the velocity and the acceleration of a target can be reached, at any
+//! position.
 //!
-//! The position's problem one derivative lower. The velocities that are reachable in one duration
-//! are an interval; its ends are "acceleration up, then down" and the reverse, and the areas under
-//! them give the equations. The acceleration of a target cannot be waited for either, so there may
-//! be a blocked interval here, too.
+//! This is the position's problem one derivative lower. The velocities that are reachable in one
+//! duration form an interval. Its ends are "acceleration up, then down" and the reverse, and the
+//! areas under them give the equations. An axis cannot wait at a target's acceleration either, so
+//! there may be a blocked interval here too.
 
 use crate::scalar::sqrt;
 use crate::task::{ROUNDING, Task};
 
-/// The change of velocity that a task asks for.
+/// The change of velocity of a task.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct VelocityChange {
     a0: f64,
     af: f64,
-    /// Square of the acceleration in between that leads to the end's velocity (with a hold: twice
+    /// Square of the intermediate acceleration that leads to the end's velocity (with a hold: twice
     /// the area), for the highest and the lowest.
     peak: f64,
     valley: f64,
@@ -39,7 +40,7 @@ impl VelocityChange {
         self.size
     }
 
-    /// True if the change can take `t`.
+    /// True if duration `t` is feasible for the change.
     pub(crate) fn is_feasible(&self, t: f64) -> bool {
         self.is_feasible_within(t, TIGHT * self.size)
     }
@@ -53,8 +54,8 @@ impl VelocityChange {
             && area(lowest) >= self.valley - tolerance
     }
 
-    /// Durations at which feasible ones begin or end, unordered, each with its uncertainty by the
-    /// rounding of velocities.
+    /// Returns the durations at which feasible intervals begin or end, unordered, each with its
+    /// uncertainty from the rounding of velocities.
     pub(crate) fn crossings(&self) -> [Option<(f64, f64)>; 4] {
         let Self { a0, af, .. } = *self;
         let shortest = (af - a0).abs();
@@ -84,24 +85,25 @@ impl VelocityChange {
     }
 }
 
-/// Area under an acceleration ramp to `x`, held at one for what `x` is more than that: in units of
-/// twice the area.
+/// Returns the area under an acceleration ramp to `x`, held at one for the excess of `x` over one,
+/// in units of twice the area.
 fn area(x: f64) -> f64 {
     let x = x.abs();
     if x <= 1.0 { x * x } else { 2.0 * x - 1.0 }
 }
 
-/// The velocity that the rounding of the task's velocity may come from: an axis that slows down was
-/// faster before. A much larger limit is seldom reached.
+/// Returns the velocity that may have caused the rounding of the task's velocity: an axis that
+/// slows down was faster before. A much larger limit is seldom reached.
 pub(crate) fn typical_velocity(task: &Task) -> f64 {
     task.top.min(1e3)
 }
 
-/// Relative rounding of a state after some thousand plans, each made from the state that the one
-/// before gave. Equal steps are rounded alike, so their errors add up. For durations at which both
-/// extremal motions end at the target: a motion is there from some point on, and has to stay there.
+/// Relative rounding of a state after some thousand plans, each from the state of the previous
+/// plan. Equal steps are rounded alike, so their errors add up. It applies to durations at which
+/// both extremal motions end at the target. From some point on, a motion stays in this situation,
+/// and must remain feasible.
 pub(crate) const DRIFT: f64 = 1024.0 * ROUNDING;
 
-/// Relative rounding of one plan, for all other durations. An error that is accepted here remains
-/// in the state, so it has to be a small part of [`DRIFT`].
+/// Relative rounding of one plan, for all other durations. An error accepted here remains in the
+/// state, so it must be a small part of [`DRIFT`].
 pub(crate) const TIGHT: f64 = 16.0 * ROUNDING;

@@ -1,9 +1,9 @@
-//! Generators in motion, and the time that planning to the next target takes.
+//! Measures the time to plan to the next target, for generators in motion.
 //!
-//! States are taken from random motions. Each sweep measures every state once, so that the branch
-//! predictor cannot learn a state. A state counts with its shortest time over the sweeps, since
-//! longer ones include interruptions. The time of reading the clock is subtracted; for one axis it
-//! would be a third of the figure.
+//! States come from random motions. Each sweep measures every state once, so that the branch
+//! predictor cannot learn a state. The result of a state is its shortest time over the sweeps,
+//! because longer times include interruptions. The time to read the clock is subtracted; for one
+//! axis it would be a third of the result.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -11,7 +11,7 @@ use std::time::Instant;
 use franka_otg::{AxisLimits, Generator, Limits, State, Synchronisation};
 use rand::{Rng, SeedableRng, rngs::SmallRng};
 
-/// The shortest time of each case over the sweeps, `[ns]`.
+/// Returns the shortest time of each case over the sweeps, `[ns]`.
 pub(crate) fn shortest<const N: usize>(cases: &[Case<N>], sweeps: usize) -> Vec<u64> {
     let clock = clock();
     let mut shortest = vec![u64::MAX; cases.len()];
@@ -30,7 +30,7 @@ pub(crate) struct Case<const N: usize> {
 }
 
 impl<const N: usize> Case<N> {
-    /// The nanoseconds of planning, less those of reading the `clock`.
+    /// Returns the nanoseconds of planning, minus the time to read the `clock`.
     pub(crate) fn measure(&self, clock: u64) -> u64 {
         let mut generator = self.generator.clone();
         let start = Instant::now();
@@ -45,7 +45,7 @@ impl<const N: usize> Case<N> {
     }
 }
 
-/// The median nanoseconds between two consecutive readings of the clock.
+/// Returns the median nanoseconds between two consecutive readings of the clock.
 pub(crate) fn clock() -> u64 {
     let mut readings = [0; 1001].map(|_: u64| {
         let start = Instant::now();
@@ -55,8 +55,8 @@ pub(crate) fn clock() -> u64 {
     readings[500]
 }
 
-/// States of motions to one target after the other, some way into each motion: before, in and after
-/// its phase of constant velocity. After a while the next arm takes over.
+/// States of motions to a sequence of targets, at random times of each motion: before, in and after
+/// its phase of constant velocity. After a while the next arm's limits are used.
 pub(crate) struct Cases<const N: usize, L> {
     random: SmallRng,
     limits: L,

@@ -1,5 +1,6 @@
-//! A new target for axes in motion, and the first step towards it: the most that the generator does
-//! in one cycle. `cargo bench -p franka-otg`. Compare two versions by alternating runs.
+//! Measures a new target for axes in motion, and the first step towards it: the longest work of the
+//! generator in one cycle. Run it with `cargo bench -p franka-otg`. Compare two versions by
+//! alternating runs.
 
 mod cases;
 
@@ -27,7 +28,7 @@ fn replan<const N: usize>() {
     );
 }
 
-/// About those of an arm's joint.
+/// Limits similar to those of an arm's joint.
 const LIMITS: AxisLimits = AxisLimits {
     velocity: 2.62,
     acceleration: 10.0,

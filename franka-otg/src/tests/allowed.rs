@@ -1,9 +1,10 @@
-//! States and targets that limits allow, for the tests of this crate and for `otg_soak`.
+//! States and targets that are possible within limits, for the tests of this crate and for
+//! `otg_soak`.
 
 use super::{AxisLimits, AxisState, Limits, State};
 
-/// A state inside `limits` that can stay there: `coasting` and `bend` are fractions of what it may
-/// have.
+/// Returns a state inside `limits` that can stay there: `coasting` and `bend` are fractions of the
+/// allowed values.
 pub(crate) fn inside(limits: AxisLimits, position: f64, coasting: f64, bend: f64) -> AxisState {
     let sign = 1_f64.copysign(bend);
     let coasting = limits.velocity * coasting;
@@ -18,14 +19,14 @@ pub(crate) fn inside(limits: AxisLimits, position: f64, coasting: f64, bend: f64
     }
 }
 
-/// A motion that a target may have: it can be met inside `limits`, and left.
+/// Returns a motion of a target that can be met, and left, inside `limits`.
 pub(crate) fn target_motion(limits: AxisLimits, speed: f64, bend: f64) -> (f64, f64) {
     let velocity = speed * limits.velocity;
     let room = 2.0 * limits.jerk * (limits.velocity - velocity.abs());
     (velocity, bend * limits.acceleration.min(room.sqrt()))
 }
 
-/// The distance in which an axis gets from rest to about its velocity limit and back.
+/// Returns the distance in which an axis moves from rest to about its velocity limit and back.
 pub(crate) fn way_to_speed(limits: AxisLimits) -> f64 {
     let AxisLimits {
         velocity,
@@ -35,14 +36,15 @@ pub(crate) fn way_to_speed(limits: AxisLimits) -> f64 {
     velocity * (velocity / acceleration + acceleration.min((velocity * jerk).sqrt()) / jerk)
 }
 
-/// One axis on its way to a target, beside one that takes `duration` from rest to rest.
+/// Returns one axis on its way to a target, together with an axis that takes `duration` from rest
+/// to rest.
 pub(crate) fn beside_one_that_takes(
     duration: f64,
     limits: AxisLimits,
     state: AxisState,
     target: AxisState,
 ) -> (Limits<2>, State<2>, State<2>) {
-    // Four ramps of the jerk that neither velocity nor acceleration limit: distance 2 ramp^3.
+    // Four ramps of the jerk, not limited by velocity or acceleration: distance 2 ramp^3.
     let ramp = 0.25 * duration;
     let beside = AxisLimits {
         velocity: 2.0 * ramp * ramp,

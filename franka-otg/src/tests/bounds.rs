@@ -1,11 +1,11 @@
-//! How far the searches stay below the ceilings that bound them.
+//! Distance of the searches from the bounds on their passes.
 
 use super::allowed::beside_one_that_takes;
 use super::random::stop_point;
 use crate::{AxisLimits, AxisState, Generator, Limits, Synchronisation, search_passes};
 
-/// The most passes, in percent of what a search may take, over the motions from one state to a
-/// target beside an axis that takes `stretch` times as long.
+/// Returns the largest number of passes, in percent of the bound, over the motions from one state
+/// to a target together with an axis that takes `stretch` times as long.
 fn passes(limits: AxisLimits, state: AxisState, target: AxisState, stretch: f64) -> usize {
     let alone = Limits::per_axis([limits]).unwrap();
     let mut generator = Generator::new(super::random::one(state), alone).unwrap();

@@ -1,4 +1,4 @@
-//! Cycle by cycle, with targets that change at any time.
+//! Cycle-by-cycle motions, with targets that change at any time.
 
 use std::vec::Vec;
 
@@ -8,7 +8,7 @@ use super::random::{arm_limits, cases, many};
 use super::walk::check_step;
 use crate::{CYCLE, Generator, Limits, State, Synchronisation};
 
-/// A number of cycles, and the target (as fractions of a range) that is set before them.
+/// A number of cycles, and the target (as fractions of a range) set before them.
 type Change = (usize, Vec<f64>);
 
 fn changes<const N: usize>() -> impl Strategy<Value = Vec<Change>> {
@@ -51,7 +51,8 @@ fn follow<const N: usize>(
     Ok(())
 }
 
-/// Plans anew in each cycle, from the state that the cycle before gave: the arrival must not move.
+/// Creates a new plan in each cycle, from the state of the previous cycle: the arrival must not
+/// move.
 fn replan<const N: usize>(
     (limits, state, target): (Limits<N>, State<N>, [f64; N]),
     synchronisation: Synchronisation,
@@ -145,7 +146,7 @@ proptest! {
     }
 }
 
-/// Near its end a motion takes the third root of a rounding of the position, over the jerk, to make
-/// that rounding good: `4 * cbrt(16 eps * 2 / 100)` for positions up to 2 and jerks from 100. Fifty
-/// times that is one cycle.
+/// Near its end, a motion needs the cube root of a rounding of the position, divided by the jerk,
+/// to correct that rounding: `4 * cbrt(16 eps * 2 / 100)` for positions up to 2 and jerks from 100.
+/// Fifty times that is one cycle.
 const ROOT_OF_ROUNDING: f64 = 2e-5;

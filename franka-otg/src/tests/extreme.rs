@@ -1,5 +1,4 @@
-//! Limits, distances and states at the ends of what there is: nothing may be refused, and all that
-//! moves arrives.
+//! Extreme limits, distances and states: none may be refused, and every motion arrives.
 
 use proptest::prelude::*;
 
@@ -7,8 +6,8 @@ use super::random::{cases, extreme_limits, many, many_moving, problems};
 use super::walk::check_motion;
 use crate::{CYCLE, Generator, Limits, State, Synchronisation};
 
-/// Checks a motion unless it is over in a thousandth of a cycle: the end of a motion is brought
-/// forward by a millionth of one.
+/// Checks a motion unless it ends within a thousandth of a cycle: the end of a motion is brought
+/// forward by a millionth of a cycle.
 fn check_visible<const N: usize>(generator: &Generator<N>) {
     if generator.remaining() > 1e-3 * CYCLE {
         check_motion(generator, 100);
@@ -84,7 +83,7 @@ fn a_target_that_is_met_already_is_passed() {
     let mut generator = Generator::new(state, limits).unwrap();
     generator.set_moving_target(&state).unwrap();
     assert_eq!(generator.time_to_target(), 0.0);
-    // It goes on as the target does for a cycle.
+    // It continues with the target for a cycle.
     assert_eq!(generator.step().velocity, [0.5]);
     assert!((generator.state().position[0] - 0.3 - 0.5 * CYCLE).abs() < 1e-15);
     while !generator.is_done() {

@@ -1,4 +1,4 @@
-//! Step one, from outside.
+//! Step one, tested through the public interface.
 
 use proptest::prelude::*;
 
@@ -7,8 +7,8 @@ use super::random::{Case, arm_limits, cases, extreme_limits, mixed_limits, one, 
 use super::walk::{check_motion, check_step};
 use crate::{AxisLimits, AxisState, Generator, Limits};
 
-/// Bisection finds the duration to the rounding of positions over the velocity there, which near a
-/// stop point is a root.
+/// Bisection finds the duration up to the rounding of positions divided by the velocity, which
+/// becomes a square root near a stop point.
 fn check_duration(case: &Case) -> Result<(), TestCaseError> {
     let duration = case.generator().duration();
     let expected = least_duration(case.state, case.target, case.limits);
@@ -97,7 +97,7 @@ proptest! {
     }
 }
 
-/// About those of an arm's joint.
+/// Limits similar to those of an arm's joint.
 const JOINT: AxisLimits = AxisLimits {
     velocity: 2.0,
     acceleration: 10.0,

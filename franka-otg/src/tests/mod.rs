@@ -1,4 +1,4 @@
-//! Properties of whole motions. The parts have their tests beside them.
+//! Properties of whole motions. Each part has its tests in its own file.
 
 mod allowed;
 mod bounds;

@@ -1,4 +1,4 @@
-//! Targets in motion, from outside.
+//! Targets in motion, tested through the public interface.
 
 use std::vec::Vec;
 
@@ -17,7 +17,7 @@ fn towards<const N: usize>(limits: Limits<N>, state: State<N>, target: &State<N>
     generator
 }
 
-/// One axis of a problem, which may take its own time.
+/// Returns one axis of a problem, with its own duration.
 fn alone<const N: usize>(
     limits: &Limits<N>,
     state: &State<N>,
@@ -29,7 +29,7 @@ fn alone<const N: usize>(
     towards(limits, one(state), &one(target))
 }
 
-/// A motion that keeps its limits and is at its target when it says so.
+/// Checks that a motion keeps its limits and is at its target at the announced time.
 fn check<const N: usize>(
     (limits, state, target): (Limits<N>, State<N>, State<N>),
 ) -> Result<(), TestCaseError> {
@@ -44,7 +44,7 @@ fn check<const N: usize>(
             "axis {i} takes {slowest}, not {arrival}"
         );
         let (got, to) = (met.axis(i), target.axis(i));
-        // What a rounding of the duration makes of a velocity and an acceleration.
+        // Effect of a rounding of the duration on a velocity and an acceleration.
         let rounding = 64.0 * f64::EPSILON;
         let limits = limits.axis(i);
         let size = to.position.abs() + state.position[i].abs() + limits.velocity * arrival;
@@ -57,7 +57,7 @@ fn check<const N: usize>(
             (got.velocity - to.velocity).abs() <= rounding * size,
             "{got:?} {to:?}"
         );
-        // An acceleration of the target is met to a few picoseconds.
+        // The target's acceleration is met to a few picoseconds.
         let size = limits.acceleration + limits.jerk * (arrival + 1e3);
         prop_assert!(
             (got.acceleration - to.acceleration).abs() <= rounding * size,
@@ -67,9 +67,8 @@ fn check<const N: usize>(
     Ok(())
 }
 
-/// Follows any motion that keeps the limits for a while, and takes the state that it leads to for
-/// the target: the plan must not take longer than the motion did, and its duration has to be
-/// feasible.
+/// Follows any motion within the limits for a while, and takes its end as the target. The plan must
+/// not take longer than this motion, and the motion's duration must be feasible.
 fn certify(
     (limits, state, _): (Limits<1>, State<1>, [f64; 1]),
     legs: &[(f64, f64)],
@@ -88,7 +87,7 @@ fn certify(
     }
     let target = now.axis(0);
     let change = 0.5 * target.acceleration * target.acceleration / top.jerk;
-    // No motion inside the limits may lead to a start, nor to the states that follow it.
+    // Motions inside the limits may not lead to the start, nor to the states after it.
     prop_assume!(target.velocity.abs() + change <= top.velocity);
     let least = towards(limits, state, &now).time_to_target();
     prop_assert!(least <= took * (1.0 + 1e-9), "{least} instead of {took}");
@@ -102,7 +101,7 @@ fn certify(
     Ok(())
 }
 
-/// Plans anew in each cycle: the arrival must not move.
+/// Creates a new plan in each cycle: the arrival must not move.
 fn replan<const N: usize>(
     (limits, state, target): (Limits<N>, State<N>, State<N>),
 ) -> Result<(), TestCaseError> {
@@ -122,11 +121,11 @@ fn replan<const N: usize>(
     Ok(())
 }
 
-/// A number of cycles, and for each axis the position and speed that are set before them, and
-/// whether it is to move at all.
+/// A number of cycles, and for each axis the position and speed set before them, and a flag for
+/// motion.
 type Change = (usize, Vec<(f64, f64, bool)>);
 
-/// Follows one target after the other, moving and resting, with gaps and bursts, to the end.
+/// Follows a sequence of moving and resting targets, with gaps and bursts, to the end.
 fn follow<const N: usize>(
     (limits, state, _): (Limits<N>, State<N>, [f64; N]),
     changes: &[Change],
@@ -138,7 +137,7 @@ fn follow<const N: usize>(
         let after = *generator.step();
         check_step(&limits, &before, &after, CYCLE, 8.0);
         for (i, (to, end)) in to.iter().zip(generator.end()).enumerate() {
-            // An axis at rest with nowhere to go keeps every bit.
+            // An axis at rest without a displacement keeps every bit.
             let stays = end == to && before.axis(i) == AxisState::at_rest(*to);
             prop_assert!(
                 !stays || after.axis(i) == before.axis(i),
@@ -241,7 +240,7 @@ proptest! {
     }
 }
 
-/// As for targets at rest: what a rounding of the position costs in time near the end.
+/// Time for a rounding of the position near the end, as for targets at rest.
 const ROOT_OF_ROUNDING: f64 = 2e-5;
 
 /// This axis can be at its target until 0.11403 s and again from 0.36 s on.
@@ -279,8 +278,8 @@ fn an_axis_that_would_be_early_by_less_than_a_cycle_is_not_early() {
     }
 }
 
-/// The start is at the velocity limit but for an acceleration that is just taken back in time: its
-/// first ramp has no duration, and rounding must not make it a negative one.
+/// The start is at the velocity limit, except for an acceleration that can just be removed in time:
+/// its first ramp has no duration, and rounding must not make the duration negative.
 #[test]
 fn a_start_whose_acceleration_leads_to_the_velocity_limit_is_on_time() {
     for (limits, from, to) in [

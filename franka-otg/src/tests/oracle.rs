@@ -1,10 +1,11 @@
-//! The slow plain version of step one: push for a while, then stop, and bisect how long to push.
+//! The slow plain version of step one: push for a while, then stop, and find the duration of the
+//! push by bisection.
 
 use crate::{AxisLimits, AxisState};
 
-/// The least duration from a state that can stay inside the limits.
+/// Returns the least duration from a state that can stay inside the limits.
 pub(super) fn least_duration(start: AxisState, target: f64, limits: AxisLimits) -> f64 {
-    // From zero, so that an offset does not round the distance.
+    // Starts from zero, so that an offset does not round the distance.
     let target = target - start.position;
     let start = AxisState {
         position: 0.0,
@@ -33,7 +34,8 @@ pub(super) fn least_duration(start: AxisState, target: f64, limits: AxisLimits) 
     ahead(high, side).1
 }
 
-/// Where and when the axis rests if it pushes towards `velocity` for `theta` and then stops.
+/// Returns the position and time of rest of an axis that pushes towards `velocity` for `theta` and
+/// then stops.
 fn end_of_push(start: AxisState, theta: f64, velocity: f64, limits: AxisLimits) -> (f64, f64) {
     let mut state = start;
     let mut left = theta;
@@ -44,7 +46,7 @@ fn end_of_push(start: AxisState, theta: f64, velocity: f64, limits: AxisLimits) 
         left -= t;
     }
     if left > 0.0 {
-        // The transfer is complete. What rounding leaves of it would grow over a long cruise.
+        // The transfer is complete. A remaining rounding error would grow over a long cruise.
         state.velocity = velocity;
         state.acceleration = 0.0;
         state = state.after(0.0, left);
@@ -57,7 +59,7 @@ fn end_of_push(start: AxisState, theta: f64, velocity: f64, limits: AxisLimits) 
     (state.position, duration)
 }
 
-/// LeastTime-time transfer to a velocity without acceleration, in the caller's units.
+/// Returns the least-time transfer to a velocity without acceleration, in the caller's units.
 fn transfer(state: AxisState, to: f64, limits: AxisLimits) -> [(f64, f64); 3] {
     let (jerk, most) = (limits.jerk, limits.acceleration);
     let AxisState {

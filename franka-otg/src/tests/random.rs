@@ -25,12 +25,12 @@ fn limits(
     })
 }
 
-/// Limits as joints and tools of an arm have them, down to a tenth of full speed.
+/// Limits similar to those of joints and tools of an arm, down to a tenth of full speed.
 pub(super) fn arm_limits() -> impl Strategy<Value = AxisLimits> {
     limits((-1.0, 0.7), (0.0, 1.3), (2.0, 4.0))
 }
 
-/// Limits that reach each other or not: every family of profiles occurs.
+/// Limits that are all reached in some cases and not in others: every family of profiles occurs.
 pub(super) fn mixed_limits() -> impl Strategy<Value = AxisLimits> {
     limits((-1.0, 1.0), (-1.0, 1.5), (0.0, 4.0))
 }
@@ -65,13 +65,14 @@ pub(super) fn one(state: AxisState) -> State<1> {
     }
 }
 
-/// The position at which an axis with these limits comes to rest if it stops.
+/// Returns the position at which an axis with these limits stops.
 pub(super) fn stop_point(limits: AxisLimits, state: AxisState) -> f64 {
     let limits = Limits::per_axis([limits]).unwrap();
     Generator::new(one(state), limits).unwrap().target()[0]
 }
 
-/// States inside the limits, with targets from far to within a millionth of where a stop would end.
+/// Generates states inside the limits, with targets from far away to within a millionth of the stop
+/// point.
 pub(super) fn problems(limits: impl Strategy<Value = AxisLimits>) -> impl Strategy<Value = Case> {
     let fraction = || prop_oneof![4 => -1.0..1.0, 1 => Just(1.0), 1 => Just(0.0)];
     let distance = (prop_oneof![3 => -1.0..1.5, 2 => -6.0..-1.0], any::<bool>());
@@ -89,7 +90,7 @@ pub(super) fn problems(limits: impl Strategy<Value = AxisLimits>) -> impl Strate
     )
 }
 
-/// Limits, states and targets of `N` axes.
+/// Generates limits, states and targets of `N` axes.
 pub(super) fn many<const N: usize>(
     limits: impl Strategy<Value = AxisLimits>,
 ) -> impl Strategy<Value = (Limits<N>, State<N>, [f64; N])> {
@@ -104,8 +105,8 @@ pub(super) fn many<const N: usize>(
     })
 }
 
-/// Limits, states and targets in motion of `N` axes; some targets move with constant velocity, some
-/// rest.
+/// Generates limits, states and targets in motion of `N` axes; some targets move with constant
+/// velocity, some rest.
 pub(super) fn many_moving<const N: usize>(
     limits: impl Strategy<Value = AxisLimits>,
 ) -> impl Strategy<Value = (Limits<N>, State<N>, State<N>)> {
@@ -125,8 +126,8 @@ pub(super) fn many_moving<const N: usize>(
     )
 }
 
-/// Runs `count` cases without a file of seeds beside the source: a failing case is printed, and
-/// becomes a test of its own.
+/// Runs `count` cases without a seed file next to the source: a failing case is printed, and
+/// becomes a separate test.
 pub(crate) fn cases(count: u32) -> ProptestConfig {
     ProptestConfig {
         failure_persistence: None,

@@ -1,4 +1,4 @@
-//! What can be read of a motion, and what can be changed in the middle of one.
+//! Getters of a motion, and changes in the middle of a motion.
 
 use crate::{CYCLE, Generator, Limits, PlanError, Quantity, State, Synchronisation};
 
@@ -57,7 +57,8 @@ fn targets_that_the_limits_do_not_allow_are_refused() {
     let refused = Err(PlanError::TargetMotion { axis: 2 });
     assert_eq!(generator.set_moving_target(&motion(0.81, 0.0)), refused);
     assert_eq!(generator.set_moving_target(&motion(0.0, -4.1)), refused);
-    // At its limit the velocity cannot have an acceleration: it came from beyond, or goes there.
+    // At its limit the velocity cannot have an acceleration: it would come from beyond the limit,
+    // or exceed it.
     assert_eq!(generator.set_moving_target(&motion(0.8, 1.0)), refused);
     assert_eq!(
         generator.set_moving_target(&motion(f64::NAN, 0.0)),

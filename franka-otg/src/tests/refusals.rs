@@ -1,4 +1,4 @@
-//! What is refused, and that a refusal changes nothing.
+//! Refused inputs, which must change nothing.
 
 use proptest::prelude::*;
 

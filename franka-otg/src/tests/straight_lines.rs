@@ -6,7 +6,7 @@ use super::random::{arm_limits, cases, many};
 use super::walk::check_step;
 use crate::{CYCLE, Generator, Limits, State, Synchronisation};
 
-/// Largest distance of a position from the line through `from` and `to`, which are apart.
+/// Returns the distance of a position from the line through the distinct points `from` and `to`.
 fn distance_from_line<const N: usize>(from: &[f64; N], to: &[f64; N], position: &[f64; N]) -> f64 {
     let square: f64 = (0..N).map(|i| (to[i] - from[i]).powi(2)).sum();
     let along: f64 = (0..N)

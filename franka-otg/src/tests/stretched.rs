@@ -1,4 +1,4 @@
-//! Step two, from outside: all axes arrive together.
+//! Step two, tested through the public interface: all axes arrive together.
 
 use proptest::prelude::*;
 

@@ -1,21 +1,21 @@
-//! Walks along a motion and checks that it is one: inside its limits, each state following from the
-//! one before.
+//! Walks along a motion and checks it: it is inside its limits, and each state follows from the
+//! previous one.
 
 use crate::{Generator, Limits, State};
 
-/// Relative excess over a limit that is rounding.
+/// Relative excess over a limit that counts as rounding.
 pub(super) const EXACT: f64 = 1e-9;
 
-/// Relative error of a position that is rounding, of the instants at which a plan changes course
-/// too. Seen: 2e-13, with limits from 1e-3 to 1e6.
+/// Relative error of a position that counts as rounding, including the instants at which a plan
+/// changes course. Seen: 2e-13, with limits from 1e-3 to 1e6.
 const ROUNDING: f64 = 1e-12;
 
-/// Relative error of a jerk between two states: an instant at which a plan changes course is
-/// rounded, and the jerk counts it in full. Seen: 3.6e-10 in ten million plans, 1.1e-8 where one is
-/// made anew in each cycle.
+/// Relative error of a jerk between two states: the instants at which a plan changes course are
+/// rounded, and this affects the jerk in full. Seen: 3.6e-10 in ten million plans, 1.1e-8 with a
+/// new plan in each cycle.
 const JERK: f64 = 1e-7;
 
-/// Checks the step of one axis from one state to another `dt` later.
+/// Checks the step of one axis from one state to another, `dt` later.
 ///
 /// `size` is the magnitude of the positions, whose rounding does not count as motion.
 #[track_caller]
@@ -47,7 +47,7 @@ pub(super) fn check_step<const N: usize>(
             "axis {i}: jerk {jerk} of {}",
             l.jerk
         );
-        // Trapezoids differ from the integrals by no more than the bounded next derivative allows.
+        // Trapezoids differ from the integrals by at most the bound of the next derivative.
         let dv = 0.5 * dt * (p.acceleration + q.acceleration);
         let bound = 0.25 * l.jerk * dt * dt * (1.0 + EXACT) + 8.0 * f64::EPSILON * l.velocity;
         let gap = (q.velocity - p.velocity - dv).abs();
@@ -65,7 +65,7 @@ pub(super) fn check_step<const N: usize>(
     }
 }
 
-/// Checks the motion in progress from now to its end, at `samples` instants.
+/// Checks the current motion from now to its end, at `samples` instants.
 #[track_caller]
 pub(super) fn check_motion<const N: usize>(generator: &Generator<N>, samples: usize) {
     let size = generator
