@@ -1,47 +1,46 @@
-//! Which setting to change.
+//! The recommended changes of settings.
 
 use franka_rt::driver::Commander;
 
-/// What to change, so that the next motion does not end likewise.
+/// A recommended change, so that the next motion does not end in the same way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Advice {
-    /// Commands to the motion generator have to go on without a leap.
+    /// Commands to the motion generator must continue without a jump.
     Smooth,
-    /// Torques have to go on without a step.
+    /// Torques must continue without a step.
     SmoothTorques,
-    /// They are too fast, although they do not leap.
+    /// Commands are too fast, although they do not jump.
     SlowDown,
-    /// The first command has to be where the robot is.
+    /// The first command must match the robot's position.
     StartWhereItIs,
-    /// The last command has to stand still.
+    /// The last command must be at rest.
     FinishAtRest,
     /// Datagrams get lost between the two computers.
     Network,
     /// This computer answers too late.
     Host,
-    /// Something was touched, or seemed to be.
+    /// A contact occurred, or appeared to occur.
     Thresholds,
-    /// What touched the arm was more than its joints can hold.
+    /// The contact exceeded the force that the joints can hold.
     GiveWay,
-    /// The pose is the problem.
+    /// The pose is close to a singularity.
     AvoidSingularity,
     /// A joint is near the end of its range.
     StayInRange,
-    /// The arm comes near itself.
+    /// The arm comes close to itself.
     StayClearOfItself,
-    /// The load or the motion asks for too much torque or power.
+    /// The load or the motion requires too much torque or power.
     LessEffort,
     /// The gains are too high for this pose or contact.
     SofterGains,
-    /// Set in Desk, not by a client.
+    /// A setting in Desk that a client cannot change.
     Desk,
 }
 
 impl Advice {
-    /// The advice in words, with the settings of this driver that there are where `commander`
-    /// commands.
+    /// The advice as text, with the settings of this driver that apply to `commander`.
     pub fn text(self, commander: Commander) -> &'static str {
         use Commander::{Active, Asynchronous, Function, Goals};
         match (self, commander) {

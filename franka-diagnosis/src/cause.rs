@@ -1,4 +1,4 @@
-//! The causes that a diagnosis can name, and their text. `reasoning` selects them.
+//! The causes in a diagnosis, and their text. `reasoning` selects them.
 
 use core::fmt;
 use core::time::Duration;
@@ -12,100 +12,99 @@ pub(super) fn is_slow(turnaround: Duration) -> bool {
     turnaround.as_secs_f64() > CYCLE
 }
 
-/// Something in the log that led up to the end of a motion. Cycles are the `message_id`s of states.
+/// An event in the log that led to the end of a motion. Cycles are the `message_id`s of states.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Cause {
-    /// A command that leaps from where the robot was told to be.
+    /// A command jumps away from the robot's commanded state.
     TargetStep {
-        /// What leaps.
+        /// The part that jumps.
         subject: Subject,
-        /// Its position, velocity, acceleration or torque.
+        /// The quantity that jumps: position, velocity, acceleration or torque.
         quantity: Quantity,
-        /// By how much, beyond what going on as before would have been, in the unit of the
-        /// quantity.
+        /// Size of the jump in the unit of the quantity: the difference from an unchanged
+        /// continuation.
         size: f64,
-        /// The command answers this state.
+        /// Cycle of the state that the command answers.
         cycle: u64,
     },
-    /// The first command was not where the robot was.
+    /// The first command did not match the robot's position.
     WrongStart {
-        /// What is off.
+        /// The part with the difference.
         subject: Subject,
-        /// What of it.
+        /// The quantity with the difference.
         quantity: Quantity,
-        /// By how much, in the unit of the quantity.
+        /// Size of the difference, in the unit of the quantity.
         offset: f64,
-        /// The command answers this state.
+        /// Cycle of the state that the command answers.
         cycle: u64,
     },
-    /// The command that ended the motion was one that moves.
+    /// The command that ended the motion was still moving.
     FinishedMoving {
-        /// What moves.
+        /// The part that moves.
         subject: Subject,
-        /// With this velocity, `[rad/s]` or `[m/s]`.
+        /// Its velocity, `[rad/s]` or `[m/s]`.
         velocity: f64,
-        /// The command answers this state.
+        /// Cycle of the state that the command answers.
         cycle: u64,
     },
     /// Cycles that passed without a command.
     LostPackets {
-        /// States that did not arrive, so that nothing answered them.
+        /// States that did not arrive and were therefore not answered.
         states: u64,
-        /// Commands that were sent and did not arrive in time, by the success rate that the robot
-        /// reports.
+        /// Commands that were sent and did not arrive in time, according to the robot's success
+        /// rate.
         commands: u64,
         /// States that arrived and were not answered.
         unanswered: u64,
-        /// Most of them in a row.
+        /// Largest number of consecutive cycles among them.
         longest_run: u64,
         /// The first of them.
         first: u64,
         /// The last of them.
         last: u64,
-        /// `control_command_success_rate` of the last state of the motion that was received, in
-        /// `[0, 1]`.
+        /// `control_command_success_rate` of the last received state of the motion, in `[0, 1]`.
         success_rate: f64,
     },
-    /// Commands left this host after the next state was due, at some time in the motion.
+    /// Commands left this host after the next state was due, at any time in the motion.
     LateCommands {
-        /// How many.
+        /// Number of late commands.
         count: u64,
-        /// Longest time from when the thread had a state to its command.
+        /// Longest time from the state's availability in the thread to its command.
         worst_turnaround: Duration,
     },
-    /// The estimate of an external force or torque was above the lower threshold.
+    /// The estimated external force or torque was above the lower threshold.
     Contact {
         /// The joint, or the axis of the base frame.
         subject: Subject,
-        /// The largest estimate in these cycles: `[N·m]` of a joint or a rotation, `[N]` of a
-        /// translation. Positive is what the robot does to its surroundings.
+        /// The largest estimate in these cycles: `[N·m]` for a joint or a rotation, `[N]` for a
+        /// translation. It is positive when the robot pushes the environment.
         value: f64,
-        /// Since when it was above the lower threshold, without a break.
+        /// First cycle of the uninterrupted time above the lower threshold.
         since: u64,
     },
-    /// A Cartesian motion in a pose where joints have to move fast for little.
+    /// A Cartesian motion in a pose where small motions require fast joints.
     Singularity {
         /// Smallest singular value of the Jacobian of the end effector, metres and radians mixed;
         /// 0.14 to 0.23 in ordinary poses.
         smallest: f64,
-        /// What joint 4 is from where the arm is stretched, `[rad]`.
+        /// Angle of joint 4 from the position where the arm is stretched, `[rad]`.
         stretch: f64,
-        /// The pose that the robot was told to have in this state.
+        /// The cycle of the state with this desired pose.
         cycle: u64,
     },
-    /// A joint near the end of its range, where less speed is allowed towards it.
+    /// A joint near the end of its range, where the speed towards it is reduced.
     Limit {
-        /// 1 to 7.
+        /// Number of the joint, 1 to 7.
         joint: u8,
         /// True if it is the upper end.
         upper: bool,
-        /// What is left, `[rad]`; negative beyond it.
+        /// Remaining distance, `[rad]`; negative beyond the end.
         distance: f64,
-        /// The greatest speed towards it there, `[rad/s]`.
+        /// Largest speed towards the end at this position, `[rad/s]`.
         speed: f64,
-        /// In this state.
+        /// The cycle of the state.
         cycle: u64,
     },
 }
@@ -238,7 +237,7 @@ impl fmt::Display for Cause {
     }
 }
 
-/// So many of something.
+/// A number of things, with its noun.
 struct Count(u64, &'static str);
 
 impl fmt::Display for Count {
@@ -257,5 +256,6 @@ fn noun(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Of joint 4, `[rad]`: nearer to stretched than this, the elbow is worth a word.
+/// Distance of joint 4 from the stretched position, `[rad]`, below which the text mentions the
+/// elbow.
 const STRETCHED: f64 = 0.3;

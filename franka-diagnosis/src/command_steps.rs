@@ -1,4 +1,4 @@
-//! Commands that leap: at the start, at the end, and between.
+//! Jumps of commands: at the start, at the end, and in between.
 
 use franka_model::limits::MotionLimits;
 use franka_model::{CYCLE, JointVector, Twist, rotation, transform};
@@ -10,7 +10,7 @@ use super::commanded::{self, Derivatives, Which};
 use super::evidence::{Evidence, Reading, Sample};
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// How far the first command is from where the robot was; for the errors that say so.
+/// Distance of the first command from the robot's position, for the errors that report it.
 pub(super) fn start_offset(evidence: &Evidence<'_>, error: RobotError) -> Option<Finding> {
     let sample = evidence.first()?;
     let (subject, value) = offset(&sample, error)?;
@@ -35,8 +35,8 @@ fn offset(sample: &Sample<'_>, error: RobotError) -> Option<(Subject, f64)> {
             let from = transform::isometry_from_array(before.commanded_pose())?;
             let shift = target.translation.vector - from.translation.vector;
             let turn = rotation::error(&target.rotation, &from.rotation);
-            // A radian counts as half a metre: with which of the two the robot disagrees is not
-            // published.
+            // A radian counts as half a metre: the vendor does not publish which of the two the
+            // robot checks.
             Some(if shift.norm() > 0.5 * turn.norm() {
                 (Subject::component(shift.iamax()), shift.norm())
             } else {
@@ -56,7 +56,7 @@ fn offset(sample: &Sample<'_>, error: RobotError) -> Option<(Subject, f64)> {
     }
 }
 
-/// How the command leaps that a finding is about, if it does.
+/// Returns the jump of the command of a finding, if it jumps.
 fn leap(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     if !evidence.commander.commands_every_cycle() {
         return None;
@@ -116,7 +116,8 @@ fn leap(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     }
 }
 
-/// Of a Cartesian command: whichever of translation and rotation leaps further by its limits.
+/// Returns the jump of a Cartesian command: the translation or rotation that jumps further relative
+/// to its limits.
 fn cartesian_leap(
     evidence: &Evidence<'_>,
     sample: &Sample<'_>,
@@ -145,14 +146,14 @@ fn cartesian_leap(
         translation
     };
     let (axis, norms, limits, change, _) = further;
-    // Norms have no direction: the acceleration before is what the change leaves of this one.
+    // Norms have no direction: the acceleration before is this acceleration minus the change.
     let (quantity, size) = leap_of(sample, &norms, norms.acceleration[0] - change, limits)?;
     Some((axis, quantity, size))
 }
 
-/// What of a command leaps: what is commanded itself if the acceleration is too large as well, or
-/// only the acceleration. An acceleration that has grown to its limit within that of the jerk is no
-/// leap: the motion is too fast.
+/// Returns the jumping quantity of a command: the commanded quantity itself if the acceleration is
+/// too large as well, otherwise the acceleration. An acceleration that grew to its limit within the
+/// jerk limit is not a jump: the motion is too fast.
 fn leap_of(
     sample: &Sample<'_>,
     motion: &Derivatives<1>,
@@ -178,12 +179,12 @@ fn leap_of(
     }
 }
 
-/// How the command of a finding broke the rules: by a leap, or, as the last one, by moving, for
-/// standing still would have had to follow it.
+/// Returns the rule violation of a finding's command: a jump, or a last command that still moves,
+/// because the robot would have to stand still after it.
 pub(super) fn leap_or_finish(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     let leap = leap(evidence, finding);
     match finished_moving(evidence, finding) {
-        // A wrong start comes first, and so does a leap that is half of the velocity or more.
+        // A wrong start has priority, and so has a jump of at least half of the velocity.
         Some((finish, of_leap)) => {
             let is_start = matches!(leap, Some(Cause::WrongStart { .. }));
             leap.filter(|_| is_start || of_leap).or(Some(finish))
@@ -192,7 +193,7 @@ pub(super) fn leap_or_finish(evidence: &Evidence<'_>, finding: &Finding) -> Opti
     }
 }
 
-/// The command that a finding about differences is about, if it is the last of the motion.
+/// Returns the command that a finding about differences refers to, if it is the last of the motion.
 fn last_command<'a>(evidence: &Evidence<'a>, finding: &Finding) -> Option<Sample<'a>> {
     let of_differences = matches!(finding.quantity, Quantity::Acceleration | Quantity::Jerk);
     let every_cycle = evidence.commander.commands_every_cycle();
@@ -200,7 +201,8 @@ fn last_command<'a>(evidence: &Evidence<'a>, finding: &Finding) -> Option<Sample
     (of_differences && every_cycle && sample.is_finished()).then_some(sample)
 }
 
-/// That the last command moves, and whether half of its velocity or more is its own change.
+/// Returns the cause that the last command moves, and true if at least half of its velocity is its
+/// own change.
 fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Option<(Cause, bool)> {
     let sample = last_command(evidence, finding)?;
     let (subject, velocity, acceleration) = match commanded::joints(&sample) {
@@ -227,7 +229,7 @@ fn finished_moving(evidence: &Evidence<'_>, finding: &Finding) -> Option<(Cause,
     (velocity.abs() > STANDSTILL).then_some((finish, of_leap))
 }
 
-/// The step to rest of the acceleration of a last command of the joints that hardly moves.
+/// Returns the step of the acceleration to rest after a last joint command that hardly moves.
 fn finished_accelerating(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     let sample = last_command(evidence, finding)?;
     let (_, motion) = commanded::joints(&sample)?;
@@ -244,8 +246,8 @@ fn finished_accelerating(evidence: &Evidence<'_>, finding: &Finding) -> Option<C
     })
 }
 
-/// That the last command of a motion came before the arm, which the client's torques lead, had
-/// come to rest: for the errors that say so.
+/// Returns the cause that the motion's last command came before the arm was at rest, for motions
+/// with the client's torques and the errors that report it.
 pub(super) fn finished_before_the_arm(evidence: &Evidence<'_>, error: RobotError) -> Option<Cause> {
     let says_so = matches!(
         error,
@@ -267,9 +269,9 @@ pub(super) fn finished_before_the_arm(evidence: &Evidence<'_>, error: RobotError
     })
 }
 
-/// The largest step of the commanded torques before a cycle, if it takes more than half of what is
-/// allowed. A torque that changes about as fast in the cycle beside is on a ramp; what takes all of
-/// what is allowed and no more comes from the limiter, which makes ramps of steps.
+/// Returns the largest step of the commanded torques before a cycle, if it is more than half of the
+/// limit. A torque with about the same change in an adjacent cycle is on a ramp. A change of
+/// exactly the limit comes from the limiter, which turns steps into ramps.
 pub(super) fn torque_step(evidence: &Evidence<'_>, before: u64) -> Option<Cause> {
     let readings = commanded::torque_readings(evidence);
     let is_limited = |reading: &Reading| (reading.score - 1.0).abs() < LIMITED;
@@ -299,19 +301,19 @@ fn component<const N: usize>(motion: &Derivatives<N>, index: usize) -> Derivativ
     }
 }
 
-/// Measured joint velocity, `[rad/s]`, above which an arm does not rest: the simulator's choice.
+/// Measured joint velocity, `[rad/s]`, above which an arm is not at rest: the simulator's value.
 const AT_REST: f64 = 0.1;
 
-/// Commanded velocity, `[rad/s]` or `[m/s]`, up to which a motion may end: a stop within one cycle
-/// is then less jerk than any limit of the arms.
+/// Largest commanded velocity, `[rad/s]` or `[m/s]`, at which a motion may end: a stop within one
+/// cycle is then below every jerk limit of the arms.
 const STANDSTILL: f64 = 0.003;
 
-/// What the limiter lets pass is nearer than this to what is allowed, as a share of it.
+/// Relative distance from the limit within which a value counts as limited.
 const LIMITED: f64 = 2e-3;
 
-/// A torque is on a ramp where the cycle beside has this share of its change.
+/// A torque is on a ramp if the adjacent cycle has at least this share of its change.
 const RAMP: f64 = 0.9;
 
-/// An offset that no robot minds, `[rad]` or `[m]`: how far off a first command may be is not
-/// published, but clients begin at measured positions, too.
+/// An offset that every robot accepts, `[rad]` or `[m]`. The vendor does not publish the tolerance,
+/// but clients also start at measured positions.
 const AT_THE_START: f64 = 1e-3;

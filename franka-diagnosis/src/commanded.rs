@@ -1,7 +1,7 @@
-//! What commands ask for, by the differences that the robot takes of them.
+//! The differences of commands, as the robot computes them.
 //!
-//! Backward differences over one cycle, from what the state that a command answers publishes as
-//! commanded (FCI documentation, control parameters). Limits are the nominal ones.
+//! Backward differences over one cycle, from the commanded values in the answered state (FCI
+//! documentation, control parameters). Limits are the nominal ones.
 
 use franka_model::differential_ik::{DifferentialIk, JointBox};
 use franka_model::limits::MotionLimits;
@@ -34,13 +34,13 @@ impl<const N: usize> Derivatives<N> {
         }
     }
 
-    /// Standing still from one cycle to the next, as a finished command does.
+    /// Standstill from one cycle to the next, as after a finished command.
     pub(super) fn at_rest_next(&self) -> Self {
         Self::of(SVector::zeros(), self.velocity, self.acceleration)
     }
 }
 
-/// Joint positions and their derivatives that a joint command asks for; `None` for other commands.
+/// Joint positions and their derivatives of a joint command; `None` for other commands.
 pub(super) fn joints(sample: &Sample<'_>) -> Option<(JointVector, Derivatives<7>)> {
     let Sample {
         before, command, ..
@@ -64,8 +64,7 @@ pub(super) fn joints(sample: &Sample<'_>) -> Option<(JointVector, Derivatives<7>
     Some((q, Derivatives::of(velocity, dq_d, ddq_d)))
 }
 
-/// Pose and derivatives that a Cartesian command asks for; `None` for other commands and for
-/// invalid poses.
+/// Pose and derivatives of a Cartesian command; `None` for other commands and for invalid poses.
 pub(super) fn cartesian(sample: &Sample<'_>) -> Option<(Isometry3<f64>, Derivatives<6>)> {
     let Sample {
         before, command, ..
@@ -95,7 +94,7 @@ pub(super) fn cartesian(sample: &Sample<'_>) -> Option<(Isometry3<f64>, Derivati
     ))
 }
 
-/// Likewise of a commanded elbow.
+/// Angle of the commanded elbow and its derivatives.
 pub(super) fn elbow(sample: &Sample<'_>) -> Option<Derivatives<1>> {
     let [angle, _] = sample.command.elbow_c?;
     let before = sample.before;
@@ -108,9 +107,9 @@ pub(super) fn elbow(sample: &Sample<'_>) -> Option<Derivatives<1>> {
     ))
 }
 
-/// Likewise of the joints that a Cartesian command takes, by Newton's iteration from where they
-/// were told to be. The robot's own way to them is not published; the smallest step is what it is
-/// known to be near.
+/// Joint positions of a Cartesian command and their derivatives, by Newton's iteration from the
+/// commanded joint positions. The robot's own method is not published; its result is known to be
+/// close to the smallest step.
 pub(super) fn resulting(
     model: &Model,
     sample: &Sample<'_>,
@@ -120,7 +119,8 @@ pub(super) fn resulting(
     let ee = end_effector(before);
     let from = JointVector::from(before.q_d);
     let mut q = from;
-    // The way that the command asks for, from the model's pose: the robot's may be off that.
+    // The commanded displacement, applied to the model's pose, which may differ from the robot's
+    // pose.
     let robots = transform::isometry_from_array(before.commanded_pose())?;
     let models = transform::isometry(&model.pose(Frame::EndEffector, &q, &ee))?;
     let way = pose.translation.vector - robots.translation.vector;
@@ -156,8 +156,8 @@ pub(super) fn resulting(
     Some((q, Derivatives::of((q - from) / CYCLE, dq_d, ddq_d)))
 }
 
-/// Change of the torques of a command against those that the state publishes, `[N·m]`; of the first
-/// one against none.
+/// Change of a command's torques relative to the torques in the state, `[N·m]`; for the first
+/// command relative to zero.
 pub(super) fn torque_step(sample: &Sample<'_>) -> Option<JointVector> {
     if !sample.before.controller_running() {
         return None;
@@ -170,12 +170,12 @@ pub(super) fn torque_step(sample: &Sample<'_>) -> Option<JointVector> {
     Some(JointVector::from(sample.command.tau_J_d) - before)
 }
 
-/// The frames that the client has set, as a state has them.
+/// The client's frames, from a state.
 pub(super) fn end_effector(state: &RobotState) -> EndEffector {
     EndEffector::from_arrays(&state.F_T_EE, &state.EE_T_K)
 }
 
-/// Which of the differences of a command.
+/// The difference of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Which {
     Velocity,
@@ -183,12 +183,12 @@ pub(super) enum Which {
     Jerk,
 }
 
-/// All commands of a log, each with what its `which` derivative may be.
+/// All commands of a log, each with the limit of its `which` derivative.
 pub(super) fn joint_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Reading> {
     of_joints(evidence, Origin::Commanded, which, joints)
 }
 
-/// Likewise of the joints that Cartesian commands take.
+/// Joint readings of Cartesian commands.
 pub(super) fn resulting_readings(evidence: &Evidence<'_>, which: Which) -> Vec<Reading> {
     of_joints(evidence, Origin::Desired, which, |sample| {
         resulting(evidence.model, sample)
@@ -240,7 +240,7 @@ fn of_joints(
     readings
 }
 
-/// Commanded positions against the ranges of the joints.
+/// Commanded positions relative to the ranges of the joints.
 pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let mut readings = Vec::new();
     for sample in evidence.samples() {
@@ -270,8 +270,9 @@ pub(super) fn cartesian_readings(evidence: &Evidence<'_>, which: Which) -> Vec<R
         .collect()
 }
 
-/// By how much rounding may change a derivative of this order of a joint command: a position, and
-/// the one before it, over the cycles between; the derivatives before are numbers of their own.
+/// Possible effect of rounding on a derivative of this order of a joint command: the position and
+/// the previous position, over the cycles between them. The previous derivatives are separate
+/// numbers.
 fn joint_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, i: usize, order: i32) -> f64 {
     if !evidence.rounded {
         return 0.0;
@@ -279,13 +280,14 @@ fn joint_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, i: usize, order:
     let (half, order) = match sample.before.motion_generator_mode {
         Generator::JointPosition => (half_digit(sample.command.q_c[i]), order),
         Generator::JointVelocity => (half_digit(sample.command.dq_c[i]), order - 1),
-        // The joints follow the pose, near a singularity ten times as far.
+        // The joints follow the pose; near a singularity they move ten times as far.
         _ => (10.0 * half_digit(POSE), order),
     };
     2.0 * half / CYCLE.powi(order)
 }
 
-/// Likewise of a Cartesian command, whose derivatives before are differences as well.
+/// Possible effect of rounding on a derivative of a Cartesian command, whose previous derivatives
+/// are differences too.
 fn pose_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, which: Which) -> f64 {
     let order = match which {
         _ if !evidence.rounded => return 0.0,
@@ -297,17 +299,17 @@ fn pose_rounding(evidence: &Evidence<'_>, sample: &Sample<'_>, which: Which) -> 
         Generator::CartesianVelocity => order - 1,
         _ => order,
     };
-    // Three axes.
+    // The factor for three axes.
     3.0_f64.sqrt() * half_digit(POSE) * (2.0 / CYCLE).powi(order)
 }
 
-/// Half of the last of six significant digits.
+/// Half a unit of the last of six significant digits.
 fn half_digit(value: f64) -> f64 {
     let digits = value.abs().max(1e-3).log10().floor();
     0.5 * 10f64.powi(digits as i32 - 5)
 }
 
-/// One value of each: translation and rotation.
+/// One reading each for translation and rotation.
 pub(super) fn cartesian_readings_of(
     model: &Model,
     sample: &Sample<'_>,
@@ -383,7 +385,7 @@ pub(super) fn torque_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     readings
 }
 
-/// A command, and what follows of one that is the last.
+/// Readings of a command, and of the standstill after it if it is the last.
 fn with_rest<const N: usize>(
     asked: Derivatives<N>,
     sample: &Sample<'_>,
@@ -421,11 +423,11 @@ fn halves(twist: &Twist) -> (Vector3<f64>, Vector3<f64>) {
     )
 }
 
-/// Size of the larger numbers of a pose, below one: `[m]`, or of a rotation.
+/// Typical size of the larger numbers of a pose: `[m]`, or of a rotation.
 const POSE: f64 = 0.5;
 
-/// Newton's steps for one cycle: two or three do away from singular poses.
+/// Number of Newton steps for one cycle: two or three are sufficient away from singular poses.
 const ITERATIONS: usize = 4;
 
-/// Longest step of a joint in one of them, `[rad]`.
+/// Largest step of a joint in one Newton step, `[rad]`.
 const LEAP: f64 = 0.5;

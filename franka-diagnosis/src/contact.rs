@@ -6,8 +6,8 @@ use super::cause::Cause;
 use super::evidence::Evidence;
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// The joints, or the axes of the base at the stiffness frame. The vendor does not say which axes
-/// the flags are of; the simulator takes the same ones.
+/// The joints, or the axes of the base at the stiffness frame. The vendor does not document the
+/// axes of the flags; the simulator assumes the same axes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Sense {
     Joints,
@@ -17,7 +17,7 @@ pub(super) enum Sense {
 impl Sense {
     const ALL: [Self; 2] = [Self::Joints, Self::Axes];
 
-    /// The loads, of which axes have six.
+    /// The loads; six of them for axes.
     fn load(self, state: &RobotState) -> [f64; 7] {
         match self {
             Self::Joints => state.tau_ext_hat_filtered,
@@ -54,7 +54,7 @@ impl Sense {
     }
 }
 
-/// What collided, by the flags of the last state.
+/// The collision according to the flags of the last state.
 pub(super) fn collision(
     evidence: &Evidence<'_>,
     error: RobotError,
@@ -79,7 +79,7 @@ pub(super) fn collision(
         quantity: Quantity::ExternalLoad,
         origin: Origin::Estimated,
         value,
-        // What passed before the flag came was below the threshold, unless that changed with the
+        // The load before the flag was below the threshold, unless the threshold changed with the
         // acceleration.
         bound: match passed {
             Some(passed) if since == last.message_id && passed < value.abs() => {
@@ -91,8 +91,8 @@ pub(super) fn collision(
     })
 }
 
-/// The contact that held when the motion ended: of what the finding is of, or else the strongest by
-/// its share of the joint's torque.
+/// The contact at the end of the motion: the contact of the finding's subject, or else the
+/// strongest relative to the joint's torque.
 pub(super) fn contact(evidence: &Evidence<'_>, of: Option<Subject>) -> Option<Cause> {
     let state = evidence.last()?;
     let named = of.and_then(|subject| {

@@ -1,4 +1,4 @@
-//! A log, laid out for questions.
+//! A log, prepared for the checks.
 
 use franka_model::{JointVector, Model};
 use franka_proto::{MotionGeneratorMode, RobotCommand, RobotError, RobotState};
@@ -8,10 +8,10 @@ use franka_rt::driver::Commander;
 use franka_rt::driver::LogEntry;
 use franka_rt::stats::MotionStatistics;
 
-/// What there is to judge by.
+/// The evidence of a diagnosis.
 pub(super) struct Evidence<'a> {
     pub(super) commander: Commander,
-    /// Oldest first.
+    /// Cycles, oldest first.
     pub(super) entries: Vec<&'a LogEntry>,
     pub(super) model: &'a Model,
     pub(super) statistics: Option<&'a MotionStatistics>,
@@ -28,7 +28,7 @@ pub(super) struct Sample<'a> {
     pub(super) first: bool,
 }
 
-/// One number of one cycle, and what it must not exceed.
+/// One number of one cycle, and its limit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reading {
     pub(super) subject: Subject,
@@ -36,13 +36,13 @@ pub(super) struct Reading {
     pub(super) origin: Origin,
     pub(super) value: f64,
     pub(super) bound: Bound,
-    /// Above 1 if the limit is exceeded.
+    /// Ratio to the limit: above 1 if the limit is exceeded.
     pub(super) score: f64,
     pub(super) cycle: u64,
 }
 
 impl<'a> Evidence<'a> {
-    /// The newest state of all: the one that shows the end.
+    /// The newest state, which shows the end.
     pub(super) fn last(&self) -> Option<&'a RobotState> {
         self.entries.last().map(|entry| &entry.state)
     }
@@ -57,8 +57,8 @@ impl<'a> Evidence<'a> {
         self.states().rev().find(|state| state.motion_running())
     }
 
-    /// What the motion was commanded in. In protocol 5 a motion in torques shows a generator too,
-    /// whose commands rest.
+    /// The motion generator of the motion. In protocol 5, a torque motion also shows a generator,
+    /// whose commands are at rest.
     pub(super) fn generator(&self) -> MotionGeneratorMode {
         self.last_running()
             .map_or(MotionGeneratorMode::Idle, |state| {
@@ -74,9 +74,9 @@ impl<'a> Evidence<'a> {
         )
     }
 
-    /// The commands that reached the robot, as far as its success rate tells, and whose state is in
-    /// the log as well. Differences are to be taken from what that state publishes as commanded: it
-    /// includes what the robot made up for cycles without a command.
+    /// The commands that reached the robot, according to its success rate, and whose state is in
+    /// the log. Differences must be taken from the commanded values in that state, because they
+    /// include the robot's extrapolation over cycles without a command.
     pub(super) fn samples(&self) -> impl DoubleEndedIterator<Item = Sample<'a>> {
         self.entries.windows(2).filter_map(|pair| {
             let (before, command) = (&pair[0].state, &pair[1].command);
@@ -89,12 +89,12 @@ impl<'a> Evidence<'a> {
         })
     }
 
-    /// The command that answers the state of this number.
+    /// The command that answers the state with this number.
     pub(super) fn sample(&self, cycle: u64) -> Option<Sample<'a>> {
         self.samples().find(|sample| sample.cycle() == cycle)
     }
 
-    /// The command that began the motion, if the log reaches that far back.
+    /// The first command of the motion, if the log contains it.
     pub(super) fn first(&self) -> Option<Sample<'a>> {
         self.samples().find(|sample| sample.first)
     }
@@ -111,8 +111,8 @@ impl Sample<'_> {
 }
 
 impl Reading {
-    /// The reading, where rounding may have changed its value by `error`: the score is then that of
-    /// a limit so much larger.
+    /// The reading if rounding may have changed its value by `error`: the limit of its score is
+    /// larger by this amount.
     pub(super) fn within(self, error: f64) -> Self {
         let limit = self.bound.limit().unwrap_or(0.0).abs();
         let share = if error > 0.0 {
@@ -126,7 +126,7 @@ impl Reading {
         }
     }
 
-    /// Of a number whose magnitude is bounded.
+    /// A reading of a number with a bounded magnitude.
     pub(super) fn magnitude(
         subject: Subject,
         quantity: Quantity,
@@ -153,8 +153,7 @@ impl Reading {
         }
     }
 
-    /// The finding that a reading of the end of the motion amounts to, without regard to how it
-    /// came about.
+    /// The finding for a reading at the end of the motion, without its causes.
     pub(super) fn finding(&self, error: RobotError) -> Finding {
         Finding {
             error,
@@ -168,18 +167,18 @@ impl Reading {
     }
 }
 
-/// True if the command between two states did not reach the robot in time, by the success rate that
-/// it reports, where only the `skipped` states between them were not answered. The state that shows
-/// the end of the motion does not tell.
+/// True if the command between two states did not reach the robot in time, according to its success
+/// rate. Only the `skipped` states between them were not answered. The state that shows the end of
+/// the motion is not conclusive.
 pub(super) fn is_lost(before: &RobotState, after: &RobotState, skipped: u64) -> bool {
-    // The rate is that of the last hundred cycles.
+    // The rate covers the last hundred cycles.
     let rate = before.control_command_success_rate - skipped as f64 / 100.0;
     after.message_id == before.message_id + 1 + skipped
         && after.motion_running()
         && after.control_command_success_rate < rate - SAME_RATE
 }
 
-/// The velocity of every joint against what is allowed at `q`.
+/// The velocity of every joint relative to its limit at `q`.
 pub(super) fn velocities(
     model: &Model,
     origin: Origin,
@@ -197,7 +196,7 @@ pub(super) fn velocities(
         .collect()
 }
 
-/// The position of every joint against the nearer end of its range.
+/// The position of every joint relative to the nearer end of its range.
 pub(super) fn positions(
     model: &Model,
     origin: Origin,
@@ -226,8 +225,8 @@ pub(super) fn positions(
         .collect()
 }
 
-/// The worst of some readings of the sensors, oldest first, as a finding: with the first of the
-/// cycles in a row in which its limit was exceeded. `None` if nothing comes near its limit.
+/// The worst of some sensor readings, oldest first, as a finding, with the first of the consecutive
+/// cycles in which its limit was exceeded. `None` if no reading is near its limit.
 pub(super) fn worst(error: RobotError, readings: &[Reading]) -> Option<Finding> {
     let worst = readings
         .iter()
@@ -236,8 +235,8 @@ pub(super) fn worst(error: RobotError, readings: &[Reading]) -> Option<Finding> 
     Some(since_first(error, worst, readings))
 }
 
-/// Likewise of commands. The robot stops at the first that breaks a limit, so it is the newest that
-/// does; if none does for certain, the newest that comes near.
+/// The finding for readings of commands. The robot stops at the first command that exceeds a limit,
+/// so it is the newest one that does. If none certainly does, it is the newest that is near.
 pub(super) fn newest(error: RobotError, readings: &[Reading]) -> Option<Finding> {
     let last = |least: f64| {
         let cycle = readings
@@ -272,7 +271,7 @@ fn since_first(error: RobotError, worst: &Reading, readings: &[Reading]) -> Find
 }
 
 impl Subject {
-    /// True if both are the same, whichever component of a vector is its largest.
+    /// True if both are the same, ignoring the component of a vector that is its largest.
     fn is_like(self, other: Self) -> bool {
         match (self, other) {
             (Self::Translation(_), Self::Translation(_))
@@ -282,15 +281,14 @@ impl Subject {
     }
 }
 
-/// The share of a limit from which on it counts as reached. States in single precision move a third
-/// difference by up to a twentieth of what it may be, and how the robot itself measures is not
-/// published.
+/// Share of a limit from which it counts as reached. Single precision of the states changes a third
+/// difference by up to a twentieth of its limit, and the robot's own computation is not published.
 const VISIBLE: f64 = 0.95;
 
-/// What a position may lack of a limit, over [`VISIBLE`], `[rad]`: so that half a hundredth of a
-/// radian is near.
+/// Distance of a position from a limit, divided by the complement of [`VISIBLE`], `[rad]`: half a
+/// hundredth of a radian counts as near.
 const SCALE: f64 = 0.1;
 
-/// Two success rates that differ by less are the same: one command in a hundred is a hundredth of a
-/// rate, and rates are at worst in single precision.
+/// Difference of success rates below which they count as equal. One command in a hundred changes
+/// the rate by a hundredth, and rates have at least single precision.
 const SAME_RATE: f64 = 1e-4;

@@ -1,10 +1,10 @@
-//! What was exceeded: where, which quantity, by how much, since when.
+//! An exceeded limit: place, quantity, excess and beginning.
 
 use core::fmt;
 
 use franka_proto::RobotError;
 
-/// What a number is of.
+/// The place of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -14,11 +14,11 @@ pub enum Subject {
     /// The translation of the end effector. Limits hold for the norm of the vector; this is its
     /// largest component.
     Translation(Axis),
-    /// The rotation of the end effector, likewise.
+    /// The rotation of the end effector, with the same rule.
     Rotation(Axis),
     /// The elbow: the angle of joint 3 in a Cartesian motion.
     Elbow,
-    /// Two bodies of the arm: link 0 (the base) to 7, and 8 for what is mounted on the flange.
+    /// Two bodies of the arm: link 0 (the base) to 7, and 8 for the tool on the flange.
     Bodies(u8, u8),
     /// The arm as a whole.
     Arm,
@@ -28,64 +28,63 @@ pub enum Subject {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Axis {
-    /// The first.
+    /// The x axis.
     X,
-    /// The second.
+    /// The y axis.
     Y,
-    /// The third.
+    /// The z axis.
     Z,
 }
 
-/// What was measured or commanded of a [`Subject`].
+/// The measured or commanded quantity of a [`Subject`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Quantity {
-    /// `[rad]` or `[m]`.
+    /// Position, `[rad]` or `[m]`.
     Position,
-    /// `[rad/s]` or `[m/s]`.
+    /// Velocity, `[rad/s]` or `[m/s]`.
     Velocity,
-    /// `[rad/s²]` or `[m/s²]`.
+    /// Acceleration, `[rad/s²]` or `[m/s²]`.
     Acceleration,
-    /// `[rad/s³]` or `[m/s³]`.
+    /// Jerk, `[rad/s³]` or `[m/s³]`.
     Jerk,
-    /// `[N·m]`.
+    /// Torque, `[N·m]`.
     Torque,
-    /// `[N·m/s]`.
+    /// Torque rate, `[N·m/s]`.
     TorqueRate,
-    /// What the environment does by the robot's estimate: `[N·m]` of a joint or a rotation, `[N]`
-    /// of a translation.
+    /// The robot's estimate of the external load: `[N·m]` for a joint or a rotation, `[N]` for a
+    /// translation.
     ExternalLoad,
-    /// From what the state says is commanded to the first command: `[rad]` or `[m]`.
+    /// Distance from the commanded position in the state to the first command: `[rad]` or `[m]`.
     StartOffset,
-    /// Between measured and desired: `[m]`.
+    /// Distance between measured and desired pose: `[m]`.
     Deviation,
-    /// Between two bodies: `[m]`.
+    /// Distance between two bodies: `[m]`.
     Distance,
     /// Mechanical power of all joints: `[W]`.
     Power,
-    /// Cycles in a row without a command.
+    /// Consecutive cycles without a command.
     LostCycles,
-    /// How often the velocity changed its sign within the log.
+    /// Number of sign changes of the velocity within the log.
     Reversals,
 }
 
-/// Where a number comes from.
+/// The origin of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Origin {
-    /// From the commands: differences from what the state published before, over one cycle.
+    /// The commands: differences from the values published before, over one cycle.
     Commanded,
-    /// From the joint positions that a Cartesian command takes, by this driver's inverse
-    /// kinematics.
+    /// The joint positions of a Cartesian command, from this driver's inverse kinematics.
     Desired,
-    /// From the sensors.
+    /// The sensors.
     Measured,
-    /// From the robot's estimate of what acts on it.
+    /// The robot's estimate of external loads.
     Estimated,
 }
 
-/// What a number must not exceed.
+/// The limit of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Bound {
@@ -93,10 +92,10 @@ pub enum Bound {
     AtMost(f64),
     /// The nominal limit of the robot's model on the negative side, or the lower end of a range.
     AtLeast(f64),
-    /// A threshold that no state shows: it lies between the magnitude that passed and the one that
-    /// did not.
+    /// A threshold that no state shows: it lies between the magnitude that passed and the magnitude
+    /// that did not.
     Between(f64, f64),
-    /// Neither published nor shown by a state.
+    /// The limit is neither published nor shown by a state.
     Unknown,
 }
 
@@ -105,32 +104,31 @@ pub enum Bound {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Finding {
-    /// The error that it stands for.
+    /// The error of this finding.
     pub error: RobotError,
     /// The joint, axis or part that exceeded it.
     pub subject: Subject,
     /// The quantity that exceeded the limit.
     pub quantity: Quantity,
-    /// Where the value comes from.
+    /// The origin of the value.
     pub origin: Origin,
     /// The largest value, in the unit of its [`Quantity`].
     pub value: f64,
-    /// What it must not exceed, in the same unit.
+    /// The limit of the value, in the same unit.
     pub bound: Bound,
-    /// The first of the cycles in a row in which it was exceeded: the `message_id` of the state
-    /// that the command answers, or that shows what was measured.
+    /// The first of the consecutive cycles in which the limit was exceeded: the `message_id` of the
+    /// state that the command answers, or that contains the measurement.
     pub since: u64,
 }
 
 impl Finding {
-    /// By how much the limit is exceeded, in the unit of the quantity; `None` if the limit is not
-    /// known. Zero or less, by a few hundredths of the limit, if the state is too coarse to tell.
+    /// Excess over the limit, in the unit of the quantity; `None` if the limit is unknown. Zero or
+    /// negative, by a few hundredths of the limit, if the precision of the state is not sufficient.
     pub fn excess(&self) -> Option<f64> {
         self.bound.excess(self.value)
     }
 
-    /// How many times the limit the value is; `None` if the limit is zero, a position, or not
-    /// known.
+    /// Ratio of the value to the limit; `None` if the limit is zero, a position, or unknown.
     pub fn times(&self) -> Option<f64> {
         let limit = self.bound.limit()?;
         let is_scale = limit != 0.0 && self.quantity != Quantity::Position;
@@ -139,7 +137,7 @@ impl Finding {
 }
 
 impl Bound {
-    /// The nominal limit, if it is known.
+    /// The nominal limit, if known.
     pub fn limit(self) -> Option<f64> {
         match self {
             Self::AtMost(limit) | Self::AtLeast(limit) => Some(limit),
@@ -147,7 +145,7 @@ impl Bound {
         }
     }
 
-    /// By how much a value is beyond; negative if it is not.
+    /// Excess of a value over the limit; negative within it.
     pub(super) fn excess(self, value: f64) -> Option<f64> {
         match self {
             Self::AtMost(limit) => Some(value - limit),
@@ -158,12 +156,12 @@ impl Bound {
 }
 
 impl Subject {
-    /// A joint, counted from 0.
+    /// Joint number `index`, counted from 0.
     pub(super) fn joint(index: usize) -> Self {
         Self::Joint(index as u8 + 1)
     }
 
-    /// A component of a twist or wrench, counted from 0.
+    /// Component number `index` of a twist or wrench, counted from 0.
     pub(super) fn component(index: usize) -> Self {
         let axis = [Axis::X, Axis::Y, Axis::Z][index % 3];
         if index < 3 {
@@ -182,7 +180,7 @@ impl Subject {
 }
 
 impl Quantity {
-    /// A value of it, with its unit.
+    /// A value of this quantity, with its unit.
     pub(super) fn of(self, subject: Subject, value: f64) -> Measure {
         Measure {
             quantity: self,
@@ -220,7 +218,7 @@ pub(super) struct Measure {
 }
 
 impl Measure {
-    /// The same with more digits, if it takes them to tell it from `other`.
+    /// The same measure with more digits, if they are needed to distinguish it from `other`.
     fn told_from(self, other: f64) -> Self {
         let same = |&digits: &u8| Digits(self.value).with(digits) == Digits(other).with(digits);
         let digits = (DIGITS..=DIGITS_MAX).find(|digits| !same(digits));
@@ -245,23 +243,23 @@ impl fmt::Display for Measure {
             Quantity::TorqueRate => write!(f, "{number} N m/s"),
             Quantity::Deviation | Quantity::Distance => write!(f, "{number} m"),
             Quantity::Power => write!(f, "{number} W"),
-            // The name of the quantity says the rest.
+            // The name of the quantity already contains the unit.
             Quantity::LostCycles | Quantity::Reversals => write!(f, "{number}"),
         }
     }
 }
 
-/// Four significant digits without an exponent, as far as six decimals show them.
+/// A number with four significant digits and no exponent, with at most six decimals.
 pub(super) struct Digits(pub(super) f64);
 
 /// Significant digits of a number.
 const DIGITS: u8 = 4;
 
-/// The most, of a number that is next to another one.
+/// Largest number of significant digits, for a number next to a similar one.
 const DIGITS_MAX: u8 = 8;
 
 impl Digits {
-    /// With this number of significant digits.
+    /// Formats the number with this number of significant digits.
     fn with(&self, digits: u8) -> String {
         let value = self.0;
         if value == 0.0 || !value.is_finite() {
@@ -338,7 +336,7 @@ impl fmt::Display for Finding {
             _ => value,
         };
         match quantity {
-            // These name their origin.
+            // The names of these quantities contain the origin.
             Quantity::LostCycles | Quantity::Reversals => {
                 write!(f, "{subject}: {value} {}", quantity.name())?
             }
@@ -380,7 +378,7 @@ impl fmt::Display for Finding {
     }
 }
 
-/// Two decimals are enough for a ratio.
+/// Rounds a ratio to two decimals.
 fn round(times: f64) -> f64 {
     (times * 100.0).round() / 100.0
 }

@@ -1,31 +1,31 @@
-//! Why a Franka robot ended a motion, by a reflex or otherwise: which limit was exceeded, by how
-//! much, since when, what led up to it and what to change. `reasoning` combines the evidence.
+//! Explains why a Franka robot ended a motion, by a reflex or otherwise. It determines the limit
+//! that was exceeded, by how much and since when, the causes, and the changes to make. `reasoning`
+//! combines the evidence.
 //!
 //! ```text
 //! errors, log, model --> finding (one error: commanded | measured | contact | lost cycles)
 //!                          +-> causes (steps | contact | lost cycles | posture) --> advice
 //! ```
 //!
-//! The robot names errors and nothing else: no joint, no number. Joint and number are computed
-//! here, from the log of the motion's last cycles, by the differences and limits that the robot
-//! checks by (FCI documentation), so far as these are published and as states of single precision
-//! show them. What the log does not show is not guessed: a [`Diagnosis`] then says that it is not
-//! visible.
+//! The robot only names errors, without a joint or a number. Joint and number are computed here
+//! from the log of the motion's last cycles, with the robot's differences and limits (FCI
+//! documentation). The precision is limited by the published data and by the single precision of
+//! the states. Nothing is guessed: if the log does not show the cause, the [`Diagnosis`] says so.
 //!
-//! * [`Diagnose`]: the diagnosis of an error, where it was caught. [`Case`], [`Diagnosis::of`]: of
-//!   a log, saved or live.
-//! * [`Finding`]: the limit that was exceeded. [`Cause`]: what led up to it. [`Advice`]: what to
+//! * [`Diagnose`]: the diagnosis of an error where it was caught. [`Case`], [`Diagnosis::of`]: the
+//!   diagnosis of a log, saved or live.
+//! * [`Finding`]: the exceeded limit. [`Cause`]: an event that led to it. [`Advice`]: a recommended
 //!   change.
 //!
-//! | module | holds |
+//! | module | contents |
 //! |---|---|
-//! | `reasoning` | which error explains the others, which checks show it, which causes and advice follow |
-//! | `evidence` | the log, laid out for these checks |
-//! | `commanded`, `measured` | commands and sensor values against the limits of the model |
+//! | `reasoning` | the error that explains the others, its checks, causes and advice |
+//! | `evidence` | the log, prepared for these checks |
+//! | `commanded`, `measured` | commands and sensor values relative to the limits of the model |
 //! | `command_steps`, `contact`, `lost_cycles`, `posture` | causes, one kind each |
 //! | `finding`, `cause`, `advice` | the parts of a diagnosis, and their text |
 //!
-//! A log that a program has saved is diagnosed offline (feature `serde`):
+//! This example diagnoses a saved log offline (feature `serde`):
 //!
 //! ```
 //! use franka_diagnosis::{Case, Diagnosis};
@@ -57,10 +57,10 @@
 //!
 //! # What it does not do
 //!
-//! It reads no clock, file or socket, and it is not for the control thread: it allocates. It sees
-//! only what a log holds. No state shows thresholds of collisions (a threshold is told by the two
-//! values that it lies between), virtual walls or filters of the robot's own, and the log does not
-//! show what happened before its first cycle.
+//! The crate reads no clock, file or socket. It allocates, so it is not for the control thread. It
+//! only sees the contents of a log. No state shows collision thresholds, virtual walls or the
+//! robot's own filters; a threshold is reported as two values that it lies between. The log does
+//! not show events before its first cycle.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -94,17 +94,18 @@ pub use cause::Cause;
 pub use finding::{Axis, Bound, Finding, Origin, Quantity, Subject};
 pub use franka_rt::driver::Commander;
 
-// The program in the README compiles.
+// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// Errors that carry the log of the motion that they ended.
+/// Errors that contain the log of the motion that they ended.
 pub trait Diagnose {
-    /// Why the robot stopped itself, as far as the log shows; `None` for any other end of a motion.
+    /// Returns the reason why the robot stopped itself, if the log shows it; `None` for any other
+    /// end of a motion.
     ///
-    /// Computed at each call, in the caller's thread: this allocates and takes up to a few
-    /// milliseconds.
+    /// The diagnosis is computed at each call, in the caller's thread: this allocates and takes up
+    /// to a few milliseconds.
     fn diagnose(&self) -> Option<Diagnosis>;
 }
 
@@ -128,25 +129,25 @@ impl Diagnose for Reflex {
     }
 }
 
-/// Why the robot ended a motion, as far as its last cycles show.
+/// The reason why the robot ended a motion, derived from its last cycles.
 ///
-/// `Display` is a few lines: what was exceeded, what led up to it, other errors, what to change.
+/// `Display` is a few lines: the exceeded limit, the causes, other errors, and the advice.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Diagnosis {
-    /// What commanded the motion.
+    /// The source of the motion's commands.
     pub commander: Commander,
     /// The errors that the robot named.
     pub errors: Errors,
-    /// Of them, the one that explains the others; `None` if it named none.
+    /// The error that explains the others; `None` if the robot named none.
     pub error: Option<RobotError>,
-    /// The limit that was exceeded, if the log shows it.
+    /// The exceeded limit, if the log shows it.
     pub finding: Option<Finding>,
-    /// What led up to it, the most likely first. Empty if the log shows nothing.
+    /// Events that led to it, the most likely first. Empty if the log shows none.
     pub causes: Vec<Cause>,
-    /// What to change, the most promising first; [`Advice::text`] has the settings of this
-    /// commander.
+    /// Recommended changes, the most promising first; [`Advice::text`] contains the settings of
+    /// this commander.
     pub advice: Vec<Advice>,
     /// The state that shows the end of the motion, by its `message_id`; `None` without a log.
     pub end: Option<u64>,
@@ -154,17 +155,18 @@ pub struct Diagnosis {
     pub cycles: usize,
 }
 
-/// What a diagnosis is made of, beside the model of the robot. To be saved and diagnosed later.
+/// The input of a diagnosis, in addition to the model of the robot. It can be saved and diagnosed
+/// later.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Case {
-    /// What commanded the motion.
+    /// The source of the motion's commands.
     pub commander: Commander,
     /// `reflex_reason` of the state that ended the motion.
     pub errors: Errors,
     /// The last cycles of the motion.
     pub log: Arc<ControlLog>,
-    /// Counts over the motion, for commands that left too late; `None` if they were not kept.
+    /// Counts over the motion, for commands that left too late; `None` if they were not recorded.
     pub statistics: Option<MotionStatistics>,
 }
 
@@ -181,11 +183,12 @@ impl From<&ControlError> for Case {
 }
 
 impl Diagnosis {
-    /// Most cycles of a log that are read, the newest. Limits are checked in every cycle, a link
-    /// counts as broken after 20 lost ones, and the success rate is an average over 100.
+    /// Largest number of cycles of a log that are read, the newest ones. Limits are checked in
+    /// every cycle, a link counts as broken after 20 lost cycles, and the success rate is an
+    /// average over 100.
     pub const CYCLES_MAX: usize = 200;
 
-    /// Returns the diagnosis of a case with a robot of this model.
+    /// Returns the diagnosis of a case, for a robot of this model.
     pub fn of(case: &Case, model: &Model) -> Self {
         let older = case.log.len().saturating_sub(Self::CYCLES_MAX);
         let evidence = Evidence {
@@ -217,13 +220,13 @@ impl Diagnosis {
         }
     }
 
-    /// Cycles from the one in which the limit was first exceeded to the one that shows the end of
-    /// the motion.
+    /// Number of cycles from the first excess of the limit to the state that shows the end of the
+    /// motion.
     pub fn cycles_before_end(&self) -> Option<u64> {
         Some(self.end?.saturating_sub(self.finding?.since))
     }
 
-    /// The errors besides the one that explains them.
+    /// The errors except the one that explains them.
     fn others(&self) -> Errors {
         let mut others = self.errors;
         if let Some(error) = self.error {
@@ -242,7 +245,7 @@ impl fmt::Display for Diagnosis {
             (Some(finding), Some(before)) => {
                 write!(f, "{finding}, since cycle {} ms", finding.since)?;
                 match before {
-                    // The thread may have looked long after the stop.
+                    // The thread may have detected the stop much later.
                     _ if finding.quantity == Quantity::LostCycles => {}
                     0 => write!(f, ", the last one")?,
                     1 => write!(f, ", the one before the stop")?,
@@ -279,5 +282,5 @@ impl fmt::Display for Diagnosis {
     }
 }
 
-/// Causes that `Display` has lines for.
+/// Largest number of causes in the text.
 const CAUSES_SHOWN: usize = 3;

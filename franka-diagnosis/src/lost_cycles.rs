@@ -1,4 +1,4 @@
-//! Which cycles passed without a command.
+//! The cycles that passed without a command.
 
 use core::ops::Range;
 
@@ -8,14 +8,15 @@ use super::cause::Cause;
 use super::evidence::{Evidence, is_lost};
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// Cycles that may be lost in a row: 20 end a motion (FCI documentation,
+/// Largest number of consecutive lost cycles: 20 end a motion (FCI documentation,
 /// `communication_constraints_violation`).
 const LOST_LIMIT: f64 = 19.0;
 
-/// From a loss to the last command that it can lead astray: a jerk is taken of two commands.
+/// Number of cycles between a loss and the last command that it can affect: a jerk is a difference
+/// of two commands.
 const BEFORE: u64 = 2;
 
-/// Cycles without a command, oldest first, named by the states whose answers are missing.
+/// Cycles without a command, oldest first, identified by the states whose answers are missing.
 struct Losses {
     states: u64,
     commands: u64,
@@ -25,7 +26,7 @@ struct Losses {
 }
 
 impl Losses {
-    /// Of the cycles `within`.
+    /// Collects the losses in the cycles `within`.
     fn of(evidence: &Evidence<'_>, starved: bool, within: Range<u64>) -> Self {
         let mut losses = Self {
             states: 0,
@@ -36,7 +37,8 @@ impl Losses {
                 .last_running()
                 .map_or(0.0, |state| state.control_command_success_rate),
         };
-        // What is not in the log has not arrived, unless the counts of the motion know better.
+        // A state that is not in the log has not arrived, unless the counts of the motion show
+        // otherwise.
         let skips = evidence
             .statistics
             .is_some_and(|counts| counts.lost_states == 0 && counts.skipped_states > 0);
@@ -49,19 +51,19 @@ impl Losses {
             }
             let missing = next - id - 1;
             let ends = !after.motion_running();
-            // A thread that is held up while it answers skips the states that come meanwhile.
+            // A thread that is delayed during its answer skips the states that arrive meanwhile.
             let skipped = if skips { missing } else { 0 };
             if command.message_id == 0 {
                 // The robot waits for the first command.
             } else if command.message_id != id {
-                // Between two targets that the robot plans to, there is nothing to send.
+                // While the robot plans between two targets, no commands are needed.
                 if evidence.commander.commands_every_cycle() {
                     losses.unanswered += 1;
                     losses.cycles.push(id);
                 }
             } else if is_lost(before, after, skipped)
                 || (ends && starved && missing == skipped)
-                // None has come in time so far.
+                // No command has arrived in time yet.
                 || (!ends && starved && after.control_command_success_rate == 0.0)
             {
                 losses.commands += 1;
@@ -74,7 +76,7 @@ impl Losses {
         losses
     }
 
-    /// The longest run: how many, and which is the first of them.
+    /// The longest run: its length and its first cycle.
     fn longest(&self) -> Option<(u64, u64)> {
         let mut longest = None;
         let mut run = (0, 0);
@@ -104,7 +106,7 @@ impl Losses {
     }
 }
 
-/// The longest run of cycles without a command, for a robot that stopped because of one.
+/// The longest run of cycles without a command, for a robot that stopped because of it.
 pub(super) fn starvation(evidence: &Evidence<'_>) -> Option<Finding> {
     let (length, first) = Losses::of(evidence, true, 0..u64::MAX).longest()?;
     Some(Finding {
@@ -112,21 +114,21 @@ pub(super) fn starvation(evidence: &Evidence<'_>) -> Option<Finding> {
         subject: Subject::Arm,
         quantity: Quantity::LostCycles,
         origin: Origin::Measured,
-        // What comes after the cycle that ended the motion does not count.
+        // Cycles after the cycle that ended the motion do not count.
         value: (length as f64).min(LOST_LIMIT + 1.0),
         bound: Bound::AtMost(LOST_LIMIT),
         since: first,
     })
 }
 
-/// What got lost within the log, if the robot stopped for want of commands: the last one did not
-/// reach it, either.
+/// The losses within the log, if the robot stopped because of missing commands: the last command
+/// did not reach it either.
 pub(super) fn lost_packets(evidence: &Evidence<'_>) -> Option<Cause> {
     Losses::of(evidence, true, 0..u64::MAX).cause()
 }
 
-/// What got lost in a row right before the command that was wrong, or within the log if that is not
-/// known: the robot makes up for what is missing, and a command may leap from that.
+/// The consecutive losses directly before the wrong command, or within the log if that command is
+/// unknown: the robot extrapolates missing commands, and a command may jump from the extrapolation.
 pub(super) fn lost_before(evidence: &Evidence<'_>, finding: Option<&Finding>) -> Option<Cause> {
     let Some(Finding { since, .. }) = finding else {
         return Losses::of(evidence, false, 0..u64::MAX).cause();
@@ -140,7 +142,7 @@ pub(super) fn lost_before(evidence: &Evidence<'_>, finding: Option<&Finding>) ->
     Losses::of(evidence, false, first..*since).cause()
 }
 
-/// Commands of the whole motion that left too late.
+/// The late commands of the whole motion.
 pub(super) fn late_commands(evidence: &Evidence<'_>) -> Option<Cause> {
     let statistics = evidence.statistics?;
     (statistics.overruns > 0).then_some(Cause::LateCommands {

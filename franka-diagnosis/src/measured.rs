@@ -1,4 +1,4 @@
-//! What the sensors show.
+//! The limits of sensor values.
 
 use franka_model::collision::Shape;
 use franka_model::{Frame, JointVector};
@@ -8,7 +8,7 @@ use super::commanded::end_effector;
 use super::evidence::{Evidence, Reading, positions, velocities};
 use super::finding::{Bound, Finding, Origin, Quantity, Subject};
 
-/// Joint velocities against their envelopes.
+/// Joint velocities relative to their envelopes.
 pub(super) fn velocity_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     evidence
         .states()
@@ -19,7 +19,7 @@ pub(super) fn velocity_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
         .collect()
 }
 
-/// Joint positions against their ranges.
+/// Joint positions relative to their ranges.
 pub(super) fn position_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     evidence
         .states()
@@ -60,7 +60,7 @@ pub(super) fn speed_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
         .collect()
 }
 
-/// Joint torques against the nominal ones: the range of the sensors, a little larger, is not
+/// Joint torques relative to the nominal limits: the slightly larger range of the sensors is not
 /// published.
 pub(super) fn torque_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
     let limit = &evidence.model.joint_limits().torque;
@@ -83,7 +83,7 @@ pub(super) fn torque_readings(evidence: &Evidence<'_>) -> Vec<Reading> {
         .collect()
 }
 
-/// The greatest mechanical power of the joints.
+/// The largest mechanical power of the joints.
 pub(super) fn power(evidence: &Evidence<'_>) -> Option<Finding> {
     let powers = evidence.states().map(|state| {
         let power = JointVector::from(state.tau_J)
@@ -103,7 +103,7 @@ pub(super) fn power(evidence: &Evidence<'_>) -> Option<Finding> {
     ))
 }
 
-/// The two bodies of the arm that are nearest to each other at the end, three links or more apart,
+/// The two bodies of the arm that are closest to each other at the end, three links or more apart,
 /// by the vendor's capsules.
 pub(super) fn nearest_bodies(evidence: &Evidence<'_>) -> Option<Finding> {
     let state = evidence.last()?;
@@ -130,7 +130,7 @@ pub(super) fn nearest_bodies(evidence: &Evidence<'_>) -> Option<Finding> {
     })
 }
 
-/// The largest distance of the measured from the desired end effector.
+/// The largest distance between the measured and the desired end effector.
 pub(super) fn deviation(evidence: &Evidence<'_>, error: RobotError) -> Option<Finding> {
     let deviations = evidence.states().map(|state| {
         let shift = |i: usize| state.O_T_EE[12 + i] - state.O_T_EE_d[12 + i];
@@ -143,7 +143,7 @@ pub(super) fn deviation(evidence: &Evidence<'_>, error: RobotError) -> Option<Fi
         .then(|| unbounded(error, subject, Quantity::Deviation, shift.norm(), since))
 }
 
-/// The joint whose velocity changes its sign most often, if any does more than once.
+/// The joint with the most sign changes of its velocity, if there are at least two.
 pub(super) fn shaking(evidence: &Evidence<'_>) -> Option<Finding> {
     let reversals = |i: usize| {
         let mut side = 0.0;
@@ -190,9 +190,9 @@ fn unbounded(
     }
 }
 
-/// Bodies further apart than this do not explain a stop, `[m]`: robots are known to stop before
-/// contact, and how long before is not published.
+/// Distance, `[m]`, above which bodies do not explain a stop: robots are known to stop before
+/// contact, but the distance is not published.
 const NEAR: f64 = 0.1;
 
-/// Velocity that counts as rest, `[rad/s]`: several times what an arm at rest shows.
+/// Velocity that counts as rest, `[rad/s]`: several times the measured velocity of an arm at rest.
 const STILL: f64 = 0.02;

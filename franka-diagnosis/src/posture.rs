@@ -1,4 +1,4 @@
-//! Poses that make a motion hard.
+//! Poses that make a motion difficult.
 
 use franka_model::{Frame, JointVector, elbow};
 use franka_proto::RobotState;
@@ -8,13 +8,12 @@ use super::commanded::end_effector;
 use super::evidence::Evidence;
 use super::finding::{Finding, Origin, Quantity, Subject};
 
-/// How near the last desired pose of a Cartesian motion is to a singular one, if it is.
+/// The singularity near the last desired pose of a Cartesian motion, if any.
 pub(super) fn singularity(evidence: &Evidence<'_>) -> Option<Cause> {
     evidence.is_cartesian().then(|| singular_pose(evidence))?
 }
 
-/// How near the last desired pose is to a singular one, if it is: where small torques look like
-/// large forces.
+/// The singularity near the last desired pose, if any: small torques look like large forces there.
 pub(super) fn singular_pose(evidence: &Evidence<'_>) -> Option<Cause> {
     let state = evidence.last_running()?;
     let q = JointVector::from(state.q_d);
@@ -32,7 +31,7 @@ pub(super) fn singular_pose(evidence: &Evidence<'_>) -> Option<Cause> {
     })
 }
 
-/// Whether the joint of a finding is near the end of the range that it moves towards.
+/// The position limit that the joint of a finding moves towards, if it is near.
 pub(super) fn limit(evidence: &Evidence<'_>, finding: &Finding) -> Option<Cause> {
     let Subject::Joint(joint) = finding.subject else {
         return None;
@@ -73,9 +72,8 @@ fn position(state: &RobotState, origin: Origin) -> JointVector {
     .into()
 }
 
-/// Smallest singular value from which on a pose counts as singular. Ordinary ones have 0.14 and
-/// more.
+/// Smallest singular value below which a pose counts as singular. Ordinary poses have 0.14 or more.
 const SINGULAR: f64 = 0.1;
 
-/// A joint with less than this left is near the end of its range, `[rad]`.
+/// Remaining distance, `[rad]`, below which a joint is near the end of its range.
 const NEAR: f64 = 0.05;

@@ -1,5 +1,5 @@
-//! How the reason of a reflex is worked out: from errors to a finding, from a finding to its
-//! causes, from causes to advice.
+//! Derives the reason of a reflex: from errors to a finding, from a finding to its causes, from
+//! causes to advice.
 
 use core::time::Duration;
 
@@ -13,28 +13,28 @@ use super::evidence::{Evidence, Reading, newest, worst};
 use super::finding::{Finding, Quantity};
 use super::{command_steps, contact, lost_cycles, measured, posture};
 
-/// What kind of thing an error is about.
+/// The subject of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Category {
-    /// Commands that stay away.
+    /// Missing commands.
     Link,
     /// The first command.
     Start,
-    /// What the client commands.
+    /// The client's commands.
     Command,
-    /// The joints that a Cartesian command takes.
+    /// The joint positions of a Cartesian command.
     Inverse,
-    /// What touches the arm.
+    /// Contacts of the arm.
     Contact,
-    /// What the arm does.
+    /// The motion of the arm.
     Arm,
-    /// What only Desk or the robot's own controllers know.
+    /// Settings known only to Desk or the robot's own controllers.
     Desk,
 }
 
-/// Every error, the more explaining ones first: a missing command before the leap that it leads to,
-/// a command before what the arm makes of it, acceleration before jerk before velocity, a contact
-/// before the motion that it causes.
+/// Every error, the more explanatory first. A missing command comes before the jump that it causes,
+/// and a command before the arm's motion. Acceleration comes before jerk, jerk before velocity, and
+/// a contact before the motion that it causes.
 const ORDER: [(E, Category); 41] = [
     (E::CommunicationConstraintsViolation, Category::Link),
     (
@@ -141,8 +141,8 @@ fn category(error: E) -> Category {
     known.map_or(Category::Desk, |&(_, category)| category)
 }
 
-/// The error that explains the others, with what the log shows of it: the first one of which it
-/// shows something, or else the first one.
+/// Returns the error that explains the others, and its evidence in the log: the first error with
+/// evidence, or else the first error.
 pub(super) fn explaining(evidence: &Evidence<'_>, errors: Errors) -> (Option<E>, Option<Finding>) {
     let named = || {
         ORDER
@@ -159,9 +159,9 @@ pub(super) fn explaining(evidence: &Evidence<'_>, errors: Errors) -> (Option<E>,
     )
 }
 
-/// What the log shows of an error.
+/// Returns the evidence of an error in the log.
 fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
-    // What is beyond its limit for certain comes before what is only near.
+    // A value that certainly exceeds its limit has priority over a value that is near it.
     let first_of = |readings: &[&dyn Fn() -> Vec<Reading>]| {
         let found = || readings.iter().map(|readings| newest(error, &readings()));
         found()
@@ -179,8 +179,8 @@ fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
         | E::CartesianMotionGeneratorStartElbowInvalid
         | E::StartElbowSignInconsistent => command_steps::start_offset(evidence, error),
         E::ControllerTorqueDiscontinuity => first_of(&[&|| commanded::torque_readings(evidence)]),
-        // Which of the two an error means depends on what is commanded: of a velocity, the
-        // acceleration is the first difference.
+        // The meaning of the error depends on the command: for a velocity command, the acceleration
+        // is the first difference.
         E::JointMotionGeneratorVelocityDiscontinuity
         | E::JointMotionGeneratorAccelerationDiscontinuity => {
             first_of(&[&joints(Acceleration), &joints(Jerk)])
@@ -208,7 +208,7 @@ fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
         E::JointReflex => contact::collision(evidence, error, Sense::Joints),
         E::CartesianReflex => contact::collision(evidence, error, Sense::Axes),
         E::SelfCollisionAvoidanceViolation => measured::nearest_bodies(evidence),
-        // Newer systems of the FR3 say this of commands, too.
+        // Newer systems of the FR3 report this for commands too.
         E::JointPositionLimitsViolation => {
             beyond(newest(error, &commanded::position_readings(evidence)))
                 .or_else(|| worst(error, &measured::position_readings(evidence)))
@@ -225,12 +225,12 @@ fn find(evidence: &Evidence<'_>, error: E) -> Option<Finding> {
     }
 }
 
-/// Only what is beyond its limit, not what is just short of it.
+/// Returns the finding only if its limit is exceeded, not if the value is just below it.
 fn beyond(finding: Option<Finding>) -> Option<Finding> {
     finding.filter(|finding| finding.excess().is_some_and(|excess| excess > 0.0))
 }
 
-/// What led up to an error, the most likely first.
+/// Returns the causes of an error, the most likely first.
 pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding>) -> Vec<Cause> {
     let mut causes = Vec::new();
     let subject = finding.map(|finding| finding.subject);
@@ -246,9 +246,9 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
         Category::Link => {
             let late = lost_cycles::late_commands(evidence);
             let lost = lost_cycles::lost_packets(evidence);
-            // A command that left too late has not reached the robot in time, either. A thread that
-            // does not read states loses them. States that came late, and all of them, may have
-            // been held up on their way.
+            // A command that left too late did not reach the robot in time either. A thread that
+            // does not read states loses them. States that all arrived, but late, may have been
+            // delayed by the network.
             let turnaround = evidence.statistics.map(|counts| counts.worst_turnaround);
             let turnaround = turnaround.unwrap_or_default();
             let by_host = match lost {
@@ -282,7 +282,7 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
         Category::Contact | Category::Arm => {
             let is_arm = category(error) == Category::Arm;
             let contact = contact::contact(evidence, subject.filter(|_| !is_arm));
-            // What the commands do after the contact, or beyond the limit, did not lead up to it.
+            // Commands after the contact, or beyond the limit, did not cause it.
             let passed = finding.filter(|_| is_arm);
             let mut since = passed.map_or(u64::MAX, |finding| finding.since);
             if let Some(Cause::Contact { since: touched, .. }) = contact {
@@ -303,8 +303,9 @@ pub(super) fn causes(evidence: &Evidence<'_>, error: E, finding: Option<&Finding
     causes
 }
 
-/// What to change. Two at most: by the causes, and by the error itself and its finding if they say
-/// nothing, or if it is about what the arm does, whatever led up to that.
+/// Returns at most two recommended changes, derived from the causes. The error and its finding are
+/// used if the causes give none, or if the error is about the arm's motion, regardless of its
+/// causes.
 pub(super) fn advice(error: E, finding: Option<&Finding>, causes: &[Cause]) -> Vec<Advice> {
     let of_arm = category(error) == Category::Arm;
     // Commands that left too late did not reach the robot in time.
@@ -327,14 +328,14 @@ pub(super) fn advice(error: E, finding: Option<&Finding>, causes: &[Cause]) -> V
         Cause::Limit { .. } => Advice::StayInRange,
     });
     let by_error = match finding.map(|finding| finding.quantity) {
-        // Commands that leap are among the causes.
+        // Jumping commands are among the causes.
         Some(Quantity::Velocity | Quantity::Acceleration) if by_error(error) == Advice::Smooth => {
             Advice::SlowDown
         }
         _ => by_error(error),
     };
     let touched = |cause: &Cause| matches!(cause, Cause::Contact { .. });
-    // The effort was that of the contact.
+    // The contact caused the effort.
     let is_first = of_arm && !(by_error == Advice::LessEffort && causes.iter().any(touched));
     let first = (is_first || causes.is_empty()).then_some(by_error);
     let mut advice: Vec<Advice> = Vec::new();

@@ -1,4 +1,4 @@
-//! What the feature `serde` writes, and that it is read back as it was.
+//! The output of the feature `serde`, and its round trip.
 
 use std::sync::Arc;
 
@@ -40,11 +40,11 @@ fn a_saved_case_is_diagnosed_and_the_diagnosis_names_its_parts() {
     assert_eq!(value["finding"]["subject"], json!({ "Joint": 4 }));
     assert_eq!(value["finding"]["bound"], json!({ "AtMost": 2.175 }));
     assert_eq!(value["finding"]["since"], 8);
-    // Joint 4 at zero is outside its range, too.
+    // Joint 4 at zero is outside its range too.
     assert_eq!(value["advice"], json!(["SlowDown", "StayInRange"]));
 }
 
-/// Older cycles are not read, so the time that a diagnosis takes is bounded.
+/// Older cycles are not read, so the time of a diagnosis is bounded.
 #[test]
 fn the_newest_cycles_of_a_long_log_are_read() {
     let entry = |message_id| {

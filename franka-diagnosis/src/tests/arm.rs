@@ -12,7 +12,7 @@ fn torques() -> Story {
 #[test]
 fn a_speed_is_too_high_since_the_first_cycle_in_a_row() {
     let mut story = torques();
-    // Once above, back below, then above to the end.
+    // First above, then below, then above to the end.
     for velocity in [2.7, 2.5, 2.63, 2.7, 2.8] {
         story.go(|_, _| {}, |state| state.dq[2] = velocity);
     }
@@ -54,7 +54,7 @@ fn a_step_in_torque_that_was_allowed_is_still_named() {
 #[test]
 fn a_torque_that_the_limiter_ramps_is_no_step() {
     let mut story = torques();
-    // The limiter's last step is what is left.
+    // The last step of the limiter is the remainder.
     for torque in [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 8.7] {
         story.go(|_, command| command.tau_J_d[5] = torque * 0.999_999, |_| {});
     }
@@ -136,7 +136,7 @@ fn a_collision_is_the_flagged_axis_not_the_strongest() {
 #[test]
 fn a_threshold_that_a_larger_load_had_passed_is_not_told() {
     let mut story = torques();
-    // The thresholds of acceleration phases are others.
+    // The thresholds differ in acceleration phases.
     story.go(|_, _| {}, |state| state.tau_ext_hat_filtered[1] = 30.0);
     let diagnosis = story.stop(
         &[E::JointReflex],
@@ -186,7 +186,7 @@ fn power_torque_and_shaking_are_read_off_the_sensors() {
     assert_eq!(finding(&torque).subject, Subject::Joint(2));
     assert_eq!(finding(&torque).bound, Bound::AtMost(87.0));
     assert_eq!(torque.advice, [Advice::LessEffort]);
-    // Where something is touched, neither the load nor the commands are the matter.
+    // After a contact, the advice names neither the load nor the commands.
     let mut touched = story_of(&story);
     for torque in [0.0, 0.9] {
         touched.go(
@@ -226,7 +226,7 @@ fn story_of(story: &Story) -> Story {
 #[test]
 fn the_fastest_direction_of_the_end_effector_is_named() {
     let mut story = torques();
-    // Joint 1 swings a hand that is 0.31 m away from its axis; joints 2 and 4 drive it downwards.
+    // Joint 1 swings a hand that is 0.31 m from its axis; joints 2 and 4 drive it downwards.
     story.go(|_, _| {}, |state| (state.dq[1], state.dq[3]) = (6.0, -5.0));
     let diagnosis = story.stop(&[E::CartesianVelocityViolation], |_, _| {}, |_| {});
     let finding = finding(&diagnosis);

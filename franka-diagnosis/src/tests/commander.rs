@@ -59,7 +59,7 @@ fn a_torque_step_is_advised_in_torques() {
         for of_positions in ["position", "acceleration", "steps of joints"] {
             assert!(!text.contains(of_positions), "{text}");
         }
-        // The advice follows from the error, too, where the log shows no step.
+        // If the log shows no step, the advice follows from the error.
         assert_eq!(step(0.0).0, 0);
     }
 }
@@ -104,7 +104,8 @@ fn no_advice_speaks_of_a_control_function_where_there_is_none() {
     }
 }
 
-/// A motion of sparse targets: one is sent, then the robot moves by itself for so many cycles.
+/// A motion with sparse targets: one is sent, then the robot moves without commands for this number
+/// of cycles.
 fn sparse(cycles: u32) -> Story {
     let mut story = Story::of(Model::fr3(), Generator::JointPosition).by(Commander::Asynchronous);
     let asked = story.newest().message_id;
@@ -142,7 +143,7 @@ fn cycles_between_sparse_targets_are_no_losses_and_targets_no_leaps() {
         |_| {},
     );
     assert!(diagnosis.causes.is_empty(), "{:?}", diagnosis.causes);
-    // States that did not arrive are losses all the same.
+    // States that did not arrive still count as losses.
     let mut story = sparse(5);
     story.go(|_, _| {}, |state| state.message_id += 3);
     let diagnosis = story.stop(&[error], |_, command| command.message_id = 7, |_| {});

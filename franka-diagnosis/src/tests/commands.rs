@@ -10,7 +10,7 @@ use crate::{Advice, Axis, Bound, Cause, Origin, Quantity, Subject};
 #[test]
 fn differences_are_taken_from_what_the_robot_made_up_for_lost_cycles() {
     let mut story = Story::of(Model::fr3(), Generator::JointPosition);
-    // Five states are lost; the robot has gone on meanwhile, and says so.
+    // Five states are lost; the robot has continued meanwhile, and its state shows it.
     story.go(
         |_, _| {},
         |state| {
@@ -20,7 +20,8 @@ fn differences_are_taken_from_what_the_robot_made_up_for_lost_cycles() {
             state.control_command_success_rate = 0.95;
         },
     );
-    // Going on from `q_d` as before is not a step, however far it is from the last command.
+    // An unchanged continuation from `q_d` is not a step, regardless of its distance from the last
+    // command.
     story.go(
         |before, command| command.q_c[1] = before.q_d[1] + 0.0005,
         |_| {},
@@ -67,7 +68,7 @@ fn differences_are_taken_from_what_the_robot_made_up_for_lost_cycles() {
     assert_eq!(diagnosis.advice, [Advice::Network, Advice::Smooth]);
 }
 
-/// A quintic from rest to rest, within the limit of the jerk all along.
+/// A quintic from rest to rest, always within the jerk limit.
 #[test]
 fn a_smooth_motion_that_is_too_fast_is_no_step() {
     for (model, duration) in [
@@ -103,7 +104,7 @@ fn a_smooth_motion_that_is_too_fast_is_no_step() {
 #[test]
 fn torques_of_a_first_command_are_compared_with_none() {
     let mut story = Story::unbegun(Model::fer(), Generator::JointVelocity);
-    // Whatever the state of a robot that was held says.
+    // The state of a stopped robot does not matter.
     story.entries[0].state.tau_J_d[2] = 4.0;
     let diagnosis = story.stop(
         &[E::ControllerTorqueDiscontinuity],
@@ -262,7 +263,7 @@ fn the_elbow_has_limits_of_its_own() {
         |_| {},
     );
     let finding = finding(&diagnosis);
-    // Of velocity, acceleration and jerk the jerk is furthest beyond.
+    // Velocity, acceleration and jerk all exceed their limits, the jerk by the largest factor.
     assert_eq!(
         (finding.subject, finding.quantity),
         (Subject::Elbow, Quantity::Jerk)
@@ -283,7 +284,7 @@ fn joints_of_a_smooth_command_in_a_singular_pose_are_found_by_inverse_kinematics
     let pose = Model::fr3().pose(Frame::EndEffector, &q, &EndEffector::default());
     let state = &mut story.entries.last_mut().unwrap().state;
     (state.q, state.q_d, state.O_T_EE_c) = (q.into(), q.into(), layout::pose(&pose));
-    // The joints of 0.3 m/s towards the wrist's circle, a while ago.
+    // The joints of a motion at 0.3 m/s towards the wrist's singularity, some time ago.
     let out = JointVector::from(q) - READY;
     assert!(out.norm() > 0.5);
     state.O_dP_EE_c[0] = 0.3;
@@ -329,8 +330,8 @@ fn a_start_pose_is_off_by_position_or_by_rotation() {
     }
 }
 
-/// A robot whose poses have other lengths, moving on as it did, breaks no limit of its joints; with
-/// the commanded fields filled in or left at zero.
+/// A robot with other lengths in its poses that continues its motion exceeds no joint limit, with
+/// the commanded fields filled in or zero.
 #[test]
 fn joints_of_a_pose_are_found_from_where_the_robot_reports_it() {
     let arm = Model::fr3().clone().with_lengths(Lengths::RECORDED_FR3);

@@ -1,4 +1,4 @@
-//! Last commands: of an arm that moves, of one that has leapt.
+//! Last commands: of an arm in motion, and of an arm whose commands have jumped.
 
 use franka_model::Model;
 use franka_proto::MotionGeneratorMode as Generator;
@@ -34,7 +34,7 @@ fn an_arm_that_has_not_followed_to_the_end_is_named() {
     assert_eq!(causes(0.01).0, []);
 }
 
-/// Joint 7 at this velocity, then a last command.
+/// Joint 7 with this velocity, then a last command.
 fn finished(velocity: f64, last: impl Fn(&RobotState, &mut RobotCommand)) -> Diagnosis {
     let mut story = Story::of(Model::fr3(), Generator::JointPosition);
     story.go(|_, _| {}, |state| state.dq_d[6] = velocity);
@@ -70,7 +70,7 @@ fn a_wrong_start_that_is_finished_at_once_is_a_wrong_start() {
 
 #[test]
 fn a_last_command_that_stands_still_has_leapt_to_it() {
-    // Another function has finished the motion, and the positions stop with it.
+    // Another function has finished the motion, so the positions stop too.
     let diagnosis = finished(0.314, |_, command| command.q_c[6] += 2.8e-8);
     assert!(
         matches!(
@@ -95,7 +95,7 @@ fn a_leap_with_the_last_command_is_a_leap() {
         ),
         "{diagnosis}"
     );
-    // What goes on nearly as before does not leap: it has not been stopped.
+    // Nearly unchanged continuation is not a jump: the last command was still moving.
     let diagnosis = finished(0.3, |before, command| {
         command.q_c[6] = before.q_d[6] + 0.00025
     });

@@ -1,4 +1,4 @@
-//! Cycles without a command: what was lost on the way, and what this host was too late with.
+//! Cycles without a command: network losses, and late commands of this host.
 
 use core::time::Duration;
 
@@ -75,7 +75,7 @@ fn commands_that_left_too_late_are_told_from_the_counts() {
     };
     let slow = told(1800, "the answer to a state took up to 1.8 ms");
     assert_eq!(slow, (Some(0), Advice::Host));
-    // The states may have been late on their way.
+    // The states may have been delayed by the network.
     let quick = told(45, "it had states late, and answered each within 0.045 ms");
     assert_eq!(quick, (Some(1), Advice::Network));
 }
@@ -83,7 +83,7 @@ fn commands_that_left_too_late_are_told_from_the_counts() {
 #[test]
 fn states_that_a_slow_function_skips_are_not_lost() {
     let mut story = Story::of(Model::fr3(), Generator::None);
-    // Each call takes 3 ms: the robot waits in vain for three commands, two states are skipped.
+    // Each call takes 3 ms: the robot misses three commands, and two states are skipped.
     let slow = |state: &mut franka_proto::RobotState| state.message_id += 2;
     for call in 1..=6_u32 {
         let rate = 1.0 - f64::from(3 * call) / 100.0;

@@ -1,4 +1,4 @@
-//! Diagnoses of logs that show one thing each.
+//! Diagnoses of logs that each contain one problem.
 
 mod arm;
 mod commander;
@@ -17,7 +17,7 @@ use super::{Commander, Diagnosis, Finding};
 use franka_rt::driver::LogEntry;
 use franka_rt::stats::MotionStatistics;
 
-/// A log in the making: a state, then pairs of a command and the state after it.
+/// A log under construction: a state, then pairs of a command and the next state.
 struct Story {
     commander: Commander,
     model: &'static Model,
@@ -28,7 +28,7 @@ struct Story {
 const BEGIN: u64 = 1000;
 
 impl Story {
-    /// A motion under this generator from the ready pose, after its first command.
+    /// A motion with this generator from the ready pose, after its first command.
     fn of(model: &'static Model, generator: MotionGeneratorMode) -> Self {
         let mut story = Self::unbegun(model, generator);
         story.go(|_, _| {}, |_| {});
@@ -60,7 +60,7 @@ impl Story {
         }
     }
 
-    /// The same under another commander.
+    /// The same story under another commander.
     fn by(self, commander: Commander) -> Self {
         Self { commander, ..self }
     }
@@ -69,9 +69,9 @@ impl Story {
         &self.entries.last().expect("never empty").state
     }
 
-    /// One cycle: the command that answers the newest state, at rest but for what `ask` makes of
-    /// it, and the state after it, which changes as `then` says. The numbers that a robot echoes
-    /// are those of the command.
+    /// Adds one cycle: the command that answers the newest state, at rest unless `ask` changes it,
+    /// and the next state, which `then` changes. The values that a robot echoes come from the
+    /// command.
     fn go(
         &mut self,
         ask: impl FnOnce(&RobotState, &mut RobotCommand),
@@ -120,7 +120,7 @@ impl Story {
         self.stop_counted(None, errors, ask, then)
     }
 
-    /// Likewise, with the counts of the motion.
+    /// A last cycle, with the counts of the motion.
     fn stop_counted(
         mut self,
         statistics: Option<&MotionStatistics>,
@@ -131,7 +131,7 @@ impl Story {
         let errors: Errors = errors.iter().copied().collect();
         let before = *self.newest();
         self.go(ask, |state| {
-            // What broke the rules is not taken over.
+            // The robot does not apply a command that violates a limit.
             *state = RobotState {
                 message_id: state.message_id,
                 ..before
