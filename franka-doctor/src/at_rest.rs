@@ -1,13 +1,13 @@
-//! What a robot says of itself while it rests.
+//! Checks of the state of a robot at rest.
 
 use franka_proto::{RobotMode, RobotState};
 
 use crate::finding::{About, Finding, Judged, Needs, Purpose};
 
-/// What a state of the robot shows: `robot.mode`, `robot.errors` and `robot.load`. `has_hand` is
-/// whether a Hand answers beside it. A pure function.
+/// Returns the findings about a state of the robot: `robot.mode`, `robot.errors` and `robot.load`.
+/// `has_hand` is true if a Hand also answers. A pure function.
 ///
-/// The thresholds of collisions are not in a state, and not known here.
+/// The collision thresholds are not part of a state, so they are unknown here.
 pub fn at_rest(state: &RobotState, has_hand: bool, purpose: Purpose) -> Vec<Finding> {
     let mode_wanted = About::robot(
         "robot.mode",

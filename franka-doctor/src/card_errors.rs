@@ -1,15 +1,15 @@
-//! Errors that the network card on the way to the robot has counted.
+//! Error counts of the network card on the route to the robot.
 
 use crate::finding::{About, Finding, Group, Judged, Matters, Purpose};
 use crate::host::Unread;
 use crate::readings::{NET, Readings};
 
-/// How often each of [`NAMES`] has occurred.
+/// The count of each of [`NAMES`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CardErrors([u64; NAMES.len()]);
 
 impl CardErrors {
-    /// Since the card was set up.
+    /// Reads the counts since the card was set up.
     pub(crate) fn read(readings: &Readings<'_>) -> Result<Self, Unread> {
         let card = readings.interface()?;
         let mut counts = [0; NAMES.len()];
@@ -19,7 +19,7 @@ impl CardErrors {
         Ok(Self(counts))
     }
 
-    /// Since `before`.
+    /// Returns the counts since `before`.
     fn since(self, before: Self) -> Self {
         let mut counts = self.0;
         for (count, before) in counts.iter_mut().zip(before.0) {
@@ -33,7 +33,7 @@ impl CardErrors {
         let texts: Vec<String> = seen()
             .map(|(name, count)| format!("{name} {count}"))
             .collect();
-        // Packets of protocols that nobody listens to count as dropped.
+        // Packets of protocols without a listener count as dropped.
         let bad = seen().any(|(name, _)| *name != "rx_dropped");
         match (texts.is_empty(), bad) {
             (true, _) => Judged::good("none"),
@@ -43,7 +43,7 @@ impl CardErrors {
     }
 }
 
-/// What the counts before and after the measurements show. A pure function.
+/// Returns the finding about the counts before and after the measurements. A pure function.
 pub(crate) fn meanwhile(
     before: Result<CardErrors, Unread>,
     after: Result<CardErrors, Unread>,
@@ -61,7 +61,7 @@ pub(crate) fn meanwhile(
     about.finding(judged, purpose)
 }
 
-/// Files of the card's statistics.
+/// Files with the card's statistics.
 const NAMES: [&str; 5] = [
     "rx_errors",
     "rx_dropped",
@@ -86,7 +86,7 @@ mod tests {
                 Verdict::Warning,
                 "rx_errors 1, rx_crc_errors 1",
             ),
-            // The card was set up anew meanwhile.
+            // The card was set up again in between.
             (CardErrors([0; 5]), Verdict::Good, "none"),
         ] {
             let finding = meanwhile(Ok(old), Ok(after), Purpose::Move);

@@ -1,13 +1,13 @@
-//! The likeliest causes, on this host, of packets that did not come in time.
+//! The most likely causes on this host of packets that did not arrive in time.
 
 use crate::checks::{Check, all};
 use crate::finding::{Finding, Purpose, Verdict};
 use crate::readings::Readings;
 
-/// What was seen of a motion that ended for want of packets.
+/// The observation from a motion that ended because of missing packets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evidence {
-    /// No state came any more.
+    /// States stopped arriving.
     LinkLost,
     /// States or commands were lost, or the robot's success rate is low.
     Lost,
@@ -16,7 +16,7 @@ pub enum Evidence {
 }
 
 impl Evidence {
-    /// The checks that can explain it, the likeliest cause first.
+    /// Returns the checks that can explain it, the most likely cause first.
     fn suspects(self) -> &'static [&'static str] {
         match self {
             Self::LinkLost => &[
@@ -64,8 +64,8 @@ impl Evidence {
     }
 }
 
-/// The two likeliest causes on this host: failures before warnings, and otherwise in the order in
-/// which they are suspected. Fewer if fewer are found. Reads files and asks the card's driver only.
+/// Returns the two most likely causes on this host: failures before warnings, then in the order of
+/// likelihood. Returns fewer if fewer are found. Only reads files and queries the card's driver.
 pub fn likely_causes(readings: &Readings<'_>, evidence: Evidence) -> Vec<Finding> {
     let named = |id: &&str| all().find(|check| check.id == *id && check.reads_only);
     let suspects = evidence.suspects().iter().filter_map(named);

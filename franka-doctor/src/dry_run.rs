@@ -1,4 +1,4 @@
-//! What a dry run of the control loop shows, against a simulated robot on this computer.
+//! The result of a dry run of the control loop against a simulated robot on this computer.
 
 use core::time::Duration;
 
@@ -6,27 +6,26 @@ use crate::finding::{About, Finding, Group, Judged, Matters, Purpose};
 use crate::report::counted;
 use crate::timing::quantile;
 
-/// How fast a control loop answered a simulated robot.
+/// Answer times of a control loop to a simulated robot.
 ///
-/// Times count from when the robot's thread had sent a state. So they are the loop's own: a robot
-/// whose thread is held up sends later, and none of that counts.
+/// Times are measured from the instant at which the robot's thread sent a state. So they contain
+/// only the loop's own delays: a delayed robot thread sends later, and its delay does not count.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DryRun {
     /// The `SCHED_FIFO` priority of the loop; `None` under the normal scheduler.
     pub priority: Option<i32>,
-    /// Of each state that a command was due for, the time until a command left that answered it or
-    /// a newer one. Sorted.
+    /// Time from each due state to the command that answers it or a newer state. Sorted.
     pub answers: Vec<Duration>,
-    /// How often the simulated robot sent a state more than 2 ms after the one before.
+    /// Number of states that the simulated robot sent more than 2 ms after the previous one.
     pub pauses: usize,
-    /// Why the run ended early, if it did.
+    /// The reason if the run ended early.
     pub ended: Option<String>,
 }
 
 impl DryRun {
-    /// Compares when states were `sent` with when the commands that answered them had `left`, both
-    /// by `message_id` of the state, in its order, by one clock. States before the first command
-    /// and after the last one are left out.
+    /// Compares the times of the states in `sent` with the times of their commands in `left`. Both
+    /// lists contain the `message_id` of the state and are in its order, with the same clock.
+    /// States before the first command and after the last one are ignored.
     pub fn new(sent: &[(u64, Duration)], left: &[(u64, Duration)]) -> Self {
         let mut run = Self::default();
         let mut commands = left.iter().peekable();
@@ -46,13 +45,13 @@ impl DryRun {
         run
     }
 
-    /// How many answers took longer than a cycle.
+    /// Number of answers that took longer than a cycle.
     fn late(&self) -> usize {
         self.answers.len() - self.answers.partition_point(|answer| *answer <= CYCLE)
     }
 }
 
-/// What a dry run shows: `timing.dry_run`. A pure function.
+/// Returns the finding about a dry run: `timing.dry_run`. A pure function.
 pub fn dry_run(run: &DryRun, purpose: Purpose) -> Finding {
     let about = About {
         id: "timing.dry_run",
@@ -106,15 +105,16 @@ fn judge(run: &DryRun) -> Judged {
     }
 }
 
-/// What a robot gives a program for its answer.
+/// The time that a robot allows for an answer.
 const CYCLE: Duration = Duration::from_millis(1);
 
 const ANSWER_GOOD: Duration = Duration::from_micros(800);
 
-/// States are a millisecond apart.
+/// Interval between states above which the robot paused; the nominal interval is one millisecond.
 const PAUSE: Duration = Duration::from_millis(2);
 
-/// Fewer answers than ten seconds have, some at begin and end aside, show little.
+/// Number of answers below which the result is not conclusive: ten seconds, without a few at the
+/// beginning and end.
 const ANSWERS_MIN: usize = 9_900;
 
 #[cfg(test)]
@@ -124,7 +124,8 @@ mod tests {
 
     const US: fn(u64) -> Duration = Duration::from_micros;
 
-    /// Ten states a millisecond apart, from number 5 on, at these delays of the robot's.
+    /// Returns ten states at intervals of one millisecond, from number 5 on, with these delays of
+    /// the robot.
     fn sent(delay: impl Fn(u64) -> u64) -> Vec<(u64, Duration)> {
         (5..15).map(|id| (id, US(id * 1000 + delay(id)))).collect()
     }
@@ -132,14 +133,14 @@ mod tests {
     #[test]
     fn answers_count_from_when_the_state_was_sent() {
         let punctual = sent(|_| 0);
-        // Two states come before the first command, and two after the last one.
+        // Two states come before the first command, and two after the last.
         let left = |punctual: &[(u64, Duration)]| -> Vec<_> {
             let commands = punctual[2..8].iter();
             commands.map(|(id, at)| (*id, *at + US(80))).collect()
         };
         let run = DryRun::new(&punctual, &left(&punctual));
         assert_eq!((run.answers, run.pauses), (vec![US(80); 6], 0));
-        // A robot that stands still for 20 ms: none of it is the loop's.
+        // The robot pauses for 20 ms, which is not a delay of the loop.
         let paused = sent(|id| if id < 9 { 0 } else { 20_000 });
         let run = DryRun::new(&paused, &left(&paused));
         assert_eq!((run.answers, run.pauses), (vec![US(80); 6], 1));
@@ -148,7 +149,7 @@ mod tests {
     #[test]
     fn states_that_were_not_answered_count_until_the_next_command() {
         let sent = sent(|_| 0);
-        // The loop is held up from state 6 until 2.5 ms after it, and skips 7.
+        // The loop is delayed from state 6 until 2.5 ms after it, and skips 7.
         let left = [(5, US(5100)), (6, US(8500)), (8, US(8600)), (9, US(9100))];
         let run = DryRun::new(&sent, &left);
         assert_eq!(run.answers, [US(100), US(100), US(600), US(1600), US(2500)]);

@@ -1,10 +1,10 @@
-//! What a check found, and what it means for a purpose.
+//! The result of a check, and its meaning for a purpose.
 
 use core::fmt;
 
 use crate::host::Unread;
 
-/// What the host is to do. Decides which findings are failures.
+/// The purpose of the host. It determines which findings are failures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -17,39 +17,39 @@ pub enum Purpose {
     Move,
 }
 
-/// What a finding means. [`Verdict::Unknown`] is neither good nor bad.
+/// The meaning of a finding. [`Verdict::Unknown`] is neither good nor bad.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Verdict {
-    /// As wanted.
+    /// The value is as expected.
     Good,
-    /// Worth knowing, no obstacle.
+    /// Useful to know, not an obstacle.
     Info,
     /// May cost cycles.
     Warning,
-    /// The purpose is not reached with this.
+    /// The purpose cannot be achieved with this value.
     Failure,
-    /// Could not be read; the finding says what is missing.
+    /// The value could not be read; the finding names the missing part.
     Unknown,
 }
 
-/// The part of the host that a finding is about. Reports have a line for each.
+/// The part of the host that a finding is about. Each has its own line in a report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Group {
     /// Kernel, memory, power, virtual machines.
     Host,
-    /// What the control thread may ask of the kernel.
+    /// The control thread's rights in the kernel.
     Scheduling,
     /// Frequency, sleep states, load, interrupts.
     Processor,
-    /// The way to the robot.
+    /// The route to the robot.
     NetworkCard,
-    /// What answers at the robot's address.
+    /// The services at the robot's address.
     Robot,
-    /// How punctual the host is.
+    /// The punctuality of the host.
     Timing,
 }
 
@@ -78,12 +78,12 @@ impl fmt::Display for Group {
     }
 }
 
-/// What has to follow a fix for it to take effect.
+/// The step that makes a fix effective.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Needs {
-    /// Nothing.
+    /// No further step.
     Nothing,
     /// A new login.
     Login,
@@ -91,17 +91,17 @@ pub enum Needs {
     Reboot,
 }
 
-/// A command for a shell that changes what was found.
+/// A shell command that changes the value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Fix {
-    /// One line.
+    /// The command, on one line.
     pub command: String,
-    /// What has to follow it.
+    /// The step after it.
     pub needs: Needs,
 }
 
-/// What one check found.
+/// The result of one check.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -110,21 +110,21 @@ pub struct Finding {
     pub id: &'static str,
     /// The part of the host.
     pub group: Group,
-    /// What it means for the purpose.
+    /// The meaning for the purpose.
     pub verdict: Verdict,
-    /// What was read; of an unknown one, what is missing.
+    /// The value; if unknown, the missing part.
     pub read: String,
-    /// What is wanted, thresholds included.
+    /// The expected value, with thresholds.
     pub wanted: &'static str,
-    /// What goes wrong otherwise.
+    /// The consequence of another value.
     pub why: &'static str,
-    /// Where the threshold comes from.
+    /// The source of the threshold.
     pub source: &'static str,
-    /// What to do about it.
+    /// A fix, if one exists.
     pub fix: Option<Fix>,
 }
 
-/// What the function of a check returns: the verdict for a host that is to move a robot.
+/// The result of a check's function: the verdict for a host that moves a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Judged {
     pub(crate) verdict: Verdict,
@@ -171,7 +171,7 @@ impl Judged {
     }
 }
 
-/// The parts of a finding that do not depend on what was read.
+/// The parts of a finding that do not depend on the value.
 pub(crate) struct About {
     pub(crate) id: &'static str,
     pub(crate) group: Group,
@@ -182,7 +182,7 @@ pub(crate) struct About {
 }
 
 impl About {
-    /// Of a finding on the robot, which matters for reading its states, too.
+    /// Returns the parts for a finding on the robot, which also matters for reading its states.
     pub(crate) fn robot(
         id: &'static str,
         wanted: &'static str,
@@ -199,7 +199,7 @@ impl About {
         }
     }
 
-    /// The finding for this purpose. What could not be read is unknown.
+    /// Returns the finding for this purpose. An unreadable value is unknown.
     pub(crate) fn finding(self, judged: Result<Judged, Unread>, purpose: Purpose) -> Finding {
         let judged = judged.unwrap_or_else(|unread| Judged::unknown(format!("unknown: {unread}")));
         Finding {
@@ -215,16 +215,16 @@ impl About {
     }
 }
 
-/// The least purpose that a check decides about.
+/// The least demanding purpose that a check applies to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Matters {
-    /// Warns and fails for moving; for reading one step less.
+    /// Warns and fails for moving; one level less for reading.
     Moving,
     /// Warns and fails for moving and reading.
     Reading,
 }
 
-/// What `verdict`, for a host that is to move a robot, is for `purpose`.
+/// Converts `verdict`, which is for a host that moves a robot, to `purpose`.
 fn for_purpose(verdict: Verdict, matters: Matters, purpose: Purpose) -> Verdict {
     match (purpose, matters, verdict) {
         (Purpose::Sim, _, Verdict::Warning | Verdict::Failure) => Verdict::Info,

@@ -1,4 +1,4 @@
-//! What a robot answers to the handshake: which version it speaks, and whether it is free.
+//! A robot's answer to the handshake: its version, and its availability.
 
 use core::time::Duration;
 use std::io::{self, Read as _, Write as _};
@@ -11,25 +11,26 @@ use franka_proto::{IncompatibleVersion, Protocol as _, Version};
 
 use crate::finding::{About, Finding, Judged, Purpose};
 
-/// How an attempt to open a session with a robot ended.
+/// The result of an attempt to open a session with a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Answer {
     /// The robot opened a session of this version.
     Accepted(Version),
-    /// The robot speaks another version than the one that was announced.
+    /// The robot speaks a version other than the announced one.
     Incompatible(IncompatibleVersion),
     /// The robot closed the connection without an answer.
     Closed,
-    /// There was no connection, no answer in time, or one that no robot gives: which.
+    /// No connection, no answer in time, or an invalid answer; the text describes the case.
     Missing(String),
 }
 
-/// Opens a session with the robot at `address` and closes it at once, within 1 s; if the robot
-/// names an older version that is understood here, another one of that version. Commands nothing.
+/// Opens a session with the robot at `address` and closes it at once, within 1 s. If the robot
+/// names an older supported version, opens another session with that version. It sends no other
+/// commands.
 ///
-/// The robot sends states until the session is closed, and takes one client at a time: for robots
-/// that the user asked to connect to.
+/// The robot sends states until the session is closed, and accepts one client at a time. Use this
+/// only if the user asked to connect to the robot.
 pub fn answers(address: SocketAddr) -> Vec<Answer> {
     let first = ask(address, NEWEST, TIMEOUT);
     let older = match &first {
@@ -41,7 +42,7 @@ pub fn answers(address: SocketAddr) -> Vec<Answer> {
     [Some(first), second].into_iter().flatten().collect()
 }
 
-/// What the answers of a robot show, in the order in which they were got: `robot.version` and
+/// Returns the findings about the answers of a robot, in their order: `robot.version` and
 /// `robot.busy`. A pure function.
 pub fn handshake(answers: &[Answer], purpose: Purpose) -> Vec<Finding> {
     let speaks = About::robot(
@@ -62,7 +63,7 @@ pub fn handshake(answers: &[Answer], purpose: Purpose) -> Vec<Finding> {
     ]
 }
 
-/// The version that the robot named.
+/// Judges the version that the robot named.
 fn version(answers: &[Answer]) -> Judged {
     let named = answers.iter().find_map(|answer| match answer {
         Answer::Accepted(version) => Some(version.number()),
@@ -89,7 +90,7 @@ fn version(answers: &[Answer]) -> Judged {
     }
 }
 
-/// Whether the robot has a client already.
+/// Judges whether the robot already has a client.
 fn busy(answers: &[Answer]) -> Judged {
     match answers.last() {
         Some(Answer::Accepted(_)) => Judged::good("free: the robot opened a session"),
@@ -103,7 +104,7 @@ fn busy(answers: &[Answer]) -> Judged {
     }
 }
 
-/// Why nothing is known.
+/// Returns the reason why nothing is known.
 fn unanswered(answers: &[Answer]) -> Judged {
     Judged::unknown(match answers.last() {
         Some(Answer::Missing(why)) => format!("unknown: {why}"),
@@ -112,7 +113,7 @@ fn unanswered(answers: &[Answer]) -> Judged {
     })
 }
 
-/// Announces `version` on a new connection. Connecting and the answer may take `timeout` each.
+/// Announces `version` on a new connection. Connection and answer may take `timeout` each.
 fn ask(address: SocketAddr, version: Version, timeout: Duration) -> Answer {
     let stream = match TcpStream::connect_timeout(&address, timeout) {
         Ok(stream) => stream,
@@ -130,14 +131,14 @@ fn ask(address: SocketAddr, version: Version, timeout: Duration) -> Answer {
     }
 }
 
-/// Shakes hands on `stream`, which is closed afterwards.
+/// Performs the handshake on `stream`, which is closed afterwards.
 fn session(
     mut stream: TcpStream,
     address: SocketAddr,
     version: Version,
     timeout: Duration,
 ) -> io::Result<Answer> {
-    // The robot sends its states here; they are not read.
+    // The robot sends its states to this socket; they are not read.
     let states = match address {
         SocketAddr::V4(_) => UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)),
         SocketAddr::V6(_) => UdpSocket::bind((Ipv6Addr::UNSPECIFIED, 0)),
@@ -157,7 +158,7 @@ fn session(
                     Err(violation) => return Ok(Answer::Missing(violation.to_string())),
                     Ok(Event::Connected { version }) => return Ok(Answer::Accepted(version)),
                     Ok(Event::Incompatible(refusal)) => return Ok(Answer::Incompatible(refusal)),
-                    // Not for this session; the answer may still come.
+                    // A message for another request; the answer may still come.
                     Ok(_) => {}
                 }
                 received.drain(..size);
@@ -182,13 +183,13 @@ fn no_answer(timeout: Duration) -> Answer {
     Answer::Missing(format!("no answer to the handshake within {seconds} s"))
 }
 
-/// The version that is announced first, as the driver does.
+/// The version that is announced first, as in the driver.
 const NEWEST: Version = Version::V10;
 
-/// For connecting and for the answer, as for the other ports.
+/// Time limit of the connection and of the answer, as for the other ports.
 const TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Longest message that is waited for, in bytes; an answer to a handshake has 15.
+/// Longest accepted message, in bytes; an answer to a handshake has 15.
 const ANSWER_MAX: usize = 1024;
 
 #[cfg(test)]
@@ -199,7 +200,7 @@ mod tests {
     use std::net::TcpListener;
     use std::thread;
 
-    /// For an answer that comes: longer than any machine is busy.
+    /// Time limit for an expected answer: longer than any delay of a busy machine.
     const PATIENCE: Duration = Duration::from_secs(60);
 
     fn refusal(server_version: u16) -> Answer {
@@ -209,7 +210,7 @@ mod tests {
         })
     }
 
-    /// Verdicts of version and of whether the robot is free, and what was read of both.
+    /// Returns the verdicts on version and availability, and the values of both.
     fn judged(answers: &[Answer], purpose: Purpose) -> ([Verdict; 2], [String; 2]) {
         let found = handshake(answers, purpose);
         let [version, busy] = <[Finding; 2]>::try_from(found).expect("two findings");
@@ -253,7 +254,7 @@ mod tests {
         let silent = Answer::Missing("no answer".into());
         for (answers, expected) in [
             (&[Answer::Closed][..], [Unknown, Warning]),
-            // The older version is known; the second session was refused.
+            // The older version is supported; the second session was refused.
             (&[refusal(5), Answer::Closed], [Good, Warning]),
             (&[refusal(5), Answer::Accepted(Version::V5)], [Good, Good]),
             (&[silent], [Unknown, Unknown]),
@@ -267,7 +268,7 @@ mod tests {
         }
     }
 
-    /// The bytes of an answer to the first handshake of a session.
+    /// Returns the bytes of an answer to the first handshake of a session.
     fn reply(status: u8, version: u16) -> Vec<u8> {
         let header = Header {
             command: 0,
@@ -280,8 +281,8 @@ mod tests {
         bytes
     }
 
-    /// What is asked of a peer that sends `bytes` once it has the handshake, and closes the
-    /// connection if it is to.
+    /// Returns the answer from a peer that sends `bytes` after the handshake, and closes the
+    /// connection if `closes`.
     fn asked(bytes: Vec<u8>, closes: bool, timeout: Duration) -> Answer {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).expect("a port");
         let address = listener.local_addr().expect("bound");
@@ -291,7 +292,7 @@ mod tests {
             let mut handshake = [0; 16];
             stream.read_exact(&mut handshake).expect("a handshake");
             stream.write_all(&bytes).expect("sent");
-            // Until the client has closed its end.
+            // Waits until the client has closed its end.
             if !closes {
                 let _ = stream.read_to_end(&mut Vec::new());
             }
@@ -313,7 +314,7 @@ mod tests {
         assert_eq!(asked(vec![0; 8], true, PATIENCE), Answer::Closed);
         let silent = asked(Vec::new(), false, Duration::from_millis(20));
         assert_eq!(silent, no_answer(Duration::from_millis(20)));
-        // Of another protocol: the size in the header is out of all bounds.
+        // A message of another protocol: its header's size is far out of range.
         let text = b"HTTP/1.1 400 Bad Request\r\n".to_vec();
         let Answer::Missing(why) = asked(text, false, PATIENCE) else {
             panic!("no robot answers with HTTP")

@@ -1,4 +1,4 @@
-//! What is asked of a host: files, and the few answers that are not in files.
+//! The interface to a host: files, and the few values that are not in files.
 
 use core::fmt;
 use core::time::Duration;
@@ -13,50 +13,52 @@ use franka_rt::sched::Kernel;
 use crate::latencies::Latencies;
 use crate::round_trip::RoundTrips;
 
-/// A host that can be asked. [`System`](crate::System) is the running one, [`Tree`] a directory.
+/// A host to examine. [`System`](crate::System) is the running one, [`Tree`] a directory.
 ///
 /// No method changes anything on the host.
 pub trait Host {
-    /// The contents of a file, by its absolute path; the first MiB of it.
+    /// Returns the contents of a file, by its absolute path; at most the first MiB.
     fn read(&self, path: &str) -> Result<String, Unread>;
-    /// The names in a directory, sorted.
+    /// Returns the names in a directory, sorted.
     fn list(&self, path: &str) -> Result<Vec<String>, Unread>;
-    /// What a symbolic link holds.
+    /// Returns the target of a symbolic link.
     fn link(&self, path: &str) -> Result<String, Unread>;
-    /// What it says of its kernel.
+    /// Returns the kernel's description of itself.
     fn kernel(&self) -> Kernel;
-    /// The `SCHED_FIFO` priority that a thread of this process gets if it asks for the highest one,
-    /// or why it gets none. Tried on a thread of its own.
+    /// Returns the `SCHED_FIFO` priority of a thread of this process that requests the highest
+    /// priority, or the reason for the refusal. Uses a separate thread.
     fn fifo(&self) -> Result<i32, String>;
-    /// The host's own address on the way to `robot`. Nothing is sent.
+    /// Returns the host's own address on the route to `robot`. Sends nothing.
     fn own_address(&self, robot: Ipv4Addr) -> Result<Ipv4Addr, Unread>;
-    /// What the driver of `interface` answers: the bytes of a structure of `linux/ethtool.h`.
+    /// Returns the answer of the driver of `interface`: the bytes of a structure of
+    /// `linux/ethtool.h`.
     fn ethtool(&self, interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread>;
-    /// True if `interface` has `own` for good, set by hand; false if it was lent for a time, as by
-    /// DHCP.
+    /// True if `interface` has the address `own` permanently; false for a leased address, for
+    /// example from DHCP.
     fn is_lasting(&self, interface: &str, own: Ipv4Addr) -> Result<bool, Unread>;
-    /// Free bytes for files in the current directory.
+    /// Returns the free bytes for files in the current directory.
     fn free_disk(&self) -> Result<u64, Unread>;
-    /// The frequency of a processor, in kHz, at the end of a second in which a thread under the
-    /// normal scheduler computes on it.
+    /// Returns the frequency of a processor, in kHz, after one second of computation by a thread
+    /// under the normal scheduler.
     fn busy_frequency(&self, cpu: usize) -> Result<u64, Unread>;
-    /// How late a thread under `SCHED_FIFO`, where allowed, wakes up each millisecond for that
-    /// long. `progress` is called with the part done, about ten times a second.
+    /// Measures the wake-up delays of a thread, each millisecond for this duration, under
+    /// `SCHED_FIFO` if allowed. `progress` is called with the completed share, about ten times a
+    /// second.
     fn wake_ups(
         &self,
         duration: Duration,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Latencies, Unread>;
-    /// Times until datagrams to another thread on this host, one each millisecond for that long,
-    /// come back from it; both threads under `SCHED_FIFO`, where allowed. `progress` is called as
-    /// by [`Self::wake_ups`].
+    /// Measures round-trip times of datagrams to another thread on this host, one each millisecond
+    /// for this duration; both threads under `SCHED_FIFO` if allowed. `progress` is called as by
+    /// [`Self::wake_ups`].
     fn loopback(
         &self,
         duration: Duration,
         progress: &mut dyn FnMut(f64),
     ) -> Result<Latencies, Unread>;
-    /// Times until `robot` answers echo requests (ICMP) of 1200 bytes, `count` of them, one each
-    /// millisecond at most. `progress` is called as by [`Self::wake_ups`].
+    /// Measures the times of `robot`'s answers to `count` echo requests (ICMP) of 1200 bytes, at
+    /// most one each millisecond. `progress` is called as by [`Self::wake_ups`].
     fn round_trips(
         &self,
         robot: Ipv4Addr,
@@ -65,7 +67,7 @@ pub trait Host {
     ) -> Result<RoundTrips, Unread>;
 }
 
-/// A question to the driver of a network card. None changes a setting, or takes privilege.
+/// A query to the driver of a network card. None changes a setting, or needs privileges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ethtool {
     /// `ETHTOOL_GDRVINFO`: `struct ethtool_drvinfo`.
@@ -85,7 +87,7 @@ pub enum Ethtool {
 }
 
 impl Ethtool {
-    /// The number of the command.
+    /// Returns the number of the command.
     pub fn command(self) -> u32 {
         match self {
             Self::Driver => 0x03,
@@ -98,7 +100,7 @@ impl Ethtool {
         }
     }
 
-    /// The size of the structure, in bytes.
+    /// Returns the size of the structure, in bytes.
     pub fn size(self) -> usize {
         match self {
             Self::Driver => 196,
@@ -111,19 +113,19 @@ impl Ethtool {
     }
 }
 
-/// Why something could not be read.
+/// The reason why a value could not be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Unread {
-    /// It is not there.
+    /// It does not exist.
     Absent(String),
-    /// It takes privilege.
+    /// It needs privileges.
     Denied(String),
-    /// Anything else: what, and why.
+    /// Any other error: the subject and the reason.
     Failed(String, String),
 }
 
 impl Unread {
-    /// Why `what` was not read, by the system's error.
+    /// Creates the error for `what` from the system's error.
     pub fn new(what: impl Into<String>, error: &io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => Self::Absent(what.into()),
@@ -143,25 +145,25 @@ impl fmt::Display for Unread {
     }
 }
 
-/// A directory with the files of a host below it, and what is not in files below `calls`:
+/// A directory with the files of a host, and with values that are not in files below `calls`:
 ///
-/// | file | holds |
+/// | file | contents |
 /// |---|---|
-/// | `calls/fifo` | a priority, or why there is none |
+/// | `calls/fifo` | a priority, or the reason for a refusal |
 /// | `calls/own_address` | an IPv4 address |
 /// | `calls/ethtool/INTERFACE/COMMAND` | the answer's bytes in hexadecimal; `COMMAND` as `0x0e` |
-/// | `calls/is_lasting` | whether the host has its own address for good: `true` or `false` |
+/// | `calls/is_lasting` | `true` if the host has its own address permanently, otherwise `false` |
 /// | `calls/free_disk` | free bytes |
 /// | `calls/busy_frequency` | the frequency of any processor under load, in kHz |
-/// | `calls/wake_ups`, `calls/loopback` | lines of a latency in microseconds and how often |
-/// | `calls/round_trips` | a line of how many were sent and how many of these were answered, then as above |
+/// | `calls/wake_ups`, `calls/loopback` | lines with a latency in microseconds and its count |
+/// | `calls/round_trips` | a line with the numbers of sent and answered requests, then lines as above |
 #[derive(Clone, Debug)]
 pub struct Tree {
     root: PathBuf,
 }
 
 impl Tree {
-    /// The host whose files are below `root`.
+    /// Creates a host with the files below `root`.
     pub fn new(root: impl Into<PathBuf>) -> Self {
         Self { root: root.into() }
     }
@@ -174,7 +176,7 @@ impl Tree {
         self.read(&format!("calls/{name}"))
     }
 
-    /// A file that holds one value.
+    /// Returns the value of a file that contains one value.
     fn value<T: FromStr>(&self, name: &str, what: &str) -> Result<T, Unread> {
         let text = self.call(name)?;
         let text = text.trim();
@@ -186,7 +188,7 @@ impl Tree {
         })
     }
 
-    /// Latencies of a thread with the priority that the host grants.
+    /// Returns latencies of a thread with the priority that the host grants.
     fn latencies(&self, name: &str, progress: &mut dyn FnMut(f64)) -> Result<Latencies, Unread> {
         progress(1.0);
         let mut latencies = Latencies::new(self.fifo().ok());
@@ -198,7 +200,7 @@ impl Tree {
         Ok(latencies)
     }
 
-    /// The lines of a file of two numbers each.
+    /// Returns the lines of a file with two numbers each.
     fn pairs(&self, name: &str) -> Result<Vec<(u64, u64)>, Unread> {
         let text = self.call(name)?;
         let pair = |line: &str| {
@@ -295,7 +297,7 @@ impl Host for Tree {
     }
 }
 
-/// The names in a directory, sorted.
+/// Returns the names in a directory, sorted.
 pub(crate) fn names_in(path: &Path) -> io::Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(path)? {

@@ -1,9 +1,9 @@
-//! Latencies of a thread: a histogram, like that of cyclictest.
+//! Latencies of a thread: a histogram, as in cyclictest.
 
 use core::time::Duration;
 
-/// Latencies of a thread in buckets of a microsecond, up to 2 ms; and exactly the shortest and the
-/// longest.
+/// Latencies of a thread in buckets of one microsecond, up to 2 ms, with the exact minimum and
+/// maximum.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Latencies {
     /// The `SCHED_FIFO` priority of the thread; `None` under the normal scheduler.
@@ -15,7 +15,7 @@ pub struct Latencies {
 }
 
 impl Latencies {
-    /// None yet, of a thread with this priority.
+    /// Creates an empty histogram of a thread with this priority.
     pub fn new(priority: Option<i32>) -> Self {
         Self {
             priority,
@@ -26,7 +26,7 @@ impl Latencies {
         }
     }
 
-    /// Counts one. Allocates nothing.
+    /// Adds a latency. Allocates nothing.
     pub fn note(&mut self, latency: Duration) {
         let us = usize::try_from(latency.as_micros()).unwrap_or(usize::MAX);
         self.buckets[us.min(BUCKETS - 1)] += 1;
@@ -35,23 +35,24 @@ impl Latencies {
         self.max = self.max.max(latency);
     }
 
-    /// How many were counted.
+    /// Number of latencies.
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// The shortest one, exactly; `None` if there is none.
+    /// The exact minimum; `None` if empty.
     pub fn min(&self) -> Option<Duration> {
         (self.count > 0).then_some(self.min)
     }
 
-    /// The longest one, exactly; `None` if there is none.
+    /// The exact maximum; `None` if empty.
     pub fn max(&self) -> Option<Duration> {
         (self.count > 0).then_some(self.max)
     }
 
-    /// The smallest whole number of microseconds that the part `part` (in `[0, 1]`) of latencies,
-    /// in whole microseconds, does not exceed; 2000 stands for more. `None` if there is none.
+    /// Returns the smallest whole number of microseconds that at least the share `part` (in `[0,
+    /// 1]`) of the latencies does not exceed, in whole microseconds. 2000 represents all larger
+    /// latencies. `None` if empty.
     pub fn quantile(&self, part: f64) -> Option<u64> {
         let wanted = (part.clamp(0.0, 1.0) * self.count as f64).ceil().max(1.0) as u64;
         let mut seen = 0;
@@ -64,17 +65,17 @@ impl Latencies {
         None
     }
 
-    /// How many were at least `us` microseconds, which is 2000 at most.
+    /// Number of latencies of at least `us` microseconds; `us` is at most 2000.
     pub fn at_least(&self, us: usize) -> u64 {
         self.buckets[us.min(BUCKETS - 1)..].iter().sum()
     }
 
-    /// Each latency in microseconds that occurred, and how often.
+    /// Returns each latency in microseconds that occurred, and its count.
     pub fn buckets(&self) -> impl Iterator<Item = (usize, u64)> + '_ {
         let counts = self.buckets.iter().copied().enumerate();
         counts.filter(|(_, count)| *count > 0)
     }
 }
 
-/// A bucket for each microsecond below 2 ms, and one for all that is later.
+/// Number of buckets: one for each microsecond below 2 ms, and one for all larger latencies.
 const BUCKETS: usize = 2001;

@@ -1,4 +1,4 @@
-//! Whether an address of the host was lent for a time: what the kernel says of its addresses.
+//! Detects a leased address of the host, from the kernel's list of addresses.
 
 use std::io::{self, Read as _};
 use std::net::Ipv4Addr;
@@ -6,15 +6,15 @@ use std::time::Duration;
 
 use socket2::{Domain, Protocol, Socket, Type};
 
-/// True if the host has `address` for good; `None` if it does not have it. Asks the kernel for all
-/// its IPv4 addresses (`RTM_GETADDR`), which changes nothing and takes no privilege.
+/// Returns true if the host has `address` permanently; `None` if it does not have it. Queries all
+/// IPv4 addresses from the kernel (`RTM_GETADDR`), which changes nothing and needs no privileges.
 pub(crate) fn is_lasting(address: Ipv4Addr) -> io::Result<Option<bool>> {
     let protocol = Protocol::from(libc::NETLINK_ROUTE);
     let socket = Socket::new(Domain::from(libc::AF_NETLINK), Type::RAW, Some(protocol))?;
     socket.set_read_timeout(Some(Duration::from_secs(1)))?;
     socket.send(&request())?;
     let mut part = vec![0; PART_MAX];
-    // Bounded, so that a kernel that never says that it is done is given up.
+    // Bounded, in case the kernel never reports the end.
     for _ in 0..PARTS_MAX {
         let length = (&socket).read(&mut part)?;
         match found(&part[..length], address) {
@@ -27,19 +27,19 @@ pub(crate) fn is_lasting(address: Ipv4Addr) -> io::Result<Option<bool>> {
     Err(io::ErrorKind::InvalidData.into())
 }
 
-/// What a part of the answer says.
+/// The contents of a part of the answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
-    /// Whether the host has the address for good.
+    /// The part contains the address; true if it is permanent.
     Found(bool),
     /// The last part, without the address.
     Done,
-    /// There are other parts.
+    /// More parts follow.
     More,
     Refused,
 }
 
-/// `struct nlmsghdr` for a dump of all addresses, and an empty `struct ifaddrmsg`.
+/// Returns `struct nlmsghdr` for a dump of all addresses, and an empty `struct ifaddrmsg`.
 fn request() -> [u8; HEADER + MESSAGE] {
     let mut request = [0; HEADER + MESSAGE];
     request[0..4].copy_from_slice(&((HEADER + MESSAGE) as u32).to_ne_bytes());
@@ -50,7 +50,7 @@ fn request() -> [u8; HEADER + MESSAGE] {
     request
 }
 
-/// Looks for `address` among the messages of a part. Anything that does not fit ends the search.
+/// Searches for `address` in the messages of a part. An invalid message ends the search.
 fn found(mut part: &[u8], address: Ipv4Addr) -> Answer {
     while let Some(header) = part.first_chunk::<HEADER>() {
         let length = u32::from_ne_bytes([header[0], header[1], header[2], header[3]]) as usize;
@@ -73,10 +73,10 @@ fn found(mut part: &[u8], address: Ipv4Addr) -> Answer {
     Answer::More
 }
 
-/// True if the address is permanent; `None` if this message (`struct ifaddrmsg`, then attributes)
-/// is about another address.
+/// Returns true if the address is permanent; `None` if this message (`struct ifaddrmsg`, then
+/// attributes) is about another address.
 fn lasting(message: &[u8], address: Ipv4Addr) -> Option<bool> {
-    // Eight bits of the flags are here, all of them in an attribute.
+    // The header contains eight bits of the flags; an attribute contains all of them.
     let mut flags = u32::from(*message.get(2)?);
     let mut own = None;
     let mut rest = message.get(MESSAGE..)?;
@@ -102,7 +102,7 @@ fn lasting(message: &[u8], address: Ipv4Addr) -> Option<bool> {
     (own == Some(address)).then_some(flags & libc::IFA_F_PERMANENT != 0)
 }
 
-/// Messages and attributes begin at multiples of four bytes.
+/// Rounds up to a multiple of four bytes, where messages and attributes begin.
 fn aligned(length: usize) -> usize {
     length.next_multiple_of(4)
 }
@@ -113,11 +113,11 @@ const HEADER: usize = 16;
 const MESSAGE: usize = 8;
 /// Size of `struct rtattr`.
 const ATTRIBUTE: usize = 4;
-/// `linux/if_addr.h`.
+/// Attribute with the flags, from `linux/if_addr.h`.
 const IFA_FLAGS: u16 = 8;
-/// The most that the kernel puts into one part.
+/// Largest part that the kernel sends.
 const PART_MAX: usize = 1 << 15;
-/// Some thousand addresses.
+/// Largest number of parts: some thousand addresses.
 const PARTS_MAX: usize = 256;
 
 #[cfg(test)]
@@ -137,12 +137,12 @@ mod tests {
         message
     }
 
-    /// An address with these flags.
+    /// Returns an address with these flags.
     fn address(own: Ipv4Addr, flags: u32) -> Vec<u8> {
         let body = [
             vec![2, 24, 0, 0, 3, 0, 0, 0],
             attribute(libc::IFA_LOCAL, own.octets()),
-            // A name, with less than four bytes.
+            // A name that is not a multiple of four bytes long.
             [&7_u16.to_ne_bytes()[..], &3_u16.to_ne_bytes(), b"lo\0\0"].concat(),
             attribute(IFA_FLAGS, flags.to_ne_bytes()),
         ];
@@ -170,7 +170,7 @@ mod tests {
             let answer = found(&whole[..end], OWN);
             assert_eq!(answer, Answer::More, "{end}");
         }
-        // A length of zero, which leads nowhere.
+        // A length of zero, which would never advance.
         assert_eq!(found(&[0; 64], OWN), Answer::More);
     }
 

@@ -1,20 +1,20 @@
-//! Checks of a host, its network card and the way to a robot, before an arm moves. Nothing on the
-//! host is changed.
+//! Checks a host, its network card and the route to a robot before an arm moves. Changes nothing on
+//! the host.
 //!
 //! ```text
 //! Host (files, a few calls) --> Readings --> checks, one function each --> Finding --> Report (text, JSON, script)
 //! ```
 //!
 //! * [`Doctor`]: runs all checks for a [`Purpose`].
-//! * [`Host`]: what can be asked. [`System`] is the running host, [`Tree`] a directory with the
-//!   files of any host, for tests.
-//! * [`Finding`]: what was read, what is wanted, why, by which source, and a command that fixes it.
-//!   What cannot be read is [`Verdict::Unknown`], which is neither good nor bad.
-//! * [`likely_causes`]: for a motion that ended for want of packets.
-//! * [`firewall`], [`arrivals`] and [`at_rest`]: what states of a connected robot show. [`ports`]:
-//!   what answers at its address. [`answers`] and [`handshake`]: which version it speaks, and
-//!   whether it is free.
-//! * [`dry_run`]: what the control loop shows that ran against a simulated robot.
+//! * [`Host`]: the interface to a host. [`System`] is the running host, [`Tree`] a directory with
+//!   the files of any host, for tests.
+//! * [`Finding`]: the value, the expected value with reason and source, and a command that fixes
+//!   it. An unreadable value is [`Verdict::Unknown`], which is neither good nor bad.
+//! * [`likely_causes`]: for a motion that ended because of missing packets.
+//! * [`firewall`], [`arrivals`] and [`at_rest`]: findings from states of a connected robot.
+//!   [`ports`]: the services at its address. [`answers`] and [`handshake`]: its version, and its
+//!   availability.
+//! * [`dry_run`]: findings about a control loop with a simulated robot.
 //!
 //! ```
 //! use franka_doctor::{Doctor, Purpose, System, Verdict};
@@ -25,8 +25,8 @@
 //! assert!(report.count(Verdict::Good) > 0);
 //! ```
 //!
-//! With the feature `desk`, [`ask_desk`] and [`web`]: what the robot's web interface says without a
-//! login. It brings an HTTPS client, and so is no part of what diagnoses a motion.
+//! With the feature `desk`, [`ask_desk`] and [`web`] read the robot's web interface without a
+//! login. The feature needs an HTTPS client, so the diagnosis of a motion does not use it.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -77,7 +77,7 @@ pub use selection::Selection;
 pub use system::System;
 pub use timing::{Received, arrivals, firewall};
 
-// The program in the README compiles.
+// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
@@ -96,8 +96,8 @@ pub struct Doctor {
 }
 
 impl Doctor {
-    /// For a host that is to do this: without a robot's address, with wake-ups and loopback
-    /// measured for 10 s each unless it only simulates, with names of people and devices replaced.
+    /// Creates the checks for this purpose. Defaults: no robot address, personal and device names
+    /// replaced. Wake-ups and loopback are measured for 10 s each, except for simulation only.
     pub fn new(purpose: Purpose) -> Self {
         Self {
             purpose,
@@ -111,54 +111,55 @@ impl Doctor {
         }
     }
 
-    /// The address of the robot, for the checks of the network card on the way to it. The robot is
-    /// not contacted: see [`Self::ping`], [`ports`] and [`answers`].
+    /// The address of the robot, for the checks of the network card on the route to it. The robot
+    /// is not contacted: see [`Self::ping`], [`ports`] and [`answers`].
     pub fn robot(mut self, address: Ipv4Addr) -> Self {
         self.robot = Some(address);
         self
     }
 
-    /// The processor that the control thread is to be pinned to.
+    /// Sets the processor for the control thread.
     pub fn cpu(mut self, cpu: usize) -> Self {
         self.cpu = Some(cpu);
         self
     }
 
-    /// Whether wake-ups and loopback are measured for 60 s each instead of 10, and 10 000 round
-    /// trips instead of 1000.
+    /// Sets long measurements: 60 s instead of 10 s each for wake-ups and loopback, and 10 000
+    /// round trips instead of 1000.
     pub fn long(mut self, long: bool) -> Self {
         self.long = long;
         self
     }
 
-    /// Whether wake-ups and loopback are measured, a processor is kept busy for a second, and round
-    /// trips are measured if [`Self::ping`] says so. No other check takes time.
+    /// Enables the measurements: wake-ups, loopback, one second of load on a processor, and round
+    /// trips if [`Self::ping`] is set. No other check takes time.
     pub fn timing(mut self, timing: bool) -> Self {
         self.timing = timing;
         self
     }
 
-    /// Whether the round trip to the robot is measured, with echo requests of 1200 bytes each
-    /// millisecond. They may delay packets of a client that drives the robot.
+    /// Enables the measurement of the round trip to the robot, with echo requests of 1200 bytes
+    /// each millisecond. They may delay packets of a client that controls the robot.
     pub fn ping(mut self, ping: bool) -> Self {
         self.ping = ping;
         self
     }
 
-    /// Whether names of people, hardware addresses, UUIDs and serial numbers are replaced.
+    /// Enables the replacement of personal names, hardware addresses, UUIDs and serial numbers.
     pub fn redact(mut self, redact: bool) -> Self {
         self.redact = redact;
         self
     }
 
-    /// Which checks are run: all by default. Others are not, nor is measured what only they need.
+    /// Selects the checks: all by default. Other checks, and measurements that only they need, are
+    /// skipped.
     pub fn select(mut self, selection: Selection) -> Self {
         self.selection = selection;
         self
     }
 
-    /// Checks `host`. `progress` is called with the name of what takes time and the part done of it
-    /// in `[0, 1]`.
+    /// Checks `host`. `progress` is called with the name of the current measurement and its
+    /// completed share in `[0, 1]`.
     pub fn run(&self, host: &dyn Host, progress: &mut dyn FnMut(&str, f64)) -> Report {
         let readings = Readings::new(host, self.robot)
             .pinned(self.cpu)
@@ -184,7 +185,7 @@ impl Doctor {
         }
     }
 
-    /// What takes time to measure.
+    /// Runs the measurements.
     fn measured(
         &self,
         host: &dyn Host,
@@ -211,7 +212,7 @@ impl Doctor {
             let measured = host.round_trips(robot, count, &mut shown);
             findings.push(ping::ping(measured, self.purpose));
         }
-        // Packets of this computer to itself pass no card.
+        // Packets from this computer to itself use no card.
         let has_card = readings.interface().is_ok_and(|name| name != "lo");
         if has_card && self.selection.takes("nic.errors_now") {
             let after = CardErrors::read(readings);
@@ -220,7 +221,7 @@ impl Doctor {
         findings
     }
 
-    /// `report` with what identifies people and devices of `host` replaced.
+    /// Returns `report` without names that identify people and devices of `host`.
     fn redacted(&self, host: &dyn Host, mut report: Report) -> Report {
         let passwd = host.read("/etc/passwd").unwrap_or_default();
         let redaction = redaction::Redaction::new(&passwd);
@@ -234,7 +235,7 @@ impl Doctor {
     }
 }
 
-/// Keeps the histogram of what was measured.
+/// Records the histogram of a measurement.
 fn note(readings: &Readings<'_>, what: &str, measured: &Result<Latencies, Unread>) {
     if let Ok(latencies) = measured {
         let bucket = |(us, count)| format!("{us}: {count}");

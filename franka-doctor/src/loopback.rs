@@ -1,5 +1,5 @@
-//! How long datagrams take to another thread of this host and back: the sockets of a cycle, without
-//! a network card.
+//! Round-trip time of datagrams to another thread of this host: the sockets of a cycle, without a
+//! network card.
 
 use core::time::Duration;
 use std::io;
@@ -11,9 +11,9 @@ use std::time::Instant;
 use crate::latencies::Latencies;
 use crate::round_trip::{PAYLOAD, PERIOD};
 
-/// Sends `count` datagrams to a thread that sends each one back, one each millisecond at most.
-/// That thread has the scheduling of the calling one, whose `priority` is noted. `done` is set to
-/// how many have come back.
+/// Sends `count` datagrams to a thread that returns each one, at most one each millisecond. That
+/// thread has the scheduling of the calling thread, whose `priority` is recorded. `done` counts the
+/// returned datagrams.
 pub(crate) fn measure(
     priority: Option<i32>,
     count: u64,
@@ -31,14 +31,14 @@ pub(crate) fn measure(
     })
 }
 
-/// Two sockets of this host that are connected with each other.
+/// Returns two sockets of this host that are connected to each other.
 fn sockets() -> io::Result<[UdpSocket; 2]> {
     let [here, there] = [(); 2].map(|()| UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)));
     let (here, there) = (here?, there?);
     here.connect(there.local_addr()?)?;
     there.connect(here.local_addr()?)?;
     here.set_read_timeout(Some(PATIENCE))?;
-    // Until it looks whether there is more to come.
+    // The interval at which it checks for the end.
     there.set_read_timeout(Some(Duration::from_millis(100)))?;
     Ok([here, there])
 }
@@ -63,13 +63,13 @@ fn exchange(
         }
         latencies.note(sent.elapsed());
         done.store(number + 1, Ordering::Relaxed);
-        // What was missed meanwhile is not made up for.
+        // Missed periods are not repeated.
         due = Instant::now().max(due + PERIOD);
     }
     Ok(latencies)
 }
 
-/// Sends each datagram back, until it is `over`.
+/// Returns each datagram, until `over` is true.
 fn echo(socket: &UdpSocket, over: &AtomicBool) -> io::Result<()> {
     use io::ErrorKind::{Interrupted, TimedOut, WouldBlock};
     let mut packet = [0; PAYLOAD];
@@ -83,7 +83,7 @@ fn echo(socket: &UdpSocket, over: &AtomicBool) -> io::Result<()> {
     Ok(())
 }
 
-/// An echo that takes longer does not come.
+/// Time after which an echo counts as missing.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What round trips to the robot show.
+//! The finding about round trips to the robot.
 
 use core::time::Duration;
 
@@ -7,7 +7,7 @@ use crate::host::Unread;
 use crate::round_trip::{PAYLOAD, RoundTrips};
 use crate::timing::quantile;
 
-/// What a measurement of round trips shows. A pure function.
+/// Returns the finding about a measurement of round trips. A pure function.
 pub(crate) fn ping(measured: Result<RoundTrips, Unread>, purpose: Purpose) -> Finding {
     let about = About::robot(
         "robot.ping",
@@ -48,7 +48,7 @@ fn judge(RoundTrips { sent, mut times }: RoundTrips) -> Judged {
     }
 }
 
-/// Fewer show little.
+/// Number of requests below which the result is not conclusive.
 const SENT_MIN: u64 = 1000;
 
 #[cfg(test)]
@@ -56,8 +56,8 @@ mod tests {
     use super::*;
     use crate::finding::Verdict;
 
-    /// 1000 requests: 500 take `half` microseconds, 490 `most`, and the rest `worst`; `lost` of
-    /// these have no answer.
+    /// Returns 1000 requests: 500 take `half` microseconds, 490 `most`, and the rest `worst`;
+    /// `lost` of these have no answer.
     fn measured(half: u64, most: u64, worst: u64, lost: usize) -> RoundTrips {
         let us = [vec![worst; 10 - lost], vec![half; 500], vec![most; 490]].concat();
         RoundTrips {
@@ -75,7 +75,7 @@ mod tests {
             (measured(299, 399, 599, 0), Good),
             (measured(300, 399, 599, 0), Info),
             (measured(299, 400, 599, 0), Info),
-            // A healthy one, libfranka issue 123.
+            // A healthy network, libfranka issue 123.
             (measured(115, 169, 3_754, 0), Info),
             (measured(401, 410, 502, 0), Warning),
             (measured(800, 810, 900, 0), Warning),

@@ -1,4 +1,4 @@
-//! What answers at the robot's address.
+//! The services at the robot's address.
 
 use core::time::Duration;
 use std::io;
@@ -6,8 +6,8 @@ use std::net::{IpAddr, SocketAddr, TcpStream};
 
 use crate::finding::{About, Finding, Judged, Needs, Purpose};
 
-/// Connects to the ports of robot and end effectors, for a second each, and closes at once. Sends
-/// no request. The caller makes sure that nobody drives the robot.
+/// Connects to the ports of robot and end effectors, for at most a second each, and closes at once.
+/// Sends no request. The caller must ensure that no program controls the robot.
 pub fn ports(robot: IpAddr, purpose: Purpose) -> Vec<Finding> {
     PORTS
         .map(|port| {
@@ -20,7 +20,7 @@ pub fn ports(robot: IpAddr, purpose: Purpose) -> Vec<Finding> {
         .into()
 }
 
-/// A port, and what is behind it.
+/// A port, and its service.
 struct Port {
     id: &'static str,
     number: u16,
@@ -51,7 +51,7 @@ const PORTS: [Port; 3] = [
 ];
 
 impl Port {
-    /// What an attempt to connect shows.
+    /// Returns the finding about an attempt to connect.
     fn finding(&self, connected: io::Result<()>, purpose: Purpose) -> Finding {
         let (what, number) = (self.what, self.number);
         let judged = match connected {

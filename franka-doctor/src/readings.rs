@@ -1,4 +1,4 @@
-//! What was read of a host, noted for the report.
+//! The values read from a host, recorded for the report.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -7,11 +7,11 @@ use std::net::Ipv4Addr;
 use crate::host::{Ethtool, Host, Unread};
 use crate::route::Route;
 
-/// A host that is being read. Notes each answer, under the path that it was read from.
+/// Reads a host and records each answer with its path.
 pub struct Readings<'a> {
     pub(crate) host: &'a dyn Host,
     pub(crate) robot: Option<Ipv4Addr>,
-    /// The processor that the control thread is pinned to, if it is.
+    /// The processor that the control thread is pinned to, if any.
     pub(crate) cpu: Option<usize>,
     /// True if processors may be kept busy for a second.
     pub(crate) may_load: bool,
@@ -19,7 +19,7 @@ pub struct Readings<'a> {
 }
 
 impl<'a> Readings<'a> {
-    /// Reads `host`, which is to control the robot at this address.
+    /// Creates the readings of `host`, which controls the robot at this address.
     pub fn new(host: &'a dyn Host, robot: Option<Ipv4Addr>) -> Self {
         Self {
             host,
@@ -30,19 +30,19 @@ impl<'a> Readings<'a> {
         }
     }
 
-    /// With the processor that the control thread is pinned to.
+    /// Sets the processor that the control thread is pinned to.
     pub fn pinned(mut self, cpu: Option<usize>) -> Self {
         self.cpu = cpu;
         self
     }
 
-    /// With whether processors may be kept busy for a second, which takes as long.
+    /// Sets whether processors may be kept busy for a second.
     pub(crate) fn loading(mut self, may_load: bool) -> Self {
         self.may_load = may_load;
         self
     }
 
-    /// All that was read so far.
+    /// Returns all values read so far.
     pub(crate) fn raw(self) -> BTreeMap<String, String> {
         self.raw.into_inner()
     }
@@ -51,7 +51,7 @@ impl<'a> Readings<'a> {
         self.raw.borrow_mut().insert(what.into(), text.into());
     }
 
-    /// A file, without white space around it.
+    /// Returns a file, without surrounding white space.
     pub(crate) fn text(&self, path: &str) -> Result<String, Unread> {
         let read = self.host.read(path).map(|text| text.trim().to_owned());
         match &read {
@@ -61,7 +61,7 @@ impl<'a> Readings<'a> {
         read
     }
 
-    /// A file that holds a number, or begins with one.
+    /// Returns the number at the beginning of a file.
     pub(crate) fn number<T: std::str::FromStr>(&self, path: &str) -> Result<T, Unread> {
         let text = self.text(path)?;
         let first = text.split_whitespace().next().unwrap_or_default();
@@ -70,7 +70,7 @@ impl<'a> Readings<'a> {
             .map_err(|_| Unread::Failed(path.into(), format!("`{text}`, expected a number")))
     }
 
-    /// The value behind `name` in a file of lines such as `Name: value`.
+    /// Returns the value of `name` in a file with lines such as `Name: value`.
     pub(crate) fn field(&self, path: &str, name: &str) -> Result<String, Unread> {
         let text = self.text(path)?;
         text.lines()
@@ -79,7 +79,7 @@ impl<'a> Readings<'a> {
             .ok_or_else(|| Unread::Absent(format!("`{name}` in {path}")))
     }
 
-    /// Soft and hard limit of the process, in the kernel's words: `99`, `unlimited`.
+    /// Returns soft and hard limit of the process, in the kernel's words: `99`, `unlimited`.
     pub(crate) fn limit(&self, name: &str) -> Result<(String, String), Unread> {
         let path = "/proc/self/limits";
         let text = self.text(path)?;
@@ -91,7 +91,7 @@ impl<'a> Readings<'a> {
         }
     }
 
-    /// Names of directories `cpu0`, `cpu1` and so on, in order.
+    /// Returns the names of the directories `cpu0`, `cpu1` and so on, in order.
     pub(crate) fn processors(&self) -> Result<Vec<String>, Unread> {
         let mut numbers: Vec<usize> = self
             .host
@@ -106,7 +106,8 @@ impl<'a> Readings<'a> {
             .collect())
     }
 
-    /// Different values of a file of every processor, with how many processors have each.
+    /// Returns the different values of a file of every processor, each with its number of
+    /// processors.
     pub(crate) fn per_processor(&self, file: &str) -> Result<BTreeMap<String, usize>, Unread> {
         let mut values = BTreeMap::new();
         for cpu in self.processors()? {
@@ -123,7 +124,7 @@ impl<'a> Readings<'a> {
         Ok(values)
     }
 
-    /// Which of these programs run, by their names in `/proc`.
+    /// Returns the running programs among `names`, by their names in `/proc`.
     pub(crate) fn running(&self, names: &[&'static str]) -> Result<Vec<&'static str>, Unread> {
         let mut found = Vec::new();
         let entries = self.host.list("/proc")?;
@@ -152,10 +153,10 @@ impl<'a> Readings<'a> {
         Ok(found)
     }
 
-    /// The way to the robot.
+    /// Returns the route to the robot.
     ///
     /// # Errors
-    /// If no address was given, or the host does not say.
+    /// If no address was given, or the host does not report the route.
     pub(crate) fn route(&self) -> Result<Route, Unread> {
         let robot = self
             .robot
@@ -169,17 +170,17 @@ impl<'a> Readings<'a> {
             .ok_or_else(|| Unread::Absent(format!("a way to {robot} in /proc/net/route")))
     }
 
-    /// The network interface on the way to the robot.
+    /// Returns the network interface on the route to the robot.
     pub(crate) fn interface(&self) -> Result<String, Unread> {
         Ok(self.route()?.interface)
     }
 
-    /// A file of the network card on the way to the robot.
+    /// Returns a file of the network card on the route to the robot.
     pub(crate) fn card(&self, file: &str) -> Result<String, Unread> {
         self.text(&format!("{NET}/{}/{file}", self.interface()?))
     }
 
-    /// What the driver of the network card on the way to the robot answers.
+    /// Returns the answer of the driver of the network card on the route to the robot.
     pub(crate) fn ethtool(&self, question: Ethtool) -> Result<Answer, Unread> {
         let interface = self.interface()?;
         let what = format!("ethtool {interface} {:#04x}", question.command());
@@ -201,17 +202,17 @@ impl<'a> Readings<'a> {
     }
 }
 
-/// A structure of `linux/ethtool.h`, of the size that its question has.
+/// A structure of `linux/ethtool.h`, with the size of its query.
 pub(crate) struct Answer(Vec<u8>);
 
 impl Answer {
-    /// The unsigned integer at this offset, in bytes.
+    /// Returns the unsigned integer at this offset, in bytes.
     pub(crate) fn word(&self, offset: usize) -> u32 {
         let bytes: [u8; 4] = self.0[offset..offset + 4].try_into().expect("four bytes");
         u32::from_ne_bytes(bytes)
     }
 
-    /// The text in this range, which ends with a zero.
+    /// Returns the text in this range, which ends with a zero.
     pub(crate) fn text(&self, range: core::ops::Range<usize>) -> String {
         let bytes = self.0[range]
             .split(|byte| *byte == 0)
@@ -221,10 +222,10 @@ impl Answer {
     }
 }
 
-/// Most of a file that is noted, in characters.
+/// Largest recorded part of a file, in characters.
 const NOTED_MAX: usize = 2000;
 
 const CPUS: &str = "/sys/devices/system/cpu";
 
-/// Where network interfaces are.
+/// Directory of the network interfaces.
 pub(crate) const NET: &str = "/sys/class/net";

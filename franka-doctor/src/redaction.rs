@@ -1,13 +1,13 @@
-//! Texts without what identifies a person or a device.
+//! Removes names that identify a person or a device from texts.
 
-/// Replaces what identifies a person or a device.
+/// Replaces names that identify a person or a device.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Redaction {
     names: Vec<String>,
 }
 
 impl Redaction {
-    /// For a host with these accounts, the text of `/etc/passwd`: those of people.
+    /// Creates the replacements for a host with the personal accounts in the text of `/etc/passwd`.
     pub(crate) fn new(passwd: &str) -> Self {
         let person = |line: &str| {
             let fields: Vec<&str> = line.split(':').collect();
@@ -19,13 +19,13 @@ impl Redaction {
         }
     }
 
-    /// `text` with names of people, hardware addresses, UUIDs and serial numbers replaced.
+    /// Returns `text` with personal names, hardware addresses, UUIDs and serial numbers replaced.
     pub(crate) fn apply(&self, text: &str) -> String {
         let mut result = String::with_capacity(text.len());
         let mut rest = text;
         while !rest.is_empty() {
             let end = rest.find(|c: char| !is_of_word(c)).unwrap_or(rest.len());
-            // Marks at the end of a word are those of a sentence or a list.
+            // Punctuation at the end of a word belongs to the sentence or list.
             let end = rest[..end].trim_end_matches([':', '.']).len();
             if end > 0 {
                 let serial = result.to_lowercase().ends_with("serial=");
@@ -45,7 +45,7 @@ impl Redaction {
     }
 }
 
-/// Numbers of the accounts of people, by default of all distributions.
+/// Numbers of personal accounts, the default of all distributions.
 const PEOPLE: core::ops::Range<u32> = 1000..60_000;
 
 fn is_of_word(c: char) -> bool {

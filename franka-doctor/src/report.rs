@@ -1,22 +1,22 @@
-//! Findings as text, as JSON, as a script.
+//! Findings as text, as JSON, and as a script.
 
 use core::fmt::Write as _;
 use std::collections::BTreeMap;
 
 use crate::finding::{Finding, Group, Needs, Purpose, Verdict};
 
-/// What a doctor found on a host.
+/// The findings about a host.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Report {
-    /// Of the format of this report as JSON: [`SCHEMA`].
+    /// Version of the format of this report as JSON: [`SCHEMA`].
     pub schema: u32,
-    /// What the host is to do.
+    /// The purpose of the host.
     pub purpose: Purpose,
-    /// What was found, in the order of groups.
+    /// The findings, in the order of groups.
     pub findings: Vec<Finding>,
-    /// Everything that was read, by its path or by what was asked.
+    /// All values read, by path or query.
     pub readings: BTreeMap<String, String>,
 }
 
@@ -24,31 +24,32 @@ pub struct Report {
 pub const SCHEMA: u32 = 1;
 
 impl Report {
-    /// Adds what was found otherwise, such as [`arrivals`](crate::arrivals) of a connected robot.
+    /// Adds other findings, such as [`arrivals`](crate::arrivals) of a connected robot.
     pub fn add(&mut self, findings: impl IntoIterator<Item = Finding>) {
         self.findings.extend(findings);
         self.findings.sort_by_key(|finding| finding.group);
     }
 
-    /// How many findings have this verdict.
+    /// Number of findings with this verdict.
     pub fn count(&self, verdict: Verdict) -> usize {
         let has = |finding: &&Finding| finding.verdict == verdict;
         self.findings.iter().filter(has).count()
     }
 
-    /// A line for each group with its worst verdict, below it what is not good, a count at the end.
+    /// Returns a line for each group with its worst verdict, the findings that are not good below
+    /// it, and a count at the end.
     pub fn to_text(&self, color: bool) -> String {
         self.text(color, false)
     }
 
-    /// [`Self::to_text`] with what is good, too, and with why and by which source of everything.
+    /// Like [`Self::to_text`], with good findings too, and with reason and source of every finding.
     pub fn to_detailed_text(&self, color: bool) -> String {
         self.text(color, true)
     }
 
     fn text(&self, color: bool, detailed: bool) -> String {
         let mut text = String::new();
-        // Commands that were shown, and for which check.
+        // Commands already shown, and their checks.
         let mut named: Vec<(&str, &str)> = Vec::new();
         for group in Group::ALL {
             let of_group = || {
@@ -65,7 +66,7 @@ impl Report {
             let shown: Vec<&Finding> = of_group()
                 .filter(|finding| finding.verdict != Verdict::Good || detailed)
                 .collect();
-            // What says the same in a row is said once.
+            // Consecutive findings with the same text are shown once.
             let same = |a: &&Finding, b: &&Finding| {
                 let is_short = !detailed && matches!(a.verdict, Verdict::Info | Verdict::Unknown);
                 is_short && (a.verdict, &a.read) == (b.verdict, &b.read)
@@ -92,7 +93,7 @@ impl Report {
                         Some((_, id)) => {
                             let _ = writeln!(text, "        fix{then}: that of {id}");
                         }
-                        // In one piece, to be copied.
+                        // On one line, for copying.
                         None => {
                             named.push((&fix.command, finding.id));
                             let _ = writeln!(text, "        fix{then}: {}", fix.command);
@@ -118,14 +119,14 @@ impl Report {
         text
     }
 
-    /// The report as JSON, with all that was read.
+    /// Returns the report as JSON, with all values read.
     #[cfg(feature = "serde")]
     pub fn to_json(&self) -> String {
         serde_json::to_string_pretty(self).expect("texts and numbers, with texts as keys")
     }
 
-    /// A shell script with the fixes of warnings and failures, for reading before running. Nothing
-    /// is run here.
+    /// Returns a shell script with the fixes of warnings and failures, to be read before it is run.
+    /// This function runs nothing.
     pub fn fix_script(&self) -> String {
         let mut script = "#!/bin/sh\n# Fixes of `franka doctor`. Read before running.\n".to_owned();
         let mut done: Vec<&str> = Vec::new();
@@ -156,14 +157,14 @@ impl Report {
         script
     }
 
-    /// 1 with a failure, 0 otherwise: for programs, which return 2 if they could not run.
+    /// Returns 1 if there is a failure, 0 otherwise. Programs return 2 if they could not run.
     pub fn exit_code(&self) -> u8 {
         u8::from(self.count(Verdict::Failure) > 0)
     }
 }
 
-/// Appends `words` after `lead`, in lines of at most [`COLUMNS`]; later ones begin further in. A
-/// word that is longer stays whole.
+/// Appends `words` after `lead`, in lines of at most [`COLUMNS`] columns; later lines are indented.
+/// A longer word stays whole.
 fn wrapped(text: &mut String, lead: &str, words: &str) {
     *text += lead;
     let mut column = columns_of(lead);
@@ -182,7 +183,7 @@ fn wrapped(text: &mut String, lead: &str, words: &str) {
     *text += "\n";
 }
 
-/// The columns that `lead` takes; its colours take none.
+/// Number of columns of `lead`, without its colour codes.
 fn columns_of(lead: &str) -> usize {
     let mut is_colour = false;
     let shown = lead.chars().filter(|&c| {
@@ -194,23 +195,23 @@ fn columns_of(lead: &str) -> usize {
     shown.count()
 }
 
-/// What terminals have.
+/// Usual width of terminals.
 const COLUMNS: usize = 80;
 
-/// Where lines go on.
+/// Indentation of continued lines.
 const INDENT: usize = 12;
 
-/// How many of `what` there are, in words.
+/// Formats a count of `what` in words.
 pub(crate) fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
-/// `text` without line breaks, as a comment of a script has to be.
+/// Returns `text` without line breaks, for a comment in a script.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The greatest one decides about a group.
+/// Returns the weight of a verdict; the greatest weight determines a group's verdict.
 fn weight(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::Info => 0,
@@ -221,7 +222,7 @@ fn weight(verdict: Verdict) -> u8 {
     }
 }
 
-/// Four characters, as `flutter doctor` has them.
+/// Returns a mark of four characters, as in `flutter doctor`.
 fn mark(verdict: Verdict, color: bool) -> String {
     let (mark, code) = match verdict {
         Verdict::Good => ("[OK]", 32),

@@ -1,4 +1,4 @@
-//! How long packets take to the robot and back: echo requests (ICMP), as `ping` sends them.
+//! Round-trip time of packets to the robot: echo requests (ICMP), as sent by `ping`.
 
 use core::time::Duration;
 use std::io;
@@ -9,21 +9,21 @@ use std::time::Instant;
 
 use socket2::{Domain, Protocol, Socket, Type};
 
-/// Echo requests to the robot, and the times until their answers.
+/// Echo requests to the robot, and their answer times.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RoundTrips {
     /// Requests sent.
     pub sent: u64,
-    /// Of each request that was answered within 100 ms, in any order.
+    /// Answer time of each request that was answered within 100 ms, in any order.
     pub times: Vec<Duration>,
 }
 
-/// Sends `count` echo requests to `robot`, one each millisecond at most, and waits for each answer.
-/// Ends early if nobody answers. `done` is set to how many were sent.
+/// Sends `count` echo requests to `robot`, at most one each millisecond, and waits for each answer.
+/// Ends early if no answers arrive. `done` counts the sent requests.
 pub(crate) fn measure(robot: Ipv4Addr, count: u64, done: &AtomicU64) -> io::Result<RoundTrips> {
     let socket = Socket::new(Domain::IPV4, Type::DGRAM, Some(Protocol::ICMPV4))?;
     socket.connect(&SocketAddrV4::new(robot, 0).into())?;
-    // The kernel fills in identifier and checksum, and hands on answers to this socket alone.
+    // The kernel fills in identifier and checksum, and delivers answers only to this socket.
     let socket = UdpSocket::from(socket);
     let mut measured = RoundTrips::default();
     let mut lost_in_a_row = 0;
@@ -44,13 +44,14 @@ pub(crate) fn measure(robot: Ipv4Addr, count: u64, done: &AtomicU64) -> io::Resu
         if lost_in_a_row == LOST_MAX {
             break;
         }
-        // What was missed meanwhile is not made up for.
+        // Missed periods are not repeated.
         due = Instant::now().max(due + PERIOD);
     }
     Ok(measured)
 }
 
-/// An echo request: type, code, checksum, identifier, sequence number, then the number and zeros.
+/// Returns an echo request: type, code, checksum, identifier, sequence number, then the number and
+/// zeros.
 fn request(number: u64) -> [u8; PACKET] {
     let mut packet = [0; PACKET];
     packet[0] = ECHO_REQUEST;
@@ -59,18 +60,18 @@ fn request(number: u64) -> [u8; PACKET] {
     packet
 }
 
-/// The time until the answer to this request, if it comes within [`PATIENCE`].
+/// Returns the time until the answer to this request, if it arrives within [`PATIENCE`].
 fn answer(socket: &UdpSocket, number: u64, sent: Instant) -> Option<Duration> {
     let mut packet = [0; PACKET];
     loop {
         let remaining = PATIENCE.checked_sub(sent.elapsed())?;
-        // A timeout of zero would mean none.
+        // A timeout of zero would mean no timeout.
         let remaining = remaining.max(Duration::from_micros(1));
         socket.set_read_timeout(Some(remaining)).ok()?;
         let length = match socket.recv(&mut packet) {
             Ok(length) => length,
             Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-            // The time is up, or a router on the way says that there is no way.
+            // The time has expired, or a router on the path reports that the robot is unreachable.
             Err(_) => return None,
         };
         let time = sent.elapsed();
@@ -80,7 +81,7 @@ fn answer(socket: &UdpSocket, number: u64, sent: Instant) -> Option<Duration> {
     }
 }
 
-/// Bytes of an echo request besides its header of eight, as in the vendor's test.
+/// Bytes of an echo request after its header of eight, as in the vendor's test.
 pub(crate) const PAYLOAD: usize = 1200;
 
 const PACKET: usize = 8 + PAYLOAD;
@@ -89,13 +90,13 @@ const PACKET: usize = 8 + PAYLOAD;
 const ECHO_REQUEST: u8 = 8;
 const ECHO_REPLY: u8 = 0;
 
-/// From one request to the next.
+/// Interval between requests.
 pub(crate) const PERIOD: Duration = Duration::from_millis(1);
 
-/// An answer that takes longer counts as lost.
+/// Time after which an answer counts as lost.
 const PATIENCE: Duration = Duration::from_millis(100);
 
-/// After so many without an answer in a row, no more are sent.
+/// Number of consecutive unanswered requests after which no more are sent.
 const LOST_MAX: u32 = 20;
 
 #[cfg(test)]
@@ -108,7 +109,7 @@ mod tests {
         match measure(Ipv4Addr::LOCALHOST, 20, &done) {
             Ok(measured) => {
                 assert_eq!((measured.sent, done.into_inner()), (20, 20));
-                // A host that is busy with something else may be late for some.
+                // A busy host may be late for some requests.
                 assert!(!measured.times.is_empty());
             }
             Err(error) => assert_eq!(error.kind(), io::ErrorKind::PermissionDenied),

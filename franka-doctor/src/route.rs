@@ -1,22 +1,22 @@
-//! The way to the robot, from the kernel's table of routes.
+//! The route to the robot, from the kernel's routing table.
 
 use std::net::Ipv4Addr;
 
-/// The way to an address.
+/// The route to an address.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Route {
     /// Name of the network interface.
     pub(crate) interface: String,
-    /// The router in between, if there is one.
+    /// The router in between, if any.
     pub(crate) gateway: Option<Ipv4Addr>,
-    /// The host's own address on this way.
+    /// The host's own address on this route.
     pub(crate) own: Ipv4Addr,
-    /// Other interfaces with a direct way to the same address.
+    /// Other interfaces with a direct route to the same address.
     pub(crate) others: Vec<String>,
 }
 
 impl Route {
-    /// The way to an address of the host itself.
+    /// Returns the route to an address of the host itself.
     pub(crate) fn own_host(own: Ipv4Addr) -> Self {
         Self {
             interface: "lo".into(),
@@ -26,8 +26,8 @@ impl Route {
         }
     }
 
-    /// The way to `robot` in the text of `/proc/net/route`: the longest mask, then the least
-    /// metric.
+    /// Returns the route to `robot` from the text of `/proc/net/route`: the longest mask, then the
+    /// lowest metric.
     pub(crate) fn find(table: &str, robot: Ipv4Addr, own: Ipv4Addr) -> Option<Self> {
         let mut rows: Vec<Row> = table
             .lines()
@@ -49,7 +49,7 @@ impl Route {
     }
 }
 
-/// A row of the table. Addresses as numbers in the host's order.
+/// A row of the table, with addresses as numbers in the host's byte order.
 struct Row {
     interface: String,
     destination: u32,
@@ -62,7 +62,8 @@ struct Row {
 impl Row {
     fn parse(line: &str) -> Option<Self> {
         let words: Vec<&str> = line.split_whitespace().collect();
-        // The kernel prints the bytes of an address as one number in the order of this machine.
+        // The kernel prints the bytes of an address as one number in the byte order of this
+        // machine.
         let address = |word: &str| {
             let number = u32::from_str_radix(word, 16).ok()?;
             Some(u32::from_be_bytes(number.to_ne_bytes()))

@@ -1,7 +1,7 @@
-//! Which checks are run.
+//! The selection of checks.
 
-/// Which checks are run, by their ids or the beginnings of these up to a dot: `nic` stands for
-/// `nic.route` and all others of the card. All of them by default.
+/// A selection of checks by their ids or id prefixes up to a dot: `nic` selects `nic.route` and all
+/// others of the card. The default selects all.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Selection {
     only: Vec<String>,
@@ -9,12 +9,12 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Those in `only`, or all if it is empty, without those in `skip`.
+    /// Selects the checks in `only`, or all if it is empty, except the checks in `skip`.
     pub fn new(only: Vec<String>, skip: Vec<String>) -> Self {
         Self { only, skip }
     }
 
-    /// True if the check with this id is run.
+    /// True if the check with this id is selected.
     pub fn takes(&self, id: &str) -> bool {
         let names = |names: &[String]| {
             names.iter().any(|name| {

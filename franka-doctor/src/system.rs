@@ -1,9 +1,9 @@
-//! The running host. What only Linux answers is in `linux`; elsewhere, and with
-//! `--cfg franka_portable`, `portable` takes its place.
+//! The running host. The Linux-specific part is in `linux`; elsewhere, and with `--cfg
+//! franka_portable`, `portable` replaces it.
 
 #[cfg(all(target_os = "linux", not(franka_portable)))]
 mod linux;
-// Its test runs on Linux, too.
+// Its test also runs on Linux.
 #[cfg(any(test, not(target_os = "linux"), franka_portable))]
 #[cfg_attr(all(target_os = "linux", not(franka_portable)), allow(dead_code))]
 mod portable;
@@ -30,15 +30,15 @@ use linux as host;
 #[cfg(any(not(target_os = "linux"), franka_portable))]
 use portable as host;
 
-/// The host that this runs on.
+/// The host that runs this program.
 #[derive(Clone, Debug, Default)]
 pub struct System {
-    /// The processor that the control thread is to be pinned to, for the measurement of wake-ups.
+    /// The processor for the control thread, used in the measurement of wake-ups.
     pub cpu: Option<usize>,
 }
 
 impl System {
-    /// What the driver's thread would ask for; refusals are no errors.
+    /// The scheduling that the driver's thread would request; refusals are not errors.
     fn scheduling(&self) -> Scheduling {
         Scheduling {
             realtime: Realtime::Ignore,
@@ -86,7 +86,7 @@ impl Host for System {
 
     fn own_address(&self, robot: Ipv4Addr) -> Result<Ipv4Addr, Unread> {
         let what = || format!("the way to {robot}");
-        // Connecting a UDP socket looks up the way and sends nothing. The port does not matter.
+        // Connecting a UDP socket determines the route and sends nothing. The port does not matter.
         let local = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))
             .and_then(|socket| socket.connect((robot, 1337)).map(|()| socket))
             .and_then(|socket| socket.local_addr())
@@ -112,7 +112,7 @@ impl Host for System {
 
     fn free_disk(&self) -> Result<u64, Unread> {
         let free = statvfs(".").map(|disk| {
-            // Each of them is as wide as the system wants it.
+            // The integer width of these values depends on the system.
             let (blocks, size) = (disk.blocks_available(), disk.fragment_size());
             u64::try_from(u128::from(blocks) * u128::from(size)).unwrap_or(u64::MAX)
         });
@@ -185,8 +185,8 @@ impl Host for System {
 }
 
 impl System {
-    /// What `measure` returns on a thread with the scheduling of the control thread. It gets the
-    /// priority of this thread and counts what is done, of `total`.
+    /// Runs `measure` on a thread with the scheduling of the control thread. It receives the
+    /// priority of this thread and counts the completed part of `total`.
     fn measured<T: Send>(
         &self,
         total: u64,
@@ -212,15 +212,15 @@ impl System {
     }
 }
 
-/// How many milliseconds `duration` has, at least one.
+/// Returns `duration` in milliseconds, at least one.
 fn milliseconds(duration: Duration) -> u64 {
     u64::try_from(duration.as_millis())
         .unwrap_or(u64::MAX)
         .max(1)
 }
 
-/// How long a thread computes before the frequency of its processor is read.
+/// Computation time of a thread before the frequency of its processor is read.
 const BUSY: Duration = Duration::from_secs(1);
 
-/// Most of a file that is read.
+/// Largest part of a file that is read.
 const READ_MAX: u64 = 1 << 20;

@@ -1,4 +1,4 @@
-//! How punctual the host is, and how punctually states of a robot arrive.
+//! The punctuality of the host, and of the states of a robot.
 
 use core::time::Duration;
 
@@ -6,7 +6,7 @@ use crate::finding::{About, Finding, Group, Judged, Matters, Needs, Purpose};
 use crate::host::Unread;
 use crate::latencies::Latencies;
 
-/// What a measurement of wake-ups shows: `timing.wake_up`.
+/// Returns the finding about a measurement of wake-ups: `timing.wake_up`.
 pub(crate) fn wake_up(measured: Result<Latencies, Unread>, purpose: Purpose) -> Finding {
     let about = About {
         id: "timing.wake_up",
@@ -20,7 +20,8 @@ pub(crate) fn wake_up(measured: Result<Latencies, Unread>, purpose: Purpose) -> 
     about.finding(measured.map(judge), purpose)
 }
 
-/// What datagrams to another thread of this host show, and back: `timing.loopback`.
+/// Returns the finding about round trips of datagrams to another thread of this host:
+/// `timing.loopback`.
 pub(crate) fn loopback(measured: Result<Latencies, Unread>, purpose: Purpose) -> Finding {
     let about = About {
         id: "timing.loopback",
@@ -34,7 +35,7 @@ pub(crate) fn loopback(measured: Result<Latencies, Unread>, purpose: Purpose) ->
     about.finding(measured.map(judge), purpose)
 }
 
-/// Judges `what` by the longest latency: good below the first of `limits_us`, usable below the
+/// Judges `what` by the largest latency: good below the first of `limits_us`, usable below the
 /// second, and a failure above the last.
 fn judge(latencies: &Latencies, what: &str, limits_us: [u128; 3]) -> Judged {
     let quantile = |part| latencies.quantile(part).unwrap_or_default();
@@ -76,12 +77,12 @@ fn judge(latencies: &Latencies, what: &str, limits_us: [u128; 3]) -> Judged {
     }
 }
 
-/// A state of a robot that rests, and when it was received: `message_id`, and the time since any
-/// fixed moment.
+/// A state of a robot at rest, and its time of arrival: `message_id`, and the time since any fixed
+/// moment.
 pub type Received = (u64, Duration);
 
-/// What the arrival of states in a row shows, in the order in which they were received: how many
-/// are missing, and how regularly they come. A pure function.
+/// Returns the findings about consecutive states in their order of arrival: the number of missing
+/// states, and the regularity. A pure function.
 pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
     let mut lost = 0;
     let mut longest = 0;
@@ -140,8 +141,8 @@ pub fn arrivals(states: &[Received], purpose: Purpose) -> Vec<Finding> {
     ]
 }
 
-/// Whether states of a robot that has opened a session arrive at all; `None` without a session:
-/// `net.firewall`. A pure function.
+/// Returns the finding about missing states of a robot that opened a session: `net.firewall`;
+/// `None` without a session. A pure function.
 pub fn firewall(states_arrive: Option<bool>, purpose: Purpose) -> Finding {
     let about = About {
         id: "net.firewall",
@@ -162,19 +163,21 @@ pub fn firewall(states_arrive: Option<bool>, purpose: Purpose) -> Finding {
     about.finding(Ok(judged), purpose)
 }
 
-/// The shortest of `sorted` that the part `part` (in `[0, 1]`) of them does not exceed.
+/// Returns the smallest of `sorted` that at least the share `part` (in `[0, 1]`) of them does not
+/// exceed.
 ///
 /// # Panics
-/// If there are none.
+/// If the list is empty.
 pub(crate) fn quantile(sorted: &[Duration], part: f64) -> Duration {
     let wanted = (part * sorted.len() as f64).ceil().max(1.0) as usize;
     sorted[wanted - 1]
 }
 
-/// Fewer latencies than ten seconds have milliseconds show little.
+/// Number of latencies below which the result is not conclusive: the milliseconds of ten seconds.
 const LATENCIES_MIN: u64 = 10_000;
 
-/// Fewer states in a row than ten seconds have, a few lost ones aside, show little.
+/// Number of consecutive states below which the result is not conclusive: ten seconds, without a
+/// few lost ones.
 const STATES_MIN: usize = 9_900;
 
 #[cfg(test)]
@@ -182,7 +185,7 @@ mod tests {
     use super::*;
     use crate::finding::Verdict;
 
-    /// `count` latencies, all of `us` but the `worst`.
+    /// Returns `count` latencies, all of `us` except the `worst`.
     fn measured(us: u64, count: usize, worst: u64) -> Latencies {
         let mut latencies = Latencies::new(Some(99));
         for _ in 1..count {
@@ -234,7 +237,7 @@ mod tests {
         assert_eq!((latencies.at_least(1000), latencies.count()), (2, 1001));
     }
 
-    /// Verdicts of states whose numbers are these, a millisecond apart each.
+    /// Returns the verdicts on states with these numbers, at intervals of one millisecond.
     fn verdicts(numbers: impl Iterator<Item = u64>, late: u64) -> [Verdict; 2] {
         let at =
             |number| Duration::from_millis(number) + Duration::from_micros((number % 7) * late);

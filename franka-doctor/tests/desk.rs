@@ -1,5 +1,5 @@
-//! Desk as a server on this computer, over HTTPS with a certificate that it has signed itself, and
-//! over plain HTTP.
+//! Desk as a server on this computer, over HTTPS with a self-signed certificate, and over plain
+//! HTTP.
 
 use std::io::{BufRead as _, BufReader, Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
@@ -10,7 +10,7 @@ use franka_doctor::{Purpose, Verdict, ask_desk, web};
 use rustls::pki_types::PrivatePkcs8KeyDer;
 use rustls::{ServerConfig, ServerConnection, StreamOwned};
 
-/// What a path answers: status and JSON.
+/// The answer for a path: status and JSON.
 type Pages = fn(&str) -> (u16, &'static str);
 
 /// The newest generation: brakes closed, FCI not active.
@@ -68,7 +68,7 @@ fn listener() -> (TcpListener, SocketAddr) {
     (listener, address)
 }
 
-/// Serves until the process ends; returns where.
+/// Serves until the process ends; returns the address.
 fn serve(pages: Pages, tls: Option<Arc<ServerConfig>>) -> SocketAddr {
     let (listener, address) = listener();
     thread::spawn(move || {
@@ -86,7 +86,8 @@ fn serve(pages: Pages, tls: Option<Arc<ServerConfig>>) -> SocketAddr {
     address
 }
 
-/// For a certificate that nobody but this server has signed, of another name than its address.
+/// Returns a configuration with a self-signed certificate, whose name differs from the server's
+/// address.
 fn self_signed() -> Arc<ServerConfig> {
     let made = rcgen::generate_simple_self_signed(["robot.franka.de".to_owned()]);
     let made = made.expect("a certificate");

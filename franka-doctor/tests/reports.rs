@@ -1,7 +1,7 @@
-//! Reports of hosts whose files are in `fixtures`, compared exactly with the texts in `golden`.
+//! Reports about hosts whose files are in `fixtures`, compared exactly with the texts in `golden`.
 //!
-//! The trees hold the files that the checks read, composed after what such hosts show; none is a
-//! copy of a real host. With `FRANKA_DOCTOR_REWRITE=1` the texts are written anew.
+//! The trees contain the files that the checks read, modelled after real hosts; none is a copy of a
+//! real host. With `FRANKA_DOCTOR_REWRITE=1` the texts are rewritten.
 
 use std::fs;
 use std::net::Ipv4Addr;
@@ -33,7 +33,7 @@ fn tree(host: &str) -> Tree {
     Tree::new(directory("fixtures").join(host))
 }
 
-/// The robot that this host has a way to.
+/// Returns the robot address that this host has a route to.
 fn robot(host: &str) -> Ipv4Addr {
     match host {
         "laptop_on_battery" => Ipv4Addr::new(192, 168, 1, 30),
@@ -88,9 +88,9 @@ fn what_each_host_is_known_for_is_found() {
         ("wsl", "timing.loopback", Failure),
         ("container", "timing.loopback", Unknown),
         ("ubuntu_pro_realtime", "smi", Unknown),
-        // Without /sys/kernel/realtime.
+        // This host has no /sys/kernel/realtime.
         ("debian13_realtime", "kernel.rt", Good),
-        // The user is in the group, the session is not yet.
+        // The user is in the group, but the session is not yet.
         ("debian13_realtime", "rt.limits_file", Warning),
         ("debian13_realtime", "rt.priority", Failure),
         ("debian13_realtime", "cpu.cstates", Warning),
@@ -238,7 +238,7 @@ fn any_host_may_simulate_and_only_the_good_one_may_move() {
 
 #[test]
 fn unknown_findings_say_what_is_missing_and_have_no_fix() {
-    // A host with no files at all: nothing can be good.
+    // A host without files: no check can be good.
     let nothing = Tree::new(directory("fixtures").join("none"));
     let report = Doctor::new(Purpose::Move).run(&nothing, &mut |_, _| ());
     assert_eq!(

@@ -1,5 +1,4 @@
-//! The doctor on the host that the tests run on: nothing is good that cannot be, and nothing is
-//! changed.
+//! The doctor on the host of the tests: no check passes that cannot, and nothing is changed.
 
 #[path = "trace/harm.rs"]
 mod harm;
@@ -10,7 +9,7 @@ use std::time::Duration;
 
 use franka_doctor::{Doctor, Ethtool, Host as _, Purpose, System, Verdict};
 
-/// Set in the child that is traced.
+/// Environment variable of the traced child.
 const TRACED: &str = "FRANKA_DOCTOR_TRACED";
 
 #[test]
@@ -43,7 +42,7 @@ fn this_host_is_judged_without_a_wrong_good() {
         let there = std::path::Path::new(path).exists();
         assert!(there || verdict(id) == Verdict::Unknown, "{id}");
     }
-    // There is no card on the way to this very host.
+    // The route to this host itself has no card.
     for id in ["nic.route", "nic.kind", "nic.link", "nic.coalesce"] {
         assert_eq!(verdict(id), Verdict::Info, "{id}");
     }
@@ -62,7 +61,7 @@ fn wake_ups_are_measured_and_progress_is_told() {
     assert_eq!(parts.last(), Some(&1.0));
 }
 
-/// Runs this test in a child under `strace`, and looks at what it opens and calls.
+/// Runs this test in a child under `strace`, and checks its files and calls.
 #[test]
 fn no_call_changes_the_host() {
     if std::env::var_os(TRACED).is_some() {
@@ -75,7 +74,7 @@ fn no_call_changes_the_host() {
     let arguments = ["no_call_changes_the_host", "--exact", "--test-threads=1"];
     let variable = (TRACED, OsStr::new("1"));
     let traced = harm::traced(&file, program.as_os_str(), &arguments, variable);
-    // Not there if nothing can be traced.
+    // Missing if tracing is impossible.
     let _ = std::fs::remove_file(&file);
     let Some((output, calls)) = traced else {
         return;
@@ -92,11 +91,11 @@ fn no_call_changes_the_host() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
-/// All that the library asks of a host and of a robot; what takes time is cut short. Without echo
-/// requests: their socket does not show where they go.
+/// Runs all checks of a host and of a robot, with short measurements. Echo requests are excluded,
+/// because their socket does not show the destination.
 fn check_everything() {
     let host = System::default();
-    // An address of another host on any way that there is; nothing is sent.
+    // The address of another host on any existing route; nothing is sent.
     let doctor = Doctor::new(Purpose::Move)
         .robot(Ipv4Addr::new(192, 0, 2, 1))
         .timing(false);
@@ -108,11 +107,11 @@ fn check_everything() {
     ] {
         assert_eq!(measured.expect("a thread, and sockets").count(), 20);
     }
-    // The driver of what is no card does not say.
+    // The loopback interface has no card, so its driver does not answer.
     let _ = host.ethtool("lo", Ethtool::Coalescing);
-    // Refused where the host has no frequency to read.
+    // Refused if the host has no readable frequency.
     let _ = host.busy_frequency(0);
-    // Most likely nothing listens there.
+    // Most likely no service listens there.
     let ports = franka_doctor::ports(here.into(), Purpose::Move);
     assert_eq!(ports.len(), 3);
     assert!(!franka_doctor::answers((here, 1).into()).is_empty());

@@ -1,4 +1,4 @@
-//! The network card on the way to the robot: what its driver and its counts say.
+//! Checks of the network card on the route to the robot, from its driver and its counts.
 
 use super::network::NETWORK;
 use super::{Check, VENDOR};
@@ -103,7 +103,7 @@ fn link(readings: &Readings<'_>) -> Result<Judged, Unread> {
         return Ok(Judged::failure(format!("{card} is {state}"))
             .fix(Needs::Nothing, format!("sudo ip link set {card} up")));
     }
-    // Reading these fails with EINVAL where the driver does not know.
+    // Reading these fails with EINVAL if the driver does not know the value.
     let (speed, duplex) = (readings.card("speed"), readings.card("duplex"));
     let (Ok(speed), Ok(duplex)) = (speed, duplex) else {
         return Ok(Judged::unknown(format!(
@@ -127,7 +127,7 @@ fn coalesce(readings: &Readings<'_>) -> Result<Judged, Unread> {
     let (us, frames, adaptive) = (answer.word(4), answer.word(8), answer.word(44) != 0);
     let with = if adaptive { "adaptive, " } else { "" };
     let read = format!("{with}{us} us, {frames} frames");
-    // These drivers take small numbers for modes: 3 changes with the load.
+    // These drivers use small numbers as modes: 3 adapts to the load.
     let driver = readings
         .ethtool(Ethtool::Driver)
         .map(|answer| answer.text(4..36));
@@ -185,8 +185,8 @@ fn offload(readings: &Readings<'_>) -> Result<Judged, Unread> {
 
 fn rings(readings: &Readings<'_>) -> Result<Judged, Unread> {
     let answer = readings.ethtool(Ethtool::Rings)?;
-    // `struct ethtool_ringparam`, in words: command, the most of rx, rx_mini, rx_jumbo and tx, then
-    // what these are.
+    // `struct ethtool_ringparam`, in words: command, the maxima of rx, rx_mini, rx_jumbo and tx,
+    // then the current values.
     let [rx_max, tx_max, rx, tx] = [4, 16, 20, 32].map(|offset| answer.word(offset));
     Ok(Judged::info(format!(
         "receives into {rx} of at most {rx_max} places, sends from {tx} of {tx_max}"

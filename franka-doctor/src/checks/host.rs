@@ -1,4 +1,4 @@
-//! Memory, clock, power, virtual machines; the kernel's checks are in [`kernel`].
+//! Checks of memory, clock, power and virtual machines; the kernel's checks are in [`kernel`].
 
 use super::{Check, VENDOR, kernel};
 use crate::finding::{Group, Judged, Matters, Needs};
@@ -146,7 +146,7 @@ pub(super) fn is_wsl(readings: &Readings<'_>) -> Result<bool, Unread> {
     Ok(version.to_lowercase().contains("microsoft"))
 }
 
-/// The file that shows that this is a container.
+/// Returns the file that identifies a container.
 pub(super) fn container(readings: &Readings<'_>) -> Option<&'static str> {
     [
         "/.dockerenv",
@@ -224,7 +224,7 @@ fn numa(readings: &Readings<'_>) -> Result<Judged, Unread> {
         Ok(value) if value == "0" => Judged::good("0"),
         Ok(value) => Judged::info(value).fix(Needs::Nothing, "sudo sysctl kernel.numa_balancing=0"),
         Err(Unread::Absent(_)) => {
-            // Without this directory, its absence says nothing.
+            // If this directory is missing, its absence is not evidence.
             readings.host.list("/proc/sys/kernel")?;
             Judged::good("the kernel has no balancing")
         }
@@ -346,5 +346,5 @@ fn disk(readings: &Readings<'_>) -> Result<Judged, Unread> {
     })
 }
 
-/// What a recording of all cycles takes.
+/// Disk space for a recording of all cycles.
 const GIGABYTES_PER_HOUR: f64 = 2.0;

@@ -1,4 +1,4 @@
-//! The kernel: whether it is a real-time kernel, and how this computer gets one.
+//! Checks for a real-time kernel, and the way to install it on this computer.
 
 use super::host::{container, is_wsl};
 use crate::finding::{Judged, Needs};
@@ -30,18 +30,18 @@ pub(super) fn version(readings: &Readings<'_>) -> Result<Judged, Unread> {
     Ok(Judged::info(release))
 }
 
-/// How a computer gets a real-time kernel.
+/// The way to a real-time kernel on a computer.
 enum Remedy {
     /// One command installs it.
     Command(&'static str),
-    /// No command does: what to do instead.
+    /// No command exists: instructions instead.
     Words(String),
-    /// Not known for this system.
+    /// Unknown for this system.
     Unknown,
 }
 
 impl Remedy {
-    /// The remedy for a computer whose kernel has this release.
+    /// Returns the remedy for a computer with this kernel release.
     fn of(readings: &Readings<'_>, release: &str) -> Self {
         if is_wsl(readings).unwrap_or(false) {
             return Self::words("WSL has a kernel of Windows: run Linux on the computer itself");
@@ -91,7 +91,7 @@ impl Remedy {
     }
 }
 
-/// A value of `/etc/os-release`, without quotes; empty if it is missing.
+/// Returns a value of `/etc/os-release`, without quotes; empty if it is missing.
 fn field<'a>(system: &'a str, name: &str) -> &'a str {
     system
         .lines()

@@ -1,4 +1,4 @@
-//! The checks, a table for each group. Each is a function of what was read.
+//! The checks, one table for each group. Each check is a function of the readings.
 
 mod card;
 mod host;
@@ -19,15 +19,15 @@ pub(crate) struct Check {
     pub(crate) wanted: &'static str,
     pub(crate) why: &'static str,
     pub(crate) source: &'static str,
-    /// True if it reads files and asks drivers only, starting no thread.
+    /// True if it only reads files and queries drivers, and starts no thread.
     pub(crate) reads_only: bool,
-    /// True if it is about the network card on the way to the robot.
+    /// True if it is about the network card on the route to the robot.
     pub(crate) of_card: bool,
     pub(crate) judge: fn(&Readings<'_>) -> Result<Judged, Unread>,
 }
 
 impl Check {
-    /// What this check finds. What cannot be read is unknown.
+    /// Returns the finding of this check. An unreadable value is unknown.
     pub(crate) fn run(&self, readings: &Readings<'_>, purpose: Purpose) -> Finding {
         let about = About {
             id: self.id,
@@ -46,7 +46,7 @@ impl Check {
     }
 }
 
-/// Every check of host and network card, in the order of reports.
+/// Returns every check of host and network card, in the order of reports.
 pub(crate) fn all() -> impl Iterator<Item = &'static Check> {
     [
         host::CHECKS,

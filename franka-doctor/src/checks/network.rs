@@ -1,4 +1,4 @@
-//! The way to the robot.
+//! Checks of the route to the robot.
 
 use franka_proto::RobotState;
 
@@ -7,7 +7,7 @@ use crate::finding::{Group, Judged, Matters, Needs};
 use crate::host::Unread;
 use crate::readings::{NET, Readings};
 
-/// What the checks of the way to the robot and of the card on it have in common.
+/// The common fields of the checks of the route to the robot and of its network card.
 pub(super) const NETWORK: Check = Check {
     id: "",
     group: Group::NetworkCard,
@@ -81,7 +81,7 @@ fn route(readings: &Readings<'_>) -> Result<Judged, Unread> {
     };
     let route = match readings.route() {
         Ok(route) => route,
-        // The system says so when it knows no way.
+        // The system reports an error if it has no route.
         Err(Unread::Failed(_, why)) => return Ok(Judged::failure(format!("no way: {why}"))),
         Err(unread) => return Err(unread),
     };
@@ -135,7 +135,8 @@ fn lease(readings: &Readings<'_>) -> Result<Judged, Unread> {
 fn mtu(readings: &Readings<'_>) -> Result<Judged, Unread> {
     let card = readings.interface()?;
     let mtu: u32 = readings.number(&format!("{NET}/{card}/mtu"))?;
-    // Headers of IP and UDP have 20 and 8 bytes, and all fragments but the last a multiple of 8.
+    // Headers of IP and UDP have 20 and 8 bytes. All fragments except the last have a multiple of 8
+    // bytes.
     let bytes = RobotState::MAX_SIZE as u32 + 8;
     let packets = match mtu.saturating_sub(20) {
         room if room >= bytes => 1,

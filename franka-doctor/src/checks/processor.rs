@@ -1,4 +1,4 @@
-//! Frequency, sleep states, load and interrupts of the processors.
+//! Checks of frequency, sleep states, load and interrupts of the processors.
 
 use super::Check;
 use crate::finding::{Group, Judged, Matters, Needs};
@@ -104,7 +104,7 @@ pub(super) const CHECKS: &[Check] = &[
 
 const CPUS: &str = "/sys/devices/system/cpu";
 
-/// `performance (4), powersave (4)`.
+/// Formats counts such as `performance (4), powersave (4)`.
 fn counted(values: &std::collections::BTreeMap<String, usize>) -> String {
     let parts: Vec<String> = values
         .iter()
@@ -211,7 +211,7 @@ fn count(readings: &Readings<'_>) -> Result<Judged, Unread> {
     })
 }
 
-/// The numbers in a list such as `0-3,8`; `None` if it is no such list.
+/// Returns the numbers of a list such as `0-3,8`; `None` if it is not such a list.
 fn members(list: &str) -> Option<Vec<usize>> {
     let mut members = Vec::new();
     for part in list
@@ -229,7 +229,7 @@ fn members(list: &str) -> Option<Vec<usize>> {
     Some(members)
 }
 
-/// More processors than any kernel has.
+/// A bound above the number of processors of any kernel.
 const CPU_MAX: usize = 1 << 16;
 
 fn isolated(readings: &Readings<'_>) -> Result<Judged, Unread> {
@@ -263,7 +263,7 @@ fn isolated(readings: &Readings<'_>) -> Result<Judged, Unread> {
     })
 }
 
-/// Options of the kernel that change how punctual a processor is.
+/// Kernel options that affect the punctuality of a processor.
 const OPTIONS: [&str; 13] = [
     "isolcpus",
     "nohz_full",
@@ -304,7 +304,8 @@ fn load(readings: &Readings<'_>) -> Result<Judged, Unread> {
     })
 }
 
-/// The control thread's processor, or the first one, after a second of load where that may be.
+/// Checks the frequency of the control thread's processor, or the first one, after a second of load
+/// if load is allowed.
 fn frequency(readings: &Readings<'_>) -> Result<Judged, Unread> {
     let cpu = readings.cpu.unwrap_or(0);
     let file = |name: &str| format!("{CPUS}/cpu{cpu}/cpufreq/{name}");

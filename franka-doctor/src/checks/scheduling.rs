@@ -1,4 +1,4 @@
-//! What the control thread may ask of the kernel.
+//! Checks of the control thread's rights in the kernel.
 
 use super::{Check, VENDOR};
 use crate::finding::{Group, Judged, Matters, Needs};
@@ -77,7 +77,7 @@ pub(super) const CHECKS: &[Check] = &[
     },
 ];
 
-/// Has a group `realtime` whose members may have real-time priorities.
+/// Creates a group `realtime` whose members may have real-time priorities.
 const FIX: &str = "sudo groupadd -f realtime && sudo usermod -aG realtime \"$USER\" && printf '@realtime soft rtprio 99\\n@realtime hard rtprio 99\\n@realtime soft memlock unlimited\\n@realtime hard memlock unlimited\\n' | sudo tee /etc/security/limits.d/franka.conf";
 
 fn priority(readings: &Readings<'_>) -> Result<Judged, Unread> {
@@ -226,7 +226,7 @@ fn cgroup(readings: &Readings<'_>) -> Result<Judged, Unread> {
             "version 2 of control groups, which have no runtime of their own; see rt.priority",
         ));
     };
-    // Inside a container, the path is that of the host.
+    // Inside a container, the path is the host's path.
     let files = [
         format!("/sys/fs/cgroup/cpu{path}/cpu.rt_runtime_us"),
         "/sys/fs/cgroup/cpu/cpu.rt_runtime_us".to_owned(),

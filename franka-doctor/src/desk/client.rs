@@ -1,4 +1,4 @@
-//! Asks Desk, over HTTPS.
+//! Requests to Desk, over HTTPS.
 
 use core::time::Duration;
 use std::net::SocketAddr;
@@ -9,12 +9,13 @@ use ureq::tls::{TlsConfig, TlsProvider};
 
 use super::{DeskState, Page, read};
 
-/// What Desk at this address, as a rule port 443 of the robot, says without a login; otherwise why
-/// there is none.
+/// Returns the state that Desk at this address (usually port 443 of the robot) provides without a
+/// login; otherwise the reason for the failure.
 ///
-/// Some `GET` requests, for 2 s each at most; nothing is changed, and no password is sent. Desk
-/// signs its certificate itself, so the certificate is not checked: whoever sits on the way could
-/// answer instead. Without TLS at the other end, plain HTTP is tried, at port 80 instead of 443.
+/// Sends a few `GET` requests, of at most 2 s each. It changes nothing and sends no password. Desk
+/// signs its own certificate, so the certificate is not checked: an attacker on the network path
+/// could answer instead. If the other end has no TLS, plain HTTP is tried, at port 80 instead of
+/// 443.
 pub fn ask_desk(desk: SocketAddr) -> Result<DeskState, String> {
     let agent = agent();
     ask(&agent, "https", desk).or_else(|why| {
@@ -22,7 +23,7 @@ pub fn ask_desk(desk: SocketAddr) -> Result<DeskState, String> {
         if plain.port() == 443 {
             plain.set_port(80);
         }
-        // The reason that counts is that of the way Desk is reached as a rule.
+        // The first error is reported: HTTPS is the usual way to reach Desk.
         ask(&agent, "http", plain).map_err(|_| why)
     })
 }
@@ -43,7 +44,7 @@ fn ask(agent: &Agent, scheme: &str, address: SocketAddr) -> Result<DeskState, St
     })
 }
 
-/// Goes straight to the robot: by no proxy, and nowhere else than it is told.
+/// Returns an agent that connects directly to the robot, without proxy and without redirects.
 fn agent() -> Agent {
     let provider = Arc::new(rustls::crypto::ring::default_provider());
     let tls = TlsConfig::builder()
@@ -65,8 +66,8 @@ fn agent() -> Agent {
 
 const CONNECT: Duration = Duration::from_secs(1);
 
-/// For each request.
+/// Time limit of each request.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// The longest page that is read, in bytes.
+/// Largest page that is read, in bytes.
 const BODY_MAX: u64 = 1 << 20;

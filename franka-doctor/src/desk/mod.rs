@@ -1,4 +1,5 @@
-//! What Desk, the robot's web interface, says without a login: why the robot takes no session.
+//! The state of Desk, the robot's web interface, without a login: reasons why the robot refuses a
+//! session.
 //!
 //! ```text
 //! Desk --GET--> pages (v1 of its interface, or an older one) --> DeskState --> robot.web
@@ -12,11 +13,11 @@ use crate::finding::{About, Finding, Judged, Purpose};
 pub use client::ask_desk;
 pub(crate) use pages::{Page, read};
 
-/// What Desk says of its robot without a login. `None` is what it does not say.
+/// The robot's state from Desk without a login. A field is `None` if Desk does not report it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct DeskState {
-    /// Of the system: `Started`, or another word.
+    /// The state of the system: `Started`, or another word.
     pub system: Option<String>,
     /// The operating mode: `Execution`, `Programming`, or another word.
     pub mode: Option<String>,
@@ -24,25 +25,25 @@ pub struct DeskState {
     pub braked: Option<Vec<usize>>,
     /// True if FCI is active.
     pub fci: Option<bool>,
-    /// The self-test that is due once a day.
+    /// The daily self-test.
     pub self_test: Option<SelfTest>,
 }
 
-/// How it stands with the self-test.
+/// State of the self-test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SelfTest {
-    /// Not due yet; in how many seconds, if that is said.
+    /// Not due yet; the remaining seconds, if reported.
     Done(Option<u64>),
-    /// Due soon; in how many seconds, if that is said.
+    /// Due soon; the remaining seconds, if reported.
     Soon(Option<u64>),
-    /// Due: the robot does not move before.
+    /// Due: the robot does not move before the self-test.
     Due,
-    /// Under way.
+    /// Running.
     Running,
 }
 
-/// What the state of Desk shows: `robot.web`. A pure function.
+/// Returns the finding about the state of Desk: `robot.web`. A pure function.
 pub fn web(asked: &Result<DeskState, String>, purpose: Purpose) -> Finding {
     let about = About::robot(
         "robot.web",
@@ -93,7 +94,7 @@ fn judge(state: &DeskState) -> Judged {
     }
 }
 
-/// Why the robot takes no session or no motion, each with what to do in Desk.
+/// Returns the reasons why the robot refuses a session or a motion, each with the action in Desk.
 fn reasons(state: &DeskState) -> Vec<String> {
     let mut reasons = Vec::new();
     match state.system.as_deref() {
@@ -132,7 +133,7 @@ fn reasons(state: &DeskState) -> Vec<String> {
     reasons
 }
 
-/// A time as hours, or as minutes if it is less than one.
+/// Formats a time in hours, or in minutes if it is less than one hour.
 fn hours(seconds: u64) -> String {
     match seconds {
         3600.. => format!("{} h", seconds / 3600),

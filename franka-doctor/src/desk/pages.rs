@@ -1,24 +1,24 @@
-//! The pages of Desk that take no login, in the generations of its interface.
+//! The pages of Desk that require no login, in all generations of its interface.
 //!
-//! Paths and fields are those that clients of Desk use; the vendor publishes none for the older
-//! generations.
+//! The paths and fields are those of existing clients of Desk; the vendor does not document the
+//! older generations.
 
 use serde_json::Value;
 
 use super::{DeskState, SelfTest};
 
-/// What Desk answers to a request: the status of HTTP, and the JSON if it is any.
+/// An answer of Desk: the HTTP status, and the JSON if the body is JSON.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Page {
     pub(crate) status: u16,
     pub(crate) json: Option<Value>,
 }
 
-/// Reads the state, with what answers a path.
+/// Reads the state; `get` returns the answer for a path.
 ///
 /// # Errors
-/// If the first path has no answer at all, or what answers is not known. Later paths without an
-/// answer leave open what they would have said.
+/// If the first path has no answer, or its answer is unknown. If a later path has no answer, its
+/// fields stay unknown.
 pub(crate) fn read(get: &mut dyn FnMut(&str) -> Result<Page, String>) -> Result<DeskState, String> {
     let first = get("/api/system")?;
     let mut statuses = vec![("/api/system", first.status)];
@@ -84,14 +84,15 @@ pub(crate) fn read(get: &mut dyn FnMut(&str) -> Result<Page, String>) -> Result<
     })
 }
 
-/// A word of Desk's, fit for a terminal.
+/// Returns a word of Desk, made safe for a terminal.
 fn word(value: &Value) -> Option<String> {
     let text = value.as_str()?;
     let shown: String = text.escape_debug().take(WORD_MAX).collect();
     Some(shown)
 }
 
-/// The joints whose brakes are not open, in a list of words, or of objects with such a field.
+/// Returns the joints whose brakes are not open, from a list of words, or of objects with such a
+/// field.
 fn braked(joints: &Value, field: &str) -> Option<Vec<usize>> {
     let joints = joints.as_array().filter(|joints| joints.len() == 7)?;
     let mut braked = Vec::new();
@@ -108,7 +109,7 @@ fn braked(joints: &Value, field: &str) -> Option<Vec<usize>> {
     Some(braked)
 }
 
-/// From Desk's word for it, and the seconds until it is due.
+/// Converts Desk's word, and the seconds until the self-test is due.
 fn self_test(word: &str, left: Option<f64>) -> Option<SelfTest> {
     let left = left.map(|left| left.max(0.0) as u64);
     match word {
@@ -120,7 +121,7 @@ fn self_test(word: &str, left: Option<f64>) -> Option<SelfTest> {
     }
 }
 
-/// The longest word that is shown, in characters.
+/// Longest word that is shown, in characters.
 const WORD_MAX: usize = 40;
 
 #[cfg(test)]
@@ -129,7 +130,7 @@ mod tests {
 
     use super::*;
 
-    /// The state read of a Desk that answers these paths, and 404 to all others.
+    /// Returns the state from a Desk that answers these paths, and 404 for all others.
     fn state(pages: &[(&str, u16, Value)]) -> Result<DeskState, String> {
         read(&mut |path| {
             let known = pages.iter().find(|(known, ..)| *known == path);

@@ -1,4 +1,4 @@
-//! What only Linux answers: the only file of this crate with `unsafe`.
+//! Linux-specific values: the only file of this crate with `unsafe`.
 
 use core::time::Duration;
 use std::io;
@@ -15,7 +15,7 @@ use crate::host::{Ethtool, Unread};
 use crate::latencies::Latencies;
 pub(super) use crate::lease::is_lasting;
 
-/// The answer of a network card's driver, by `ioctl`.
+/// Returns the answer of a network card's driver, by `ioctl`.
 pub(super) fn ethtool(interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread> {
     let what = format!("ethtool {interface} {:#04x}", question.command());
     let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))
@@ -32,10 +32,10 @@ pub(super) fn ethtool(interface: &str, question: Ethtool) -> Result<Vec<u8>, Unr
     let mut answer = [0_u32; ANSWER_WORDS];
     answer[0] = question.command();
     ifreq.ifr_ifru.ifru_data = (&raw mut answer).cast();
-    // SAFETY: the descriptor is open during the call. The kernel reads the name, which ends
-    // with a zero, and behind the pointer it reads and writes the structure of the command: at
-    // most 196 bytes, of members of four bytes at most (`linux/ethtool.h`). `answer` is
-    // initialised, aligned for these and larger.
+    // SAFETY: the descriptor is open during the call. The kernel reads the name, which ends with a
+    // zero. Behind the pointer it reads and writes the structure of the command: at most 196 bytes,
+    // of members of at most four bytes (`linux/ethtool.h`). `answer` is initialised, aligned for
+    // these members, and larger.
     let done = unsafe { libc::ioctl(socket.as_raw_fd(), SIOCETHTOOL, &raw mut ifreq) };
     if done == -1 {
         let error = io::Error::last_os_error();
@@ -60,7 +60,7 @@ pub(super) fn pin_to(cpu: usize) -> io::Result<()> {
     Ok(())
 }
 
-/// Sleeps until each of `cycles` milliseconds, and notes how late it was each time.
+/// Sleeps until each of `cycles` milliseconds, and records the delay each time.
 pub(super) fn wake_ups(
     priority: Option<i32>,
     cycles: u64,
@@ -81,7 +81,7 @@ pub(super) fn wake_ups(
             .map_err(|error| error.to_string())?;
         let woken = now()?;
         wake_ups.note(woken.saturating_sub(due));
-        // A wake-up that is later than the next one is due is counted once.
+        // A wake-up later than the next period is counted once.
         while due + Duration::from_millis(1) <= woken {
             due += Duration::from_millis(1);
         }
@@ -93,5 +93,5 @@ pub(super) fn wake_ups(
 /// Room for the answer to an ethtool question, in words of four bytes.
 const ANSWER_WORDS: usize = 64;
 
-/// `linux/sockios.h`; libc types requests as the platform's `ioctl` does.
+/// The request, from `linux/sockios.h`; libc types requests as the platform's `ioctl` does.
 const SIOCETHTOOL: libc::Ioctl = 0x8946;

@@ -1,4 +1,4 @@
-//! Where Linux does not answer.
+//! The replacement on systems other than Linux.
 
 use core::time::Duration;
 use std::io;
@@ -10,23 +10,23 @@ use std::time::Instant;
 use crate::host::{Ethtool, Unread};
 use crate::latencies::Latencies;
 
-/// Drivers of network cards are asked on Linux only.
+/// Returns an error: drivers of network cards are queried on Linux only.
 pub(super) fn ethtool(interface: &str, question: Ethtool) -> Result<Vec<u8>, Unread> {
     let what = format!("ethtool {interface} {:#04x}", question.command());
     Err(Unread::Failed(what, "asked on Linux only".into()))
 }
 
-/// Addresses that were lent are asked for on Linux only.
+/// Returns an error or no answer: leased addresses are queried on Linux only.
 pub(super) fn is_lasting(_: Ipv4Addr) -> io::Result<Option<bool>> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
-/// A thread is not bound to a processor.
+/// Does nothing: a thread is not bound to a processor.
 pub(super) fn pin_to(_: usize) -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
-/// Sleeps until each of `cycles` milliseconds, and notes how late it was each time.
+/// Sleeps until each of `cycles` milliseconds, and records the delay each time.
 pub(super) fn wake_ups(
     priority: Option<i32>,
     cycles: u64,
@@ -39,7 +39,7 @@ pub(super) fn wake_ups(
         thread::sleep(due.saturating_duration_since(Instant::now()));
         let woken = Instant::now();
         wake_ups.note(woken.saturating_duration_since(due));
-        // A wake-up that is later than the next one is due is counted once.
+        // A wake-up later than the next period is counted once.
         while due + Duration::from_millis(1) <= woken {
             due += Duration::from_millis(1);
         }

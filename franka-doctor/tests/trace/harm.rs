@@ -1,13 +1,13 @@
-//! System calls of a program, and which of them could change a host.
+//! System calls of a program, and the calls that could change a host.
 
 use std::ffi::OsStr;
 use std::path::Path;
 use std::process::{Command, Output};
 use std::{env, fs};
 
-/// Runs a program, with these arguments, under `strace`. Returns what it printed, and its calls,
-/// one a line; `None` where no program can be traced, which is a failure with `CI=true`. The calls
-/// are written to `file`, which has to be new.
+/// Runs a program, with these arguments, under `strace`. Returns its output, and its calls, one per
+/// line; `None` if programs cannot be traced, which is a failure with `CI=true`. The calls are
+/// written to `file`, which must be new.
 pub(crate) fn traced(
     file: &Path,
     program: &OsStr,
@@ -16,7 +16,7 @@ pub(crate) fn traced(
 ) -> Option<(Output, String)> {
     let calls = format!("trace=%file,%network,%process,ioctl,{}", SYSTEM.join(","));
     let ran = Command::new("strace")
-        // Of all threads, with the ends of sockets.
+        // Traces all threads, with the addresses of sockets.
         .args(["-f", "-qq", "-yy", "-e", &calls, "-o"])
         .arg(file)
         .arg(program)
@@ -36,13 +36,13 @@ pub(crate) fn traced(
     None
 }
 
-/// The calls that could change the host, or something beyond it.
+/// Returns the calls that could change the host, or another system.
 pub(crate) fn harmful(calls: &str) -> Vec<&str> {
     calls.lines().filter(|call| is_harmful(call)).collect()
 }
 
 fn is_harmful(call: &str) -> bool {
-    // The end of a call that was interrupted by one of another thread has no arguments.
+    // The end of a call that another thread interrupted has no arguments.
     let (_, call) = call.split_once(' ').expect("a process, then a call");
     let Some((name, arguments)) = call.trim_start().split_once('(') else {
         return false;
@@ -56,7 +56,7 @@ fn is_harmful(call: &str) -> bool {
             "O_TRUNC",
             "cpu_dma_latency",
         ]),
-        // To this computer itself; connecting a UDP socket sends nothing.
+        // A connection to this computer itself; connecting a UDP socket sends nothing.
         "connect" => !has(&["127.0.0.1", "<UDP:"]),
         // A dump of all addresses: type 0x16 is RTM_GETADDR, 0x300 NLM_F_DUMP.
         "sendto" | "sendmsg" | "sendmmsg" => {
@@ -71,7 +71,7 @@ fn is_harmful(call: &str) -> bool {
     }
 }
 
-/// Calls on files and processes that are traced with others of their kind.
+/// Calls on files and processes that are traced together with similar calls.
 const CHANGES: [&str; 28] = [
     "creat",
     "unlink",
@@ -103,7 +103,7 @@ const CHANGES: [&str; 28] = [
     "tgkill",
 ];
 
-/// Calls that set something of the whole system. Those with `?` are not everywhere.
+/// Calls that change system-wide settings. Calls with `?` do not exist on all systems.
 const SYSTEM: [&str; 12] = [
     "settimeofday",
     "clock_settime",
@@ -119,7 +119,7 @@ const SYSTEM: [&str; 12] = [
     "?ioperm",
 ];
 
-/// What is harmful is seen, and nothing else.
+/// Harmful calls are detected, and no others.
 #[test]
 fn harmful_calls_are_told_from_others() {
     for (call, expected) in [
