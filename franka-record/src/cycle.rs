@@ -9,31 +9,32 @@ use franka_proto::RobotState;
 use franka_rt::driver::Record;
 use nalgebra::Isometry3;
 
-/// A moment of this host: nanoseconds since 1970.
+/// A time of this host: nanoseconds since 1970.
 ///
-/// Within one recording it follows the wall clock as it was when the recording began, and never
-/// decreases: a wall clock that is set later leaves it alone.
+/// Within one recording it continues from the wall clock at the beginning of the recording, and
+/// never decreases: later changes of the wall clock have no effect.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HostTime(u64);
 
 impl HostTime {
-    /// The moment `nanos` after the start of 1970.
+    /// Creates the time `nanos` after the start of 1970.
     pub const fn from_nanos(nanos: u64) -> Self {
         Self(nanos)
     }
 
-    /// The wall clock of this host, now; the start of 1970 if it is set to an earlier time.
+    /// Returns the current wall clock of this host; the start of 1970 if it is set to an earlier
+    /// time.
     pub fn now() -> Self {
         Self::from(SystemTime::now())
     }
 
-    /// Nanoseconds since the start of 1970.
+    /// Returns the nanoseconds since the start of 1970.
     pub const fn as_nanos(self) -> u64 {
         self.0
     }
 
-    /// The time from `earlier` to this, zero if that is later.
+    /// Returns the time from `earlier` to this; zero if `earlier` is later.
     pub fn since(self, earlier: Self) -> Duration {
         Duration::from_nanos(self.0.saturating_sub(earlier.0))
     }
@@ -55,7 +56,7 @@ impl From<HostTime> for SystemTime {
 impl Add<Duration> for HostTime {
     type Output = Self;
 
-    /// Ends at the latest moment that there is.
+    /// Saturates at the latest possible time.
     fn add(self, duration: Duration) -> Self {
         let nanos = u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX);
         Self(self.0.saturating_add(nanos))
@@ -65,7 +66,7 @@ impl Add<Duration> for HostTime {
 impl Sub<Duration> for HostTime {
     type Output = Self;
 
-    /// Ends at the start of 1970.
+    /// Saturates at the start of 1970.
     fn sub(self, duration: Duration) -> Self {
         let nanos = u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX);
         Self(self.0.saturating_sub(nanos))
@@ -73,7 +74,7 @@ impl Sub<Duration> for HostTime {
 }
 
 impl fmt::Display for HostTime {
-    /// UTC with milliseconds: `2026-03-01T12:00:00.000Z`.
+    /// Formats as UTC with milliseconds: `2026-03-01T12:00:00.000Z`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let seconds = self.0 / 1_000_000_000;
         let (year, month, day) = date(seconds / 86_400);
@@ -86,7 +87,7 @@ impl fmt::Display for HostTime {
     }
 }
 
-/// Year, month and day in the Gregorian calendar, `days` after 1970-01-01.
+/// Returns year, month and day in the Gregorian calendar, `days` after 1970-01-01.
 fn date(days: u64) -> (u64, u64, u64) {
     // Counted from 1 March of year 0, so that a leap day is the last of its year.
     let days = days + 719_468;
@@ -101,21 +102,21 @@ fn date(days: u64) -> (u64, u64, u64) {
     (year, month, day)
 }
 
-/// One cycle: a state of the robot, and what the driver made of it.
+/// One cycle: a state of the robot, and the driver's record of it.
 ///
-/// Read back from a file, numbers have the precision of an `f32`, but for times and measured joint
-/// positions. `K_F_ext_hat_K` and `elbow` are computed from the rest. Not recorded, so that they
-/// have their defaults, are the derivatives of the torques (`dtau_J`), the motors (`theta`,
-/// `dtheta`), the accelerometers, `O_ddP_O` and the commanded quantities of Cartesian motions
-/// (`O_T_EE_c`, `elbow_c` and so on). A pose that is not a rigid transformation reads as the
+/// After reading from a file, numbers have the precision of an `f32`, except times and measured
+/// joint positions. `K_F_ext_hat_K` and `elbow` are computed from the rest. Some fields are not
+/// recorded and have their defaults. They are the derivatives of the torques (`dtau_J`), the motors
+/// (`theta`, `dtheta`), the accelerometers, `O_ddP_O` and the commanded quantities of Cartesian
+/// motions (`O_T_EE_c`, `elbow_c` and so on). A pose that is not a rigid transformation becomes the
 /// identity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cycle {
-    /// When this host received the state.
+    /// Time at which this host received the state.
     pub time: HostTime,
-    /// What the driver did.
+    /// The driver's record.
     pub record: Record,
-    /// The state that it answered.
+    /// The state that the driver answered.
     pub state: RobotState,
     /// Pose of the end effector at the reference joint positions, in the base frame; `None` outside
     /// target control. A recorder computes it if it is missing.

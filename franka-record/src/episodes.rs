@@ -1,4 +1,4 @@
-//! Episodes of a recording, and what exports and replays read of their cycles.
+//! Episodes of a recording, and the samples of their cycles for exports and replays.
 
 use core::fmt;
 
@@ -14,54 +14,54 @@ use crate::sample::Sample;
 pub struct Episode {
     /// Its name.
     pub name: String,
-    /// What was to be done, in words.
+    /// Description of the task.
     pub task: String,
-    /// True if it was done; `None` if nobody judged it.
+    /// True if the task succeeded; `None` if it was not judged.
     pub success: Option<bool>,
-    /// When it began.
+    /// Time of the beginning.
     pub begin: HostTime,
-    /// When it ended.
+    /// Time of the end.
     pub end: HostTime,
 }
 
-/// Why an episode cannot have this name or task, or why none is found.
+/// The reason why a name or task is invalid, or why no episode was found.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EpisodeError {
-    /// The name is not one.
+    /// The name is invalid.
     #[error(
         "got the episode name {got:?}, expected 1 to {} letters, digits, '-' and '_'",
         Episode::NAME_MAX
     )]
     Name {
-        /// The name given.
+        /// The given name.
         got: String,
     },
-    /// There are no words.
+    /// The task is empty.
     #[error("episode {name:?} has an empty task, expected what is to be done, in words")]
     Task {
         /// Its name.
         name: String,
     },
-    /// None has this name.
+    /// No episode has this name.
     #[error("got the episode {got:?}, expected one of {known}")]
     Unknown {
-        /// The name given.
+        /// The given name.
         got: String,
-        /// The names that there are.
+        /// The existing names.
         known: String,
     },
 }
 
 impl Episode {
-    /// The most letters of a name.
+    /// Largest number of characters in a name.
     pub const NAME_MAX: usize = 128;
 
-    /// Checks the name and the task of an episode that is to begin: a name fits into the name of a
-    /// file, and a task has words.
+    /// Checks the name and the task of a new episode: a name must be valid in a file name, and a
+    /// task must not be empty.
     ///
     /// # Errors
-    /// [`EpisodeError`] says what was expected.
+    /// [`EpisodeError`] with the expected value.
     pub fn check(name: &str, task: &str) -> Result<(), EpisodeError> {
         let fits = |letter: char| letter.is_ascii_alphanumeric() || "-_".contains(letter);
         if !(1..=Self::NAME_MAX).contains(&name.len()) || !name.chars().all(fits) {
@@ -75,11 +75,11 @@ impl Episode {
         Ok(())
     }
 
-    /// The episodes that these events mark, in their order. One without an end, at the end of a
-    /// recording or before the next one begins, is left out.
+    /// Returns the episodes marked by these events, in their order. An episode without an end, at
+    /// the end of a recording or before the next beginning, is left out.
     ///
     /// # Errors
-    /// That of the first event that cannot be read.
+    /// The error of the first event that cannot be read.
     pub fn of<E>(events: impl IntoIterator<Item = Result<Event, E>>) -> Result<Vec<Self>, E> {
         let mut episodes = Vec::new();
         let mut begun = None;
@@ -102,7 +102,7 @@ impl Episode {
         Ok(episodes)
     }
 
-    /// Those of `all` that have one of these names, in their order.
+    /// Returns the episodes of `all` that have one of these names, in their order.
     ///
     /// # Errors
     /// [`EpisodeError::Unknown`] for a name that none of them has.
@@ -120,9 +120,9 @@ impl Episode {
     }
 }
 
-/// The samples of some cycles, with the width that the gripper had last.
+/// Samples of cycles, each with the gripper's most recent width.
 ///
-/// Both have to be in the order of their times. The widths of a vacuum gripper are none.
+/// Both inputs must be in the order of their times. Vacuum grippers have no widths.
 pub struct Samples<C, G: Iterator> {
     cycles: C,
     gripper: core::iter::Peekable<G>,
@@ -134,7 +134,7 @@ where
     C: Iterator<Item = Result<Cycle, E>>,
     G: Iterator<Item = Result<(HostTime, GripperState), E>>,
 {
-    /// The samples of these cycles and states of the gripper.
+    /// Creates the samples of these cycles and states of the gripper.
     pub fn new(
         cycles: impl IntoIterator<IntoIter = C>,
         gripper: impl IntoIterator<IntoIter = G>,

@@ -1,4 +1,4 @@
-//! What a recording holds beside the cycles.
+//! The contents of a recording in addition to the cycles.
 
 use core::fmt;
 use core::time::Duration;
@@ -9,95 +9,95 @@ use nalgebra::Isometry3;
 
 use crate::HostTime;
 
-/// Something that happened, and when.
+/// An event and its time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// When this host had word of it.
+    /// Time at which this host was notified.
     pub time: HostTime,
-    /// The robot's clock of the newest cycle before it, `[ms]`. If there was none, that of when the
-    /// robot was attached; 0 if that is not known.
+    /// The robot's clock of the newest cycle before it, `[ms]`. Without such a cycle, the clock at
+    /// the time when the robot was attached; 0 if unknown.
     pub robot_time: u64,
-    /// What happened.
+    /// The kind of event.
     pub kind: EventKind,
 }
 
-/// What happened. Changes of the robot's mode and errors, drops and steps of the clock are found by
-/// the recorder itself.
+/// The kind of event. The recorder itself detects changes of the robot's mode and errors, drops,
+/// and steps of the clock.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum EventKind {
-    /// A goal was given.
+    /// A goal was set.
     Goal(Goal),
-    /// A goal came to its end.
+    /// A goal ended.
     Outcome(Outcome),
-    /// No state has come for this long.
+    /// No state has arrived for this duration.
     LinkLost {
         /// The silence so far.
         silence: Duration,
     },
-    /// States come again.
+    /// States arrive again.
     LinkRestored {
-        /// How long none came.
+        /// Duration without states.
         silence: Duration,
     },
     /// The robot's mode changed.
     Mode {
-        /// The mode before.
+        /// The previous mode.
         from: RobotMode,
-        /// The mode now.
+        /// The current mode.
         to: RobotMode,
     },
-    /// The errors that hold changed.
+    /// The current errors changed.
     Errors {
-        /// Those that hold now.
+        /// The current errors.
         errors: Errors,
-        /// Those that ended the last motion.
+        /// The errors that ended the last motion.
         reflex_reason: Errors,
     },
     /// A request to the robot or its gripper was answered.
     Request(Request),
-    /// Why a motion ended, and what to change.
+    /// The reason for the end of a motion, and recommended changes.
     Diagnosis(Diagnosis),
     /// An episode begins.
     EpisodeStart {
         /// Its name.
         name: String,
-        /// What is to be done, in words.
+        /// Description of the task.
         task: String,
     },
     /// The episode ends.
     EpisodeEnd {
-        /// True if the task was done; `None` if nobody judged it.
+        /// True if the task succeeded; `None` if it was not judged.
         success: Option<bool>,
     },
     /// A remark of the program, the user or the recorder.
     Note(Note),
-    /// Cycles for which the recorder had no room.
+    /// The recorder had no space for some cycles.
     Dropped {
-        /// How many, since the last such event.
+        /// Number of cycles since the last such event.
         cycles: u64,
     },
-    /// The wall clock of this host was set; recorded times go on from where they were.
+    /// The wall clock of this host was set; recorded times continue unchanged.
     ClockStep {
         /// The wall clock minus recorded time, `[ns]`.
         by: i64,
     },
 }
 
-/// A goal that was given.
+/// A goal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Goal {
-    /// Its number, as in [`Record::goal`](franka_rt::driver::Record::goal); 0 where it has none.
+    /// Its number, as in [`Record::goal`](franka_rt::driver::Record::goal); 0 if it has none.
     pub number: u64,
-    /// What was called: `move_to`, `follow`, `control_torques`, ...
+    /// The called method: `move_to`, `follow`, `control_torques`, ...
     pub kind: String,
-    /// Where it ends, if that was known when it was given.
+    /// Its end, if known when the goal was set.
     pub target: Option<Target>,
     /// Its options, as text.
     pub options: String,
 }
 
-/// Where a goal ends.
+/// The end of a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
     /// Joint positions, `[rad]`.
@@ -106,36 +106,36 @@ pub enum Target {
     Pose(Isometry3<f64>),
 }
 
-/// How a goal came to its end.
+/// The outcome of a goal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outcome {
-    /// Number of the goal; 0 where it has none.
+    /// Number of the goal; 0 if it has none.
     pub goal: u64,
-    /// How it ended.
+    /// The kind of ending.
     pub ending: Ending,
-    /// What the caller was told.
+    /// The text of the result.
     pub text: String,
-    /// From the first cycle that saw the goal to its end, if it ran.
+    /// Time from the first cycle with the goal to its end, if it ran.
     pub duration: Option<Duration>,
 }
 
-/// How a goal came to its end, in one word.
+/// The kind of a goal's ending, in one word.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Ending {
-    /// It arrived, or came to the end that it was given.
+    /// The goal arrived, or reached its own end condition.
     Arrived,
     /// A newer goal took over.
     Superseded,
-    /// It was asked to stop, or dropped.
+    /// The goal was stopped or dropped.
     Stopped,
     /// The robot stopped itself.
     Reflex,
     /// The robot fell silent.
     LinkLost,
-    /// A guard of the driver gave it up.
+    /// A guard of the driver aborted the goal.
     Guard(Guard),
-    /// It never began, or a target of its stream was refused.
+    /// The goal never began, or a target of its stream was refused.
     Rejected,
     /// Anything else.
     #[default]
@@ -143,15 +143,15 @@ pub enum Ending {
 }
 
 impl Ending {
-    /// Whether the black box is written for it: a reflex, a lost link, or a guard that gave the
-    /// motion up.
+    /// True if this ending triggers the black box: a reflex, a lost link, or a guard that aborted
+    /// the motion.
     pub fn is_incident(self) -> bool {
         matches!(self, Self::Reflex | Self::LinkLost | Self::Guard(_))
     }
 }
 
 impl fmt::Display for Ending {
-    /// Words with hyphens, fit for the name of a file.
+    /// Formats as words with hyphens, valid in file names.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Arrived => f.write_str("arrived"),
@@ -166,7 +166,7 @@ impl fmt::Display for Ending {
     }
 }
 
-/// The name of a guard in lower case, words joined by hyphens.
+/// Returns the name of a guard in lower case, with words joined by hyphens.
 fn guard_name(guard: Guard) -> String {
     let mut name = String::new();
     for letter in format!("{guard:?}").chars() {
@@ -181,18 +181,18 @@ fn guard_name(guard: Guard) -> String {
 /// A request to the robot or its gripper, and its answer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Request {
-    /// What was called: `set_load`, `gripper.grasp`, ...
+    /// The called method: `set_load`, `gripper.grasp`, ...
     pub name: String,
     /// Its arguments, as JSON.
     pub arguments: String,
-    /// Why it was not done; `None` if it was.
+    /// The reason for the failure; `None` if it succeeded.
     pub error: Option<String>,
 }
 
-/// Why a motion ended, and what to change.
+/// The reason for the end of a motion, and recommended changes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diagnosis {
-    /// Number of the goal; 0 where it has none.
+    /// Number of the goal; 0 if it has none.
     pub goal: u64,
     /// The diagnosis as text.
     pub text: String,
@@ -203,39 +203,39 @@ pub struct Diagnosis {
 /// A remark.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Note {
-    /// How much it matters.
+    /// Its severity.
     pub level: Level,
-    /// Who says it.
+    /// Its source.
     pub source: String,
-    /// What it says.
+    /// Its text.
     pub text: String,
 }
 
-/// How much a remark matters.
+/// The severity of a remark.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
-    /// For finding defects.
+    /// For debugging.
     Debug,
-    /// For whoever is interested.
+    /// For information.
     #[default]
     Info,
-    /// Something may need attention.
+    /// A condition that may need attention.
     Warning,
-    /// Something went wrong.
+    /// An error.
     Error,
 }
 
 /// A state of a gripper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GripperState {
-    /// Of a Hand.
+    /// State of a Hand.
     Hand(gripper::State),
-    /// Of a vacuum gripper.
+    /// State of a vacuum gripper.
     Vacuum(vacuum::State),
 }
 
 impl fmt::Display for EventKind {
-    /// One line for people.
+    /// Formats as one line for people.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Goal(goal) => match goal.target {
@@ -289,7 +289,7 @@ impl fmt::Display for EventKind {
 }
 
 impl EventKind {
-    /// How much it matters.
+    /// Returns its severity.
     pub fn level(&self) -> Level {
         match self {
             Self::Outcome(Outcome { ending, .. }) => match ending {
@@ -309,7 +309,7 @@ impl EventKind {
         }
     }
 
-    /// True if the black box is written for it.
+    /// True if this event triggers the black box.
     pub fn is_incident(&self) -> bool {
         match self {
             Self::Outcome(outcome) => outcome.ending.is_incident(),
@@ -317,7 +317,7 @@ impl EventKind {
         }
     }
 
-    /// True if the cycles around it are kept at the full rate where others are thinned out.
+    /// True if the surrounding cycles are kept at the full rate when others are thinned out.
     pub(crate) fn is_notable(&self) -> bool {
         match self {
             Self::LinkRestored { .. } | Self::Dropped { .. } | Self::Errors { .. } => true,
@@ -326,7 +326,7 @@ impl EventKind {
         }
     }
 
-    /// Who or what it is about, for the `name` of a log.
+    /// Returns the subject, for the `name` of a log.
     pub fn source(&self) -> &str {
         match self {
             Self::Goal(_) | Self::Outcome(_) => "motion",

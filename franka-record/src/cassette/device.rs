@@ -1,4 +1,4 @@
-//! What differs between the devices: ports, framing, names of commands.
+//! The differences between the devices: ports, framing, names of commands.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use franka_proto::wire::service::ConnectRequest;
 use franka_proto::{Protocol as _, Version, gripper, vacuum};
 use zerocopy::FromBytes as _;
 
-/// A device with a TCP service of its own.
+/// A device with its own TCP service.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Device {
     /// The arm.
@@ -32,13 +32,13 @@ impl Device {
         }
     }
 
-    /// The device with this TCP port, if there is one.
+    /// Returns the device with this TCP port, if any.
     #[must_use]
     pub fn with_port(port: u16) -> Option<Self> {
         Self::ALL.into_iter().find(|device| device.port() == port)
     }
 
-    /// The first message of a stream, `None` while it is incomplete.
+    /// Returns the first message of a stream, `None` while it is incomplete.
     pub(crate) fn next_message(self, stream: &[u8]) -> Result<Option<Message<'_>>, FrameError> {
         match self {
             Self::Robot => next_message(stream),
@@ -46,15 +46,16 @@ impl Device {
         }
     }
 
-    /// The `Connect` with which a client's stream begins; `None` while it is incomplete, or if the
-    /// stream begins otherwise.
+    /// Returns the `Connect` at the beginning of a client's stream; `None` while it is incomplete,
+    /// or if the stream begins with another message.
     pub(crate) fn connect(self, stream: &[u8]) -> Option<ConnectRequest> {
         let message = self.next_message(stream).ok()??;
         let (request, _) = ConnectRequest::read_from_prefix(message.payload).ok()?;
         (message.header.command == 0).then_some(request)
     }
 
-    /// Where a message's id stands: behind the command, which is shorter for the end effectors.
+    /// Returns the position of a message's id: after the command, which is shorter for the end
+    /// effectors.
     pub(crate) fn id_range(self) -> std::ops::Range<usize> {
         match self {
             Self::Robot => 4..8,
@@ -62,7 +63,7 @@ impl Device {
         }
     }
 
-    /// Length of the counter of milliseconds with which a state begins, in bytes.
+    /// Length of the millisecond counter at the beginning of a state, in bytes.
     pub(crate) fn counter_size(self) -> usize {
         match self {
             Self::Robot => 8,
@@ -70,7 +71,7 @@ impl Device {
         }
     }
 
-    /// The name of a request for messages; `version` is the one that `Connect` announced.
+    /// Returns the name of a request for messages; `version` is the version in `Connect`.
     pub(crate) fn request_name(self, version: u16, message: &Message<'_>) -> String {
         let number = message.header.command;
         let known = match self {

@@ -1,4 +1,4 @@
-//! Wire cassettes: the bytes of a session between a client and a robot, and what plays them back.
+//! Wire cassettes: the bytes of a session between a client and a robot, and their playback.
 //!
 //! ```text
 //! client <-- TCP, UDP --> Tap <-- TCP, UDP --> robot      records a Cassette
@@ -8,10 +8,10 @@
 //!
 //! | part | content |
 //! |---|---|
-//! | [`Cassette`], [`Connection`], [`Event`] | the bytes that passed, with time, connection and side |
-//! | [`CassetteWriter`] | the file, written while the session goes on; [`Cassette::read`] reads it |
-//! | [`Tap`] | stands between client and robot, forwards everything and records it |
-//! | [`Player`] | one connection of a cassette as a value: bytes and time in, bytes out |
+//! | [`Cassette`], [`Connection`], [`Event`] | the transmitted bytes, with time, connection and side |
+//! | [`CassetteWriter`] | the file, written during the session; [`Cassette::read`] reads it |
+//! | [`Tap`] | is between client and robot, forwards everything and records it |
+//! | [`Player`] | one connection of a cassette as a state machine: bytes and time in, bytes out |
 //! | [`CassetteServer`] | players on sockets |
 //!
 #![cfg_attr(
@@ -42,43 +42,44 @@ pub use script::Unplayable;
 pub use server::{CassetteServer, PlayError, PlayReport};
 pub use tap::{Route, Tap, TapReport};
 
-/// What passed between clients and a robot in one session.
+/// The data exchanged between clients and a robot in one session.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Cassette {
-    /// Time of the first event that could have been recorded, in nanoseconds since the Unix epoch.
+    /// Start of the recording, in nanoseconds since the Unix epoch.
     pub started: u64,
-    /// The connections, in the order in which they were opened.
+    /// The connections, in the order of their opening.
     pub connections: Vec<Connection>,
-    /// How many events the recording thread could not keep up with and that are missing.
+    /// Number of missing events, because the recording thread was too slow.
     pub dropped: u64,
-    /// How many packets of a capture were captured in part only, as with a snap length; what they
-    /// carried is missing. It is not written to files.
+    /// Number of packets of a capture that were captured only partly, as with a snap length; their
+    /// contents are missing. It is not written to files.
     pub truncated: u64,
-    /// Why the file ends before its end, if it does. What was read before stands in `connections`.
+    /// The reason why the file is truncated, if it is. `connections` contains the events before.
     pub damage: Option<String>,
 }
 
 /// One TCP connection of a client, and the datagrams that belong to it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Connection {
-    /// The device that the client talks to.
+    /// The client's device.
     pub device: Device,
-    /// What passed, in the order in which it passed.
+    /// The events, in their order.
     pub events: Vec<Event>,
-    /// How many pieces of its TCP streams are missing. Such a connection cannot be played.
+    /// Number of missing pieces of its TCP streams. A connection with missing pieces cannot be
+    /// played.
     pub missing_stream: u64,
-    /// How many of its datagrams are missing.
+    /// Number of its missing datagrams.
     pub missing_datagrams: u64,
 }
 
-/// Something that passed in one direction of a connection.
+/// A transmission in one direction of a connection.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Event {
-    /// When it passed, since [`Cassette::started`] on a monotonic clock.
+    /// Time since [`Cassette::started`] on a monotonic clock.
     pub at: Duration,
-    /// Who sent it.
+    /// The sender.
     pub from: Side,
-    /// What was sent.
+    /// The data.
     pub what: Payload,
 }
 
@@ -91,10 +92,10 @@ pub enum Side {
     Robot,
 }
 
-/// What a side sent.
+/// The data sent by a side.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Payload {
-    /// Bytes of the TCP stream, cut anywhere.
+    /// Bytes of the TCP stream, split at any point.
     Stream(Vec<u8>),
     /// The end of the TCP stream.
     End,
@@ -103,7 +104,7 @@ pub enum Payload {
 }
 
 impl Connection {
-    /// A connection without events.
+    /// Creates a connection without events.
     #[must_use]
     pub fn new(device: Device) -> Self {
         Self {
@@ -114,7 +115,7 @@ impl Connection {
         }
     }
 
-    /// The bytes that a side sent over TCP, in one piece.
+    /// Returns the bytes that a side sent over TCP, in one piece.
     #[must_use]
     pub fn stream(&self, from: Side) -> Vec<u8> {
         let events = self.events.iter().filter(|event| event.from == from);
@@ -125,7 +126,7 @@ impl Connection {
         parts.collect::<Vec<_>>().concat()
     }
 
-    /// The datagrams that a side sent, with their times.
+    /// Returns the datagrams that a side sent, with their times.
     pub fn datagrams(&self, from: Side) -> impl Iterator<Item = (Duration, &[u8])> {
         let events = self.events.iter().filter(move |event| event.from == from);
         events.filter_map(|event| match &event.what {

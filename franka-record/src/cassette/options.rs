@@ -1,16 +1,16 @@
-//! How a cassette is played.
+//! Options of the playback of a cassette.
 
 use std::time::Duration;
 
-/// How to play a cassette.
+/// Options of the playback.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PlayOptions {
-    /// What the client has to send.
+    /// The requirements on the client's messages.
     pub matching: Matching,
-    /// When the robot sends.
+    /// The timing of the robot's messages.
     pub pace: Pace,
-    /// How long [`Pace::Answered`] waits for a command that the recording has.
+    /// Time for which [`Pace::Answered`] waits for a recorded command.
     pub patience: Duration,
 }
 
@@ -24,27 +24,28 @@ impl Default for PlayOptions {
     }
 }
 
-/// What a client has to send.
+/// The requirements on the client's messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Matching {
-    /// The recorded bytes. May differ: the UDP port in `Connect`, the ids of requests, and the
-    /// `message_id` of commands as far as states were held. Every recorded command has to come.
+    /// The client must send the recorded bytes, including every recorded command. Exceptions are
+    /// the UDP port in `Connect`, the ids of requests, and the `message_id` of commands, which
+    /// changes with held states.
     Strict,
-    /// The recorded kinds of request, in their order, with any parameters. Commands are not
-    /// compared; the end of a motion counts as a request.
+    /// The client must send the recorded kinds of request, in their order, with any parameters.
+    /// Commands are not compared; the end of a motion counts as a request.
     Lenient,
 }
 
-/// When the robot sends what it sent.
+/// The timing of the robot's messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
-    /// As recorded. While a request that comes next is missing, time stands still: the last state
-    /// is repeated with an id that goes on, so that a client that takes longer stays connected.
+    /// The recorded times. While the next request is missing, time stands still. The last state is
+    /// repeated with increasing ids, so that a slower client stays connected.
     Recorded,
-    /// As [`Self::Recorded`], and a state that followed a command is sent as soon as that command
-    /// has come, not before. A client is never too late, and may be faster than it was.
+    /// Like [`Self::Recorded`], but a state that followed a command is sent exactly when that
+    /// command has arrived. A client is never too late, and may be faster than the recorded client.
     Answered,
-    /// As fast as [`super::Player::poll`] is called, and no states are held. For tests that count
-    /// time themselves.
+    /// As fast as [`super::Player::poll`] is called, without held states. For tests with their own
+    /// clock.
     Lockstep,
 }

@@ -1,12 +1,12 @@
-//! Sockets whose threads look now and then whether to stop.
+//! Sockets whose threads check periodically for a stop.
 
 use std::io;
 use std::time::Duration;
 
-/// How often threads look whether to stop.
+/// Interval at which threads check for a stop.
 pub(super) const TICK: Duration = Duration::from_millis(20);
 
-/// True if nothing came within the time that a socket waits.
+/// True if no data arrived within the socket's timeout.
 pub(super) fn is_timeout(error: &io::Error) -> bool {
     matches!(
         error.kind(),

@@ -1,4 +1,4 @@
-//! A recorded connection as the steps of its play.
+//! A recorded connection as the steps of its playback.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use franka_proto::{RobotCommand, Version};
 
 use super::{Connection, Device, Payload, Side};
 
-/// Why a recorded connection cannot be played.
+/// The reason why a recorded connection cannot be played.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unplayable {
@@ -16,7 +16,7 @@ pub enum Unplayable {
     Missing {
         /// The device of the connection.
         device: Device,
-        /// How many pieces.
+        /// Number of missing pieces.
         missing: u64,
     },
     /// The client's stream cannot be cut into messages.
@@ -24,20 +24,20 @@ pub enum Unplayable {
     Framing {
         /// The device of the connection.
         device: Device,
-        /// What is wrong with it.
+        /// The error.
         error: FrameError,
     },
-    /// The client did not begin with `Connect`.
+    /// The client's first message is not `Connect`.
     #[error("the client's first message to the {device} is {got}, expected Connect")]
     NoConnect {
         /// The device of the connection.
         device: Device,
-        /// What it is.
+        /// The client's first message.
         got: String,
     },
 }
 
-/// What happens next on a connection: the robot does it, or waits for the client to do it.
+/// The next step on a connection: the robot performs it, or waits for the client to perform it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Step {
     /// The client sends this message.
@@ -46,7 +46,7 @@ pub(super) enum Step {
     Command(Vec<u8>),
     /// The client closes its stream.
     ClientEnd,
-    /// The robot sends this message, or bytes of its stream that are none.
+    /// The robot sends this message, or bytes of its stream that are not a message.
     Reply(Vec<u8>),
     /// The robot sends this datagram.
     State(Vec<u8>),
@@ -58,7 +58,7 @@ pub(super) enum Step {
 #[derive(Clone, Debug)]
 pub(super) struct Script {
     pub(super) device: Device,
-    /// The version that the client announced; 0 if it sent nothing.
+    /// The version announced by the client; 0 if it sent nothing.
     pub(super) version: u16,
     pub(super) steps: Vec<(Duration, Step)>,
     /// The mean time between states.
@@ -104,7 +104,7 @@ impl Script {
                         match next(device, &mut from_robot) {
                             Ok(Some(message)) => step(Step::Reply(message)),
                             Ok(None) => break,
-                            // A robot that sends garbage is played as it was.
+                            // Invalid data of a robot is played unchanged.
                             Err(_) => {
                                 step(Step::Reply(std::mem::take(&mut from_robot)));
                                 break;
@@ -127,7 +127,7 @@ impl Script {
         })
     }
 
-    /// Describes a step that the client has to take.
+    /// Describes a step of the client.
     pub(super) fn describe(&self, step: &Step) -> String {
         match step {
             Step::Request(bytes) => match self.device.next_message(bytes) {
@@ -154,7 +154,7 @@ impl Script {
     }
 }
 
-/// Takes the first message off a stream, if it is complete.
+/// Removes the first message from a stream, if it is complete.
 fn next(device: Device, stream: &mut Vec<u8>) -> Result<Option<Vec<u8>>, FrameError> {
     let size = device
         .next_message(stream)?
@@ -162,7 +162,7 @@ fn next(device: Device, stream: &mut Vec<u8>) -> Result<Option<Vec<u8>>, FrameEr
     Ok(size.map(|size| stream.drain(..size).collect()))
 }
 
-/// The version that a client's first message announces.
+/// Returns the version in a client's first message.
 fn announced(device: Device, message: &[u8]) -> Result<u16, Unplayable> {
     let request = device.connect(message);
     let version = request.map(|request| request.version.get());
@@ -176,7 +176,7 @@ fn announced(device: Device, message: &[u8]) -> Result<u16, Unplayable> {
     })
 }
 
-/// The counter of milliseconds with which a datagram begins.
+/// Returns the millisecond counter at the beginning of a datagram.
 pub(super) fn counter(device: Device, datagram: &[u8]) -> Option<u64> {
     let mut wide = [0; 8];
     let size = device.counter_size();
@@ -184,7 +184,7 @@ pub(super) fn counter(device: Device, datagram: &[u8]) -> Option<u64> {
     Some(u64::from_le_bytes(wide))
 }
 
-/// The mean time between the states of a connection.
+/// Returns the mean time between the states of a connection.
 fn interval(device: Device, steps: &[(Duration, Step)]) -> Duration {
     let mut states = steps
         .iter()
@@ -203,7 +203,7 @@ fn interval(device: Device, steps: &[(Duration, Step)]) -> Duration {
     }
 }
 
-/// Bounds of the time between held states. Robots send one per millisecond; an end effector slower
-/// than the upper one looks dead to a client.
+/// Bounds of the time between held states. Robots send one per millisecond; a client considers an
+/// end effector slower than the upper bound dead.
 const INTERVAL_MIN: Duration = Duration::from_millis(1);
 const INTERVAL_MAX: Duration = Duration::from_millis(200);

@@ -1,4 +1,4 @@
-//! A cassette as a robot: players on sockets.
+//! Serves a cassette as a robot: players on sockets.
 
 use std::collections::BTreeMap;
 use std::io::{self, Read as _, Write as _};
@@ -16,9 +16,9 @@ use super::{
 
 /// A server that plays a cassette to any client.
 ///
-/// The first connection of a client to a device gets the first one of the recording, and so on.
-/// Each is played by itself: two connections, such as those of an arm and its hand, are in step
-/// only as far as the client keeps them so.
+/// The first connection of a client to a device gets the first recorded one, and so on. Each is
+/// played separately: two connections, such as to an arm and its hand, are synchronised only by the
+/// client.
 #[derive(Debug)]
 pub struct CassetteServer {
     shared: Arc<Shared>,
@@ -26,19 +26,19 @@ pub struct CassetteServer {
     addresses: BTreeMap<Device, SocketAddr>,
 }
 
-/// What was played.
+/// The result of a playback.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PlayReport {
-    /// Each connection that was played to its end, in the order of their ends.
+    /// The connections that were played to their end, in the order of their ends.
     pub played: Vec<(Device, Tally)>,
 }
 
-/// Why a cassette was not played to its end.
+/// The reason why a cassette was not played to its end.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum PlayError {
-    /// A client did something else than the recorded one.
+    /// A client deviated from the recorded client.
     #[error(transparent)]
     Mismatch(#[from] Mismatch),
     /// A client opened a connection that the recording does not have.
@@ -48,24 +48,24 @@ pub enum PlayError {
         device: Device,
         /// The number of the connection, from 1.
         got: usize,
-        /// How many connections to the device were recorded.
+        /// Number of recorded connections to the device.
         recorded: usize,
     },
     /// The recording cannot be played.
     #[error(transparent)]
     Unplayable(#[from] Unplayable),
-    /// No client came, or it did not come to the end.
+    /// No client connected, or it did not complete the recording.
     #[error(
         "after {patience:?}, {played} of {recorded} connections have been played; next is {awaited}"
     )]
     Unfinished {
-        /// How long it was waited for.
+        /// The waiting time.
         patience: Duration,
-        /// Connections that were played to their end.
+        /// Number of connections that were played to their end.
         played: usize,
-        /// Connections of the recording.
+        /// Number of recorded connections.
         recorded: usize,
-        /// What a client has to do next.
+        /// The client's next step.
         awaited: String,
     },
     /// A socket failed.
@@ -85,7 +85,7 @@ struct Shared {
 struct State {
     report: PlayReport,
     failure: Option<PlayError>,
-    /// What the connections that are being played wait for.
+    /// The missing client steps of the current connections.
     awaited: BTreeMap<(Device, usize), String>,
 }
 
@@ -99,7 +99,7 @@ impl Shared {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Ends the play.
+    /// Ends the playback.
     fn fail(&self, error: PlayError) {
         self.state().failure.get_or_insert(error);
         self.stop.store(true, Ordering::Relaxed);
@@ -108,7 +108,7 @@ impl Shared {
 }
 
 impl CassetteServer {
-    /// Starts to serve a cassette at `ip`, at the devices' own ports.
+    /// Starts to serve a cassette at `ip`, on the devices' own ports.
     ///
     /// # Errors
     /// [`PlayError`] if a recorded connection cannot be played, or a port is not free.
@@ -117,10 +117,10 @@ impl CassetteServer {
         Self::start_at(cassette, at, options)
     }
 
-    /// Starts to serve a cassette, each device at its address; port 0 takes any free one.
+    /// Starts to serve a cassette, each device at its address; port 0 selects any free port.
     ///
     /// # Errors
-    /// Those of [`Self::start`].
+    /// The errors of [`Self::start`].
     pub fn start_at(
         cassette: Cassette,
         address: impl Fn(Device) -> SocketAddr,
@@ -129,7 +129,7 @@ impl CassetteServer {
         let recorded = cassette.connections.len();
         let mut devices: BTreeMap<Device, Vec<Connection>> = BTreeMap::new();
         for connection in cassette.connections {
-            // Says now what cannot be played.
+            // Reports an unplayable connection early.
             Player::new(&connection, options, Duration::ZERO)?;
             devices
                 .entry(connection.device)
@@ -159,7 +159,7 @@ impl CassetteServer {
         Ok(this)
     }
 
-    /// Where a device is served; `None` if the cassette has no connection to it.
+    /// Returns the address of a device; `None` if the cassette has no connection to it.
     #[must_use]
     pub fn address(&self, device: Device) -> Option<SocketAddr> {
         self.addresses.get(&device).copied()
@@ -168,7 +168,7 @@ impl CassetteServer {
     /// Waits until every recorded connection has been played, and ends.
     ///
     /// # Errors
-    /// [`PlayError`] if a client left the recording, or if `patience` passes before.
+    /// [`PlayError`] if a client deviated from the recording, or if `patience` expires before.
     pub fn finish(self, patience: Duration) -> Result<PlayReport, PlayError> {
         let recorded = self.shared.recorded;
         let going_on =
@@ -205,7 +205,7 @@ impl Drop for CassetteServer {
     }
 }
 
-/// Takes clients of a device until the play is over.
+/// Accepts clients of a device until the playback ends.
 fn accept(
     listener: &TcpListener,
     device: Device,
@@ -233,7 +233,7 @@ fn accept(
         let playing = shared.clone();
         let play = move || {
             let outcome = play(&client, &connection, number, options, &playing);
-            // It may be closed already.
+            // The socket may be closed already.
             let _ = client.shutdown(Shutdown::Both);
             let mut state = playing.state();
             state.awaited.remove(&(device, number));
@@ -259,14 +259,14 @@ fn accept(
     }
 }
 
-/// What a client sends.
+/// The input from a client.
 enum Input {
     Stream(Vec<u8>),
     Datagram(Vec<u8>),
     End,
 }
 
-/// Plays a connection to a client; `None` if the play ends before.
+/// Plays a connection to a client; `None` if the playback ends before.
 fn play(
     mut client: &TcpStream,
     connection: &Connection,
@@ -292,7 +292,7 @@ fn play(
             Output::Stream(bytes) => client.write_all(&bytes),
             Output::End => client.shutdown(Shutdown::Write),
             Output::Datagram(bytes) => match port {
-                // A client that is leaving may have closed its port.
+                // A departing client may have closed its port.
                 Some(port) => udp.send_to(&bytes, (ip, port)).map(drop).or(Ok(())),
                 None => Ok(()),
             },
@@ -302,13 +302,13 @@ fn play(
             shared.state().awaited.insert(key, awaited);
         });
         over.store(true, Ordering::Relaxed);
-        // Readers that wait for room in the queue end with it.
+        // Readers that wait for space in the queue then end.
         drop(inputs);
         outcome
     })
 }
 
-/// Brings together a player, a clock, and what a client sends.
+/// Connects a player, a clock, and the client's input.
 fn drive(
     player: &mut Player,
     inputs: &Receiver<Input>,
@@ -321,7 +321,7 @@ fn drive(
     loop {
         while let Some(output) = player.poll(start.elapsed())? {
             if send(output, player.udp_port()).is_err() {
-                // The client has gone: what is missing shows at the end of its stream.
+                // The client is gone: missing steps are detected at the end of its stream.
                 break;
             }
         }
@@ -370,7 +370,7 @@ fn read_datagrams(
 ) {
     let mut buffer = [0; 4096];
     while !stopped() {
-        // Errors other than a timeout mean that a datagram of ours reached a closed port.
+        // Errors other than a timeout mean that one of our datagrams reached a closed port.
         let Ok((length, sender)) = udp.recv_from(&mut buffer) else {
             continue;
         };
@@ -381,8 +381,8 @@ fn read_datagrams(
     }
 }
 
-/// A client connects rarely, and waits a second for it.
+/// A client connects rarely, and allows a second for it.
 const ACCEPT_TICK: Duration = Duration::from_millis(5);
 
-/// What may wait for the player; readers wait if it is full.
+/// Capacity of the player's queue; readers wait if it is full.
 const INPUTS: usize = 256;

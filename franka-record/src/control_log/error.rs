@@ -1,10 +1,10 @@
-//! Why a control log cannot be read.
+//! Errors of reading a control log.
 
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Why a control log of libfranka cannot be read.
+/// The reason why a control log of libfranka cannot be read.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ControlLogError {
@@ -13,26 +13,26 @@ pub enum ControlLogError {
     File {
         /// The file.
         path: PathBuf,
-        /// The error of the system.
+        /// The system's error.
         source: Arc<io::Error>,
     },
-    /// The file is no text.
+    /// The file is not text.
     #[error("got a byte that is not UTF-8 after {offset} bytes, expected text")]
     NotText {
-        /// Bytes before the first that is no text.
+        /// Number of bytes before the first invalid one.
         offset: u64,
     },
-    /// The file has no table and no text of an exception.
+    /// The file has no table and no exception text.
     #[error(
         "got {got:?}, expected a recording (MCAP), a table of franka::logToCSV, which begins with \
          \"time,success_rate,state.q[0]\", or the text of a franka::ControlException, which has \
          \"Move command aborted\""
     )]
     Unknown {
-        /// The beginning of its first line.
+        /// The beginning of the file's first line.
         got: String,
     },
-    /// A cell of a table is not what its column holds.
+    /// A cell of a table does not match its column.
     #[error("line {line}, column {column} ({name}): got {got:?}, expected {expected}")]
     Cell {
         /// The line of the file, from 1.
@@ -43,19 +43,19 @@ pub enum ControlLogError {
         name: String,
         /// The text of the cell.
         got: String,
-        /// Expected in its place.
+        /// The expected text.
         expected: String,
     },
-    /// A table has no column of this name.
+    /// A table lacks a column.
     #[error(
         "line {line}: got {got} columns without {missing:?}, expected those of franka::logToCSV"
     )]
     Column {
         /// The line of the file, from 1.
         line: u64,
-        /// How many columns there are.
+        /// Number of columns.
         got: usize,
-        /// The name that is missing.
+        /// The missing name.
         missing: String,
     },
     /// A row has more or fewer cells than the table has columns.
@@ -63,31 +63,31 @@ pub enum ControlLogError {
     Row {
         /// The line of the file, from 1.
         line: u64,
-        /// The first column, from 1, that is missing or too many.
+        /// The first column, from 1, that is missing or excess.
         column: usize,
-        /// The cells of the row.
+        /// Number of cells in the row.
         got: usize,
-        /// The columns of the table.
+        /// Number of columns in the table.
         expected: usize,
         /// True for the last row of the table.
         last: bool,
     },
-    /// A table has no row.
+    /// A table has no rows.
     #[error("line {line}: got a table without rows, expected a row for each cycle")]
     NoRow {
         /// The line of the names, from 1.
         line: u64,
     },
-    /// The text of an exception is damaged, or ends early.
+    /// The text of an exception is damaged or incomplete.
     #[error("line {line}, column {column}: got {got:?}, expected {expected}")]
     Message {
         /// The line of the file, from 1.
         line: u64,
         /// The character of the line, from 1.
         column: usize,
-        /// The text there.
+        /// The text at this place.
         got: String,
-        /// Expected in its place.
+        /// The expected text.
         expected: &'static str,
     },
 }

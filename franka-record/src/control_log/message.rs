@@ -8,20 +8,20 @@ use super::{ControlLogError, SHOWN};
 
 /// The text of a control exception.
 ///
-/// Source: the message as libfranka 0.9 and 0.21 put it together, `robot_impl.cpp`.
+/// Source: the message format of libfranka 0.9 and 0.21, `robot_impl.cpp`.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ControlMessage {
     /// The answer to the motion, from `libfranka:` to the list of errors or the end of the line.
     pub text: String,
-    /// The errors of the list; none where the motion did not end by a reflex.
+    /// The errors of the list; empty if the motion did not end with a reflex.
     pub errors: Errors,
-    /// The success rate at the end, and the states lost there; `None` if the text has no rate.
+    /// The success rate at the end, and the states lost at the end; `None` if the text has no rate.
     pub success_rate: Option<SuccessRate>,
 }
 
-/// Every text of an exception in these parts of a file, oldest first.
+/// Returns every exception text in these parts of a file, oldest first.
 pub(super) fn all(
     text: &str,
     parts: &[Range<usize>],
@@ -41,7 +41,8 @@ pub(super) fn all(
     Ok(messages)
 }
 
-/// Where the first message begins, with libfranka's name if it stands before it.
+/// Returns the position of the first message, including libfranka's name if it precedes the
+/// message.
 fn begins(text: &str) -> Option<usize> {
     let found = BEGINNINGS.iter().filter_map(|it| text.find(it)).min()?;
     let named = text[..found].ends_with(NAME);
@@ -69,7 +70,7 @@ impl Reader<'_> {
         Ok(message)
     }
 
-    /// `["joint_reflex", "cartesian_reflex"]`, which an e-mail may have broken into lines.
+    /// Reads `["joint_reflex", "cartesian_reflex"]`, possibly broken into lines by an e-mail.
     fn errors(&mut self) -> Result<Errors, ControlLogError> {
         self.expect("[", "the list of errors, as [\"joint_reflex\"]")?;
         let mut errors = Errors::NONE;
@@ -77,7 +78,7 @@ impl Reader<'_> {
             return Ok(errors);
         }
         loop {
-            // Logs in JSON escape the quotes.
+            // JSON logs escape the quotes.
             self.takes("\\");
             self.expect("\"", "a name in quotes")?;
             let name = |c: char| c.is_ascii_alphanumeric() || c == '_';
@@ -97,7 +98,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Added by libfranka if its log has two cycles or more.
+    /// Reads the success rate, which libfranka adds if its log has two cycles or more.
     fn success_rate(&mut self) -> Result<Option<SuccessRate>, ControlLogError> {
         let until = begins(self.rest()).unwrap_or(self.rest().len());
         let Some(found) = self.rest()[..until].find(RATE) else {
@@ -120,7 +121,7 @@ impl Reader<'_> {
         let rest = self.rest();
         let number = |c: char| c.is_ascii_alphanumeric() || ['.', '+', '-'].contains(&c);
         let length = rest.find(|c| !number(c)).unwrap_or(rest.len());
-        // A sentence may end there.
+        // The number may be followed by the end of a sentence.
         let Ok(value) = rest[..length].trim_end_matches('.').parse() else {
             return self.fail(expected);
         };
@@ -169,7 +170,7 @@ impl Reader<'_> {
 
 const NAME: &str = "libfranka: ";
 
-/// How a motion's answer begins.
+/// Beginnings of the answers to a motion.
 const BEGINNINGS: [&str; 4] = [
     "Move command aborted",
     "Move command preempted",
@@ -177,7 +178,7 @@ const BEGINNINGS: [&str; 4] = [
     "Motion finished commanded,",
 ];
 
-/// Answers after which the errors are listed.
+/// Answers that are followed by the list of errors.
 const LISTED: [&str; 2] = ["motion aborted by reflex!", "the robot is still moving!"];
 
 const RATE: &str = "control_command_success_rate:";

@@ -1,29 +1,30 @@
-//! What libfranka leaves of a motion that the robot ended: the table of `franka::logToCSV`, and the
-//! text of the `franka::ControlException`. Programs with libfranka below, and this driver's
-//! `ControlLog::to_csv`, write them.
+//! The data that libfranka provides about a motion ended by the robot: the table of
+//! `franka::logToCSV`, and the text of the `franka::ControlException`. Programs with libfranka, and
+//! this driver's `ControlLog::to_csv`, write them.
 //!
 //! ```text
 //! file --> message: refusal, errors, success rate      --> Case --> Explanation
 //!      --> table, of any generation of columns --> log -->      --> cycles, for exports
 //! ```
 //!
-//! | module | holds |
+//! | module | contents |
 //! |---|---|
 //! | `table` | rows of numbers, by the names of their columns |
-//! | `message` | the text of the exception, wherever it stands |
-//! | `motion` | what follows from the rows: modes, numbers of commands, derivatives |
+//! | `message` | the text of the exception, at any place in the file |
+//! | `motion` | data derived from the rows: modes, numbers of commands, derivatives |
 //!
-//! A file may hold either or both, between other lines, as a terminal shows them. Of several the
-//! newest counts. Tables come in three generations of columns, by the changelog of libfranka:
+//! A file may contain either or both, between other lines, as in the output of a terminal. If there
+//! are several, the newest counts. Tables have three generations of columns, according to the
+//! changelog of libfranka:
 //!
-//! | libfranka | begins with |
+//! | libfranka | first columns |
 //! |---|---|
-//! | 0.2 to 0.9.0 | `duration, success rate, q[0], q[1]`; the commands come after an empty column |
+//! | 0.2 to 0.9.0 | `duration, success rate, q[0], q[1]`; the commands follow an empty column |
 //! | 0.9.1 to 0.14 | `time, success_rate, state.q[0], state.q[1]` |
 //! | 0.15 and later | `time,success_rate,state.q[0],state.q[1]` |
 //!
-//! Numbers have six significant digits. A difference that rounding may have made is not taken for
-//! a finding: a log of joint positions shows steps, and seldom a jerk.
+//! Numbers have six significant digits. A difference that may come from rounding is not reported as
+//! a finding: a log of joint positions shows steps, but seldom a jerk.
 //!
 //! # Example
 //!
@@ -71,12 +72,12 @@ use crate::Cycle;
 pub struct ControlLogFile {
     /// The text of the newest exception.
     pub message: Option<ControlMessage>,
-    /// The newest table, oldest cycle first; empty without one. Its states have what the table
-    /// shows and what follows from it; everything else has its default.
+    /// The newest table, oldest cycle first; empty without a table. Its states contain the values
+    /// of the table and the values derived from it; all other fields have their default.
     pub log: Arc<ControlLog>,
     /// The generation of columns of that table.
     pub generation: Option<Generation>,
-    /// How many older tables, or older texts, the file has.
+    /// Number of older tables, or older texts, in the file.
     pub earlier: u64,
     commands: Vec<RobotCommand>,
 }
@@ -133,18 +134,18 @@ impl ControlLogFile {
         })
     }
 
-    /// The robot, where the file tells: only one was there before libfranka 0.9.1.
+    /// The robot, if the file identifies it: before libfranka 0.9.1 there was only one kind.
     pub fn kind(&self) -> Option<RobotKind> {
         (self.generation == Some(Generation::Unprefixed)).then_some(RobotKind::Fer)
     }
 
-    /// The errors that the text names; none without one.
+    /// The errors in the exception text; none without a text.
     pub fn errors(&self) -> Errors {
         let message = self.message.as_ref();
         message.map_or(Errors::NONE, |message| message.errors)
     }
 
-    /// The errors of the motion, where the text of the exception is missing.
+    /// Sets the errors of the motion, if the exception text is missing.
     #[must_use]
     pub fn with_errors(mut self, errors: Errors) -> Self {
         let message = self.message.get_or_insert_default();
@@ -153,7 +154,7 @@ impl ControlLogFile {
         self
     }
 
-    /// What a diagnosis is made of.
+    /// Returns the input of a diagnosis.
     pub fn case(&self) -> Case {
         Case {
             commander: Commander::Function,
@@ -163,13 +164,13 @@ impl ControlLogFile {
         }
     }
 
-    /// The cycles of the table, each with the command that answers its state, for exports with
-    /// [`Columns::of_log`](crate::export::Columns::of_log). The host's clock is not in a log:
-    /// [`Cycle::time`] is zero.
+    /// Returns the cycles of the table, each with the command that answers its state, for exports
+    /// with [`Columns::of_log`](crate::export::Columns::of_log). A log does not contain the host's
+    /// clock: [`Cycle::time`] is zero.
     pub fn cycles(&self) -> impl Iterator<Item = Cycle> {
         motion::cycles(&self.log, &self.commands)
     }
 }
 
-/// Characters of a line that an error shows.
+/// Number of characters of a line that an error shows.
 const SHOWN: usize = 60;

@@ -1,9 +1,9 @@
-//! What follows from the rows of a table.
+//! Data derived from the rows of a table.
 //!
-//! A table leaves out the modes, the numbers of the commands, and what the robot derives of them.
-//! A motion has one kind of command, and all others are zeros; a robot publishes as commanded what
-//! it was commanded before. So much is filled in. The rest keeps its default: the log has no tool,
-//! no contact flags, no wrench.
+//! A table omits the modes, the numbers of the commands, and the derivatives that the robot
+//! computes. A motion has one kind of command, and all others are zeros; a robot publishes its
+//! previous command as the commanded value. These values are filled in. The rest keeps its default:
+//! the log has no tool, no contact flags and no wrench.
 
 use franka_model::{CYCLE, JointVector, Twist, rotation, transform};
 use franka_proto::{
@@ -15,14 +15,14 @@ use nalgebra::Isometry3;
 use super::table::{Row, Table};
 use crate::{Cycle, HostTime};
 
-/// A motion, as far as its table shows it.
+/// A motion, reconstructed from its table.
 pub(super) struct Motion {
     pub(super) log: ControlLog,
     pub(super) commands: Vec<RobotCommand>,
 }
 
 impl Motion {
-    /// Of a table, and the errors by which the motion ended.
+    /// Creates the motion from a table, and the errors that ended the motion.
     pub(super) fn of(table: Table, errors: Errors) -> Self {
         let rows = table.rows;
         let generator = generator(&rows);
@@ -54,7 +54,7 @@ impl Motion {
     }
 }
 
-/// The generator, by the only commands that are not zero; `None` where there are but torques.
+/// Returns the generator with non-zero commands; `None` if there are only torques.
 fn generator(rows: &[Row]) -> Option<Generator> {
     let any = |of: fn(&RobotCommand) -> &[f64]| rows.iter().any(|row| has(of(&row.command)));
     if any(|it| &it.q_c) {
@@ -70,7 +70,8 @@ fn generator(rows: &[Row]) -> Option<Generator> {
     }
 }
 
-/// True if zeros may be a command: of velocities and torques, but for the first of a motion.
+/// True if zeros may be a command: for velocities and torques, except for the first command of a
+/// motion.
 fn may_rest(generator: Option<Generator>, has_torques: bool, before: Option<RobotState>) -> bool {
     let is_velocity = matches!(
         generator,
@@ -79,9 +80,9 @@ fn may_rest(generator: Option<Generator>, has_torques: bool, before: Option<Robo
     before.is_some() && (is_velocity || has_torques)
 }
 
-/// What a robot publishes after a command, of the whole motion.
+/// Fills in the values that a robot publishes after a command, for the whole motion.
 fn echo(entries: &mut [LogEntry]) {
-    // The first state of a motion comes before any command.
+    // The first state of a motion precedes every command.
     let is_whole = entries[0].command.message_id == 0;
     let pose = |entry: &LogEntry| transform::isometry_from_array(&entry.command.O_T_EE_c);
     let start = entries.iter().find_map(pose);
@@ -109,7 +110,8 @@ fn echo(entries: &mut [LogEntry]) {
     if is_whole {
         return;
     }
-    // What came before the log is not known: its first states are taken to go on as the next ones.
+    // The cycles before the log are unknown: its first states are assumed to continue like the next
+    // ones.
     if let [first, second, ..] = entries {
         first.state.ddq_d = second.state.ddq_d;
         if start.is_some() {
@@ -124,15 +126,15 @@ fn echo(entries: &mut [LogEntry]) {
     }
 }
 
-/// Displacement and rotation vector, in base axes.
+/// Returns displacement and rotation vector, in base axes.
 fn difference(to: &Isometry3<f64>, from: &Isometry3<f64>) -> Twist {
     let shift = to.translation.vector - from.translation.vector;
     let turn = rotation::error(&to.rotation, &from.rotation);
     Twist::new(shift.x, shift.y, shift.z, turn.x, turn.y, turn.z)
 }
 
-/// The log, whose last state shows the end of the motion by these errors: libfranka's always does,
-/// with a success rate of zero.
+/// Returns the log with a last state that shows the end of the motion with these errors.
+/// libfranka's log always has such a state, with a success rate of zero.
 pub(super) fn ended_by(log: &ControlLog, errors: Errors) -> ControlLog {
     let mut entries: Vec<LogEntry> = log.iter().copied().collect();
     if let [.., _, last] = &mut entries[..]
@@ -150,7 +152,7 @@ pub(super) fn ended_by(log: &ControlLog, errors: Errors) -> ControlLog {
     ControlLog::from_iter(entries).rounded()
 }
 
-/// The states, each with the command that answers it.
+/// Returns the states, each with the command that answers it.
 pub(super) fn cycles(log: &ControlLog, commands: &[RobotCommand]) -> impl Iterator<Item = Cycle> {
     let answers = commands.iter().skip(1).copied().map(Some).chain([None]);
     log.iter().zip(answers).map(|(entry, answer)| {

@@ -7,19 +7,19 @@ use franka_proto::{RobotCommand, RobotState};
 
 use super::{ControlLogError, SHOWN};
 
-/// A generation of columns: the names of libfranka's table have changed twice.
+/// A generation of columns: the names in libfranka's table have changed twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Generation {
     /// libfranka 0.2 to 0.9.0: `duration, success rate, q[0]`, and an empty column before the
     /// commands.
     Unprefixed,
-    /// libfranka 0.9.1 to 0.14: `time, success_rate, state.q[0]`, with blanks.
+    /// libfranka 0.9.1 to 0.14: `time, success_rate, state.q[0]`, with spaces.
     Spaced,
     /// libfranka 0.15 and later, and this driver: `time,success_rate,state.q[0]`.
     Compact,
 }
 
-/// Where a table is in a file.
+/// The place of a table in a file.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
     bytes: Range<usize>,
@@ -32,19 +32,19 @@ pub(super) struct Place {
 #[derive(Debug)]
 pub(super) struct Table {
     pub(super) generation: Generation,
-    /// Oldest first, one at least.
+    /// Rows, oldest first, at least one.
     pub(super) rows: Vec<Row>,
 }
 
-/// A row: a state, and the command before it.
+/// A row: a state, and its previous command.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Row {
     pub(super) state: RobotState,
-    /// All zeros but those numbers that the motion is commanded by.
+    /// The command: all zeros except the numbers that control the motion.
     pub(super) command: RobotCommand,
 }
 
-/// The tables of a file, oldest first, and the parts around them.
+/// Returns the tables of a file, oldest first, and the parts around them.
 pub(super) fn find(text: &str) -> (Vec<Place>, Vec<Range<usize>>) {
     let (mut tables, mut around): (Vec<Place>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
     let (mut offset, mut is_inside) = (0, false);
@@ -72,7 +72,7 @@ pub(super) fn find(text: &str) -> (Vec<Place>, Vec<Range<usize>>) {
     (tables, around)
 }
 
-/// The generation of a line of names.
+/// Returns the generation of a line of names.
 fn generation(line: &str) -> Option<Generation> {
     let mut names = line.split(',');
     let blank = |name: &str| name.starts_with(' ');
@@ -86,15 +86,15 @@ fn generation(line: &str) -> Option<Generation> {
     }
 }
 
-/// True if a line below the names belongs to the table. What is cut or garbled does, too: an empty
-/// line, or one of words, ends it.
+/// True if a line below the names belongs to the table. A truncated or garbled line also does; an
+/// empty line or a line of words ends the table.
 fn is_row(line: &str) -> bool {
     let line = line.trim();
     let is_number = |c: char| c.is_ascii_digit() || c == '-';
     line.starts_with(is_number) || line.contains(',') && !line.contains("libfranka")
 }
 
-/// Where the numbers of some columns go.
+/// The destination of the numbers of some columns.
 enum Field {
     State(fn(&mut RobotState) -> &mut [f64]),
     Command(fn(&mut RobotCommand) -> &mut [f64]),
@@ -121,15 +121,15 @@ const COLUMNS: [(&str, Field); 11] = [
 /// The time, the success rate, and the place of each of [`COLUMNS`] among the cells of a row.
 struct Layout {
     cells: usize,
-    /// The place, the entry of [`COLUMNS`], and the index in its vector.
+    /// For each number: the place, the entry of [`COLUMNS`], and the index in its vector.
     numbers: Vec<(usize, usize, usize)>,
 }
 
 impl Layout {
-    /// Columns may stand in any order, and others among them.
+    /// Columns may have any order, and other columns may be among them.
     fn of(names: &StringRecord, place: &Place) -> Result<Self, ControlLogError> {
         let is_unprefixed = place.generation == Generation::Unprefixed;
-        // Without prefixes, the same names stand for states before this one, for commands after it.
+        // Without prefixes, the same names mean states before this column, and commands after it.
         let commands = names.iter().position(|name| name == COMMANDS);
         let commands = commands.unwrap_or(names.len());
         let mut numbers = Vec::new();
@@ -243,7 +243,7 @@ fn row(
     Ok(row)
 }
 
-/// Why a cell is wrong; `column` counts from 0.
+/// Returns the error of a cell; `column` counts from 0.
 fn cell(
     names: &StringRecord,
     record: &StringRecord,

@@ -1,4 +1,4 @@
-//! Tables of every generation, texts of exceptions, and what is wrong with others.
+//! Tables of every generation, exception texts, and the errors of invalid ones.
 
 use franka_model::Model;
 use franka_proto::{ControllerMode, MotionGeneratorMode, RobotCommand, RobotError, RobotState};
@@ -8,7 +8,7 @@ use super::*;
 use crate::explain::Explanation;
 use crate::export::{Columns, write_csv};
 
-/// A motion by joint velocities, whose last command leaps.
+/// A motion by joint velocities, whose last command jumps.
 fn table() -> String {
     let entry = |time: u64| {
         let speed = 0.001 * (time - 1000) as f64;
@@ -33,11 +33,11 @@ fn table() -> String {
     ControlLog::from_iter((1000..=1005).map(entry)).to_csv()
 }
 
-/// The same table as older versions wrote it.
+/// Returns the same table in the format of older versions.
 fn older(table: &str, generation: Generation) -> String {
     let (names, rows) = table.split_once('\n').expect("a header");
     let spaced = |names: &str| {
-        // Blanks within a vector, and after the first two names.
+        // Spaces within a vector, and after the first two names.
         let mut text = names.replace("time,success_rate,", "time, success_rate, ");
         for index in 0..16 {
             text = text.replace(
@@ -89,7 +89,7 @@ fn every_generation_of_columns_is_read() {
     }
 }
 
-/// Line ends of Windows, quotes of a spreadsheet, columns in another order and columns besides.
+/// Line ends of Windows, quotes of a spreadsheet, columns in another order, and additional columns.
 #[test]
 fn a_table_that_another_program_has_written_anew_is_read() {
     let expected = ControlLogFile::parse(&table()).unwrap();
@@ -143,7 +143,7 @@ fn the_message_is_found_between_other_lines() {
     let rate = message.success_rate.expect("a rate");
     assert_eq!((rate.rate, rate.lost), (0.98, 3));
     assert_eq!((file.earlier, file.log.len()), (1, 6));
-    // Logs in JSON.
+    // A JSON log.
     let escaped = format!("{{\"msg\": \"{}\"}}", MESSAGE.replace('"', "\\\""));
     let errors = ControlLogFile::parse(&escaped).unwrap().errors();
     assert_eq!(errors, file.errors());
@@ -157,7 +157,7 @@ fn a_message_alone_is_explained() {
     assert!(text.starts_with(first), "{text}");
     assert!(text.contains("with it: joint_reflex"), "{text}");
     assert!(text.contains("success_rate: 0.98 packets lost"), "{text}");
-    // No reflex.
+    // The text of a user stop, not of a reflex.
     let stop = "terminate: libfranka: Move command aborted: User Stop pressed!";
     let file = ControlLogFile::parse(stop).unwrap();
     let text = Explanation::of_control_log(&file, Model::fr3()).to_string();

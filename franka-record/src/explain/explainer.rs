@@ -1,4 +1,4 @@
-//! Takes in cycles and events, one after the other.
+//! Processes cycles and events one after the other.
 
 use core::mem;
 use std::collections::VecDeque;
@@ -16,19 +16,19 @@ use crate::event::Ending;
 use crate::recording::RecordingError;
 use crate::{Cycle, Event, EventKind, HostTime};
 
-/// Makes an [`Explanation`] of cycles, one after the other.
+/// Builds an [`Explanation`] from consecutive cycles.
 #[derive(Clone, Debug)]
 pub struct Explainer<'a> {
     model: &'a Model,
     /// The newest run.
     run: Run,
-    /// The newest run before that in which a motion was ended.
+    /// The newest previous run in which a motion was ended.
     before: Option<Run>,
-    /// How often a motion was ended.
+    /// Number of ended motions.
     ends: u64,
 }
 
-/// What there is since the robot was started: its clock goes on.
+/// The data since the robot was started: its clock continues within a run.
 #[derive(Clone, Debug, Default)]
 struct Run {
     tare: Tare,
@@ -37,25 +37,25 @@ struct Run {
     peaks: Peaks,
     lost: Lost,
     late: Late,
-    /// Of the newest cycles, until the end.
+    /// Traces of the newest cycles, until the end.
     window: VecDeque<Trace>,
-    /// Of the newest cycle: why the last motion was ended.
+    /// Reason for the end of the last motion, from the newest cycle.
     reflex_reason: Option<Errors>,
     ended: Option<Ended>,
     first: Option<u64>,
     last: u64,
-    /// When the newest cycle came, if that is known.
+    /// Time at which the newest cycle arrived, if known.
     received: Option<HostTime>,
-    /// Goals that have been given and have not ended, oldest first, and whether each is of chunks.
+    /// Goals that have begun and not ended, oldest first; true for goals of chunks.
     open: Vec<(u64, bool)>,
-    /// Of the last goal that has ended, if it failed.
+    /// Text of the last ended goal, if it failed.
     failed: Option<String>,
     cycles: u64,
     has_hand: bool,
     diagnosis: Option<Told>,
 }
 
-/// A diagnosis, and when it was made.
+/// A diagnosis and its time.
 #[derive(Clone, Debug)]
 struct Told {
     time: u64,
@@ -63,23 +63,23 @@ struct Told {
     text: String,
 }
 
-/// The newest end of a motion that the robot, a guard or a lost link made.
+/// The newest end of a motion caused by the robot, a guard or a lost link.
 #[derive(Clone, Debug)]
 struct Ended {
     time: u64,
     received: Option<HostTime>,
     errors: Errors,
-    /// Why, as far as is known without a diagnosis.
+    /// The reason, if known without a diagnosis.
     text: String,
     window: VecDeque<Trace>,
     tared: f64,
-    /// Until the arm rested.
+    /// Margins until the arm was at rest.
     margins: Margins,
     peaks: Peaks,
 }
 
 impl<'a> Explainer<'a> {
-    /// For cycles of a robot of this model.
+    /// Creates an explainer for cycles of a robot of this model.
     pub fn new(model: &'a Model) -> Self {
         Self {
             model,
@@ -89,19 +89,19 @@ impl<'a> Explainer<'a> {
         }
     }
 
-    /// Takes in the next cycle. One that is as old as the last is left out; an older one is the
-    /// first since the robot was started again.
+    /// Processes the next cycle. A cycle with the same age as the last is ignored; an older one is
+    /// the first after a restart of the robot.
     pub fn push(&mut self, cycle: &Cycle) {
         self.take(Some(cycle.time), &cycle.state, Some(&cycle.record));
     }
 
-    /// Takes in a state of which nothing else is known; as [`Self::push`].
+    /// Processes a state without further data, like [`Self::push`].
     pub fn push_state(&mut self, state: &RobotState) {
         self.take(None, state, None);
     }
 
-    /// Takes in an event that came after the cycles so far: goals, outcomes, notes and the
-    /// diagnosis of an error. Changes of mode, and errors, are found in the cycles.
+    /// Processes an event after the cycles so far: goals, outcomes, notes and the diagnosis of an
+    /// error. Changes of mode, and errors, are detected in the cycles.
     pub fn push_event(&mut self, event: &Event) {
         self.ends += u64::from(self.run.event(event));
     }
@@ -127,7 +127,7 @@ impl<'a> Explainer<'a> {
         self.ends += u64::from(self.run.take(self.model, state, record));
     }
 
-    /// The explanation of all that was taken in.
+    /// Returns the explanation of all processed data.
     pub fn finish(self) -> Explanation {
         let run = match self.before {
             Some(before) if self.run.ended.is_none() => before,
@@ -146,7 +146,7 @@ impl Run {
         self.timeline.add(self.last, MomentKind::Note, text);
     }
 
-    /// Takes in an event; returns whether it tells that a motion was ended.
+    /// Processes an event; returns true if it reports the end of a motion.
     fn event(&mut self, event: &Event) -> bool {
         if let EventKind::Diagnosis(diagnosis) = &event.kind {
             self.diagnosis = Some(Told {
@@ -156,12 +156,12 @@ impl Run {
             });
         }
         self.timeline.event(event, self.first.unwrap_or_default());
-        // One loss ends several goals, and what is asked for later: the first one counts.
+        // One loss ends several goals, including later requests: the first end counts.
         let is_told = self.ended.as_ref().is_some_and(|it| it.time == self.last);
         match &event.kind {
             EventKind::Goal(goal) if goal.number > 0 => {
                 let is_chunk = goal.kind == "chunk";
-                // The goal of the first chunk ends for all that follow.
+                // The goal of the first chunk ends for all later chunks.
                 if !(is_chunk && self.open.iter().any(|(_, is_chunk)| *is_chunk)) {
                     self.open.retain(|(open, _)| *open != goal.number);
                     self.open.push((goal.number, is_chunk));
@@ -172,7 +172,7 @@ impl Run {
                 self.open.retain(|(open, _)| *open != outcome.goal);
                 let failed = outcome.ending == Ending::Failed;
                 self.failed = failed.then(|| outcome.text.clone());
-                // What the robot ended is seen in the cycles.
+                // Ends caused by the robot are detected in the cycles.
                 if outcome.ending == Ending::Reflex || !outcome.ending.is_incident() || is_told {
                     return false;
                 }
@@ -190,8 +190,7 @@ impl Run {
         }
     }
 
-    /// Takes in a state that is newer than the last; returns whether it shows that a motion was
-    /// ended.
+    /// Processes a state newer than the last; returns true if it shows the end of a motion.
     fn take(&mut self, model: &Model, state: &RobotState, record: Option<&Record>) -> bool {
         let time = state.message_id;
         let lost = match self.first {
@@ -234,7 +233,7 @@ impl Run {
             self.window.pop_front();
         }
         let errors = state.reflex_reason;
-        // What the first cycle shows ended a motion before it.
+        // An error in the first cycle ended an earlier motion.
         let before = self.reflex_reason.replace(errors).unwrap_or(errors);
         let ended = errors != before && !errors.is_empty();
         if ended {
@@ -248,7 +247,7 @@ impl Run {
         ended
     }
 
-    /// Keeps what led up to the end of a motion.
+    /// Keeps the data before the end of a motion.
     fn end(&mut self, errors: Errors, text: String) {
         self.ended = Some(self.end_now(errors, text));
         self.timeline.ended(self.last);
@@ -277,7 +276,7 @@ impl Run {
         let contact = place::of(model, self.has_hand, &traces, ended.tared, noticed);
         let (timeline, moments_left_out) = self.timeline.finish();
         let cause = is_over.then(|| {
-            // One that is older is of another motion.
+            // An older diagnosis belongs to another motion.
             let told = self.diagnosis.filter(|told| told.time >= ended.time);
             let (diagnosis, text) = match told {
                 Some(told) => (told.diagnosis, told.text),
@@ -341,20 +340,20 @@ fn trace(model: &Model, state: &RobotState, lost: u64, external: &JointVector) -
     }
 }
 
-/// A diagnosis that was recorded.
+/// Parses a recorded diagnosis.
 #[cfg(feature = "serde")]
 fn read(json: &str) -> Option<Diagnosis> {
     serde_json::from_str(json).ok()
 }
 
-/// Recorded diagnoses are read with the feature `serde`; the text is there without.
+/// Recorded diagnoses are parsed only with the feature `serde`; the text is available without it.
 #[cfg(not(feature = "serde"))]
 fn read(_: &str) -> Option<Diagnosis> {
     None
 }
 
-/// How much of the time before the end is kept, `[ms]`.
+/// Time before the end that is kept, `[ms]`.
 const SPAN: u64 = 1000;
 
-/// Below this mass, `[kg]`, nothing is taken to be on the flange; above it is taken for a Hand.
+/// Mass, `[kg]`, below which the flange counts as empty; above it, a Hand is assumed.
 const BARE: f64 = 0.05;

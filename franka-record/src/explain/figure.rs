@@ -8,7 +8,7 @@ use super::polyline::thinned;
 use super::report::NO_END;
 use super::{Explanation, MomentKind, Trace, sketch};
 
-/// Where a panel is, and what it spans.
+/// The position and range of a panel.
 struct Panel {
     top: f64,
     height: f64,
@@ -119,7 +119,7 @@ impl Panel {
         group
     }
 
-    /// The points of a curve, in several runs where states are missing between.
+    /// Returns the points of a curve, split at missing states.
     fn runs(&self, explanation: &Explanation, of: Curve<'_>) -> Vec<Vec<(f64, f64)>> {
         let mut runs = vec![Vec::new()];
         for trace in &explanation.last_second {
@@ -157,7 +157,7 @@ impl Panel {
     }
 }
 
-/// What the figure is of, and the cause in its first lines.
+/// Returns the heading of the figure, with the first lines of the cause.
 fn heading(explanation: &Explanation) -> Group {
     let mut group = Group::new();
     let cause = explanation.cause.as_ref().map(|cause| cause.text.as_str());
@@ -172,7 +172,8 @@ fn heading(explanation: &Explanation) -> Group {
     group
 }
 
-/// Vertical lines at the first contact, the first collision and the end, and ticks at lost states.
+/// Returns vertical lines at the first contact, the first collision and the end, and ticks at lost
+/// states.
 fn marks(explanation: &Explanation, span: f64) -> Group {
     let bottom = TOP + 4.0 * PANEL + 3.0 * GAP;
     let mut group = Group::new();
@@ -257,7 +258,7 @@ fn x(span: f64, before: f64) -> f64 {
     LEFT + CURVES * (1.0 - before / span)
 }
 
-/// The next of 1, 2, 5, 10, ... times a power of ten.
+/// Returns the next of 1, 2, 5, 10, ... times a power of ten.
 fn rounded(value: f64) -> f64 {
     let power = 10.0_f64.powf(value.log10().floor());
     let steps = [1.0, 1.5, 2.0, 3.0, 5.0, 7.5, 10.0].map(|step| step * power);
@@ -272,7 +273,7 @@ fn number(value: f64) -> String {
     format!("{}", value + 0.0)
 }
 
-/// Tenths of a pixel are enough.
+/// Rounds to tenths of a pixel, which are sufficient.
 fn short(value: f64) -> f64 {
     (value * 10.0).round() / 10.0
 }
@@ -294,16 +295,16 @@ const CURVES: f64 = 660.0;
 const PANEL: f64 = 120.0;
 const GAP: f64 = 28.0;
 
-/// How far a curve may be drawn from where it is: less than shows.
+/// Largest error of a drawn curve: not visible.
 const TOLERANCE: f64 = 0.2;
 
 const SKETCH_LEFT: f64 = 770.0;
 const SKETCH_SIZE: f64 = 220.0;
 
-/// Text and lines: in the middle between white and black.
+/// Colour of text and lines: halfway between white and black.
 pub(super) const INK: &str = "#808080";
 
-/// Of the joints: after Okabe and Ito, of middle brightness.
+/// Colours of the joints: after Okabe and Ito, of medium brightness.
 const COLORS: [&str; 7] = [
     "#0b84d8", "#d9660a", "#12a37a", "#cc6fa5", "#8b74e8", "#a98b00", "#d64550",
 ];

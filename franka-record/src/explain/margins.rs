@@ -1,39 +1,39 @@
-//! The nearest approach to each limit, and the largest values.
+//! The smallest distance from each limit, and the largest values.
 
 use franka_model::limits::CartesianLimits;
 use franka_model::{EndEffector, Frame, JointVector, Model};
 use franka_proto::RobotState;
 use franka_rt::driver::Record;
 
-/// How near something came to its limit.
+/// The distance of a value from its limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Approach {
-    /// The joint, 1 to 7; `None` of the end effector.
+    /// The joint, 1 to 7; `None` for the end effector.
     pub joint: Option<u8>,
-    /// What was measured.
+    /// The measured value.
     pub value: f64,
-    /// The limit there, on the side of the value.
+    /// The limit at that point, on the side of the value.
     pub limit: f64,
-    /// From the value to the limit; negative beyond it.
+    /// Distance from the value to the limit; negative beyond it.
     pub margin: f64,
-    /// When, `[ms]` of the robot's clock.
+    /// Time, `[ms]` of the robot's clock.
     pub time: u64,
 }
 
-/// The nearest approaches; `None` before any cycle.
+/// The smallest distances; `None` before any cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Margins {
-    /// Of a joint to the end of its range, for its range, `[rad]`.
+    /// A joint and the end of its range, relative to its range, `[rad]`.
     pub position: Option<Approach>,
-    /// Of a joint's velocity to its limit at that position, as a share, `[rad/s]`.
+    /// A joint's velocity and its limit at that position, as a share, `[rad/s]`.
     pub velocity: Option<Approach>,
-    /// Of a joint's torque, gravity included, to its limit, as a share, `[N·m]`.
+    /// A joint's torque, gravity included, and its limit, as a share, `[N·m]`.
     pub torque: Option<Approach>,
-    /// Of the end effector's velocity to the limit of Cartesian commands, `[m/s]`.
+    /// The end effector's velocity and the limit of Cartesian commands, `[m/s]`.
     pub translation: Option<Approach>,
-    /// Of its rotation, `[rad/s]`.
+    /// The end effector's rotation and its limit, `[rad/s]`.
     pub rotation: Option<Approach>,
 }
 
@@ -41,23 +41,23 @@ pub struct Margins {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Peak {
-    /// The joint, 1 to 7; `None` of the end effector.
+    /// The joint, 1 to 7; `None` for the end effector.
     pub joint: Option<u8>,
-    /// Its size.
+    /// Its magnitude.
     pub value: f64,
-    /// When, `[ms]` of the robot's clock.
+    /// Time, `[ms]` of the robot's clock.
     pub time: u64,
 }
 
-/// The largest values; `None` where nothing was seen.
+/// The largest values; `None` without data.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Peaks {
-    /// External torque of a joint, less the tare, `[N·m]`.
+    /// External torque of a joint, minus the tare, `[N·m]`.
     pub external_torque: Option<Peak>,
     /// Norm of the robot's estimate of the external force at the end effector, `[N]`.
     pub force: Option<Peak>,
-    /// Difference of reference and measured position of a joint in target control, `[rad]`.
+    /// Difference between reference and measured position of a joint in target control, `[rad]`.
     pub following_error: Option<Peak>,
 }
 
@@ -144,7 +144,7 @@ impl Peaks {
     }
 }
 
-/// Speeds of the end effector, `[m/s]`, `[rad/s]`.
+/// Returns the speeds of the end effector, `[m/s]`, `[rad/s]`.
 fn speeds(model: &Model, state: &RobotState) -> (f64, f64) {
     let ee = EndEffector {
         f_t_ee: nalgebra::Matrix4::from_column_slice(&state.F_T_EE),
@@ -164,7 +164,7 @@ fn range_of(model: &Model, approach: &Approach) -> Option<f64> {
     Some(limits.upper[i] - limits.lower[i])
 }
 
-/// What is left of the limit, as a share of it.
+/// Returns the remaining share of the limit.
 fn share(approach: &Approach) -> f64 {
     approach.margin / approach.limit.abs().max(f64::MIN_POSITIVE)
 }

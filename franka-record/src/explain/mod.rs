@@ -1,4 +1,4 @@
-//! What happened, and why: of a series of cycles, or of the log of an error.
+//! Explains the end of a motion from a series of cycles, or from the log of an error.
 //!
 //! ```text
 //! cycles ──> Explainer ──> timeline, margins, peaks, losses, the last second
@@ -8,19 +8,19 @@
 //! Explanation ──> Display: a report    ──> figure(): SVG of the last second
 //! ```
 //!
-//! | module | holds |
+//! | module | contents |
 //! |---|---|
-//! | `explainer` | cycles and events, one after the other |
-//! | `timeline` | what changed, and when |
-//! | `margins` | the nearest approach to each limit, and peaks |
+//! | `explainer` | processes cycles and events |
+//! | `timeline` | changes and their times |
+//! | `margins` | the smallest distance from each limit, and peaks |
 //! | `place` | the contact when the motion ended |
 //! | `report` | the text |
 //! | `figure`, `polyline`, `sketch` | the figure: curves with few points, and the arm with the contact |
 //!
-//! What ended is the last motion that the robot stopped, a guard gave up or a lost link ended; if
-//! none did, it is the newest cycle. A robot that is started again counts its time anew: what is
-//! explained is then the newest run with such an end, or else the newest. Memory is bounded,
-//! however many cycles there are.
+//! The explained end is the last motion that the robot stopped, a guard aborted or a lost link
+//! ended; without one, it is the newest cycle. After a restart the robot's time starts again: the
+//! explanation then covers the newest run with such an end, or else the newest run. Memory is
+//! bounded, regardless of the number of cycles.
 //!
 //! # Example
 //!
@@ -66,7 +66,7 @@ pub use margins::{Approach, Margins, Peak, Peaks};
 pub use place::{Place, Placed};
 pub use timeline::{Moment, MomentKind};
 
-/// What happened in a series of cycles. `Display` is a report of a page.
+/// The explanation of a series of cycles. `Display` is a report of one page.
 ///
 /// Times are the robot's clock, `[ms]`: the `message_id` of states.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,32 +79,32 @@ pub struct Explanation {
     pub first: u64,
     /// The last cycle.
     pub last: u64,
-    /// How many there were.
+    /// Number of cycles.
     pub cycles: u64,
-    /// The cycle that shows the end of the last motion that the robot stopped, a guard gave up or
-    /// a lost link ended, of a guard that in which the arm rested; without one, the last cycle.
+    /// The cycle that shows the end of the last motion that the robot stopped, a guard aborted or a
+    /// lost link ended. For a guard, it is the cycle in which the arm was at rest. Without such an
+    /// end, it is the last cycle.
     pub end: u64,
-    /// When this host had that cycle; `None` if that is not known, as in a log.
+    /// Time at which this host received that cycle; `None` if unknown, as in a log.
     pub received: Option<HostTime>,
-    /// The newest goal whose end was not recorded, where nothing has ended a motion.
+    /// The newest goal whose end was not recorded, if no end of a motion was found.
     pub under_way: Option<u64>,
-    /// What the last goal that failed of itself said, as after a user stop or at an obstacle;
-    /// `None` if the last one did not fail.
+    /// Text of the last goal if it failed on its own, for example after a user stop or at an
+    /// obstacle; `None` if it did not fail.
     pub failed: Option<String>,
-    /// How many such ends came before.
+    /// Number of earlier ends of this kind.
     pub earlier: u64,
-    /// Why that motion ended; `None` without such an end.
+    /// The reason for the end of that motion; `None` without such an end.
     pub cause: Option<Cause>,
-    /// What changed, oldest first, [`MOMENTS_MAX`] at most: until the end and half a second after
-    /// it.
+    /// The changes, oldest first, at most [`MOMENTS_MAX`]: until half a second after the end.
     pub timeline: Vec<Moment>,
-    /// Changes for which the timeline had no room.
+    /// Number of changes that the timeline had no space for.
     pub moments_left_out: u64,
-    /// The nearest approach to each limit, until half a second after the end.
+    /// The smallest distance from each limit, until half a second after the end.
     pub margins: Margins,
     /// The largest values, until half a second after the end.
     pub peaks: Peaks,
-    /// Where something touched the arm as the motion ended; `None` without cycles.
+    /// The contact at the end of the motion; `None` without cycles.
     pub contact: Option<Place>,
     /// States that were lost.
     pub lost: Lost,
@@ -114,45 +114,45 @@ pub struct Explanation {
     pub last_second: Vec<Trace>,
 }
 
-/// Why a motion ended.
+/// The reason for the end of a motion.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Cause {
-    /// What the robot named; none where a guard or a lost link ended the motion.
+    /// The errors named by the robot; none if a guard or a lost link ended the motion.
     pub errors: Errors,
-    /// Which limit was exceeded, and what led up to it; `None` where the commands of the motion are
-    /// not known, as in a recording without the event that has the diagnosis.
+    /// The exceeded limit and its causes. `None` if the commands of the motion are unknown, as in a
+    /// recording without the diagnosis event.
     pub diagnosis: Option<Diagnosis>,
-    /// The diagnosis, or what is known without one, as text.
+    /// The diagnosis, or the other known facts, as text.
     pub text: String,
 }
 
-/// States that did not come, or came too late to be answered.
+/// States that did not arrive, or arrived too late to be answered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lost {
-    /// In all.
+    /// Total number.
     pub states: u64,
-    /// The most in a row.
+    /// Largest number of consecutive lost states.
     pub most_in_a_row: u64,
-    /// After which cycle those were missing.
+    /// The cycle before these consecutive states.
     pub most_at: u64,
-    /// In the second before the end.
+    /// Number in the second before the end.
     pub in_last_second: u64,
 }
 
-/// Commands that left this computer too late, where it is known when they did: in recordings of a
-/// robot, not in logs and not under active control.
+/// Commands that left this computer too late, if the times are known: in recordings of a robot, but
+/// not in logs and not under active control.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Late {
-    /// How many.
+    /// Number of late commands.
     pub commands: u64,
-    /// The most by which one left after the next state was due.
+    /// Largest delay of a command after the next state was due.
     pub most: Duration,
-    /// Which state that one answers.
+    /// The state answered by that command.
     pub at: u64,
-    /// From when its state was there to when it left.
+    /// Time from the state's availability to that command.
     pub turnaround: Duration,
 }
 
@@ -160,26 +160,26 @@ pub struct Late {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Trace {
-    /// Of the state.
+    /// Time of the state.
     pub time: u64,
-    /// States lost before it.
+    /// Number of states lost before it.
     pub lost: u64,
-    /// Measured, `[rad]`.
+    /// Measured joint positions, `[rad]`.
     pub q: [f64; 7],
-    /// Velocity over the limit in its direction, -1 to 1.
+    /// Velocity divided by the limit in its direction, -1 to 1.
     pub speed: [f64; 7],
-    /// What the environment exerts on the joints, less the tare, `[N·m]`.
+    /// Torque of the environment on the joints, minus the tare, `[N·m]`.
     pub external: [f64; 7],
-    /// Torque over its limit, -1 to 1.
+    /// Torque divided by its limit, -1 to 1.
     pub torque: [f64; 7],
-    /// Greatest measured joint velocity, `[rad/s]`.
+    /// Largest measured joint velocity, `[rad/s]`.
     pub fastest: f64,
     /// Norm of the robot's estimate of the force at the stiffness frame, `[N]`.
     pub force: f64,
 }
 
 impl Explanation {
-    /// Of cycles and events, each oldest first.
+    /// Explains cycles and events, each oldest first.
     pub fn of(
         cycles: impl IntoIterator<Item = Cycle>,
         events: impl IntoIterator<Item = Event>,
@@ -189,7 +189,7 @@ impl Explanation {
         Self::of_readable(cycles, events.into_iter().map(Ok), model)
     }
 
-    /// Of one robot of a recording, or of a part of its time. What cannot be read is left out and
+    /// Explains one robot of a recording, or a part of its time. Unreadable data is skipped and
     /// noted in the timeline.
     pub fn of_recording(recording: &RobotRecording<'_>, model: &Model) -> Self {
         Self::of_readable(recording.cycles(), recording.events(), model)
@@ -227,12 +227,12 @@ impl Explanation {
         explainer.finish()
     }
 
-    /// Of the log of an error, which holds the last cycles of its motion.
+    /// Explains the log of an error, which contains the last cycles of its motion.
     pub fn of_error(error: &ControlError) -> Self {
         Self::of_case(&Case::from(error), &error.model)
     }
 
-    /// Of a log that was saved. The cause is there whether or not the log shows it.
+    /// Explains a saved log. The cause is always present, even if the log does not show it.
     pub fn of_case(case: &Case, model: &Model) -> Self {
         let mut explainer = Explainer::new(model);
         for entry in case.log.iter() {
@@ -252,8 +252,8 @@ impl Explanation {
         }
     }
 
-    /// Of a log of libfranka. A file without the errors explains what its table shows, and says
-    /// that they are missing.
+    /// Explains a log of libfranka. Without errors in the file, it explains the table, and reports
+    /// that the errors are missing.
     pub fn of_control_log(file: &ControlLogFile, model: &Model) -> Self {
         let case = file.case();
         let mut explanation = Self::of_case(&case, model);
@@ -273,18 +273,18 @@ impl Explanation {
         explanation
     }
 
-    /// The last second before the end as an SVG image: what touched the arm, velocities and torques
-    /// against their limits, what happened when, and where on the arm the contact was.
+    /// Returns the last second before the end as an SVG image: contact torques, velocities and
+    /// torques relative to their limits, the events, and the place of the contact on the arm.
     ///
-    /// It has no background, and colours that can be told apart on white and on black.
+    /// The image has no background, and its colours are distinguishable on white and on black.
     pub fn figure(&self) -> String {
         figure::draw(self)
     }
 }
 
-/// Of a table without the text of its exception.
+/// The cause for a table without the text of its exception.
 const UNNAMED: &str = "the file does not name the errors: they are in the text of the exception, \
                        which may be pasted into it";
 
-/// Moments that a timeline holds.
+/// Largest number of moments in a timeline.
 pub const MOMENTS_MAX: usize = 500;

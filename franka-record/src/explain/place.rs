@@ -1,4 +1,4 @@
-//! Where something touched the arm as the motion ended.
+//! The contact at the end of the motion.
 
 use franka_model::collision::{Body, Shape};
 use franka_model::contact::{Contact, TorqueError, Unknown, locate};
@@ -6,47 +6,47 @@ use franka_model::{JointVector, Model};
 
 use super::Trace;
 
-/// Where and when something touched the arm, or why that is not known.
+/// Place and time of a contact, or the reason why it is unknown.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Place {
-    /// The cycle whose torques tell: the one with the strongest of the last 100 ms.
+    /// The cycle with the evaluated torques: the strongest of the last 100 ms.
     pub time: u64,
-    /// Joint positions then, `[rad]`.
+    /// Joint positions at that time, `[rad]`.
     pub q: [f64; 7],
-    /// External torques then, less the tare, on the arm, `[N·m]`.
+    /// External torques on the arm at that time, minus the tare, `[N·m]`.
     pub torque: [f64; 7],
-    /// Over how long the tare was learned, `[s]`. With little, what the torques read without any
-    /// contact is in the estimate.
+    /// Learning time of the tare, `[s]`. If it is short, the estimate includes the torques that are
+    /// measured without a contact.
     pub tared: f64,
-    /// True if the flange was taken to carry a Hand.
+    /// True if a Hand on the flange was assumed.
     pub has_hand: bool,
-    /// Whether the robot itself noticed a contact or collision in the last 100 ms, or since the
-    /// end. Without that and without a stop, the estimate is of an untouched arm.
+    /// True if the robot itself detected a contact or collision in the last 100 ms, or since the
+    /// end. Without that and without a stop, the estimate is for an untouched arm.
     pub noticed: bool,
-    /// The contact, as far as the torques tell.
+    /// The contact, if the torques determine it.
     pub contact: Option<Placed>,
-    /// Why the body is not known for sure, or nothing is; `None` if it is known.
+    /// The reason why the body is uncertain or unknown; `None` if it is known.
     pub unknown: Option<String>,
 }
 
-/// A contact; see [`franka_model::contact`]. In the base frame.
+/// A contact in the base frame; see [`franka_model::contact`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Placed {
     /// The link, or the tool.
     pub body: Body,
-    /// `[m]`
+    /// Position, `[m]`.
     pub point: [f64; 3],
-    /// On the arm, `[N]`.
+    /// Force on the arm, `[N]`.
     pub force: [f64; 3],
-    /// Of the places that explain the torques as well, `[m]`.
+    /// Spread of the places that explain the torques equally well, `[m]`.
     pub spread: f64,
     /// Torques that are not explained, `[N·m]`.
     pub residual: [f64; 7],
-    /// That it is this body, 0 to 1.
+    /// Probability that it is this body, 0 to 1.
     pub probability: f64,
-    /// The next likely body, and its probability.
+    /// The second most probable body, and its probability.
     pub next: Option<(Body, f64)>,
 }
 
@@ -65,19 +65,19 @@ impl From<Contact> for Placed {
 }
 
 impl Placed {
-    /// The size of the force, `[N]`.
+    /// Returns the magnitude of the force, `[N]`.
     pub fn size(&self) -> f64 {
         nalgebra::Vector3::from(self.force).norm()
     }
 }
 
-/// The arm as the estimate takes it to be.
+/// Returns the shape of the arm used in the estimate.
 pub(super) fn shape(model: &Model, has_hand: bool) -> Shape<'static> {
     let shape = Shape::covering(model.kind()).with_lengths(*model.lengths());
     if has_hand { shape.with_hand() } else { shape }
 }
 
-/// The contact at the end of `traces`, before which the robot last noticed one at `noticed`.
+/// Returns the contact at the end of `traces`; the robot last detected one at `noticed`.
 pub(super) fn of(
     model: &Model,
     has_hand: bool,
@@ -120,7 +120,7 @@ pub(super) fn of(
     })
 }
 
-/// What is known all the same, and why no more.
+/// Returns the partial result, and the reason why it is partial.
 fn said(unknown: Unknown) -> (Option<Placed>, String) {
     match unknown {
         Unknown::Weak { .. } => (
@@ -154,7 +154,7 @@ fn said(unknown: Unknown) -> (Option<Placed>, String) {
     }
 }
 
-/// `link 5`, or `the tool`.
+/// Returns `link 5`, or `the tool`.
 pub(super) fn name(body: Body) -> String {
     match body {
         Body::Link(link) => format!("link {link}"),
@@ -162,8 +162,8 @@ pub(super) fn name(body: Body) -> String {
     }
 }
 
-/// How long before the end the contact is looked for, `[ms]`.
+/// Time before the end in which the contact is searched, `[ms]`.
 const NEAR_END: u64 = 100;
 
-/// Joint velocity above which friction is that of sliding, `[rad/s]`.
+/// Joint velocity above which friction is sliding friction, `[rad/s]`.
 const STILL: f64 = 0.02;

@@ -1,8 +1,8 @@
-//! Lines through many points, drawn with few.
+//! Simplifies lines through many points.
 
-/// The fewest of the points, in order, such that straight lines between them pass every point
-/// within `tolerance`, as far as one pass can tell: each line goes on until no slope passes all of
-/// its points. `x` has to increase.
+/// Returns few of the points, in order, such that straight lines between them pass every point
+/// within `tolerance`. A single pass extends each line until no slope passes all of its points. `x`
+/// must increase.
 pub(super) fn thinned(points: &[(f64, f64)], tolerance: f64) -> Vec<(f64, f64)> {
     let Some(&first) = points.first() else {
         return Vec::new();

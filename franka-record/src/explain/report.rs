@@ -147,7 +147,7 @@ impl Explanation {
         )
     }
 
-    /// `12 ms before the end`.
+    /// Returns a text such as `12 ms before the end`.
     fn before(&self, time: u64) -> String {
         match self.end as i128 - i128::from(time) {
             0 => "at the end".to_owned(),
@@ -207,11 +207,11 @@ fn of(joint: Option<u8>) -> String {
     }
 }
 
-/// Without a cause.
+/// Text without a cause.
 pub(super) const NO_END: &str = "No reflex, guard or lost link ended a motion.";
 
-/// Moments that the report shows, the newest.
+/// Number of moments in the report, the newest ones.
 const SHOWN: usize = 40;
 
-/// A tare over less, `[s]`, is worth a remark.
+/// Learning time of the tare, `[s]`, below which the report notes it.
 const SHORT: f64 = 0.2;

@@ -10,7 +10,7 @@ use svg::node::element::{Circle, Group, Line};
 use super::figure::{INK, line, text};
 use super::{Explanation, place};
 
-/// A direction to look along: which coordinates go right and up, by sign.
+/// A direction of view: the coordinates that point right and up, with signs.
 struct View {
     name: &'static str,
     right: fn(&Vector3<f64>) -> f64,
@@ -30,7 +30,7 @@ const VIEWS: [View; 2] = [
     },
 ];
 
-/// Two squares of `size` pixels, one below the other.
+/// Draws two squares of `size` pixels, one below the other.
 pub(super) fn draw(explanation: &Explanation, left: f64, top: f64, size: f64) -> Group {
     let mut group = Group::new();
     let Some(place) = &explanation.contact else {
@@ -44,7 +44,7 @@ pub(super) fn draw(explanation: &Explanation, left: f64, top: f64, size: f64) ->
     for (i, view) in VIEWS.iter().enumerate() {
         let top = top + i as f64 * (size + 28.0);
         group.append(text(left, top - 5.0, view.name));
-        // Everything in the picture, at one scale.
+        // Fits everything into the picture, at one scale.
         let mut low = [f64::INFINITY; 2];
         let mut high = [f64::NEG_INFINITY; 2];
         for (_, capsule) in placed.capsules() {
@@ -70,7 +70,7 @@ pub(super) fn draw(explanation: &Explanation, left: f64, top: f64, size: f64) ->
                 top + 0.5 * size - ((view.up)(p) - middle[1]) * scale,
             )
         };
-        // One colour with one opacity, whatever overlaps.
+        // One colour with one opacity, also for overlapping parts.
         let mut arm = Group::new().set("opacity", 0.35);
         let mut hit = Group::new().set("opacity", 0.55);
         for (body, capsule) in placed.capsules() {
@@ -155,11 +155,11 @@ fn arrow(tail: (f64, f64), head: (f64, f64)) -> Group {
     group
 }
 
-/// Around the arm, `[m]`.
+/// Margin around the arm, `[m]`.
 const MARGIN: f64 = 0.12;
 
 /// Length of the arrow, `[m]`.
 const ARROW: f64 = 0.2;
 
-/// The body that was touched, and the force.
+/// Colour of the touched body, and of the force.
 const HIT: &str = "#d64550";

@@ -1,4 +1,5 @@
-//! Explanations of states made up. Of a simulated arm that is hit: `tests/lockstep/explaining.rs`.
+//! Explanations of synthetic states. For a simulated arm with a collision see
+//! `tests/lockstep/explaining.rs`.
 
 use super::*;
 use crate::event::{Ending, Goal, Note, Outcome};
@@ -29,7 +30,7 @@ fn explained(states: impl IntoIterator<Item = RobotState>) -> Explanation {
     explainer.finish()
 }
 
-/// An event after the cycle of this number.
+/// Returns an event after the cycle with this number.
 fn event(robot_time: u64, kind: EventKind) -> Event {
     Event {
         time: HostTime::from_nanos(1_000_000 * robot_time),
@@ -46,7 +47,7 @@ fn note(robot_time: u64, text: &str) -> Event {
     event(robot_time, EventKind::Note(note))
 }
 
-/// Three seconds; a contact and a collision of joint 2 before a reflex at 2500 ms.
+/// Returns three seconds: a contact and a collision of joint 2 before a reflex at 2500 ms.
 fn hit() -> Vec<RobotState> {
     (1..=3000)
         .map(|time| {
@@ -93,7 +94,7 @@ fn first_edges_come_in_their_order_and_once() {
     let cause = explanation.cause.expect("a reflex");
     assert_eq!(cause.errors, RobotError::JointReflex.into());
     assert!(cause.text.contains("joint_reflex"), "{}", cause.text);
-    // The window ends with the state that shows the reflex, though states go on.
+    // The window ends with the state that shows the reflex, although more states follow.
     let window = &explanation.last_second;
     assert_eq!(window.first().map(|t| t.time), Some(1501));
     assert_eq!(window.last().map(|t| t.time), Some(2500));
@@ -110,7 +111,7 @@ fn motions_after_the_stop_do_not_hide_it() {
     let mut explainer = Explainer::new(Model::fr3());
     for state in hit().into_iter().chain(later) {
         explainer.push_state(&state);
-        // Far more than a timeline holds.
+        // Far more than the capacity of a timeline.
         if state.message_id % 20 == 0 {
             explainer.push_event(&note(state.message_id, "chunk"));
         }
@@ -118,7 +119,7 @@ fn motions_after_the_stop_do_not_hide_it() {
     let explanation = explainer.finish();
     let times = explanation.timeline.iter().map(|moment| moment.time);
     assert_eq!((explanation.end, times.max()), (2500, Some(3000)));
-    // All 3000 chunks but those of the first three seconds, and two changes of the state.
+    // All 3000 chunks except those of the first three seconds, and two changes of the state.
     assert_eq!(explanation.moments_left_out, 2852);
     assert_eq!(explanation.earlier, 0);
     let peak = explanation.peaks.external_torque.expect("a hit");
@@ -164,7 +165,7 @@ fn a_contact_that_was_over_before_the_end_is_not_said_to_touch() {
     assert!(!over.contains("touche"), "{over}");
     let lasting = text(500, 2001);
     assert!(lasting.contains("What touched the arm"), "{lasting}");
-    // A stop for want of commands: nobody touched it.
+    // A stop because of missing commands, without a contact.
     let silent = hit().into_iter().map(|mut state| {
         (state.joint_contact, state.joint_collision) = ([0.0; 7], [0.0; 7]);
         if state.message_id >= 2500 {
@@ -189,7 +190,7 @@ fn a_stop_before_the_first_cycle_is_none_of_these() {
     );
 }
 
-/// The robot stops, is started again and stops no more; its clock begins anew.
+/// The robot stops, is restarted and does not stop again; its clock starts again.
 #[test]
 fn a_robot_that_was_started_again_does_not_hide_the_stop_before() {
     let received = |number: usize| HostTime::from_nanos(number as u64 * 1_000_000);
@@ -218,7 +219,7 @@ fn a_robot_that_was_started_again_does_not_hide_the_stop_before() {
     let again = "the robot was started again: its clock goes back to 5 ms";
     let notes = vec!["before".to_owned(), again.to_owned()];
     assert_eq!(explained(explainer.clone()), (2500, 3000, 0, notes));
-    // Until it stops again.
+    // The robot stops again.
     for message_id in 401..=402 {
         explainer.push_state(&RobotState {
             reflex_reason: RobotError::JointReflex.into(),
@@ -292,7 +293,7 @@ fn events_tell_goals_and_the_diagnosis() {
             ..Cycle::default()
         }
     });
-    // The first goal is given before the first cycle comes.
+    // The first goal is set before the first cycle arrives.
     let goal = Goal {
         number: 7,
         kind: "move_to".into(),
@@ -333,7 +334,7 @@ fn events_tell_goals_and_the_diagnosis() {
     let late = "8 commands left after the next state was due, by 29.5 ms at most,\n  2000 ms before the end \
                 (its state was answered in 30.250 ms)";
     assert!(explanation.to_string().contains(late), "{explanation}");
-    // Without events the goal is seen in the records.
+    // Without events, the goal is detected in the records.
     let explanation = Explanation::of(cycles, [], Model::fr3());
     assert!(explanation.to_string().contains("goal 7 begins"));
 }

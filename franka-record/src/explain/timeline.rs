@@ -1,4 +1,4 @@
-//! What changed from cycle to cycle.
+//! The changes from cycle to cycle.
 
 use franka_proto::{Errors, RobotMode, RobotState};
 use franka_rt::driver::Record;
@@ -8,15 +8,15 @@ use super::MOMENTS_MAX;
 use crate::event::{Goal, Outcome};
 use crate::{Event, EventKind};
 
-/// Something that happened, and when.
+/// An event and its time.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Moment {
     /// The cycle, `[ms]` of the robot's clock.
     pub time: u64,
-    /// What kind of thing.
+    /// The kind of event.
     pub kind: MomentKind,
-    /// What, in words.
+    /// The text of the event.
     pub text: String,
 }
 
@@ -25,44 +25,44 @@ pub struct Moment {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum MomentKind {
-    /// A goal was given, began or ended.
+    /// A goal was set, began or ended.
     Goal,
     /// The robot's mode changed.
     Mode,
     /// An external torque or force passed its lower threshold.
     Contact,
-    /// And its upper one.
+    /// An external torque or force passed its upper threshold.
     Collision,
-    /// Errors came or went.
+    /// Errors appeared or disappeared.
     Error,
-    /// A guard of the driver began to bind.
+    /// A guard of the driver became active.
     Guard,
     /// States were lost.
     Loss,
-    /// Anything else that was recorded.
+    /// Any other recorded event.
     Note,
 }
 
-/// Notes changes. What comes and goes is noted when it comes, and again if it had been gone for
-/// [`PAUSE`].
+/// Records changes. A recurring condition is recorded when it appears, and again after an absence
+/// of [`PAUSE`].
 #[derive(Clone, Debug, Default)]
 pub(super) struct Timeline {
     moments: Vec<Moment>,
-    /// How many there were.
+    /// Number of moments.
     count: u64,
     mode: Option<RobotMode>,
     errors: Errors,
     reflex_reason: Errors,
     goal: u64,
-    /// Flags of joints and axes, and of guards: when each was last set.
+    /// Flags of joints and axes, and of guards: the time when each was last set.
     contacts: [Option<u64>; AXES],
     collisions: [Option<u64>; AXES],
     guards: [Option<u64>; Guard::ALL.len()],
     last_loss: Option<u64>,
-    /// True if goals are told by events.
+    /// True if events report the goals.
     has_goals: bool,
-    /// The newest end of a motion, and the moments until shortly after it, as soon as there are
-    /// others.
+    /// The newest end of a motion, and the moments until shortly after it, once there are later
+    /// ones.
     end: Option<u64>,
     until_end: Option<Vec<Moment>>,
 }
@@ -76,7 +76,7 @@ impl Timeline {
         }
         let is_first = self.mode.is_none();
         if is_first {
-            // The first goal may be given before the first cycle comes.
+            // The first goal may be set before the first cycle arrives.
             let moments = self.moments.iter_mut();
             moments.for_each(|moment| moment.time = moment.time.max(time));
         }
@@ -157,17 +157,17 @@ impl Timeline {
         }
     }
 
-    /// A motion was ended: what comes long after it is left out.
+    /// Records the end of a motion: much later moments are dropped.
     pub(super) fn ended(&mut self, time: u64) {
         (self.end, self.until_end) = (Some(time), None);
     }
 
-    /// Takes in an event of a run that begins with the cycle `first`.
+    /// Processes an event of a run that begins with the cycle `first`.
     pub(super) fn event(&mut self, event: &Event, first: u64) {
         let kind = match &event.kind {
             EventKind::Goal(_) | EventKind::Outcome(_) => MomentKind::Goal,
             EventKind::LinkLost { .. } | EventKind::LinkRestored { .. } => MomentKind::Loss,
-            // Seen in the cycles, or told apart.
+            // Detected in the cycles, or reported separately.
             EventKind::Mode { .. } | EventKind::Errors { .. } | EventKind::Diagnosis(_) => return,
             _ => MomentKind::Note,
         };
@@ -176,7 +176,7 @@ impl Timeline {
             let is_goal = |moment: &mut Moment| moment.kind == MomentKind::Goal;
             self.count -= self.moments.extract_if(.., is_goal).count() as u64;
         }
-        // Which goal ended is in no other word of the text.
+        // The text does not otherwise name the goal that ended.
         let text = match &event.kind {
             EventKind::Goal(Goal { number, .. })
             | EventKind::Outcome(Outcome { goal: number, .. })
@@ -194,21 +194,21 @@ impl Timeline {
             self.until_end = Some(self.moments.clone());
         }
         self.count += 1;
-        // An event may tell of a cycle before others that are told: there is room to sort.
+        // An event may belong to an earlier cycle than moments already recorded: there is space for
+        // sorting.
         if self.moments.len() >= 2 * MOMENTS_MAX {
             self.moments.remove(0);
         }
         self.moments.push(Moment { time, kind, text });
     }
 
-    /// When the robot last noticed a contact or collision.
+    /// Returns the time when the robot last detected a contact or collision.
     pub(super) fn noticed(&self) -> Option<u64> {
         let flags = self.contacts.iter().chain(&self.collisions);
         flags.copied().flatten().max()
     }
 
-    /// The moments before the end and shortly after it, oldest first, and how many there were
-    /// besides.
+    /// Returns the moments until shortly after the end, oldest first, and the number of the others.
     pub(super) fn finish(self) -> (Vec<Moment>, u64) {
         let mut moments = self.until_end.unwrap_or(self.moments);
         moments.sort_by_key(|moment| moment.time);
@@ -223,16 +223,16 @@ impl Timeline {
     }
 }
 
-/// Whether something that is there now had been gone for a while, or never been there.
+/// True if a current condition was absent for a while, or never present.
 fn appears(last: &mut Option<u64>, now: u64) -> bool {
     let before = last.replace(now);
     before.is_none_or(|before| now > before + PAUSE)
 }
 
-/// How long after the end of a motion what happened still belongs to it, `[ms]`: the arm brakes.
+/// Time after the end of a motion in which events still belong to it, `[ms]`: the arm brakes.
 pub(super) const AFTER: u64 = 500;
 
-/// `[ms]`
+/// Absence after which a condition is recorded again, `[ms]`.
 const PAUSE: u64 = 200;
 
 /// Joints, and axes of the base at the stiffness frame.

@@ -1,10 +1,10 @@
-//! Chosen columns of cycles, for tables of any format.
+//! Selected columns of cycles, for tables of any format.
 
 use franka_rt::driver::Column;
 
 use crate::cycle::Cycle;
 
-/// The columns that a table gets, after the time of each cycle.
+/// The columns of a table, after the time of each cycle.
 #[derive(Clone, Debug)]
 pub struct Columns(pub(super) Vec<&'static Column>);
 
@@ -12,26 +12,26 @@ pub struct Columns(pub(super) Vec<&'static Column>);
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("got the column {got:?}, expected some of {}", expected.join(", "))]
 pub struct UnknownColumn {
-    /// The name given.
+    /// The given name.
     pub got: String,
-    /// The names that there are.
+    /// The existing names.
     pub expected: Vec<&'static str>,
 }
 
 impl Columns {
-    /// All that a recording has.
+    /// Returns all columns of a recording.
     pub fn all() -> Self {
         Self(recorded().collect())
     }
 
-    /// All that a [control log](crate::control_log) has. `q_ref`, `dq_ref` and `tau_c` are the
-    /// commands that answer a state; `O_T_EE_c` and `O_dP_EE_c` were commanded before it.
+    /// Returns all columns of a [control log](crate::control_log). `q_ref`, `dq_ref` and `tau_c`
+    /// are the commands that answer a state; `O_T_EE_c` and `O_dP_EE_c` were commanded before it.
     pub fn of_log() -> Self {
         let find = |name| Column::find(name).expect("a column of a cycle");
         Self(LOGGED.map(find).into())
     }
 
-    /// Those of a recording that have these names, each once, in this order.
+    /// Returns the columns of a recording with these names, each once, in this order.
     ///
     /// # Errors
     /// [`UnknownColumn`] for the first name that no column of a recording has.
@@ -39,7 +39,7 @@ impl Columns {
         Self::all().choose(names)
     }
 
-    /// Those of these columns that have these names, each once, in this order.
+    /// Returns the columns of this selection with these names, each once, in this order.
     ///
     /// # Errors
     /// [`UnknownColumn`] for the first name that none of them has.
@@ -62,7 +62,7 @@ impl Columns {
         Ok(Self(columns))
     }
 
-    /// Writes the numbers of a cycle into `row`, in the place of what it holds.
+    /// Writes the numbers of a cycle into `row`, replacing its contents.
     pub(super) fn read(&self, cycle: &Cycle, row: &mut Vec<f64>) {
         row.clear();
         for column in &self.0 {
@@ -71,18 +71,18 @@ impl Columns {
     }
 }
 
-/// The name that a number stands for; none if it stands for none.
+/// Returns the name for a number; empty if it has none.
 pub(super) fn name_of(list: &'static [&'static str], number: f64) -> &'static str {
     list.get(number as usize).copied().unwrap_or_default()
 }
 
-/// The columns that a recording has.
+/// Returns the columns of a recording.
 fn recorded() -> impl Iterator<Item = &'static Column> {
     let is_recorded = |column: &&Column| !NOT_RECORDED.contains(&column.name);
     Column::all().iter().filter(is_recorded)
 }
 
-/// What a control log has.
+/// The columns of a control log.
 const LOGGED: [&str; 12] = [
     "q",
     "q_d",
@@ -98,7 +98,7 @@ const LOGGED: [&str; 12] = [
     "O_dP_EE_c",
 ];
 
-/// Fields of the state that recordings leave out, and which read as zero there.
+/// Fields of the state that are not recorded, and are zero after reading.
 const NOT_RECORDED: [&str; 13] = [
     "theta",
     "dtheta",
@@ -153,7 +153,7 @@ mod tests {
             column.append(&after.state, &after.record, &mut got);
             let name = column.name;
             let is_recorded = Columns::named([name]).is_ok();
-            // Not a number where there is none, in both.
+            // Compares text, because NaN represents missing values in both.
             let same = format!("{put:?}") == format!("{got:?}");
             assert_eq!(same, is_recorded, "{name}: {put:?}, {got:?}");
         }

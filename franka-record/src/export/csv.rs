@@ -9,15 +9,15 @@ use super::cells::{Columns, name_of};
 use super::error::ExportError;
 use crate::cycle::Cycle;
 
-/// Writes a line with the names of the columns, and one for each cycle; returns how many. First
-/// come `time`, the robot's clock in milliseconds, and `host_time`, nanoseconds since 1970. A
-/// vector has a column for each number, `q[0]` to `q[6]`; a matrix is row-major. A number that
-/// there is none of is left empty.
+/// Writes a line with the names of the columns, and one line for each cycle; returns the number of
+/// cycles. The first columns are `time`, the robot's clock in milliseconds, and `host_time`,
+/// nanoseconds since 1970. A vector has a column for each number, `q[0]` to `q[6]`; a matrix is
+/// row-major. A missing number is left empty.
 ///
-/// With `units` a line before the names begins with `#` and has the unit of each column.
+/// With `units`, a line before the names begins with `#` and contains the unit of each column.
 ///
 /// # Errors
-/// [`ExportError::Write`], or [`ExportError::Cycles`] with what `cycles` fails with.
+/// [`ExportError::Write`], or [`ExportError::Cycles`] with the error of `cycles`.
 pub fn write_csv<E: Error + Send + Sync + 'static>(
     cycles: impl IntoIterator<Item = Result<Cycle, E>>,
     columns: &Columns,
@@ -64,7 +64,7 @@ pub fn write_csv<E: Error + Send + Sync + 'static>(
     Ok(count)
 }
 
-/// A text as one field.
+/// Returns a text as one field.
 fn quoted(text: &str) -> String {
     if text.contains(',') {
         format!("\"{text}\"")

@@ -1,15 +1,15 @@
-//! Why an export fails.
+//! Errors of exports.
 
 use std::error::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why nothing, or not everything, was exported.
+/// The reason why an export failed or is incomplete.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExportError {
-    /// There is a file of that name. An export never replaces one: choose another name, or delete
-    /// the file first.
+    /// A file with this name exists. An export never replaces a file: choose another name, or
+    /// delete the file first.
     #[error("{} exists, and an export never replaces a file; choose another name", path.display())]
     Exists {
         /// The file.
@@ -20,10 +20,10 @@ pub enum ExportError {
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
-    /// A stream cannot be written to.
+    /// The stream cannot be written.
     #[error(transparent)]
     Write(#[from] io::Error),
     /// The recording cannot be read.
@@ -35,41 +35,41 @@ pub enum ExportError {
     Table {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The error.
         source: ::parquet::errors::ParquetError,
     },
-    /// The samples of an episode do not make one.
+    /// The samples of an episode are invalid.
     #[error("episode {index} of the dataset, with the task {task:?}: {why}")]
     Episode {
         /// Its number in the dataset, from 0.
         index: u64,
         /// Its task.
         task: String,
-        /// What is wrong with it.
+        /// The error.
         why: String,
     },
-    /// A dataset is not one that can be written to.
+    /// The folder is not a dataset that can be written to.
     #[error("the dataset {}: {why}", path.display())]
     Dataset {
         /// Its folder.
         path: PathBuf,
-        /// What was found and what was expected.
+        /// The found and the expected value.
         why: String,
     },
-    /// An option has a value that is not accepted.
+    /// An option has an invalid value.
     #[error("{option}: got {got}, expected {expected}")]
     Option {
         /// Its name.
         option: &'static str,
         /// The value.
         got: String,
-        /// What is accepted.
+        /// The valid values.
         expected: &'static str,
     },
 }
 
 impl ExportError {
-    /// Makes a system's error one about `path`.
+    /// Converts a system error to an error about `path`.
     pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_owned();
         move |source| Self::Io { path, source }

@@ -1,4 +1,4 @@
-//! Recordings as tables and datasets of other programs.
+//! Exports recordings as tables and datasets for other programs.
 //!
 //! * `cells`: which columns a table gets. Their names, units and shapes are those of
 //!   [`franka_rt::driver::Column`].

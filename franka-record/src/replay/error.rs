@@ -78,7 +78,7 @@ pub enum ReplayError {
     Target {
         /// The time in the replay.
         after: Duration,
-        /// What is wrong with it.
+        /// The error.
         error: GoalError,
     },
     /// Targets do not make a motion.
@@ -86,7 +86,7 @@ pub enum ReplayError {
     Chunk {
         /// The time in the replay.
         after: Duration,
-        /// What is wrong with them.
+        /// The error.
         error: ChunkError,
     },
 }

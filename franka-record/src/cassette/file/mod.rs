@@ -1,4 +1,4 @@
-//! The file of a cassette: MCAP, one channel per connection, transport and direction.
+//! The cassette file: MCAP, one channel per connection, transport and direction.
 
 mod read;
 mod write;
@@ -8,29 +8,29 @@ pub use write::CassetteWriter;
 use crate::recording::RecordingError;
 use crate::schema::CASSETTE_METADATA;
 
-/// Why a cassette cannot be written or read.
+/// The reason why a cassette cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CassetteError {
     /// The file cannot be opened, read or written.
     #[error("cannot access the cassette: {0}")]
     Io(#[from] std::io::Error),
-    /// The file is no MCAP file.
+    /// The file is not an MCAP file.
     #[error("not a readable MCAP file: {0}")]
     NotMcap(#[from] RecordingError),
     /// The file cannot be written.
     #[error("cannot write the MCAP file: {0}")]
     Mcap(#[from] mcap::McapError),
-    /// The file is MCAP, and no cassette.
+    /// The file is MCAP, but not a cassette.
     #[error("not a cassette: no metadata record `{START}` before the first message")]
     NotACassette,
-    /// A later version of the format.
+    /// The file has a later version of the format.
     #[error("the cassette has version {got:?} of the format, and this program reads {VERSION}")]
     Version {
-        /// The version that the file states.
+        /// The version in the file.
         got: String,
     },
-    /// A channel that no cassette has.
+    /// A channel that cassettes do not have.
     #[error(
         "the cassette has the channel {topic:?}, expected /tcp/PORT/CONNECTION/in or out, or /udp/.."
     )]
@@ -102,7 +102,7 @@ mod tests {
             .unwrap();
         writer.write(0, Device::Robot, first).unwrap();
         writer.write(0, Device::Robot, second).unwrap();
-        // Nothing follows on these channels, one of which has nothing else.
+        // No events follow on these channels, one of which has no events at all.
         for (from, stream) in [(Side::Robot, true), (Side::Client, false)] {
             writer
                 .note_dropped(0, Device::Robot, from, stream, 1)
@@ -117,7 +117,7 @@ mod tests {
         assert_eq!(Cassette::read(&again).unwrap(), read);
     }
 
-    /// A file in memory of which the length can be seen while it is written.
+    /// A file in memory whose length can be read while it is written.
     #[derive(Clone, Default)]
     struct Shared(Rc<RefCell<Cursor<Vec<u8>>>>);
 
@@ -137,7 +137,7 @@ mod tests {
         }
     }
 
-    /// Of a file cut off anywhere, every chunk that is whole is read.
+    /// From a file that was cut off at any point, every whole chunk is read.
     #[test]
     fn a_file_that_was_cut_off_is_read_as_far_as_it_goes() {
         let file = Shared::default();
@@ -169,12 +169,12 @@ mod tests {
         }
     }
 
-    /// The length of a text says 4 GB: nothing is reserved for it, and the rest is read.
+    /// A text claims a length of 4 GB: no memory is reserved for it, and the rest is read.
     #[test]
     fn a_length_beyond_the_file_is_not_believed() {
         let cassette = sample();
         let mut file = cassette.to_bytes().unwrap();
-        // That of the profile, behind the magic bytes and the start of the first record.
+        // The length of the profile, after the magic bytes and the start of the first record.
         file[17..21].fill(0xff);
         let read = Cassette::read(&file).unwrap();
         assert_eq!(read.connections, cassette.connections);

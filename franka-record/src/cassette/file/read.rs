@@ -1,4 +1,4 @@
-//! Reads the file of a cassette, whatever its bytes.
+//! Reads the file of a cassette, for any bytes.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -12,16 +12,16 @@ impl Cassette {
     /// Reads the file at `path`.
     ///
     /// # Errors
-    /// Those of [`Self::read`], and [`CassetteError::Io`].
+    /// The errors of [`Self::read`], and [`CassetteError::Io`].
     pub fn open(path: impl AsRef<Path>) -> Result<Self, CassetteError> {
         Self::read(&std::fs::read(path)?)
     }
 
-    /// Reads a file. One that was cut off is read as far as it goes: [`Cassette::damage`] then says
-    /// why it ends there.
+    /// Reads a file. A truncated file is read up to its end: [`Cassette::damage`] then contains the
+    /// reason.
     ///
     /// # Errors
-    /// [`CassetteError`] if the bytes are no cassette, whatever they are.
+    /// [`CassetteError`] if the bytes are not a cassette.
     pub fn read(file: &[u8]) -> Result<Self, CassetteError> {
         let mut reading = Reading::default();
         let damage = each_record(file, |record| reading.on_record(record))?;
@@ -32,16 +32,16 @@ impl Cassette {
     }
 }
 
-/// What has been read so far.
+/// The contents read so far.
 #[derive(Default)]
 struct Reading {
     started: Option<u64>,
     channels: BTreeMap<u16, ReadChannel>,
-    /// By device and number; the first is when it was met, for the order.
+    /// Connections by device and number; the first value is the order of appearance.
     connections: BTreeMap<(Device, usize), (usize, Connection)>,
-    /// Events that are missing in all, as the end of the file says.
+    /// Total of missing events, from the end of the file.
     dropped: u64,
-    /// And those after the last event of a connection: whether of its stream, and how many.
+    /// Missing events after the last event of a connection: true for its stream, and their number.
     missing_at_end: Vec<((Device, usize), bool, u64)>,
 }
 
@@ -124,7 +124,7 @@ impl Reading {
         data: &[u8],
     ) -> Result<(), CassetteError> {
         let started = self.started.ok_or(CassetteError::NotACassette)?;
-        // A message without a channel is damage of the file; there is nothing to put it to.
+        // A message without a channel is damage of the file and is ignored.
         let Some(channel) = self.channels.get_mut(&channel) else {
             return Ok(());
         };
@@ -155,7 +155,7 @@ impl Reading {
         let mut connections: Vec<_> = self.connections.into_values().collect();
         connections.sort_by_key(|(order, _)| *order);
         let connections = connections.into_iter().map(|(_, mut connection)| {
-            // Threads of a tap note events as they can; the stamps say what came first.
+            // The threads of a tap record events in any order; the stamps contain the true order.
             connection.events.sort_by_key(|event| event.at);
             connection
         });
@@ -184,7 +184,7 @@ impl Connection {
     }
 }
 
-/// Transport, connection and sender that a topic names.
+/// Returns transport, connection and sender of a topic; true for a stream.
 fn parse_topic(topic: &str) -> Option<(bool, (Device, usize), Side)> {
     let mut parts = topic.strip_prefix('/')?.split('/');
     let stream = match parts.next()? {

@@ -10,17 +10,17 @@ use mcap::records::MessageHeader;
 use super::{CassetteError, END, MESSAGE_ENCODING, START, VERSION};
 use crate::cassette::{Cassette, Device, Event, Payload, Side};
 
-/// Writes a cassette while the session goes on.
+/// Writes a cassette during the session.
 ///
-/// The file is MCAP, so its own tools read it (`mcap info`, `mcap recover`). Version 1:
+/// The file is MCAP, so MCAP tools can read it (`mcap info`, `mcap recover`). Version 1:
 ///
 /// | record | content |
 /// |---|---|
 /// | metadata `franka cassette` | `version` (1), `started` (nanoseconds since the Unix epoch) |
-/// | channel `/tcp/1337/1/in` | the stream of the first connection to port 1337, client to robot, as it arrived; an empty message is its end |
+/// | channel `/tcp/1337/1/in` | the stream of the first connection to port 1337, client to robot, in pieces as they arrived; an empty message is its end |
 /// | channel `/tcp/1337/1/out` | robot to client |
 /// | channels `/udp/1337/1/in`, `/udp/1337/1/out` | the datagrams that belong to the connection |
-/// | metadata `franka cassette end` | `dropped`: events that are missing; by the name of a channel, those missing after its last one |
+/// | metadata `franka cassette end` | `dropped`: number of missing events; by channel name, the events missing after its last event |
 ///
 /// Channels have no schema, and the message encoding `franka`. `log_time` is `started` plus a
 /// monotonic clock, so it does not step when the wall clock is set. `sequence` counts the events of
@@ -47,15 +47,16 @@ struct Channel {
     id: u16,
     topic: String,
     sequence: u32,
-    /// Events that are missing since the last one.
+    /// Number of missing events since the last event.
     missing: u64,
 }
 
-/// A connection, whether it is of its stream, and whether of its client.
+/// A connection, true for its stream, and true for its client.
 type Key = (usize, bool, bool);
 
 impl<W: Write + Seek> CassetteWriter<W> {
-    /// A writer of a cassette that begins at `started`, in nanoseconds since the Unix epoch.
+    /// Creates a writer of a cassette that begins at `started`, in nanoseconds since the Unix
+    /// epoch.
     ///
     /// # Errors
     /// [`CassetteError`] if the beginning cannot be written.
@@ -81,8 +82,8 @@ impl<W: Write + Seek> CassetteWriter<W> {
         })
     }
 
-    /// Writes an event of the connection with this number (any number that no other connection
-    /// has). The device of a connection is that of its first event.
+    /// Writes an event of the connection with this number, which must be unique. The device of a
+    /// connection is the device of its first event.
     ///
     /// # Errors
     /// [`CassetteError`] if the file cannot be written.
@@ -93,7 +94,7 @@ impl<W: Write + Seek> CassetteWriter<W> {
         event: &Event,
     ) -> Result<(), CassetteError> {
         let (stream, bytes) = match &event.what {
-            // An empty message stands for the end.
+            // An empty message means the end.
             Payload::Stream(bytes) if bytes.is_empty() => return Ok(()),
             Payload::Stream(bytes) => (true, bytes.as_slice()),
             Payload::End => (true, &[][..]),
@@ -114,7 +115,7 @@ impl<W: Write + Seek> CassetteWriter<W> {
         Ok(())
     }
 
-    /// Notes that so many events of a connection are missing.
+    /// Records the number of missing events of a connection.
     ///
     /// # Errors
     /// [`CassetteError`] if the file cannot be written.
@@ -141,7 +142,7 @@ impl<W: Write + Seek> CassetteWriter<W> {
         Ok(())
     }
 
-    /// Ends the chunk: the file can be read so far, whatever happens next.
+    /// Ends the chunk: everything up to here can be read even if the process crashes.
     ///
     /// # Errors
     /// [`CassetteError`] if the file cannot be written.
@@ -164,7 +165,7 @@ impl<W: Write + Seek> CassetteWriter<W> {
         Ok(self.mcap.0.into_inner())
     }
 
-    /// The channel of this key, which is made if there is none.
+    /// Returns the channel of this key; creates it if necessary.
     fn channel(&mut self, key: Key, device: Device) -> Result<&mut Channel, CassetteError> {
         let (connection, stream, client) = key;
         let channel = match self.channels.entry(key) {
@@ -192,7 +193,7 @@ impl<W: Write + Seek> CassetteWriter<W> {
 }
 
 impl Cassette {
-    /// The file of this cassette.
+    /// Returns the file of this cassette.
     ///
     /// # Errors
     /// [`CassetteError`] if there are more channels than a file can have.
@@ -200,11 +201,11 @@ impl Cassette {
         let mut writer = CassetteWriter::new(Cursor::new(Vec::new()), self.started)?;
         let mut order: Vec<_> = Vec::new();
         for (number, connection) in self.connections.iter().enumerate() {
-            // One without events is in the file, too.
+            // A connection without events is in the file too.
             writer.channel((number, true, true), connection.device)?;
             order.extend(connection.events.iter().map(|event| (number, event)));
         }
-        // A stable sort: events of one time keep their order.
+        // A stable sort: simultaneous events keep their order.
         order.sort_by_key(|(_, event)| event.at);
         for (number, event) in order {
             writer.write(number, self.connections[number].device, event)?;
@@ -232,10 +233,10 @@ fn metadata<const N: usize>(name: &str, fields: [(&str, String); N]) -> mcap::re
     }
 }
 
-/// Nanoseconds as a file has them; 584 years are enough.
+/// Returns the nanoseconds for the file; 584 years are sufficient.
 fn nanoseconds(time: Duration) -> u64 {
     u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
 }
 
-/// Uncompressed, in bytes: half a second of a robot's states.
+/// Size of a chunk, uncompressed, in bytes: half a second of a robot's states.
 const CHUNK_SIZE: u64 = 1 << 20;

@@ -1,4 +1,4 @@
-//! Captures of the network (pcap, pcapng) to cassettes and back.
+//! Conversion between network captures (pcap, pcapng) and cassettes.
 //!
 //! ```text
 //! file -> packets:  time, addresses, TCP segment or UDP datagram
@@ -16,41 +16,42 @@ use super::Cassette;
 
 pub use write::to_capture;
 
-/// Why a capture gives no cassette.
+/// The reason why a capture cannot be converted to a cassette.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CaptureError {
-    /// The bytes are no capture.
+    /// The bytes are not a capture.
     #[error("not a readable pcap or pcapng file: {what}")]
     Format {
-        /// What is wrong with them.
+        /// The error.
         what: String,
     },
-    /// No connection of a client is in it.
+    /// The capture contains no connection of a client.
     #[error(
         "none of {packets} packets belongs to a connection to TCP port 1337, 1338 or 1339{}",
         captured_in_part(*truncated)
     )]
     NoConnection {
-        /// How many packets the capture has.
+        /// Number of packets in the capture.
         packets: usize,
-        /// How many of them were captured in part only.
+        /// Number of packets that were captured only partly.
         truncated: u64,
     },
 }
 
-/// The cassette of a capture, pcap or pcapng. Link types: Ethernet, Linux cooked (also version 2),
-/// loopback, and raw IP.
+/// Converts a capture, pcap or pcapng, to a cassette. Supported link types: Ethernet, Linux cooked
+/// (also version 2), loopback, and raw IP.
 ///
-/// Segments of TCP are put in order and repeated ones left out; fragments of IP, in which states of
-/// protocol 5 come, are put together. Segments that were not captured are counted in
-/// [`Connection::missing_stream`](super::Connection::missing_stream), packets that were captured in
-/// part, as with a snap length, in [`Cassette::truncated`]. Datagrams belong to the
-/// connection whose `Connect` announced their port, which therefore has to be in the capture. A
-/// file that was cut off is read as far as it goes: see [`Cassette::damage`].
+/// TCP segments are put in order, and repeated ones are dropped. IP fragments, which carry the
+/// states of protocol 5, are reassembled.
+/// [`Connection::missing_stream`](super::Connection::missing_stream) counts the segments that were
+/// not captured, and [`Cassette::truncated`] the packets that were captured only partly, as with a
+/// snap length. Datagrams belong to the connection whose `Connect` announced their port, so the
+/// capture must contain this message. A truncated file is read up to its end: see
+/// [`Cassette::damage`].
 ///
 /// # Errors
-/// [`CaptureError`] if the bytes are no capture, or none of a client and a robot.
+/// [`CaptureError`] if the bytes are not a capture, or contain no client and robot.
 pub fn from_capture(file: &[u8]) -> Result<Cassette, CaptureError> {
     let mut packets = Packets::new(file)?;
     let mut sessions = Sessions::default();
@@ -71,7 +72,7 @@ pub fn from_capture(file: &[u8]) -> Result<Cassette, CaptureError> {
     Ok(cassette)
 }
 
-/// The end of a sentence about packets that were captured in part.
+/// Returns the end of a sentence about partly captured packets.
 fn captured_in_part(packets: u64) -> String {
     match packets {
         0 => String::new(),
@@ -96,7 +97,7 @@ mod tests {
         Event { at, from, what }
     }
 
-    /// Two connections at once, datagrams longer than a packet of Ethernet, and an end.
+    /// Returns two simultaneous connections, datagrams longer than an Ethernet packet, and an end.
     fn sample() -> Cassette {
         let hello = Session::new(Version::V5).connect(4711).as_bytes().to_vec();
         let mut robot = Connection::new(Device::Robot);
@@ -132,7 +133,7 @@ mod tests {
         assert_eq!(from_capture(&capture).unwrap(), cassette);
     }
 
-    /// It cannot be played, neither before nor after it was written.
+    /// The connection cannot be played, neither before nor after writing.
     #[test]
     fn a_segment_that_was_not_captured_is_missing_in_the_file_too() {
         let mut cassette = sample();
@@ -168,7 +169,7 @@ mod tests {
         }
     }
 
-    /// The capture as `tcpdump -s` would have written it, with at most so many bytes of a packet.
+    /// Returns the capture as `tcpdump -s` would write it, with at most `length` bytes of a packet.
     fn with_a_snap_length(capture: &[u8], length: usize) -> Vec<u8> {
         let (header, mut rest) = capture.split_at(24);
         let mut cut = header.to_vec();
@@ -198,7 +199,7 @@ mod tests {
         let error = from_capture(&with_a_snap_length(&capture, 30)).unwrap_err();
         assert!(error.to_string().contains("captured in part"), "{error}");
         for snapped in 0..200 {
-            // Either is fine; a panic is not.
+            // An error is fine; a panic is not.
             let _ = from_capture(&with_a_snap_length(&capture, snapped));
         }
     }
@@ -229,7 +230,7 @@ mod tests {
                 let position = (seed >> 33) as usize % damaged.len();
                 damaged[position] = (seed >> 24) as u8;
             }
-            // Either is fine; a panic is not.
+            // An error is fine; a panic is not.
             let _ = from_capture(&damaged);
         }
     }

@@ -12,7 +12,7 @@ use pcap_parser::{Block, Linktype, PcapBlockOwned, PcapError, create_reader};
 
 use super::CaptureError;
 
-/// The packets of a file, in its order. Those that are neither TCP nor UDP come as [`Body::Other`].
+/// The packets of a file, in its order. Packets that are neither TCP nor UDP are [`Body::Other`].
 pub(super) struct Packets<'a> {
     reader: Box<dyn PcapReaderIterator + 'a>,
     interfaces: Vec<Interface>,
@@ -24,14 +24,14 @@ pub(super) struct Packets<'a> {
 #[derive(Clone, Copy)]
 struct Interface {
     link: Linktype,
-    /// Units per second, and seconds to add.
+    /// Time units per second, and seconds to add.
     resolution: u64,
     offset: i64,
 }
 
 /// A packet.
 pub(super) struct Packet {
-    /// In nanoseconds since the Unix epoch.
+    /// Time in nanoseconds since the Unix epoch.
     pub(super) time: u64,
     pub(super) body: Body,
 }
@@ -43,7 +43,7 @@ pub(super) enum Body {
         to: SocketAddr,
         payload: Vec<u8>,
     },
-    /// A datagram that was captured in part only, as with a snap length.
+    /// A datagram that was captured only partly, as with a snap length.
     Cut {
         from: SocketAddr,
         to: SocketAddr,
@@ -80,12 +80,12 @@ impl<'a> Packets<'a> {
         })
     }
 
-    /// How many packets so far carry less than their headers say.
+    /// Number of packets so far that are shorter than their headers state.
     pub(super) fn truncated(&self) -> u64 {
         self.truncated
     }
 
-    /// Why the file ends before its end, if it does.
+    /// Returns the reason why the file is truncated, if it is.
     pub(super) fn damage(self) -> Option<String> {
         self.damage
     }
@@ -119,7 +119,7 @@ impl<'a> Packets<'a> {
     }
 }
 
-/// The packet of a block, and whether it was captured in part only.
+/// Returns the packet of a block, and true if it was captured only partly.
 fn on_block(
     block: PcapBlockOwned<'_>,
     interfaces: &mut Vec<Interface>,
@@ -163,7 +163,7 @@ fn on_block(
             let ticks = u64::from(block.ts_high) << 32 | u64::from(block.ts_low);
             (interface, ticks, block.packet_data(), block.truncated())
         }
-        // A simple packet has no time; nothing writes them for the network.
+        // A simple packet has no time; network captures do not contain it.
         PcapBlockOwned::NG(_) => return None,
     };
     let nanoseconds = i128::from(ticks) * 1_000_000_000 / i128::from(interface.resolution)
@@ -178,7 +178,7 @@ fn on_block(
     Some((packet, truncated))
 }
 
-/// The addresses of a datagram that was captured in part only.
+/// Returns the addresses of a datagram that was captured only partly.
 fn cut(link: Linktype, data: &[u8]) -> Option<Body> {
     let sliced = match link {
         Linktype::ETHERNET => LaxSlicedPacket::from_ethernet(data).ok()?,
@@ -207,7 +207,8 @@ fn cut(link: Linktype, data: &[u8]) -> Option<Body> {
     }
 }
 
-/// The program that compressed a file, by how it begins: Wireshark reads and writes such captures.
+/// Returns the program that compressed a file, by its first bytes: Wireshark reads and writes
+/// compressed captures.
 fn compression(file: &[u8]) -> Option<&'static str> {
     match file {
         [0x1f, 0x8b, ..] => Some("gzip"),
@@ -217,12 +218,12 @@ fn compression(file: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// What a packet carries; `None` if that cannot be read.
+/// Returns the contents of a packet; `None` if they cannot be read.
 fn body(link: Linktype, data: &[u8], fragments: &mut IpDefragPool<(), ()>) -> Option<Body> {
     let sliced = match link {
         Linktype::ETHERNET => SlicedPacket::from_ethernet(data),
         Linktype::LINUX_SLL => SlicedPacket::from_linux_sll(data),
-        // A header of 20 bytes, and one of 4; behind them IP, or what from_ip refuses.
+        // A header of 20 bytes, and one of 4 bytes; the rest is IP, or from_ip refuses it.
         Linktype::LINUX_SLL2 => SlicedPacket::from_ip(data.get(20..)?),
         Linktype::NULL | Linktype::LOOP => SlicedPacket::from_ip(data.get(4..)?),
         _ => SlicedPacket::from_ip(data),
@@ -281,5 +282,5 @@ fn describe(error: &PcapError<&[u8]>) -> String {
 const BUFFER_MIN: usize = 64;
 const BUFFER_MAX: usize = 1 << 20;
 
-/// An error of the parser may hold what it did not understand.
+/// Longest text of a parser error, which may contain the unreadable data.
 const ERROR_LENGTH: usize = 100;

@@ -1,4 +1,5 @@
-//! Packets to connections: streams put in order, datagrams found by the port of `Connect`.
+//! Groups packets into connections: orders the streams, and finds the datagrams by the port in
+//! `Connect`.
 
 use std::collections::{BTreeMap, HashMap};
 use std::net::{IpAddr, SocketAddr};
@@ -7,12 +8,12 @@ use std::time::Duration;
 use super::packets::{Body, Packet, Segment};
 use crate::cassette::{Cassette, Connection, Device, Event, Payload, Side};
 
-/// The connections of a capture, so far.
+/// The connections of a capture so far.
 #[derive(Default)]
 pub(super) struct Sessions {
     started: Option<u64>,
     sessions: Vec<Session>,
-    /// Connections that are open, by client and device.
+    /// Open connections, by client and device.
     open: HashMap<(SocketAddr, SocketAddr), usize>,
     /// Connections by the client's address for datagrams, and the robot's.
     announced: HashMap<(SocketAddr, IpAddr), usize>,
@@ -33,7 +34,7 @@ struct Session {
 struct Stream {
     /// The number of the next byte.
     next: Option<u32>,
-    /// What came too early.
+    /// Segments that arrived too early.
     early: BTreeMap<u32, Vec<u8>>,
     end: Option<u32>,
     ended: bool,
@@ -84,7 +85,7 @@ impl Sessions {
         };
         let new = from == Side::Client && segment.opens;
         let known = self.open.get(&(client, robot)).copied();
-        // A client's port that is opened again; a repeated opening has the same number.
+        // A client's port is opened again; a repeated opening has the same number.
         let reopened = new
             && known.is_some_and(|index| {
                 let stream = &self.sessions[index].from_client;
@@ -136,7 +137,7 @@ impl Sessions {
         events.push(Event { at, from, what });
     }
 
-    /// The connection of a datagram, and who sent it.
+    /// Returns the connection of a datagram, and its sender.
     fn connection_of(&self, from: SocketAddr, to: SocketAddr) -> Option<(usize, Side)> {
         let to_client = self.announced.get(&(to, from.ip()));
         let of_client = self.announced.get(&(from, to.ip()));
@@ -149,7 +150,7 @@ impl Sessions {
 }
 
 impl Stream {
-    /// What a segment adds to the stream, in order.
+    /// Returns the bytes that a segment adds to the stream, in order.
     fn take(&mut self, segment: &Segment) -> Vec<Payload> {
         let mut events = Vec::new();
         if self.ended {
@@ -159,7 +160,7 @@ impl Stream {
             self.next.get_or_insert(segment.sequence.wrapping_add(1));
             return events;
         }
-        // A capture that began later begins with the first segment that it has.
+        // A capture that began later begins with its first segment.
         let next = self.next.get_or_insert(segment.sequence);
         if !segment.payload.is_empty() {
             let longest = self.early.get(&segment.sequence).map_or(0, Vec::len);
@@ -192,18 +193,18 @@ impl Stream {
         events
     }
 
-    /// How many pieces came that do not follow on what came before.
+    /// Number of pieces that do not continue the data before them.
     fn missing(&self) -> u64 {
         self.early.len() as u64
     }
 }
 
-/// How far `one` is ahead of `other` in a stream's numbers, which wrap.
+/// Returns the distance of `one` ahead of `other` in a stream's numbers, which wrap.
 fn ahead(one: u32, other: u32) -> i32 {
     one.wrapping_sub(other).cast_signed()
 }
 
-/// Segments that may wait for one that was not captured: a stream with a hole is lost anyway.
+/// Largest number of segments that wait for a missing segment: a stream with a gap is lost anyway.
 const EARLY_MAX: usize = 1024;
 
 #[cfg(test)]
@@ -223,7 +224,7 @@ mod tests {
         }
     }
 
-    /// Whatever the order, also where the numbers wrap.
+    /// The segments arrive in any order, also where the numbers wrap.
     #[test]
     fn segments_are_put_in_order_and_repeated_ones_left_out() {
         let begin = u32::MAX - 2;

@@ -6,8 +6,8 @@ use etherparse::PacketBuilder;
 
 use crate::cassette::{Cassette, Connection, Payload, Side};
 
-/// The capture of a cassette, for Wireshark. Addresses are made up: the client is 192.0.2.1 and the
-/// robot 192.0.2.2.
+/// Converts a cassette to a capture for Wireshark. Addresses are invented: the client is 192.0.2.1
+/// and the robot 192.0.2.2.
 #[must_use]
 pub fn to_capture(cassette: &Cassette) -> Vec<u8> {
     let mut packets = Vec::new();
@@ -29,7 +29,7 @@ pub fn to_capture(cassette: &Cassette) -> Vec<u8> {
     file
 }
 
-/// The ports of a connection, and how far its streams are.
+/// The ports of a connection, and the positions in its streams.
 struct Conversation {
     client_tcp: u16,
     client_udp: u16,

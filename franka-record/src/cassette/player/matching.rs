@@ -1,4 +1,4 @@
-//! What a client sends beside what was recorded.
+//! Compares a client's messages with the recorded ones.
 
 use super::{Matching, Mismatch, Player, Step, counter};
 
@@ -31,7 +31,7 @@ impl Player {
         Ok(())
     }
 
-    /// How a message differs from the recorded one, if it matters.
+    /// Returns the difference between a message and the recorded one, if it matters.
     fn difference(&self, recorded: &[u8], got: &[u8], connect: bool) -> Option<String> {
         let device = self.script.device;
         let name = self.script.describe(&Step::Request(got.to_vec()));
@@ -40,7 +40,7 @@ impl Player {
         if recorded[..command] != got[..command] {
             return Some(name);
         }
-        // The version of a handshake decides about all that follows; behind it is the port.
+        // The version in a handshake determines everything that follows; the port comes after it.
         let (start, end) = match (connect, self.options.matching) {
             (true, _) => (payload, payload + 2),
             (false, Matching::Strict) => (payload, recorded.len().max(got.len())),
@@ -90,8 +90,8 @@ impl Player {
         Ok(())
     }
 
-    /// Takes a command for all recorded ones up to its state; one that ends a motion also for all
-    /// others of that motion.
+    /// Accepts a command in place of all recorded ones up to its state. A command that ends a
+    /// motion also replaces all others of that motion.
     pub(super) fn accept_command(&mut self, id: Option<u64>, got: &[u8]) {
         let finishes = self.script.finishes(got);
         while let Some(step) = self.next_command() {

@@ -1,4 +1,4 @@
-//! One recorded connection, played to a client: bytes and time in, bytes out.
+//! Plays one recorded connection to a client: bytes and time in, bytes out.
 
 mod matching;
 mod pace;
@@ -12,7 +12,7 @@ use super::script::{Script, Step, Unplayable, counter};
 use super::{Connection, Device};
 use pace::Gate;
 
-/// What a player sends.
+/// The output of a player.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Output {
     /// Bytes over TCP.
@@ -23,29 +23,29 @@ pub enum Output {
     End,
 }
 
-/// A client did something else than in the recording.
+/// A client deviated from the recording.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the client of the {device} left the recording: got {got}, expected {expected}")]
 pub struct Mismatch {
     /// The device of the connection.
     pub device: Device,
-    /// What the client did.
+    /// The client's actual step.
     pub got: String,
-    /// What it did in the recording.
+    /// The recorded step.
     pub expected: String,
 }
 
-/// What a player has done.
+/// Counts of a player.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Tally {
-    /// Requests that came as recorded.
+    /// Number of requests that matched the recording.
     pub requests: u64,
-    /// Commands that came.
+    /// Number of commands that arrived.
     pub commands: u64,
-    /// States sent, held ones included.
+    /// Number of states sent, including held ones.
     pub states: u64,
-    /// States that were repeated because a request was awaited.
+    /// Number of states repeated while a request was missing.
     pub held: u64,
 }
 
@@ -54,41 +54,41 @@ pub struct Tally {
 /// * Input: [`Self::on_stream`], [`Self::on_datagram`], [`Self::on_end`].
 /// * Output: [`Self::poll`] until it returns `None`, after every input and at [`Self::deadline`].
 ///
-/// `now` is the time since any moment, and never goes back. An error is final.
+/// `now` is the time since any moment, and must not decrease. An error is final.
 #[derive(Clone, Debug)]
 pub struct Player {
     script: Script,
     options: PlayOptions,
     /// The next step.
     position: usize,
-    /// When it is due by the recording.
+    /// Time at which it is due according to the recording.
     due: Duration,
-    /// Since when the client is awaited, if it is.
+    /// Time since which the client's step is missing, if it is.
     blocked: Option<Duration>,
-    /// Requests and commands before these steps have come.
+    /// The requests and commands before these steps have arrived.
     requested: usize,
     commanded: usize,
     client_ended: bool,
     udp_port: Option<u16>,
     received: Vec<u8>,
-    /// From recorded ids of requests to those of this client.
+    /// Maps recorded request ids to the ids of this client.
     ids: HashMap<[u8; 4], [u8; 4]>,
     last_state: Option<(Duration, Vec<u8>)>,
-    /// How far the ids of states are ahead of the recorded ones.
+    /// Difference between the ids of sent and recorded states.
     shift: u64,
-    /// Ids of states sent, and the recorded ones; `None` if held.
+    /// Ids of states sent, and the recorded ids; `None` if held.
     sent: VecDeque<(u64, Option<u64>)>,
-    /// True if a command did not come in time, and no other has come since.
+    /// True if a command did not arrive in time, and no other has arrived since.
     silent: bool,
     failure: Option<Mismatch>,
     tally: Tally,
 }
 
 impl Player {
-    /// A player of a recorded connection, which begins at `now`.
+    /// Creates a player of a recorded connection, which begins at `now`.
     ///
     /// # Errors
-    /// [`Unplayable`] if the recording is incomplete or not of a client.
+    /// [`Unplayable`] if the recording is incomplete or not from a client.
     pub fn new(
         connection: &Connection,
         options: PlayOptions,
@@ -115,7 +115,7 @@ impl Player {
         })
     }
 
-    /// The port on which the client expects datagrams, once it has sent `Connect`.
+    /// Returns the client's port for datagrams, once it has sent `Connect`.
     #[must_use]
     pub fn udp_port(&self) -> Option<u16> {
         self.udp_port
@@ -127,22 +127,22 @@ impl Player {
         self.position == self.script.steps.len()
     }
 
-    /// What the client has to do next, for messages.
+    /// Describes the client's next step, for messages.
     #[must_use]
     pub fn awaited(&self) -> String {
         self.expected(self.position)
     }
 
-    /// What has been played.
+    /// Returns the counts of the playback.
     #[must_use]
     pub fn tally(&self) -> Tally {
         self.tally
     }
 
-    /// Takes in bytes of the client's stream.
+    /// Processes bytes of the client's stream.
     ///
     /// # Errors
-    /// [`Mismatch`] if they hold another request than the recording.
+    /// [`Mismatch`] if they contain a request that differs from the recording.
     pub fn on_stream(&mut self, bytes: &[u8]) -> Result<(), Mismatch> {
         self.checked()?;
         self.received.extend_from_slice(bytes);
@@ -166,17 +166,17 @@ impl Player {
         Ok(())
     }
 
-    /// Takes in a datagram of the client.
+    /// Processes a datagram of the client.
     ///
     /// # Errors
-    /// [`Mismatch`] if it is another command than the recorded one.
+    /// [`Mismatch`] if the command differs from the recorded one.
     pub fn on_datagram(&mut self, datagram: &[u8]) -> Result<(), Mismatch> {
         self.checked()?;
         self.silent = false;
         let got = counter(self.script.device, datagram);
         let sent = got.and_then(|id| self.sent.iter().rev().find(|(sent, _)| *sent == id));
         let recorded = match sent {
-            // The recording has no command for a state that it does not have.
+            // The recording has no command for a state that it does not contain.
             Some((_, None)) if !self.script.finishes(datagram) => return Ok(()),
             Some((_, None)) => None,
             Some((_, recorded)) => *recorded,
@@ -192,7 +192,7 @@ impl Player {
         }
     }
 
-    /// Takes note that the client has closed its stream.
+    /// Processes the end of the client's stream.
     ///
     /// # Errors
     /// [`Mismatch`] if the recording has more requests, or with [`Matching::Strict`] commands.
@@ -210,10 +210,11 @@ impl Player {
         Ok(())
     }
 
-    /// What to send next; `None` if that is nothing before [`Self::deadline`] or the next input.
+    /// Returns the next output; `None` if nothing is due before [`Self::deadline`] or the next
+    /// input.
     ///
     /// # Errors
-    /// [`Mismatch`] if the client left the recording, or did not command in time.
+    /// [`Mismatch`] if the client deviated from the recording, or did not command in time.
     pub fn poll(&mut self, now: Duration) -> Result<Option<Output>, Mismatch> {
         self.checked()?;
         while let Some((_, step)) = self.script.steps.get(self.position) {
@@ -238,7 +239,7 @@ impl Player {
         Ok(None)
     }
 
-    /// When [`Self::poll`] has something to do if there is no input; `None` if never.
+    /// Returns the time of the next output without further input; `None` if never.
     #[must_use]
     pub fn deadline(&self) -> Option<Duration> {
         let held = || {
@@ -253,7 +254,7 @@ impl Player {
         }
     }
 
-    /// When a command that is awaited is given up.
+    /// Returns the time limit for a missing command.
     fn given_up_at(&self) -> Option<Duration> {
         let since = self.blocked?;
         Some(since.saturating_add(self.options.patience))
@@ -273,7 +274,7 @@ impl Player {
         Some(from + found)
     }
 
-    /// What the client has to do in the first step of its own from `step` on.
+    /// Describes the client's first step from `step` on.
     fn expected(&self, step: usize) -> String {
         let is_clients =
             |step: &Step| matches!(step, Step::Request(_) | Step::Command(_) | Step::ClientEnd);

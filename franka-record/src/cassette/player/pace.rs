@@ -1,11 +1,11 @@
-//! When the robot of a player goes on, and what it then sends.
+//! The timing of a player's robot, and its output.
 
 use std::time::Duration;
 
 use super::{Matching, Mismatch, Output, Pace, Player, Step, counter};
 
 impl Player {
-    /// Whether the step of a command that has not come may be passed.
+    /// Decides whether the step of a missing command may be passed.
     pub(super) fn command_gate(&mut self, now: Duration) -> Result<Gate, Mismatch> {
         if self.position < self.commanded {
             return Ok(Gate::Open);
@@ -13,7 +13,7 @@ impl Player {
         if self.is_unfinished_motion(self.position) {
             return Ok(Gate::Hold);
         }
-        // A client that is ahead with its next request may command no more before it is answered.
+        // A client that is ahead with its next request must not command until it is answered.
         let ahead = self.requested > self.position;
         if self.options.pace == Pace::Recorded || self.silent || ahead {
             return Ok(Gate::Open);
@@ -33,16 +33,16 @@ impl Player {
         Ok(Gate::Open)
     }
 
-    /// True if a step is the last command of a motion and a lenient play waits for it as for a
-    /// request.
+    /// True if a step is the last command of a motion and lenient playback must wait for it as for
+    /// a request.
     pub(super) fn is_unfinished_motion(&self, step: usize) -> bool {
         let waits = self.options.matching == Matching::Lenient && step >= self.commanded;
         waits
             && matches!(&self.script.steps[step].1, Step::Command(bytes) if self.script.finishes(bytes))
     }
 
-    /// Goes on to the next step, which is due as long after this one as in the recording. What the
-    /// client kept waiting moves everything after it.
+    /// Advances to the next step, which is due after the recorded interval. Delays by the client
+    /// postpone all later steps.
     pub(super) fn pass(&mut self, now: Duration) {
         let steps = &self.script.steps;
         let (at, step) = &steps[self.position];
@@ -58,7 +58,7 @@ impl Player {
         self.position += 1;
     }
 
-    /// Does what the robot did in this step.
+    /// Performs the robot's part of this step.
     pub(super) fn perform(&mut self, now: Duration) -> Output {
         match self.script.steps[self.position].1.clone() {
             Step::Reply(mut bytes) => {
@@ -78,7 +78,7 @@ impl Player {
         }
     }
 
-    /// Repeats the last state if it is time, as the client is awaited.
+    /// Repeats the last state, if it is due while the client's step is missing.
     pub(super) fn hold(&mut self, now: Duration) -> Option<Output> {
         self.blocked.get_or_insert(now);
         if self.options.pace == Pace::Lockstep {
@@ -94,7 +94,7 @@ impl Player {
         Some(self.send_state(now, state, None, 1))
     }
 
-    /// A state with its id moved by `ahead`.
+    /// Returns a state with its id increased by `ahead`.
     fn send_state(
         &mut self,
         now: Duration,
@@ -117,7 +117,7 @@ impl Player {
     }
 }
 
-/// Whether a step of the client may be passed.
+/// The decision about a step of the client.
 pub(super) enum Gate {
     Open,
     /// Wait, and send states meanwhile.
@@ -126,5 +126,5 @@ pub(super) enum Gate {
     Wait,
 }
 
-/// Ids of states that are remembered, in states: four seconds. No client answers older ones.
+/// Number of state ids that are remembered: four seconds. Clients do not answer older ones.
 const REMEMBERED: usize = 4096;

@@ -1,4 +1,4 @@
-//! The thread that writes what passes, and the queue to it.
+//! The thread that writes the events, and the queue to it.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -25,7 +25,7 @@ pub(super) struct Recorder {
     notes: SyncSender<Note>,
 }
 
-/// One direction of one transport of a connection, from which events are noted.
+/// One direction of one transport of a connection, whose events are recorded.
 #[derive(Debug)]
 pub(super) struct Lane {
     recorder: Recorder,
@@ -33,7 +33,7 @@ pub(super) struct Lane {
     missing: u32,
 }
 
-/// Where an event was seen.
+/// The origin of an event.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source {
     pub(super) connection: usize,
@@ -45,7 +45,7 @@ pub(super) struct Source {
 #[derive(Debug)]
 struct Note {
     source: Source,
-    /// How many events before this one did not fit the queue.
+    /// Number of events before this one that did not fit into the queue.
     missing: u32,
     event: Option<Event>,
 }
@@ -67,8 +67,8 @@ impl Journal {
         self.recorder.clone()
     }
 
-    /// Ends the file once all lanes are gone; returns how many events are in it, and how many are
-    /// missing.
+    /// Ends the file once all lanes are dropped; returns the numbers of recorded and missing
+    /// events.
     pub(super) fn finish(self) -> Outcome {
         drop(self.recorder);
         match self.thread.join() {
@@ -94,7 +94,7 @@ impl Lane {
         self.recorder.start.elapsed()
     }
 
-    /// Notes an event, unless the journal is behind.
+    /// Records an event, unless the queue is full.
     pub(super) fn note(&mut self, at: Duration, what: Payload) {
         let from = self.source.from;
         let note = Note {
@@ -114,7 +114,7 @@ impl Lane {
 impl Drop for Lane {
     fn drop(&mut self) {
         if self.missing > 0 {
-            // Nothing is forwarded here any more, so this may wait. The journal may have ended.
+            // The lane has stopped forwarding, so this call may wait. The journal may have ended.
             let _ = self.recorder.notes.send(Note {
                 source: self.source,
                 missing: self.missing,
@@ -124,8 +124,8 @@ impl Drop for Lane {
     }
 }
 
-/// Writes notes until all senders are gone. After an error it goes on to take them, so that
-/// nothing waits.
+/// Writes notes until all senders are dropped. After an error it continues to receive them, so that
+/// no sender waits.
 fn write(notes: &Receiver<Note>, mut writer: Writer) -> Outcome {
     let (mut events, mut dropped) = (0, 0);
     let mut flushed = Instant::now();
@@ -181,8 +181,8 @@ fn put(writer: &mut Writer, note: &Note) -> Result<(), CassetteError> {
     }
 }
 
-/// Events that may wait for the journal: about two seconds of one robot in motion, 7 MB at most.
+/// Capacity of the queue in events: about two seconds of one robot in motion, 7 MB at most.
 const QUEUE: usize = 4096;
 
-/// What a power cut may cost.
+/// Interval of flushes: the largest loss in a power failure.
 const FLUSH_INTERVAL: Duration = Duration::from_secs(1);

@@ -14,16 +14,16 @@ use super::journal::{Lane, Recorder, Source};
 use crate::cassette::polling::{TICK, is_timeout};
 use crate::cassette::{Device, Payload, Side};
 
-/// What the threads of a link share.
+/// The shared state of the threads of a link.
 struct Link<'a> {
     stop: &'a AtomicBool,
-    /// When the first of the two streams ended.
+    /// Time at which the first of the two streams ended.
     ended: OnceLock<Instant>,
-    /// True if both have.
+    /// True if both streams have ended.
     over: AtomicBool,
-    /// Where the client expects datagrams.
+    /// The client's address for datagrams.
     client: OnceLock<SocketAddr>,
-    /// Where the robot sends datagrams from; commands go there.
+    /// The robot's source address of datagrams; commands are sent to it.
     robot: Mutex<Option<SocketAddr>>,
 }
 
@@ -32,16 +32,16 @@ impl Link<'_> {
         self.stop.load(Ordering::Relaxed) || self.over.load(Ordering::Relaxed)
     }
 
-    /// True if a stream that is silent is to be closed: the other has ended, and this one did not
-    /// follow, as after a power cut.
+    /// True if a silent stream must be closed: the other has ended, and this one did not follow, as
+    /// after a power failure.
     fn abandoned(&self) -> bool {
         let ended = self.ended.get();
         self.stopped() || ended.is_some_and(|ended| ended.elapsed() > LINGER)
     }
 }
 
-/// Forwards until both sides have closed, or the tap is stopped. A robot that cannot be reached
-/// shows as a connection that ends at once, and is logged.
+/// Forwards until both sides have closed, or the tap is stopped. An unreachable robot is logged,
+/// and the client's connection ends at once.
 pub(super) fn serve(
     client: TcpStream,
     route: Route,
@@ -63,7 +63,7 @@ pub(super) fn serve(
         tracing::warn!("a client was turned away: no {device} at {robot}: {error}");
         refused.note(refused.now(), Payload::End);
     }
-    // It may be closed already.
+    // The socket may be closed already.
     let _ = client.shutdown(Shutdown::Both);
 }
 
@@ -74,13 +74,13 @@ fn forward(
     stop: &AtomicBool,
 ) -> io::Result<()> {
     let robot = TcpStream::connect_timeout(&route.robot, CONNECT_TIME_MAX)?;
-    // Inherited from the listener on some systems.
+    // Some systems inherit this from the listener.
     client.set_nonblocking(false)?;
     for stream in [client, &robot] {
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(TICK))?;
     }
-    // A client accepts states only from the robot's address, which for it is the tap's.
+    // A client accepts states only from the robot's address, which for the client is the tap's.
     let to_client = UdpSocket::bind((client.local_addr()?.ip(), 0))?;
     let to_robot = UdpSocket::bind((robot.local_addr()?.ip(), 0))?;
     for socket in [&to_client, &to_robot] {
@@ -141,7 +141,7 @@ fn copy(
                 let sent = to.write_all(&passed(received));
                 lane.note(at, Payload::Stream(received.to_vec()));
                 if sent.is_err() {
-                    // Who receives is gone, so the sender is told by the end of its own.
+                    // The receiver is gone, so the sender's stream is ended too.
                     let _ = from.shutdown(Shutdown::Both);
                     break;
                 }
@@ -155,7 +155,7 @@ fn copy(
     let _ = to.shutdown(Shutdown::Write);
 }
 
-/// Forwards datagrams of the robot.
+/// Forwards the robot's datagrams.
 fn pass_states(link: &Link<'_>, robot: IpAddr, from: &UdpSocket, to: &UdpSocket, mut lane: Lane) {
     let mut buffer = vec![0; DATAGRAM_BUFFER];
     while !link.stopped() {
@@ -167,7 +167,7 @@ fn pass_states(link: &Link<'_>, robot: IpAddr, from: &UdpSocket, to: &UdpSocket,
         }
         let at = lane.now();
         if let Some(client) = link.client.get() {
-            // A client that is leaving may have closed its port.
+            // A departing client may have closed its port.
             let _ = to.send_to(&buffer[..length], client);
         }
         *link.robot.lock().unwrap_or_else(PoisonError::into_inner) = Some(sender);
@@ -175,7 +175,7 @@ fn pass_states(link: &Link<'_>, robot: IpAddr, from: &UdpSocket, to: &UdpSocket,
     }
 }
 
-/// Forwards datagrams of the client to where the newest state came from.
+/// Forwards the client's datagrams to the origin of the newest state.
 fn pass_commands(
     link: &Link<'_>,
     client: IpAddr,
@@ -200,12 +200,13 @@ fn pass_commands(
     }
 }
 
-/// A datagram and its sender; `None` if none came for a while.
+/// Returns a datagram and its sender; `None` if none arrived for a while.
 fn received(socket: &UdpSocket, buffer: &mut [u8]) -> Option<(usize, SocketAddr)> {
     match socket.recv_from(buffer) {
         Ok(received) => Some(received),
         Err(error) => {
-            // Anything else, such as a datagram of ours that reached a closed port, comes at once.
+            // Other errors are returned at once, such as from one of our datagrams that reached a
+            // closed port.
             if !is_timeout(&error) && error.kind() != io::ErrorKind::ConnectionRefused {
                 std::thread::sleep(TICK);
             }
@@ -214,7 +215,7 @@ fn received(socket: &UdpSocket, buffer: &mut [u8]) -> Option<(usize, SocketAddr)
     }
 }
 
-/// The client's stream up to `Connect`, in which the port is replaced.
+/// The client's stream up to `Connect`, whose port is replaced.
 struct Handshake {
     device: Device,
     port: u16,
@@ -232,7 +233,7 @@ impl Handshake {
         }
     }
 
-    /// The bytes to forward for these.
+    /// Returns the bytes to forward for these bytes.
     fn pass(&mut self, bytes: &[u8]) -> Vec<u8> {
         let Some(mut waiting) = self.waiting.take() else {
             return bytes.to_vec();
@@ -252,22 +253,23 @@ impl Handshake {
                 }
                 waiting
             }
-            // Not a client; the robot says what it thinks of it.
+            // Not a client: the robot's answer decides.
             Ok(Some(_)) | Err(_) => waiting,
         }
     }
 }
 
-/// How long a robot has to take a connection.
+/// Time limit for a connection to the robot.
 const CONNECT_TIME_MAX: Duration = Duration::from_secs(1);
 
-/// How long one side may stay open after the other has closed.
+/// Time for which one side may stay open after the other has closed.
 const LINGER: Duration = Duration::from_secs(1);
 
-/// A model library of protocol 5 has a megabyte; anything else fits at once.
+/// Size of the stream buffer: a model library of protocol 5 has one megabyte; all other messages
+/// fit at once.
 const STREAM_BUFFER: usize = 64 << 10;
 
-/// Above any datagram: 2373 bytes are the longest.
+/// Size of the datagram buffer, above the longest datagram of 2373 bytes.
 const DATAGRAM_BUFFER: usize = 4096;
 
 #[cfg(test)]
@@ -277,7 +279,7 @@ mod tests {
 
     use super::*;
 
-    /// However the stream is cut.
+    /// Checks the handshake for every split of the stream.
     fn check<P: Protocol>(device: Device, version: P) {
         let hello = Session::new(version).connect(4711);
         let expected = Session::new(version).connect(815);

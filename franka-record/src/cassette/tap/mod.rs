@@ -1,4 +1,4 @@
-//! A tap between clients and a robot: it forwards everything and records what passes.
+//! A tap between clients and a robot: it forwards and records all data.
 
 mod journal;
 mod link;
@@ -15,12 +15,12 @@ use self::journal::Journal;
 use super::polling::TICK;
 use super::{CassetteError, CassetteWriter, Device};
 
-/// A tap on the connections to a robot and its end effectors, on threads of its own.
+/// A tap on the connections to a robot and its end effectors, with its own threads.
 ///
-/// A client connects to the tap as to the robot, and the tap to the robot. Bytes pass unchanged,
-/// but for the UDP port in `Connect`: states and commands pass through the tap as well. What is
-/// recorded is what the sender sent. Recording takes place on one more thread, and never keeps
-/// bytes waiting: what it cannot keep up with is counted as missing.
+/// A client connects to the tap instead of the robot, and the tap connects to the robot. Bytes are
+/// forwarded unchanged, except for the UDP port in `Connect`, so that states and commands also pass
+/// through the tap. The recording contains the sender's bytes. A separate thread records, and never
+/// delays the bytes: events that it cannot record in time are counted as missing.
 ///
 /// Dropping it ends all connections, as [`Self::finish`] does.
 #[derive(Debug)]
@@ -32,18 +32,18 @@ pub struct Tap {
     journal: Option<Journal>,
 }
 
-/// Where clients of a device connect to, and where the device is.
+/// The address for clients of a device, and the address of the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Route {
     /// The device.
     pub device: Device,
-    /// Where to listen; port 0 takes any free one.
+    /// The address to listen on; port 0 selects any free port.
     pub listen: SocketAddr,
-    /// The device, or a simulator of it.
+    /// The address of the device, or of a simulator.
     pub robot: SocketAddr,
 }
 
-/// What a tap has recorded.
+/// The result of a tap's recording.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct TapReport {
@@ -56,7 +56,7 @@ pub struct TapReport {
 }
 
 impl Route {
-    /// The routes of an arm, its Hand and its vacuum gripper at their own ports.
+    /// Returns the routes of an arm, its Hand and its vacuum gripper at their own ports.
     #[must_use]
     pub fn all(robot: IpAddr, listen: IpAddr) -> [Self; 3] {
         Device::ALL.map(|device| Self {
@@ -105,7 +105,7 @@ impl Tap {
         Ok(this)
     }
 
-    /// Where clients of a device connect to; `None` if the tap has no route for it.
+    /// Returns the address for clients of a device; `None` if the tap has no route for it.
     #[must_use]
     pub fn address(&self, device: Device) -> Option<SocketAddr> {
         let mut addresses = self.addresses.iter();
@@ -116,7 +116,7 @@ impl Tap {
     /// Ends all connections and the file.
     ///
     /// # Errors
-    /// [`CassetteError`] if the file could not be written; everything was forwarded all the same.
+    /// [`CassetteError`] if the file could not be written; all data was still forwarded.
     pub fn finish(mut self) -> Result<TapReport, CassetteError> {
         self.end()
     }
@@ -125,7 +125,7 @@ impl Tap {
         // Relaxed: the threads are joined below, and the flag guards no data.
         self.stop.store(true, Ordering::Relaxed);
         for listener in self.listeners.drain(..) {
-            // A panic there has been printed; what was recorded before is worth keeping.
+            // A panic in that thread has been printed; the recording up to it is kept.
             let _ = listener.join();
         }
         let Some(journal) = self.journal.take() else {
@@ -142,12 +142,12 @@ impl Tap {
 
 impl Drop for Tap {
     fn drop(&mut self) {
-        // Who wants to know of errors calls `finish`.
+        // Call `finish` to receive errors.
         let _ = self.end();
     }
 }
 
-/// Takes clients until the tap is stopped, then ends their connections.
+/// Accepts clients until the tap is stopped, then ends their connections.
 fn accept(
     listener: &TcpListener,
     route: Route,
@@ -158,7 +158,7 @@ fn accept(
     let mut threads: Vec<JoinHandle<()>> = Vec::new();
     while !stop.load(Ordering::Relaxed) {
         let Ok((client, _)) = listener.accept() else {
-            // No client, or one that has gone already.
+            // No client, or a client that is already gone.
             std::thread::sleep(TICK);
             continue;
         };
@@ -171,7 +171,7 @@ fn accept(
     }
 }
 
-/// Starts to serve a client. One that cannot be served sees the end of its connection.
+/// Starts to serve a client. If it cannot be served, its connection is closed.
 fn start(
     client: TcpStream,
     number: usize,

@@ -1,8 +1,8 @@
-//! Motions that events end, and goals that nothing did.
+//! Motions that events end, and goals without an end.
 
 use super::*;
 
-/// The robot stops; later a guard gives a motion up, and then the cable is cut.
+/// The robot stops; later a guard aborts a motion, and then the cable is cut.
 #[test]
 fn a_guard_and_a_lost_link_end_a_motion_as_the_robot_does() {
     let outcome = |number: u64, ending, text: &str| {
@@ -78,7 +78,7 @@ fn a_guard_and_a_lost_link_end_a_motion_as_the_robot_does() {
     assert_eq!(told(&of(6400)), (6000, 2, true, lost.to_owned()));
 }
 
-/// A lost link ends a session and its goal, and what is asked for afterwards.
+/// A lost link ends a session and its goal, and later requests.
 #[test]
 fn one_loss_is_one_end() {
     let ended = |goal, text: &str| {
@@ -120,7 +120,7 @@ fn a_goal_that_failed_of_itself_is_told_where_nothing_ended_a_motion() {
     );
 }
 
-/// What is cut off in the middle of a motion says so, and what is held after it does not.
+/// A motion that is cut off is reported as such; a goal that is held afterwards is not.
 #[test]
 fn a_goal_without_an_end_is_under_way() {
     let of = |ends: bool| {
@@ -150,7 +150,7 @@ fn a_goal_without_an_end_is_under_way() {
     assert_eq!(of(true).under_way, None);
 }
 
-/// Chunks share the goal of the first one, which ends for all of them.
+/// Chunks share the goal of the first chunk, which ends for all of them.
 #[test]
 fn chunks_that_followed_another_are_not_under_way() {
     let mut explainer = Explainer::new(Model::fr3());

@@ -11,16 +11,16 @@ use crate::export::error::ExportError;
 use crate::export::new_file::NewFile;
 use crate::export::parquet::{Field, Kind, TableWriter, Values};
 
-/// An episode that is added to a dataset.
+/// A new episode of a dataset.
 pub(super) struct Episode {
     pub(super) index: u64,
     pub(super) task: String,
     /// Index of its first frame in the dataset.
     pub(super) begin: u64,
     pub(super) length: u64,
-    /// The data file that it is in.
+    /// The number of its data file.
     pub(super) file: FileNumber,
-    /// Of each feature, in the order of [`meta::widths`].
+    /// Statistics of each feature, in the order of [`meta::widths`].
     pub(super) stats: Vec<Stats>,
 }
 
@@ -52,7 +52,8 @@ impl FileNumber {
     }
 }
 
-/// Rows of all files in `chunk-…` folders of this one, and the number of the next file.
+/// Returns the rows of all files in `chunk-…` folders of this folder, and the number of the next
+/// file.
 pub(super) fn files_in(folder: &Path) -> Result<(u64, FileNumber), ExportError> {
     let (mut rows, mut next) = (0, FileNumber(0));
     for (chunk, chunk_path) in numbered(folder, "chunk-", "")? {
@@ -64,8 +65,8 @@ pub(super) fn files_in(folder: &Path) -> Result<(u64, FileNumber), ExportError> 
     Ok((rows, next))
 }
 
-/// What a folder has that is called by a number between these texts; nothing if there is no such
-/// folder.
+/// Returns the entries of a folder whose name is a number between these texts; empty if the folder
+/// does not exist.
 fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(u64, PathBuf)>, ExportError> {
     let entries = match fs::read_dir(folder) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
@@ -84,7 +85,7 @@ fn numbered(folder: &Path, before: &str, after: &str) -> Result<Vec<(u64, PathBu
     Ok(found)
 }
 
-/// Writes the table of these episodes to `folder`, as the next one of the dataset in `root`.
+/// Writes the table of these episodes to `folder`, as the next table of the dataset in `root`.
 pub(super) fn write(
     root: &Path,
     folder: &Path,

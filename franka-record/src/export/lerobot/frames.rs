@@ -1,12 +1,12 @@
-//! Samples at 1 kHz into frames at the rate of a dataset.
+//! Converts samples at 1 kHz to frames at the rate of a dataset.
 
 use nalgebra::{Isometry3, Vector4};
 
 use super::Action;
 use crate::sample::{Sample, told};
 
-/// Names of the numbers of a state or an action: joints, pose of the end effector (position and
-/// quaternion), and the width of the gripper where there is one.
+/// Returns the names of the numbers of a state or an action: joints, pose of the end effector
+/// (position and quaternion), and the width of the gripper if it has one.
 pub(super) fn names(gripper: bool) -> Vec<String> {
     let joints = (1..=7).map(|joint| format!("joint_{joint}.pos"));
     let pose = ["x", "y", "z", "qx", "qy", "qz", "qw"].map(|axis| format!("ee_{axis}.pos"));
@@ -22,7 +22,7 @@ pub(super) struct Frames {
     pub(super) action: Vec<f32>,
 }
 
-/// What a frame has of one moment.
+/// The contents of a frame at one moment.
 struct Moment {
     joints: [f64; 7],
     pose: Isometry3<f64>,
@@ -30,12 +30,12 @@ struct Moment {
 }
 
 impl Frames {
-    /// Frames of a dataset with this rate, the first of them at the first sample. The action of a
-    /// frame is where the arm was to be at the next one. Where that is the reference, samples
-    /// before the first and after the last that have one are left out.
+    /// Computes the frames of a dataset with this rate, the first at the first sample. The action
+    /// of a frame is the target at the next frame. If the targets are references, samples before
+    /// the first reference and after the last are left out.
     ///
     /// # Errors
-    /// Why the samples make no episode.
+    /// The reason why the samples are invalid.
     pub(super) fn of(
         samples: impl IntoIterator<Item = Sample>,
         fps: u16,
@@ -85,7 +85,7 @@ fn uncontrolled(sample: &Sample) -> String {
     )
 }
 
-/// The samples at the times of the frames, and the last of all.
+/// Returns the samples at the times of the frames, and the last of all.
 fn resampled(
     samples: impl IntoIterator<Item = Sample>,
     fps: u16,
@@ -123,16 +123,16 @@ fn resampled(
     Ok((frames, before))
 }
 
-/// Why a dataset with a gripper refuses an episode.
+/// Text for an episode without widths in a dataset with a gripper.
 const NO_WIDTH: &str =
     "it has cycles before the first state of a Hand, whose width the dataset has";
 
-/// The longest gap between cycles that is filled at any rate, `[ms]`: what the robot itself
-/// tolerates of lost states.
+/// Longest gap between cycles that is filled at any rate, `[ms]`: the robot itself tolerates this
+/// number of lost states.
 const GAP_MIN: f64 = 20.0;
 
-/// Rows of numbers. Quaternions keep their sign from row to row, the first that of the pose
-/// `nearest`.
+/// Returns rows of numbers. Quaternions keep their sign from row to row; the first takes the sign
+/// of the pose `nearest`.
 fn rows(
     moments: impl Iterator<Item = Result<Moment, String>>,
     gripper: bool,
@@ -157,8 +157,8 @@ fn rows(
     Ok(rows)
 }
 
-/// A quaternion whose sign the first one takes. Without another pose it is that of a hand that
-/// points down: near there, signs do not change from one episode to the next.
+/// Returns the quaternion that determines the sign of the first one. Without another pose, it is
+/// the quaternion of a hand that points down: near it, signs do not change between episodes.
 fn first_sign(nearest: Option<&Isometry3<f64>>) -> Vector4<f64> {
     let down = Vector4::new(1.0, 0.0, 0.0, 0.0);
     match nearest {

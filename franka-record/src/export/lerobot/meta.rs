@@ -1,4 +1,4 @@
-//! What `meta/` of a dataset says: features, tasks, totals and statistics.
+//! The contents of a dataset's `meta/`: features, tasks, totals and statistics.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -19,13 +19,13 @@ use crate::export::parquet::{Field, Kind, TableWriter, Values, at};
 /// The version of the layout.
 pub(super) const VERSION: &str = "v3.0";
 
-/// Files of a folder `chunk-…`.
+/// Number of files in a folder `chunk-…`.
 pub(super) const FILES_IN_CHUNK: u64 = 1000;
 
-/// Size from which on a data file gets no more episodes, `[MB]`.
+/// Size from which a data file gets no more episodes, `[MB]`.
 pub(super) const DATA_FILE_MB: usize = 100;
 
-/// Numbers of each frame that are not of the robot. The order is that of the columns.
+/// Numbers of each frame that do not describe the robot, in the order of the columns.
 pub(super) const BOOKKEEPING: [(&str, &str); 5] = [
     ("timestamp", "float32"),
     ("frame_index", "int64"),
@@ -40,7 +40,7 @@ pub(super) const FLAGS: [&str; 2] = ["next.done", "next.success"];
 /// Columns of numbers of the robot.
 pub(super) const VECTORS: [&str; 2] = ["observation.state", "action"];
 
-/// What a dataset holds so far.
+/// The current contents of a dataset.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Contents {
     pub(super) tasks: Vec<String>,
@@ -49,7 +49,7 @@ pub(super) struct Contents {
     pub(super) stats: BTreeMap<String, Stats>,
 }
 
-/// `features` of `info.json`.
+/// Returns `features` of `info.json`.
 fn features(gripper: bool) -> Value {
     let names = names(gripper);
     let vectors = VECTORS.map(|name| {
@@ -97,10 +97,10 @@ fn info_path(root: &Path) -> PathBuf {
     root.join("meta/info.json")
 }
 
-/// Reads what a dataset holds, if it is one of these options.
+/// Reads the contents of a dataset, if it matches the options.
 ///
 /// # Errors
-/// [`ExportError::Dataset`] says what is different.
+/// [`ExportError::Dataset`] with the difference.
 pub(super) fn read(root: &Path, options: &DatasetOptions) -> Result<Contents, ExportError> {
     let refused = |why: String| ExportError::Dataset {
         path: root.to_owned(),
@@ -148,8 +148,8 @@ pub(super) fn read(root: &Path, options: &DatasetOptions) -> Result<Contents, Ex
     })
 }
 
-/// How the features of a dataset differ from those that are written, and what to do about it;
-/// `None` if they are the same.
+/// Returns the difference between a dataset's features and the written ones, with the action to
+/// take; `None` if they are the same.
 fn difference(got: &Value, gripper: bool) -> Option<String> {
     let expected = features(gripper);
     if *got == expected {
@@ -186,7 +186,7 @@ fn difference(got: &Value, gripper: bool) -> Option<String> {
             differences.push(format!("the names of {name} are {}", got["names"]));
         }
     }
-    // What is left may be more than these keys, as in the features of videos.
+    // The remainder may contain other keys, as in the features of videos.
     if differences.is_empty() {
         differences.push("their features have further properties".into());
     }
@@ -196,7 +196,7 @@ fn difference(got: &Value, gripper: bool) -> Option<String> {
     ))
 }
 
-/// Every feature with how many numbers a frame has of it.
+/// Returns every feature with its number of values per frame.
 pub(super) fn widths(gripper: bool) -> impl Iterator<Item = (&'static str, usize)> {
     let vectors = VECTORS.map(|name| (name, names(gripper).len()));
     let rest = BOOKKEEPING.map(|(name, _)| (name, 1));
@@ -204,7 +204,7 @@ pub(super) fn widths(gripper: bool) -> impl Iterator<Item = (&'static str, usize
     vectors.into_iter().chain(flags).chain(rest)
 }
 
-/// The tasks by their number. Pandas has the texts as the index of the table.
+/// Writes the tasks by their number. Pandas uses the texts as the index of the table.
 fn write_tasks(path: &Path, tasks: &[String]) -> Result<(), ExportError> {
     let column = |name: &str, kind: &str, numpy: &str| json!({ "name": name, "field_name": name, "pandas_type": kind, "numpy_type": numpy, "metadata": null });
     let pandas = json!({
@@ -237,7 +237,7 @@ fn read_tasks(path: &Path) -> Result<Vec<String>, ExportError> {
         for (name, cell) in row.get_column_iter() {
             match (name.as_str(), cell) {
                 ("task_index", Cell::Long(value)) => number = Some(*value),
-                // The name that pandas gives an index without one.
+                // The name that pandas gives to an unnamed index.
                 ("task" | "__index_level_0__", Cell::Str(value)) => text = Some(value.clone()),
                 _ => {}
             }
@@ -255,7 +255,7 @@ fn read_tasks(path: &Path) -> Result<Vec<String>, ExportError> {
     Ok(tasks.into_values().collect())
 }
 
-/// How many rows a table has.
+/// Returns the number of rows of a table.
 pub(super) fn rows_in(path: &Path) -> Result<u64, ExportError> {
     let rows = open(path)?.metadata().file_metadata().num_rows();
     Ok(u64::try_from(rows).unwrap_or_default())

@@ -1,4 +1,4 @@
-//! Episodes as a dataset in LeRobot's layout v3.0, for training.
+//! Exports episodes as a dataset in LeRobot's layout v3.0, for training.
 //!
 //! ```text
 //! samples at 1 kHz -> frames at `fps` -> data/chunk-000/file-000.parquet       a row per frame
@@ -12,8 +12,7 @@
 //! * `episodes`: the table with a row per episode.
 //! * `staging`: an export as one step.
 //!
-//! Every export adds files of its own, so nothing that is there is rewritten but the three files of
-//! the whole.
+//! Every export adds new files. It rewrites only the three files of the whole dataset.
 
 mod episodes;
 mod frames;
@@ -34,32 +33,32 @@ use meta::{BOOKKEEPING, Contents, FLAGS, VECTORS};
 use staging::Staging;
 use stats::Stats;
 
-/// What all episodes of a dataset have in common.
+/// The common settings of all episodes of a dataset.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct DatasetOptions {
     /// Frames per second, 1 to 1000; policies are usually trained at 15 to 50.
     pub fps: u16,
-    /// What the robot is called: `franka_fr3`, `franka_fer`.
+    /// Name of the robot: `franka_fr3`, `franka_fer`.
     pub robot_type: String,
     /// True if the width of the gripper is part of states and actions.
     pub gripper: bool,
-    /// What actions are.
+    /// The kind of actions.
     pub action: Action,
 }
 
-/// What the action of a frame is.
+/// The kind of a frame's action.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Action {
-    /// Where the arm was to be at the next frame. Needs an arm that something controls.
+    /// The target of the arm at the next frame. Needs a controlled arm.
     #[default]
     Reference,
-    /// Where the arm was at the next frame: for demonstrations by hand.
+    /// The measured position of the arm at the next frame: for demonstrations by hand.
     Measured,
 }
 
 impl DatasetOptions {
-    /// 30 frames per second, with the gripper, and references as actions.
+    /// Creates options: 30 frames per second, with the gripper, and references as actions.
     pub fn new(robot_type: impl Into<String>) -> Self {
         Self {
             fps: 30,
@@ -69,7 +68,7 @@ impl DatasetOptions {
         }
     }
 
-    /// Replaces the frames per second.
+    /// Sets the frames per second.
     #[must_use]
     pub fn fps(mut self, fps: u16) -> Self {
         self.fps = fps;
@@ -83,7 +82,7 @@ impl DatasetOptions {
         self
     }
 
-    /// Replaces what actions are.
+    /// Sets the kind of actions.
     #[must_use]
     pub fn action(mut self, action: Action) -> Self {
         self.action = action;
@@ -91,13 +90,14 @@ impl DatasetOptions {
     }
 }
 
-/// A dataset to which episodes are added. What was added counts once it is
-/// [finished](Self::finish); dropped before, it leaves the dataset as it was, and so does a process
-/// that is killed.
+/// A dataset to which episodes are added. New episodes become part of it when it is
+/// [finished](Self::finish). If it is dropped before, or the process is killed, the dataset stays
+/// unchanged.
 ///
-/// Per frame it has `observation.state` and `action` (`joint_1.pos` to `joint_7.pos` in rad,
-/// `ee_x.pos` to `ee_z.pos` in metres, `ee_qx.pos` to `ee_qw.pos`, and `gripper.pos` in metres),
-/// `next.done` and `next.success`, and what every dataset has. It has no images.
+/// Each frame contains `observation.state` and `action`, `next.done` and `next.success`, and the
+/// fields common to all datasets. The numbers of a state or action are `joint_1.pos` to
+/// `joint_7.pos` in rad, `ee_x.pos` to `ee_z.pos` in metres, `ee_qx.pos` to `ee_qw.pos`, and
+/// `gripper.pos` in metres. It has no images.
 pub struct Dataset {
     root: PathBuf,
     staging: Staging,
@@ -105,19 +105,18 @@ pub struct Dataset {
     contents: Contents,
     /// The number of the next data file.
     next_file: FileNumber,
-    /// The data file under way.
+    /// The current data file.
     data: Option<TableWriter>,
-    /// Data files that are complete but for their names.
+    /// Data files that are complete except for their names.
     full: Vec<TableWriter>,
     added: Vec<Episode>,
 }
 
 impl Dataset {
-    /// Begins a dataset in the folder `root`, which has to be empty or not to exist.
+    /// Creates a dataset in the folder `root`, which must be empty or not exist.
     ///
     /// # Errors
-    /// [`ExportError`] for options that are not accepted, and if the folder is not empty or cannot
-    /// be written to.
+    /// [`ExportError`] for invalid options, and if the folder is not empty or cannot be written to.
     pub fn create(root: impl Into<PathBuf>, options: DatasetOptions) -> Result<Self, ExportError> {
         let root = root.into();
         checked(&options)?;
@@ -142,12 +141,12 @@ impl Dataset {
         ))
     }
 
-    /// Opens the dataset in the folder `root`, to add episodes to it. It may be one that other
-    /// programs have written, if it has the same features.
+    /// Opens the dataset in the folder `root`, to add episodes to it. Another program may have
+    /// written it, if it has the same features.
     ///
     /// # Errors
     /// [`ExportError::Dataset`] if it differs in version, robot, rate or features, or if its files
-    /// do not hold the frames that it says.
+    /// do not contain the stated frames.
     pub fn open(root: impl Into<PathBuf>, options: DatasetOptions) -> Result<Self, ExportError> {
         let root = root.into();
         checked(&options)?;
@@ -191,23 +190,23 @@ impl Dataset {
         }
     }
 
-    /// How many episodes it holds, those that were added included.
+    /// Number of episodes, including new ones.
     pub fn episodes(&self) -> u64 {
         self.contents.episodes
     }
 
-    /// How many frames it holds, those that were added included.
+    /// Number of frames, including new ones.
     pub fn frames(&self) -> u64 {
         self.contents.frames
     }
 
-    /// Adds an episode: the task in words, whether it succeeded, and every cycle. Returns how many
-    /// frames it has. `next.done` is true in the last one, and so is `next.success` if the episode
-    /// is known to have succeeded.
+    /// Adds an episode: the description of the task, its success, and every cycle. Returns the
+    /// number of frames. `next.done` is true in the last frame, and so is `next.success` if the
+    /// episode is known to have succeeded.
     ///
     /// # Errors
-    /// [`ExportError::Episode`] for samples that make no episode: none at all, gaps of more than a
-    /// frame, no gripper, or no reference. The dataset is then as it was before.
+    /// [`ExportError::Episode`] for invalid samples: no samples, gaps of more than a frame, no
+    /// gripper, or no reference. The dataset is then unchanged.
     pub fn add_episode(
         &mut self,
         task: &str,
@@ -274,10 +273,10 @@ impl Dataset {
         Ok(count)
     }
 
-    /// Writes the episodes that were added.
+    /// Writes the new episodes.
     ///
     /// # Errors
-    /// [`ExportError::Dataset`] if there is none in a new dataset, and [`ExportError::Io`].
+    /// [`ExportError::Dataset`] if a new dataset has no episodes, and [`ExportError::Io`].
     pub fn finish(mut self) -> Result<(), ExportError> {
         if self.contents.episodes == 0 {
             let why = "no episode was added, and a dataset needs one".to_owned();
@@ -296,7 +295,7 @@ impl Dataset {
         self.staging.commit()
     }
 
-    /// Begins a data file unless one is under way. Returns its number.
+    /// Creates a data file unless there is a current one. Returns its number.
     fn begin_file(&mut self) -> Result<FileNumber, ExportError> {
         if self.data.is_none() {
             let path = self.next_file.path(&self.staging.folder, "data");
@@ -337,7 +336,7 @@ fn checked(options: &DatasetOptions) -> Result<(), ExportError> {
     })
 }
 
-/// The columns of an episode: vectors, flags, and the bookkeeping.
+/// Returns the columns of an episode: vectors, flags, and the bookkeeping.
 fn columns(
     frames: &Frames,
     before: &Contents,

@@ -1,11 +1,11 @@
-//! An export as one step: its files become part of the dataset together, or not at all.
+//! An export as one atomic step: its files become part of the dataset together, or not at all.
 //!
 //! ```text
 //! .export.partial/{data, meta}  --renamed: it counts-->  .export.complete/{data, meta}  --moved-->  {data, meta}
 //! ```
 //!
-//! An export that was interrupted before it counted is deleted by the next one; after that, the
-//! next one moves its remaining files.
+//! If an export was interrupted before it was complete, the next export deletes its files. If it
+//! was interrupted afterwards, the next export moves its remaining files.
 
 use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
@@ -14,22 +14,23 @@ use std::path::{Path, PathBuf};
 use crate::export::error::ExportError;
 use crate::export::new_file::sync_folder_of;
 
-/// An export under way to the dataset `root`. One at a time; dropped, it deletes its files.
+/// A running export to the dataset `root`. Only one may run at a time; dropping it deletes its
+/// files.
 #[derive(Debug)]
 pub(super) struct Staging {
     root: PathBuf,
-    /// Where its files are.
+    /// The folder of its files.
     pub(super) folder: PathBuf,
-    /// Held until this is dropped. `None` where folders cannot be locked.
+    /// Held until this value is dropped. `None` if folders cannot be locked.
     _lock: Option<File>,
 }
 
 impl Staging {
-    /// Completes or deletes what an interrupted export has left in the folder `root`, and begins
-    /// another one.
+    /// Completes or deletes the remains of an interrupted export in the folder `root`, and begins
+    /// another export.
     ///
     /// # Errors
-    /// [`ExportError::Dataset`] if another export is under way, and [`ExportError::Io`].
+    /// [`ExportError::Dataset`] if another export is running, and [`ExportError::Io`].
     pub(super) fn begin(root: &Path) -> Result<Self, ExportError> {
         let lock = File::open(root).map_err(ExportError::at(root))?;
         let lock = match lock.try_lock() {
@@ -73,20 +74,20 @@ impl Staging {
 
 impl Drop for Staging {
     fn drop(&mut self) {
-        // Otherwise the next export deletes it.
+        // If this fails, the next export deletes the folder.
         let _ = fs::remove_dir_all(&self.folder);
     }
 }
 
-/// Moves the files of an export that counts to their places in the dataset `root`; does nothing
-/// without such an export.
+/// Moves the files of a complete export to their places in the dataset `root`; does nothing without
+/// such an export.
 fn publish(root: &Path) -> Result<(), ExportError> {
     let complete = root.join(COMPLETE);
     if !complete.exists() {
         return Ok(());
     }
     let mut files = files(&complete)?;
-    // The totals come last: readers trust them.
+    // The totals are last, because readers rely on them.
     files.sort_by_key(|file| file == Path::new(INFO));
     for file in files {
         let to = root.join(&file);
@@ -97,7 +98,7 @@ fn publish(root: &Path) -> Result<(), ExportError> {
     fs::remove_dir_all(&complete).map_err(ExportError::at(&complete))
 }
 
-/// The files below a folder, relative to it.
+/// Returns the files below a folder, relative to it.
 fn files(folder: &Path) -> Result<Vec<PathBuf>, ExportError> {
     let (mut found, mut folders) = (Vec::new(), vec![folder.to_owned()]);
     while let Some(next) = folders.pop() {
@@ -117,5 +118,5 @@ const PARTIAL: &str = ".export.partial";
 const COMPLETE: &str = ".export.complete";
 const INFO: &str = "meta/info.json";
 
-/// Files of the whole dataset, which every export writes anew.
+/// Files of the whole dataset, which every export rewrites.
 const REPLACED: [&str; 3] = [INFO, "meta/stats.json", "meta/tasks.parquet"];

@@ -1,8 +1,8 @@
-//! Statistics of a feature, as LeRobot keeps them of each episode and of the whole dataset.
+//! Statistics of a feature, in LeRobot's format, for each episode and for the whole dataset.
 
 use serde_json::{Map, Value, json};
 
-/// Statistics that are combined over episodes as the mean, weighted by their frames.
+/// Statistics that are combined over episodes as the mean, weighted by the numbers of frames.
 const QUANTILES: [(&str, f64); 5] = [
     ("q01", 0.01),
     ("q10", 0.10),
@@ -11,12 +11,12 @@ const QUANTILES: [(&str, f64); 5] = [
     ("q99", 0.99),
 ];
 
-/// Names of the statistics that have a value for each number of a feature.
+/// Names of the statistics with a value for each number of a feature.
 pub(super) const NAMES: [&str; 9] = [
     "min", "max", "mean", "std", "q01", "q10", "q50", "q90", "q99",
 ];
 
-/// Statistics of one feature over some frames: for each of [`NAMES`] a value per number of the
+/// Statistics of one feature over some frames: for each of [`NAMES`], a value per number of the
 /// feature.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Stats {
@@ -25,7 +25,7 @@ pub(super) struct Stats {
 }
 
 impl Stats {
-    /// Of rows of `width` numbers each, one after the other.
+    /// Computes the statistics of consecutive rows of `width` numbers each.
     pub(super) fn of(numbers: &[f64], width: usize) -> Self {
         let count = numbers.len() / width;
         let mut values: [Vec<f64>; NAMES.len()] = Default::default();
@@ -46,7 +46,8 @@ impl Stats {
         Self { values, count }
     }
 
-    /// Of the frames of both, as LeRobot aggregates them: quantiles are means of the quantiles.
+    /// Combines the statistics of two sets of frames as LeRobot does: quantiles are means of the
+    /// quantiles.
     pub(super) fn and(&self, other: &Self) -> Self {
         let [n, m] = [self, other].map(|stats| stats.count as f64);
         let share = m / (n + m);
@@ -71,7 +72,7 @@ impl Stats {
         Self { values, count }
     }
 
-    /// As in `meta/stats.json`.
+    /// Converts to the format of `meta/stats.json`.
     pub(super) fn to_json(&self) -> Value {
         let values = NAMES.iter().zip(&self.values);
         let mut object: Map<String, Value> = values
@@ -81,7 +82,7 @@ impl Stats {
         object.into()
     }
 
-    /// From `meta/stats.json`; `None` if something is missing, or not as wide as it should be.
+    /// Reads from `meta/stats.json`; `None` if a value is missing or has the wrong width.
     pub(super) fn from_json(value: &Value, width: usize) -> Option<Self> {
         let numbers = |name: &str| -> Option<Vec<f64>> {
             let numbers = value.get(name)?.as_array()?.iter().map(number);
@@ -99,12 +100,12 @@ impl Stats {
 /// The place of the mean in [`NAMES`].
 const MEAN: usize = 2;
 
-/// A number, or a flag as one.
+/// Returns a number, or a flag as a number.
 fn number(value: &Value) -> Option<f64> {
     value.as_f64().or(value.as_bool().map(f64::from))
 }
 
-/// The value below which a `share` of `sorted` lies, on the line between neighbours.
+/// Returns the value below which a `share` of `sorted` lies, interpolated linearly.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
     let place = share * (sorted.len() - 1) as f64;
     let below = sorted[place.floor() as usize];
