@@ -1,9 +1,9 @@
-//! Flight recorder for Franka robots: every cycle in an MCAP file, every reflex explained, every
-//! session replayed.
+//! Flight recorder for Franka robots: records every cycle in an MCAP file, explains reflexes, and
+//! replays sessions.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-// The tests of modules share sources with those beside `src`.
+// Tests in modules share sources with the tests outside `src`.
 #[cfg(test)]
 extern crate self as franka_record;
 
@@ -27,7 +27,7 @@ pub use recorder::Recorder;
 pub use recording::Recording;
 pub use sample::Sample;
 
-// The program in the README compiles.
+// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,4 +1,4 @@
-//! What exports and replays read of one cycle.
+//! The data of one cycle for exports and replays.
 
 use franka_model::transform::isometry_from_array;
 use franka_proto::MotionGeneratorMode;
@@ -13,22 +13,22 @@ pub struct Sample {
     pub time: u64,
     /// Measured joint positions, `[rad]`.
     pub q: [f64; 7],
-    /// Joint positions that the arm was to have, `[rad]`: the reference of target control, or what
-    /// a control function commanded. `None` where the joints were not under control.
+    /// Commanded joint positions, `[rad]`: the reference of target control, or the output of a
+    /// control function. `None` if the joints were not under control.
     pub q_ref: Option<[f64; 7]>,
     /// Measured pose of the end effector in the base frame, `O_T_EE`, metres.
     pub pose: Isometry3<f64>,
-    /// Pose that the end effector was to have, base frame, metres.
+    /// Commanded pose of the end effector in the base frame, metres.
     pub pose_ref: Option<Isometry3<f64>>,
     /// Distance between the fingers, `[m]`; `None` before the gripper's first state.
     pub width: Option<f64>,
-    /// Distance that the fingers were told to have, `[m]`; `None` before the first order.
+    /// Commanded distance between the fingers, `[m]`; `None` before the first command.
     pub width_ref: Option<f64>,
 }
 
 impl Sample {
-    /// What a cycle says of the arm; the gripper is for the caller to add. A pose that is not a
-    /// rigid transformation counts as the identity.
+    /// Creates a sample from the arm's data in a cycle; the caller adds the gripper. A pose that is
+    /// not a rigid transformation becomes the identity.
     pub fn of(cycle: &Cycle) -> Self {
         let Cycle {
             record,
@@ -37,7 +37,7 @@ impl Sample {
             ..
         } = cycle;
         let pose = |array| isometry_from_array(array).unwrap_or_default();
-        // No robot can have all joints at zero.
+        // All joints at zero is impossible for these robots.
         let has_targets = record.q_ref != [0.0; 7];
         let is_commanded = matches!(
             state.motion_generator_mode,
@@ -62,9 +62,9 @@ impl Sample {
         }
     }
 
-    /// The sample between this one and a `later` one, a `share` from 0 to 1 of the way: positions
-    /// on the line, rotations on the shorter arc. The finger width is this one's: grippers report
-    /// it rarely.
+    /// Returns the sample between this one and a `later` one, at a `share` from 0 to 1: positions
+    /// are interpolated linearly, rotations along the shorter arc. The finger width is taken from
+    /// this sample, because grippers report it rarely.
     pub fn towards(&self, later: &Self, share: f64) -> Self {
         let line =
             |a: &[f64; 7], b: &[f64; 7]| std::array::from_fn(|i| a[i] + (b[i] - a[i]) * share);
@@ -83,8 +83,8 @@ impl Sample {
     }
 }
 
-/// The samples from the first to the last in which the arm was told where to be; all of them if it
-/// never was.
+/// Returns the samples from the first to the last with a commanded position; all samples if there
+/// is none.
 pub(crate) fn told(samples: &[Sample]) -> &[Sample] {
     let is_told = |sample: &Sample| sample.q_ref.is_some();
     let first = samples.iter().position(is_told);
@@ -94,8 +94,8 @@ pub(crate) fn told(samples: &[Sample]) -> &[Sample] {
         .map_or(samples, |(first, last)| &samples[first..=last])
 }
 
-/// The pose a `share` of the way from `a` to `b`.
+/// Returns the pose at a `share` of the way from `a` to `b`.
 fn between(a: &Isometry3<f64>, b: &Isometry3<f64>, share: f64) -> Isometry3<f64> {
-    // There is no shorter arc to the opposite orientation.
+    // The shorter arc to the opposite orientation is not unique.
     a.try_lerp_slerp(b, share, 1e-9).unwrap_or(*a)
 }

@@ -1,8 +1,8 @@
 //! Exports recordings as tables and datasets for other programs.
 //!
-//! * `cells`: which columns a table gets. Their names, units and shapes are those of
+//! * `cells`: the columns of a table. Their names, units and shapes are those of
 //!   [`franka_rt::driver::Column`].
-//! * `new_file`: files that appear once they are complete, and replace none.
+//! * `new_file`: files that appear once they are complete, and never replace a file.
 //! * `csv`: text. `table`, `parquet`: Parquet files (feature `export`).
 //! * [`lerobot`]: episodes for training (feature `export`).
 

@@ -8,11 +8,11 @@ use tempfile::{Builder, NamedTempFile};
 
 use super::error::ExportError;
 
-/// A file that is being written. It gets its name when it is [finished](Self::finish), and is
-/// deleted if it is dropped before.
+/// A file under construction. It gets its name when it is [finished](Self::finish), and is deleted
+/// if it is dropped before.
 ///
-/// Until then it has a name of its own in the same folder, which ends in `.partial`. A process that
-/// is killed leaves that file behind; it is in the way of no other export.
+/// Until then it has a temporary name in the same folder, which ends in `.partial`. A killed
+/// process leaves that file behind; it does not affect other exports.
 #[derive(Debug)]
 pub struct NewFile {
     path: PathBuf,
@@ -20,10 +20,10 @@ pub struct NewFile {
 }
 
 impl NewFile {
-    /// Begins a file at `path`.
+    /// Creates a file that will be at `path`.
     ///
     /// # Errors
-    /// [`ExportError::Exists`] if there is anything at `path`, and [`ExportError::Io`].
+    /// [`ExportError::Exists`] if `path` exists, and [`ExportError::Io`].
     pub fn create(path: impl Into<PathBuf>) -> Result<Self, ExportError> {
         let path = path.into();
         if fs::symlink_metadata(&path).is_ok() {
@@ -36,28 +36,29 @@ impl NewFile {
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt as _;
-            // Like any other file, less what the user's mask takes away.
+            // Normal permissions, minus the user's mask.
             builder.permissions(fs::Permissions::from_mode(0o666));
         }
         let folder = folder_of(&path);
         let file = builder.tempfile_in(folder).map_err(|error| {
-            // Its text has the name of the partial file, and the user knows the other one.
+            // The error's text contains the name of the partial file, but the user knows the other
+            // name.
             let of_folder = fs::metadata(folder).err();
             ExportError::at(&path)(of_folder.unwrap_or(error.kind().into()))
         })?;
         Ok(Self { path, file })
     }
 
-    /// The name that the file is to have.
+    /// The final name of the file.
     #[cfg(feature = "export")]
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Waits until the disk has all of the file, and gives it its name.
+    /// Waits until the disk has stored the whole file, and gives it its name.
     ///
     /// # Errors
-    /// [`ExportError::Exists`] if another file has got the name since, and [`ExportError::Io`].
+    /// [`ExportError::Exists`] if another file now has the name, and [`ExportError::Io`].
     pub fn finish(self) -> Result<(), ExportError> {
         let Self { path, file } = self;
         let synced = file.as_file().sync_all();
@@ -87,8 +88,8 @@ fn folder_of(path: &Path) -> &Path {
     folder.unwrap_or(Path::new("."))
 }
 
-/// Makes the name of a file outlast a power cut. Where folders cannot be synchronised, their file
-/// systems need no such thing.
+/// Makes the name of a file survive a power failure. File systems whose folders cannot be
+/// synchronised do not need this.
 pub(super) fn sync_folder_of(path: &Path) {
     if let Ok(folder) = File::open(folder_of(path)) {
         let _ = folder.sync_all();

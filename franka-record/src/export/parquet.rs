@@ -1,4 +1,4 @@
-//! Tables as Parquet files: numbers, texts, and lists of a fixed length, none of them missing.
+//! Tables as Parquet files: numbers, texts, and lists of a fixed length, without missing values.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -15,16 +15,16 @@ use ::parquet::schema::types::{Type, TypePtr};
 use super::error::ExportError;
 use super::new_file::NewFile;
 
-/// A column of a table: its name, and how many values a row has in it.
+/// A column of a table: its name, and its number of values per row.
 #[derive(Clone, Debug)]
 pub(crate) struct Field {
     pub(crate) name: String,
     pub(crate) kind: Kind,
-    /// Of a list; `None` for one value a row.
+    /// Length of a list; `None` for one value per row.
     pub(crate) length: Option<usize>,
 }
 
-/// What the values of a column are.
+/// The type of a column's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Bool,
@@ -54,7 +54,7 @@ impl Field {
         }
     }
 
-    /// A list of `length` values in each row.
+    /// Creates a list of `length` values in each row.
     pub(crate) fn list(name: impl Into<String>, kind: Kind, length: usize) -> Self {
         Self {
             length: Some(length),
@@ -96,7 +96,7 @@ impl Field {
     }
 }
 
-/// A table that is being written. It gets its name once it is complete.
+/// A table under construction. It gets its name once it is complete.
 pub(crate) struct TableWriter {
     path: PathBuf,
     fields: Vec<Field>,
@@ -104,7 +104,7 @@ pub(crate) struct TableWriter {
 }
 
 impl TableWriter {
-    /// Begins a table in `file`, with `notes` in its metadata.
+    /// Creates a table in `file`, with `notes` in its metadata.
     pub(crate) fn new(
         file: NewFile,
         fields: Vec<Field>,
@@ -129,7 +129,7 @@ impl TableWriter {
         })
     }
 
-    /// Appends rows: the values of each field in its place.
+    /// Appends rows: the values of each field, in the order of the fields.
     pub(crate) fn write(&mut self, columns: &[Values]) -> std::result::Result<(), ExportError> {
         debug_assert_eq!(columns.len(), self.fields.len());
         let Self { fields, writer, .. } = self;
@@ -147,7 +147,7 @@ impl TableWriter {
         append().map(|_| ()).map_err(at(&self.path))
     }
 
-    /// Bytes written so far.
+    /// Number of bytes written so far.
     pub(crate) fn size(&self) -> usize {
         self.writer.bytes_written()
     }
@@ -167,7 +167,7 @@ fn schema(fields: &[Field]) -> Result<TypePtr> {
 
 fn append(column: &mut ColumnWriter<'_>, length: Option<usize>, values: &Values) -> Result<()> {
     let count = values.len();
-    // Of a list: every value is there, and every `length`-th begins a row.
+    // In a list, no value is missing, and every `length`-th value begins a row.
     let levels = length.map(|length| {
         let repetitions = (0..count).map(|i| i16::from(i % length != 0));
         (vec![1; count], repetitions.collect::<Vec<i16>>())
@@ -199,7 +199,7 @@ fn append(column: &mut ColumnWriter<'_>, length: Option<usize>, values: &Values)
 }
 
 impl Values {
-    /// The values as numbers; flags are 0 or 1. Texts have none.
+    /// Returns the values as numbers; flags are 0 or 1. Texts return none.
     pub(crate) fn numbers(&self) -> Vec<f64> {
         match self {
             Self::Bool(values) => values.iter().map(|x| f64::from(u8::from(*x))).collect(),
@@ -210,7 +210,7 @@ impl Values {
         }
     }
 
-    /// How many there are.
+    /// Number of values.
     pub(crate) fn len(&self) -> usize {
         match self {
             Self::Bool(values) => values.len(),
@@ -222,7 +222,7 @@ impl Values {
     }
 }
 
-/// Makes an error of the format one about `path`.
+/// Converts an error of the format to an error about `path`.
 pub(crate) fn at(path: &Path) -> impl FnOnce(ParquetError) -> ExportError {
     let path = path.to_owned();
     move |source| ExportError::Table { path, source }

@@ -1,4 +1,4 @@
-//! Cycles as a Parquet table.
+//! Exports cycles as a Parquet table.
 
 use std::error::Error;
 use std::path::Path;
@@ -12,19 +12,19 @@ use super::new_file::NewFile;
 use super::parquet::{Field, Kind, TableWriter, Values};
 use crate::cycle::Cycle;
 
-/// Rows that are written at a time: a minute, some 100 MB with all columns.
+/// Number of rows per write: a minute, some 100 MB with all columns.
 const ROWS: usize = 60_000;
 
-/// Writes the file `path`, with a row for each cycle; returns how many. First come `time`, the
-/// robot's clock in milliseconds, and `host_time`, nanoseconds since 1970. A vector is a list, a
-/// matrix a list by rows. Flags and numbers of things are integers, modes are texts, everything
-/// else is an `f64`. The metadata of the file has the units, as JSON, by the key `units`.
+/// Writes the file `path`, with a row for each cycle; returns the number of rows. The first columns
+/// are `time`, the robot's clock in milliseconds, and `host_time`, nanoseconds since 1970. A vector
+/// is a list, a matrix a row-major list. Flags and counts are integers, modes are texts, everything
+/// else is an `f64`. The file's metadata contains the units, as JSON, with the key `units`.
 ///
-/// The file has its name once it is complete.
+/// The file gets its name once it is complete.
 ///
 /// # Errors
-/// [`ExportError::Exists`] if there is a file of that name, others of the file, and
-/// [`ExportError::Cycles`] with what `cycles` fails with.
+/// [`ExportError::Exists`] if a file with this name exists, other errors of the file, and
+/// [`ExportError::Cycles`] with the error of `cycles`.
 pub fn write_parquet<E: Error + Send + Sync + 'static>(
     cycles: impl IntoIterator<Item = Result<Cycle, E>>,
     columns: &Columns,
@@ -65,7 +65,7 @@ pub fn write_parquet<E: Error + Send + Sync + 'static>(
     Ok(count)
 }
 
-/// The columns of the next rows: fewer than [`ROWS`] at the end.
+/// Returns the columns of the next rows: fewer than [`ROWS`] at the end.
 fn next_rows<E: Error + Send + Sync + 'static>(
     cycles: &mut impl Iterator<Item = Result<Cycle, E>>,
     columns: &Columns,

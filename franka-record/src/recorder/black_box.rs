@@ -1,4 +1,4 @@
-//! The last seconds in memory, as a file when something has ended a motion.
+//! Keeps the last seconds in memory, and writes them to a file after the end of a motion.
 
 use std::collections::VecDeque;
 
@@ -14,11 +14,11 @@ use crate::HostTime;
 pub(super) struct LastSeconds {
     options: BlackBox,
     messages: VecDeque<Message>,
-    /// The incident whose file is to be written.
+    /// The incident whose file is due.
     incident: Option<Incident>,
 }
 
-/// What the file is named after.
+/// The parts of the file's name.
 #[derive(Debug)]
 struct Incident {
     time: HostTime,
@@ -46,7 +46,7 @@ impl LastSeconds {
         let now = message.time;
         self.messages.push_back(message);
         let past = now - self.options.before - self.options.after;
-        // A clock of a robot may be behind those of others: what is older than that goes anyway.
+        // A robot's clock may be behind the others: older data is removed anyway.
         while self
             .messages
             .front()
@@ -56,7 +56,7 @@ impl LastSeconds {
         }
     }
 
-    /// Notes an incident. One that follows while a file is due is in that file.
+    /// Records an incident. If a file is already due, that file also covers the new incident.
     pub(super) fn note(&mut self, time: HostTime, robot: &str, why: &str) {
         self.incident.get_or_insert_with(|| Incident {
             time,
@@ -65,7 +65,7 @@ impl LastSeconds {
         });
     }
 
-    /// The file that is due at `now`, if one is.
+    /// Returns the file that is due at `now`, if any.
     pub(super) fn dump(
         &mut self,
         now: HostTime,
@@ -88,7 +88,7 @@ fn write(session: &Session, messages: &VecDeque<Message>) -> Result<Vec<u8>, Rec
     let mut bytes = Vec::new();
     let mut flushed = HostTime::default();
     for message in messages {
-        // Short chunks, as in any recording: a part can be read without the rest.
+        // Short chunks, as in any recording: a part can be read separately.
         if message.time.since(flushed) >= super::options::FLUSH_MAX {
             flushed = message.time;
             bytes.append(&mut file.flush()?);
@@ -106,16 +106,16 @@ impl Incident {
     }
 }
 
-/// A file of a black box, by its name.
+/// A file of a black box, identified by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NamedFile {
     Whole,
-    /// Not complete yet.
+    /// An incomplete file.
     Part,
 }
 
-/// The file of a black box that has this name, which begins with a time as above; none if it is
-/// another file.
+/// Returns the kind of black box file with this name, which begins with a time as above; `None` for
+/// other files.
 pub(super) fn file_of_name(name: &str) -> Option<NamedFile> {
     let (time, rest) = name.split_once('-')?;
     let shape: String = time

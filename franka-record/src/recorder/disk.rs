@@ -1,4 +1,4 @@
-//! The thread that waits for the disk, so that nothing else has to.
+//! The thread that waits for the disk, so that no other thread waits.
 
 use core::mem;
 use core::time::Duration;
@@ -13,14 +13,14 @@ use super::black_box;
 use super::error::RecordError;
 use super::lock;
 
-/// What has become of the files so far.
+/// The state of the files.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DiskStatus {
-    /// Bytes that wait for the disk.
+    /// Number of bytes that wait for the disk.
     pub(super) backlog: u64,
-    /// Bytes in files.
+    /// Number of bytes in files.
     pub(super) written: u64,
-    /// Cycles in what could not be written.
+    /// Number of cycles that could not be written.
     pub(super) cycles_lost: u64,
     /// True if a file of the black box waits for the disk.
     pub(super) black_box_waits: bool,
@@ -28,13 +28,13 @@ pub(super) struct DiskStatus {
     pub(super) files: Vec<PathBuf>,
     /// The files of the black box.
     pub(super) black_boxes: Vec<PathBuf>,
-    /// Why the recording ended early.
+    /// The error that ended the recording early.
     pub(super) error: Option<RecordError>,
-    /// Why the newest black box could not be written.
+    /// The error of writing the newest black box.
     pub(super) black_box_error: Option<RecordError>,
 }
 
-/// The end of the disk's thread that gives it work.
+/// The handle that sends jobs to the disk thread.
 #[derive(Debug)]
 pub(super) struct Disk {
     jobs: Sender<Job>,
@@ -43,10 +43,9 @@ pub(super) struct Disk {
 
 #[derive(Debug)]
 enum Job {
-    /// Begins the first file of the recording.
+    /// Opens the first file of the recording.
     Open(PathBuf, File),
-    /// Ends the file that is open and begins the next one of the recording whose first file is
-    /// this.
+    /// Ends the open file and begins the next file of the recording with this first file.
     Follow(PathBuf),
     /// Appends whole chunks with this many cycles.
     Append(Vec<u8>, u64),
@@ -60,7 +59,8 @@ enum Job {
 }
 
 impl Disk {
-    /// Starts the thread. It ends once this is dropped and all is written; `done` is then dropped.
+    /// Starts the thread. It ends once this value is dropped and everything is written; `done` is
+    /// then dropped.
     pub(super) fn start(sync: bool, done: Sender<()>) -> Result<Self, RecordError> {
         let (jobs, receiver) = mpsc::channel();
         let status = Arc::<Mutex<DiskStatus>>::default();
@@ -91,44 +91,43 @@ impl Disk {
         lock(&self.status).backlog
     }
 
-    /// True if the recording can go on.
+    /// True if the recording can continue.
     pub(super) fn is_well(&self) -> bool {
         lock(&self.status).error.is_none()
     }
 
-    /// Notes why the recording cannot go on.
+    /// Records why the recording cannot continue.
     pub(super) fn fail(&self, error: RecordError) {
         fail(&self.status, error);
     }
 
-    /// Notes why a black box could not be written.
+    /// Records why a black box could not be written.
     pub(super) fn fail_black_box(&self, error: RecordError) {
         fail_black_box(&self.status, error);
     }
 
-    /// Begins the first file.
+    /// Opens the first file.
     pub(super) fn open(&self, path: PathBuf, file: File) {
         self.order(Job::Open(path, file), 0);
     }
 
-    /// Begins the next file of the recording whose first file is this one.
+    /// Begins the next file of the recording with this first file.
     pub(super) fn follow(&self, first: PathBuf) {
         self.order(Job::Follow(first), 0);
     }
 
-    /// Appends whole chunks, in which there are this many cycles.
+    /// Appends whole chunks that contain this number of cycles.
     pub(super) fn append(&self, bytes: Vec<u8>, cycles: u64) {
         let length = bytes.len();
         self.order(Job::Append(bytes, cycles), length);
     }
 
-    /// Counts cycles that were to be written and are not.
+    /// Counts cycles that could not be written.
     pub(super) fn lose(&self, cycles: u64) {
         lock(&self.status).cycles_lost += cycles;
     }
 
-    /// Writes a file of the black box. One that the disk has not taken yet is the only one that
-    /// waits.
+    /// Writes a file of the black box. At most one file waits for the disk.
     pub(super) fn black_box(&self, directory: PathBuf, dump: black_box::Dump, keep: usize) {
         let length = dump.bytes.len();
         if mem::replace(&mut lock(&self.status).black_box_waits, true) {
@@ -149,12 +148,12 @@ impl Disk {
 
     fn order(&self, job: Job, length: usize) {
         lock(&self.status).backlog += length as u64;
-        // The thread is there as long as this is.
+        // The thread exists as long as this value.
         let _ = self.jobs.send(job);
     }
 }
 
-/// Notes and logs why the recording cannot go on; the first reason stays.
+/// Records and logs why the recording cannot continue; the first reason is kept.
 fn fail(status: &Mutex<DiskStatus>, error: RecordError) {
     let mut status = lock(status);
     if status.error.is_none() {
@@ -164,13 +163,13 @@ fn fail(status: &Mutex<DiskStatus>, error: RecordError) {
     }
 }
 
-/// Notes and logs why a black box could not be written; the newest reason stays.
+/// Records and logs why a black box could not be written; the newest reason is kept.
 fn fail_black_box(status: &Mutex<DiskStatus>, error: RecordError) {
     tracing::error!(%error, "no black box of the incident");
     lock(status).black_box_error = Some(error);
 }
 
-/// Makes a file that is not there yet.
+/// Creates a file that does not exist yet.
 pub(super) fn create(path: &Path) -> Result<File, RecordError> {
     let file = OpenOptions::new().write(true).create_new(true).open(path);
     let file = file.map_err(|source| match source.kind() {
@@ -186,8 +185,8 @@ pub(super) fn create(path: &Path) -> Result<File, RecordError> {
     Ok(file)
 }
 
-/// Makes the name of a file outlast a power cut. Where directories cannot be synchronised, their
-/// file systems need no such thing.
+/// Makes the name of a file survive a power failure. File systems whose directories cannot be
+/// synchronised do not need this.
 fn sync_directory(path: &Path) {
     let directory = path
         .parent()
@@ -206,13 +205,13 @@ struct DiskThread {
     sync: bool,
 }
 
-/// The file that grows.
+/// The current file.
 struct Open {
     path: PathBuf,
     file: File,
-    /// Its length: all of it whole chunks.
+    /// Its length, which consists of whole chunks.
     length: u64,
-    /// True if some of it may not have reached the disk.
+    /// True if a part of it may not have reached the disk.
     dirty: bool,
 }
 
@@ -296,7 +295,7 @@ impl DiskThread {
         });
     }
 
-    /// Makes the next file of a recording, by the first number that no file has.
+    /// Creates the next file of a recording, with the first unused number.
     fn create_next(&mut self, first: &Path) -> Result<(PathBuf, File), RecordError> {
         loop {
             self.number += 1;
@@ -312,7 +311,7 @@ impl DiskThread {
         fail(&self.status, error);
     }
 
-    /// Waits until the disk has what was written, if that is wanted.
+    /// Waits until the disk has stored the written data, if enabled.
     fn synchronise(&mut self) {
         let Some(open) = &mut self.open else { return };
         if !(self.sync && open.dirty) {
@@ -328,7 +327,7 @@ impl DiskThread {
 }
 
 impl Open {
-    /// Appends `bytes`, or leaves the file as it was.
+    /// Appends `bytes`, or leaves the file unchanged.
     fn append(&mut self, bytes: &[u8]) -> Result<(), RecordError> {
         self.dirty = true;
         match self.file.write_all(bytes) {
@@ -337,7 +336,7 @@ impl Open {
                 Ok(())
             }
             Err(source) => {
-                // Part of a chunk at the end is left out by readers; without it, none complains.
+                // Readers ignore a partial chunk at the end; without it, none reports an error.
                 let _ = self.file.set_len(self.length);
                 Err(self.error(source))
             }
@@ -353,7 +352,7 @@ impl Open {
     }
 }
 
-/// `run-0002.mcap` for the second file of `run.mcap`.
+/// Returns a name such as `run-0002.mcap` for the second file of `run.mcap`.
 fn numbered(first: &Path, number: u32) -> PathBuf {
     let stem = first.file_stem().unwrap_or_default().to_string_lossy();
     let name = match first.extension() {
@@ -363,10 +362,10 @@ fn numbered(first: &Path, number: u32) -> PathBuf {
     first.with_file_name(name)
 }
 
-/// Files of a recording, those of others of the same name included.
+/// Largest number of files of a recording, including files of other recordings with the same name.
 const NUMBER_MAX: u32 = 1_000_000;
 
-/// Writes a file that has its name only once it is complete.
+/// Writes a file that gets its name once it is complete.
 fn write_whole(directory: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
     fs::create_dir_all(directory)?;
     let part = path.with_extension("mcap.part");
@@ -385,8 +384,8 @@ fn write_whole(directory: &Path, path: &Path, bytes: &[u8]) -> io::Result<()> {
     written
 }
 
-/// Deletes the oldest files of black boxes, so that `keep` are left, and what crashes have left of
-/// others. A file that cannot be deleted stays.
+/// Deletes the oldest black box files, so that `keep` are left, and the remains of others after
+/// crashes. A file that cannot be deleted stays.
 fn delete_oldest(directory: &Path, keep: usize) {
     let Ok(entries) = fs::read_dir(directory) else {
         return;
@@ -400,7 +399,7 @@ fn delete_oldest(directory: &Path, keep: usize) {
             None => {}
         }
     }
-    // A younger one may be of another process that is writing it.
+    // A younger file may belong to another process that is writing it.
     let is_left = |entry: &fs::DirEntry| {
         let modified = entry.metadata().and_then(|it| it.modified());
         modified.is_ok_and(|time| time.elapsed().is_ok_and(|age| age > PART_AGE))
@@ -415,7 +414,7 @@ fn delete_oldest(directory: &Path, keep: usize) {
     }
 }
 
-/// Age of an incomplete file that no process writes any more.
+/// Age of an incomplete file from which no process writes it any more.
 const PART_AGE: Duration = Duration::from_secs(3600);
 
 #[cfg(test)]

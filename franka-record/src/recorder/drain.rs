@@ -1,4 +1,4 @@
-//! The thread that takes cycles out of the rings and puts files together.
+//! The thread that reads cycles from the rings and builds the files.
 
 use core::time::Duration;
 use std::collections::VecDeque;
@@ -18,7 +18,7 @@ use super::options::{RecordOptions, Robot};
 use super::session::RecordClock;
 use crate::{Cycle, Event, EventKind, GripperState, HostTime};
 
-/// What the thread is told.
+/// An order to the thread.
 #[derive(Debug)]
 pub(super) enum Order {
     Attach(Box<(Robot, CycleReader)>),
@@ -30,15 +30,15 @@ pub(super) enum Order {
     Finish,
 }
 
-/// What the thread has taken so far, and what it is told beside the orders.
+/// The thread's progress, and its flags in addition to the orders.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct DrainStatus {
     pub(super) cycles: u64,
     pub(super) dropped: u64,
     pub(super) events_dropped: u64,
-    /// True to end.
+    /// True to end the thread.
     pub(super) finish: bool,
-    /// True if it has ended.
+    /// True once the thread has ended.
     pub(super) ended: bool,
 }
 
@@ -51,28 +51,28 @@ pub(super) struct Drain {
     clock: RecordClock,
     /// The wall clock.
     wall: fn() -> HostTime,
-    /// When the wall clock is compared again.
+    /// Time of the next comparison with the wall clock.
     compare_due: Instant,
     /// The wall clock minus recorded time, `[ns]`.
     offset: i64,
 }
 
-/// A robot that is recorded.
+/// A recorded robot.
 struct Source {
     label: String,
     cycles: CycleReader,
-    /// Those that come after them, from other control threads.
+    /// Readers of later control threads.
     next: VecDeque<CycleReader>,
-    /// Cycles that `cycles` has lost, as far as that was told.
+    /// Cycles lost by `cycles`, as reported so far.
     lost: u64,
     encoder: Encoder,
-    /// What is not a cycle, oldest first, until the cycles before it were taken.
+    /// Data other than cycles, oldest first, that waits until the earlier cycles were read.
     waiting: Vec<Waiting>,
-    /// Messages on their way; empty between calls.
+    /// Messages in transit; empty between calls.
     messages: Vec<Message>,
 }
 
-/// What is not a cycle.
+/// Data other than a cycle.
 enum Waiting {
     Event(Event),
     Gripper(HostTime, GripperState),
@@ -109,7 +109,7 @@ impl Drain {
         })
     }
 
-    /// Runs until it is told to end, or nobody is left to tell it.
+    /// Runs until it receives the order to end, or all senders are dropped.
     pub(super) fn run(mut self) {
         loop {
             let go_on = self.take_orders();
@@ -124,8 +124,8 @@ impl Drain {
         self.finish();
     }
 
-    /// Waits for the time between two looks, and takes the orders there are. Returns whether to go
-    /// on.
+    /// Waits for the interval between two polls, and processes the pending orders. Returns true to
+    /// continue.
     fn take_orders(&mut self) -> bool {
         let mut next = match self.orders.recv_timeout(LOOK) {
             Ok(order) => Some(order),
@@ -180,7 +180,7 @@ impl Drain {
         for index in 0..self.sources.len() {
             self.sources[index].waiting.sort_by_key(Waiting::time);
             self.take_waiting_cycles(index);
-            // After the last cycle of a control thread those of the next one.
+            // After the last cycle of a control thread, continue with the next one.
             while self.sources[index].cycles.waiting() == 0
                 && let Some(next) = self.sources[index].next.pop_front()
             {
@@ -190,12 +190,12 @@ impl Drain {
                 lock(&self.status).dropped += lost;
                 self.take_waiting_cycles(index);
             }
-            // What is newer than a cycle that is still on its way is close to it.
+            // Data newer than a cycle in transit is close to it.
             self.sources[index].pass(self.clock.now(), &mut self.files);
         }
     }
 
-    /// Takes the cycles of a robot that there are now, and no more, so that the others have their
+    /// Reads the cycles of a robot that exist now, and no later ones, so that the others have their
     /// turn.
     fn take_waiting_cycles(&mut self, index: usize) {
         let (mut taken, mut dropped) = (0, 0);
@@ -230,7 +230,7 @@ impl Drain {
         status.dropped += dropped;
     }
 
-    /// Notes when the wall clock of this host was set.
+    /// Records when the wall clock of this host was set.
     fn compare_clocks(&mut self) {
         let now = Instant::now();
         if now < self.compare_due {
@@ -268,7 +268,7 @@ impl Drain {
             lock(&self.status).dropped += missing + lost;
         }
         self.files.finish();
-        // Of those that thinning has held back until now.
+        // Counts the cycles held back by thinning until now.
         for index in 0..self.sources.len() {
             lock(&self.status).dropped += self.files.take_missing_at_end(index);
         }
@@ -278,8 +278,8 @@ impl Drain {
 }
 
 impl Source {
-    /// Takes these cycles after those it has, unless they are of the same control thread: a
-    /// connection that is made while its robot is attached comes both ways.
+    /// Reads these cycles after the current ones, unless they are of the same control thread: a
+    /// connection created while its robot is attached is reported twice.
     fn resume(&mut self, cycles: CycleReader) {
         let last = self.next.back().unwrap_or(&self.cycles);
         if !last.is_of_same_thread(&cycles) {
@@ -287,7 +287,7 @@ impl Source {
         }
     }
 
-    /// Passes on what is not a cycle, up to `time`.
+    /// Forwards data other than cycles, up to `time`.
     fn pass(&mut self, time: HostTime, files: &mut Files) {
         let count = self
             .waiting
@@ -311,7 +311,7 @@ impl Source {
         }
     }
 
-    /// Tells of the cycles that were lost after the last one that came, and returns how many.
+    /// Reports the cycles lost after the last one, and returns their number.
     fn note_end(&mut self, time: HostTime, files: &mut Files) -> u64 {
         let cycles = self.cycles.lost() - self.lost;
         if cycles > 0 {
@@ -331,10 +331,10 @@ impl Source {
     }
 }
 
-/// Time between two looks at the rings, which hold seconds.
+/// Interval between two polls of the rings, which hold seconds.
 const LOOK: Duration = Duration::from_millis(20);
 
 const COMPARE_PERIOD: Duration = Duration::from_secs(1);
 
-/// A smaller change is one of a clock that is slewed, `[ns]`.
+/// Smallest change that counts as a step, `[ns]`; smaller changes come from slewing.
 const STEP_MIN: i64 = 100_000_000;

@@ -1,4 +1,4 @@
-//! Turns what comes from one robot into messages.
+//! Converts the data of one robot to messages.
 
 use core::mem;
 use core::time::Duration;
@@ -17,28 +17,28 @@ pub(super) struct Message {
     pub(super) topic: Topic,
     pub(super) time: HostTime,
     pub(super) data: Box<[u8]>,
-    /// True if the cycles around it are worth keeping at the full rate.
+    /// True if the surrounding cycles should be kept at the full rate.
     pub(super) notable: bool,
 }
 
-/// The encoder of one robot. It finds changes of mode, errors, contacts and tool by itself.
+/// The encoder of one robot. It detects changes of mode, errors, contacts and tool.
 #[derive(Debug)]
 pub(super) struct Encoder {
     robot: usize,
     frames: Frames,
     model: &'static Model,
-    /// Used again for each cycle, with the memory of its fields.
+    /// Reused for each cycle, with the memory of its fields.
     cycle: franka::Cycle,
-    /// As in the newest cycle; `None` before the first.
+    /// Values of the newest cycle; `None` before the first.
     seen: Option<Seen>,
-    /// The robot's clock before the first cycle, `[ms]`; 0 if it is not known.
+    /// The robot's clock before the first cycle, `[ms]`; 0 if unknown.
     attached: u64,
     tool: Option<franka::Tool>,
-    /// When the channels of a lower rate are due again.
+    /// Time at which the channels with a lower rate are due again.
     slow_due: HostTime,
 }
 
-/// What is compared from cycle to cycle.
+/// The values that are compared from cycle to cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Seen {
     robot_time: u64,
@@ -90,8 +90,8 @@ impl Encoder {
         }
     }
 
-    /// Appends the events of what has changed since the cycle before, and returns whether the
-    /// cycles around are worth keeping.
+    /// Appends the events of the changes since the previous cycle. Returns true if the surrounding
+    /// cycles should be kept.
     fn compare(&mut self, cycle: &Cycle, out: &mut Vec<Message>) -> bool {
         let state = &cycle.state;
         let now = Seen {
@@ -130,7 +130,7 @@ impl Encoder {
         before.is_some_and(|before| (before.touched, before.pressed) != (now.touched, now.pressed))
     }
 
-    /// Appends what viewers show.
+    /// Appends the messages for viewers.
     fn viewed(&self, cycle: &Cycle, out: &mut Vec<Message>) {
         let time = cycle.time;
         self.put(Topic::Tf, time, &self.frames.transforms(cycle), out);
@@ -169,7 +169,7 @@ impl Encoder {
         self.put(Topic::Gripper, time, &franka::Gripper::from(state), out);
     }
 
-    /// Appends the tool, if it is known.
+    /// Appends the tool, if known.
     pub(super) fn repeat_tool(&self, time: HostTime, out: &mut Vec<Message>) {
         if let Some(tool) = &self.tool {
             self.put(Topic::Tool, time, tool, out);
@@ -193,5 +193,5 @@ impl Encoder {
     }
 }
 
-/// Of what viewers show: 50 Hz, as fast as a screen needs it.
+/// Period of the messages for viewers: 50 Hz, sufficient for a screen.
 const SLOW_PERIOD: Duration = Duration::from_millis(20);

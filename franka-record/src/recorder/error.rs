@@ -1,37 +1,37 @@
-//! Why something was not recorded.
+//! Errors of recording.
 
 use core::time::Duration;
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Why something was not recorded. The robot is not concerned: its motion goes on.
+/// The reason why data was not recorded. The robot is not affected: its motion continues.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordError {
-    /// There is a file of that name. A recording never overwrites one: choose another name.
+    /// A file with this name exists. A recording never overwrites a file: choose another name.
     #[error("{} exists; a recording never overwrites a file", path.display())]
     Exists {
         /// The file.
         path: PathBuf,
     },
-    /// A file cannot be made.
+    /// A file cannot be created.
     #[error("cannot make {}: {source}", path.display())]
     Create {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: Arc<io::Error>,
     },
-    /// A file cannot be written any more: disk full, device gone. What was written before is
+    /// A file can no longer be written: disk full, or device removed. The data written before is
     /// readable; the rest of the recording is lost.
     #[error("cannot write {} beyond {bytes} bytes: {source}", path.display())]
     Write {
         /// The file.
         path: PathBuf,
-        /// The bytes in it, all of them readable.
+        /// Number of bytes in it, all of them readable.
         bytes: u64,
-        /// What the system says.
+        /// The system's error.
         source: Arc<io::Error>,
     },
     /// The last seconds of a black box could not be written.
@@ -39,11 +39,11 @@ pub enum RecordError {
     BlackBox {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: Arc<io::Error>,
     },
-    /// The disk took no more within the time limit. What is still to be written goes on in the
-    /// background.
+    /// The disk did not store everything within the time limit. The remaining data is written in
+    /// the background.
     #[error("the recording was not complete on the disk within {limit:?}")]
     Unfinished {
         /// The time limit.
@@ -52,41 +52,41 @@ pub enum RecordError {
     /// An option is out of its range.
     #[error("{what} is {got}; expected {expected}")]
     Option {
-        /// Which option.
+        /// Name of the option.
         what: &'static str,
-        /// What it is.
+        /// The given value.
         got: String,
-        /// What it may be.
+        /// The valid range.
         expected: &'static str,
     },
-    /// A robot of that name is recorded already.
+    /// A robot with this name is already recorded.
     #[error("a robot called {name:?} is recorded already; give each a name of its own")]
     SameName {
         /// The name.
         name: String,
     },
-    /// The recorder has ended or takes no more orders.
+    /// The recorder has ended or accepts no more orders.
     #[error("the recorder has ended")]
     Ended,
     /// A thread cannot be started.
     #[error("cannot start the thread of the recorder: {source}")]
     Thread {
-        /// What the system says.
+        /// The system's error.
         source: Arc<io::Error>,
     },
     /// The server for viewers cannot listen.
     #[cfg(feature = "foxglove")]
     #[error("cannot serve viewers at {address}: {reason}")]
     Live {
-        /// The address that was asked for.
+        /// The requested address.
         address: core::net::SocketAddr,
-        /// What the server says.
+        /// The server's error.
         reason: String,
     },
-    /// The bytes of the file could not be put together. Please report it.
+    /// The bytes of the file could not be encoded. Please report this.
     #[error("cannot encode the recording: {reason}")]
     Encode {
-        /// What the encoder says.
+        /// The encoder's error.
         reason: String,
     },
 }

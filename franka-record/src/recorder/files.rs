@@ -1,4 +1,4 @@
-//! Where messages go: the file of the recording, which is followed by others, and the last seconds.
+//! The destinations of messages: the files of the recording, and the last seconds.
 
 use core::mem;
 use std::path::PathBuf;
@@ -20,54 +20,55 @@ pub(super) struct Files {
     options: RecordOptions,
     session: Session,
     disk: Disk,
-    /// The file that grows; `None` without one, and after a failure.
+    /// The current file; `None` without a file, and after a failure.
     open: Option<Open>,
-    /// True if there was to be a file.
+    /// True if a file was requested.
     wanted: bool,
     last_seconds: Option<LastSeconds>,
     thinning: Option<Thinning>,
-    /// Who shows the messages while they come.
+    /// The server that shows the messages as they arrive.
     #[cfg(feature = "foxglove")]
     server: Option<super::live::Server>,
     /// Time of the newest message.
     newest: HostTime,
     robots: Vec<RobotFiles>,
-    /// Chunks of the recording so far.
+    /// Number of chunks of the recording so far.
     chunk: u64,
-    /// Events that were not written, since the last call of [`Files::take_missing_events`].
+    /// Number of events that were not written, since the last call of
+    /// [`Files::take_missing_events`].
     missing_events: u64,
 }
 
-/// What is kept per robot.
+/// The state of one robot.
 #[derive(Default)]
 struct RobotFiles {
-    /// Cycles that were not written, since the last call of [`Files::take_missing`].
+    /// Number of cycles that were not written, since the last call of [`Files::take_missing`].
     missing: u64,
-    /// The chunk that has its tool.
+    /// The chunk that contains its tool.
     chunk: Option<u64>,
 }
 
-/// The file that grows.
+/// The current file.
 struct Open {
     file: McapFile,
     /// The path of the first file of the recording.
     first: PathBuf,
     bytes: u64,
-    /// Cycles since it was last flushed.
+    /// Number of cycles since the last flush.
     cycles: u64,
     /// Time of its first message.
     began: Option<HostTime>,
-    /// Time of the newest message when it was last flushed, and when that was.
+    /// Time of the newest message at the last flush, and the time of the flush.
     flushed: HostTime,
     flushed_at: Instant,
     room: Room,
 }
 
-/// Messages that there is room for, as the disk is behind.
+/// The messages accepted while the disk is behind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Room {
     All,
-    /// Events only: they are few, and say what happened.
+    /// Events only: they are few, and explain the recording.
     Events,
     Nothing,
 }
@@ -136,7 +137,7 @@ impl Files {
         self.check(added);
     }
 
-    /// Serves the messages that come from now on to viewers.
+    /// Serves all further messages to viewers.
     #[cfg(feature = "foxglove")]
     pub(super) fn serve(&mut self, mut server: super::live::Server) {
         let mut robots = self.session.robots().iter();
@@ -145,7 +146,7 @@ impl Files {
         self.check(added);
     }
 
-    /// Takes messages, which leaves none.
+    /// Processes messages and empties the list.
     pub(super) fn pass(&mut self, messages: &mut Vec<Message>) {
         for message in messages.drain(..) {
             self.newest = self.newest.max(message.time);
@@ -192,33 +193,33 @@ impl Files {
                 }
             }
             Topic::Event => self.missing_events += 1,
-            // Made of cycles and events, which are counted.
+            // Derived from cycles and events, which are counted.
             _ => {}
         }
     }
 
-    /// Cycles of a robot that were not written since the last call.
+    /// Returns the number of a robot's cycles that were not written since the last call.
     pub(super) fn take_missing(&mut self, robot: usize) -> u64 {
         let open = self.open.as_ref();
-        // Noted in the file once there is room for more.
+        // Recorded in the file once there is more space.
         if open.is_some_and(|open| open.room != Room::All) {
             return 0;
         }
         self.take_missing_at_end(robot)
     }
 
-    /// As [`Self::take_missing`], when no cycle follows.
+    /// Like [`Self::take_missing`], if no cycle follows.
     pub(super) fn take_missing_at_end(&mut self, robot: usize) -> u64 {
         let robot = self.robots.get_mut(robot);
         robot.map_or(0, |robot| mem::take(&mut robot.missing))
     }
 
-    /// Events that were not written since the last call.
+    /// Returns the number of events that were not written since the last call.
     pub(super) fn take_missing_events(&mut self) -> u64 {
         mem::take(&mut self.missing_events)
     }
 
-    /// Makes room for the last events of the recording.
+    /// Makes space for the last events of the recording.
     pub(super) fn begin_end(&mut self) {
         if let Some(open) = &mut self.open
             && open.room == Room::Nothing
@@ -227,7 +228,7 @@ impl Files {
         }
     }
 
-    /// Ends the chunk if messages of `now` are too late for it.
+    /// Ends the chunk if messages at `now` are too late for it.
     pub(super) fn flush_if_due(&mut self, now: HostTime) {
         if let Some(open) = &self.open
             && now.since(open.flushed) >= self.options.flush
@@ -237,7 +238,7 @@ impl Files {
         }
     }
 
-    /// True if the next messages of a robot are its first ones in a chunk; true once per chunk.
+    /// True if the next messages of a robot are its first in a chunk; true once per chunk.
     pub(super) fn begins_chunk(&mut self, robot: usize) -> bool {
         let chunk = Some(self.chunk);
         let robot = self.robots.get_mut(robot);
@@ -250,7 +251,7 @@ impl Files {
         }
     }
 
-    /// Writes what is due at `now`. Called some 50 times a second.
+    /// Writes data that is due at `now`. Called about 50 times a second.
     pub(super) fn tick(&mut self, now: HostTime) {
         if !self.disk.is_well() {
             self.give_up();
@@ -278,7 +279,7 @@ impl Files {
         }
     }
 
-    /// Ends the chunk, and the file if that is due.
+    /// Ends the chunk, and the file if its end is due.
     fn flush(&mut self) {
         let newest = self.newest;
         let flushed = match &mut self.open {
@@ -288,7 +289,7 @@ impl Files {
         self.chunk += 1;
         self.check(flushed);
         let rotation = self.options.rotation;
-        // A file that gets nothing is followed by none.
+        // An empty file has no successor.
         if let Some(open) = self.open.take_if(|open| {
             let span = open.began.map(|began| newest.since(began));
             let is_due = rotation.bytes.is_some_and(|bytes| open.bytes >= bytes)
@@ -320,7 +321,7 @@ impl Files {
         }
     }
 
-    /// Ends the recording if something could not be encoded.
+    /// Ends the recording if data could not be encoded.
     fn check(&mut self, result: Result<(), RecordError>) {
         if let Err(error) = result {
             self.disk.fail(error);
@@ -328,7 +329,7 @@ impl Files {
         }
     }
 
-    /// Leaves the file as it is on the disk.
+    /// Closes the file in its current state on the disk.
     fn give_up(&mut self) {
         if let Some(open) = self.open.take() {
             self.disk.lose(open.cycles);
@@ -371,8 +372,8 @@ impl Open {
     }
 }
 
-/// Bytes that may wait for the disk: more than a minute of one robot.
+/// Largest number of bytes that may wait for the disk: more than a minute of one robot.
 pub(super) const BACKLOG_MAX: u64 = 64 << 20;
 
-/// Bytes that may wait for the disk, events included.
+/// Largest number of bytes that may wait for the disk, including events.
 pub(super) const EVENT_BACKLOG_MAX: u64 = BACKLOG_MAX + (16 << 20);

@@ -1,4 +1,4 @@
-//! What viewers show of a cycle beside its numbers: poses, joints and the external force.
+//! The messages of a cycle for viewers: poses, joints and the external force.
 
 use franka_model::geometry::{FLANGE, JOINT_ORIGINS};
 use franka_model::transform;
@@ -11,8 +11,8 @@ use crate::schema::foxglove::{
 };
 use crate::{Cycle, HostTime};
 
-/// The names of one robot's frames and joints: those of `franka_description`, with the robot's name
-/// before them.
+/// The names of one robot's frames and joints: the names in `franka_description`, prefixed with the
+/// robot's name.
 #[derive(Debug)]
 pub(super) struct Frames {
     prefix: String,
@@ -36,8 +36,8 @@ impl Frames {
         format!("{}_{name}", self.prefix)
     }
 
-    /// The links, each in the one before; the end effector on the flange; reference and target in
-    /// the base.
+    /// Returns the links, each relative to the previous one; the end effector relative to the
+    /// flange; reference and target relative to the base.
     pub(super) fn transforms(&self, cycle: &Cycle) -> FrameTransforms {
         let mut transforms = Vec::with_capacity(12);
         let mut put = |parent: String, child: String, pose: &Isometry3<f64>| {
@@ -74,7 +74,7 @@ impl Frames {
         FrameTransforms { transforms }
     }
 
-    /// The pose that the reference heads for, if it heads for one.
+    /// Returns the pose that the reference moves towards, if any.
     pub(super) fn target(&self, cycle: &Cycle) -> Option<PoseInFrame> {
         let target = cycle.record.pose_target?;
         Some(PoseInFrame {
@@ -84,7 +84,7 @@ impl Frames {
         })
     }
 
-    /// The joints of the arm.
+    /// Returns the joints of the arm.
     pub(super) fn joints(&self, cycle: &Cycle) -> JointStates {
         let state = &cycle.state;
         let joint = |index: usize| JointState {
@@ -100,11 +100,11 @@ impl Frames {
         }
     }
 
-    /// The external force on the arm as an arrow of 1 cm per newton that ends at the stiffness
-    /// frame. It fades if no newer one comes; a force below 1 N has none.
+    /// Returns the external force on the arm as an arrow of 1 cm per newton that ends at the
+    /// stiffness frame. It fades if no newer one arrives; a force below 1 N has no arrow.
     pub(super) fn scene(&self, cycle: &Cycle) -> Option<SceneUpdate> {
         let [x, y, z, ..] = cycle.state.O_F_ext_hat_K;
-        // The state has the force with which the robot pushes.
+        // The state contains the force with which the robot pushes.
         let force = -Vector3::new(x, y, z);
         let newtons = force.norm();
         if newtons.is_nan() || newtons < FORCE_MIN {
@@ -115,7 +115,8 @@ impl Frames {
         let tip = (end_effector * stiffness).translation.vector;
         let length = newtons.min(FORCE_MAX) * METRES_PER_NEWTON;
         let start = tip - force / newtons * length;
-        // An arrow points along x of its pose. Opposite to x, any half turn about z does.
+        // An arrow points along x of its pose. For the direction opposite to x, any half turn about
+        // z works.
         let turn = UnitQuaternion::rotation_between(&Vector3::x(), &force).unwrap_or_else(|| {
             UnitQuaternion::from_axis_angle(&Vector3::z_axis(), core::f64::consts::PI)
         });
@@ -150,15 +151,15 @@ impl Frames {
     }
 }
 
-/// Forces below are mostly noise of the estimate, `[N]`.
+/// Force, `[N]`, below which the estimate is mostly noise.
 const FORCE_MIN: f64 = 1.0;
 
-/// A longer arrow would leave the picture, `[N]`.
+/// Force, `[N]`, above which the arrow would leave the picture.
 const FORCE_MAX: f64 = 100.0;
 
 const METRES_PER_NEWTON: f64 = 0.01;
 
-/// A time as messages of Foxglove have it.
+/// Converts a time to the format of Foxglove's messages.
 pub(super) fn timestamp(time: HostTime) -> prost_types::Timestamp {
     let nanos = time.as_nanos();
     prost_types::Timestamp {

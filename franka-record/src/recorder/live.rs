@@ -1,4 +1,4 @@
-//! The channels of a recording as a live source for Foxglove, over a WebSocket.
+//! Serves the channels of a recording as a live source for Foxglove, over a WebSocket.
 
 use core::fmt;
 use core::net::SocketAddr;
@@ -15,13 +15,14 @@ use super::error::RecordError;
 use super::options::Robot;
 use crate::schema::{DESCRIPTORS, Topic};
 
-/// Where Foxglove finds the channels of a recording while it is made.
+/// Settings of the live source for Foxglove.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Live {
-    /// Where the server listens. `127.0.0.1:8765`, by default, is what Foxglove proposes. Every
-    /// client that can connect to it can watch. The server takes no commands.
+    /// Address of the server. The default, `127.0.0.1:8765`, is Foxglove's default. Every client
+    /// that can connect to it can watch. The server accepts no commands.
     pub address: SocketAddr,
-    /// Of the cycles every so many, 20 by default: 50 a second. All other channels are whole.
+    /// Interval of the served cycles, 20 by default: 50 cycles a second. All other channels are
+    /// complete.
     pub every: u32,
 }
 
@@ -34,21 +35,22 @@ impl Default for Live {
     }
 }
 
-/// A server, and the channels that it offers.
+/// A server, and its channels.
 pub(super) struct Server {
-    /// A thread of its own: neither the recorder's nor the program's waits for a viewer.
+    /// Uses a separate thread, so that neither the recorder's thread nor the program's waits for a
+    /// viewer.
     runtime: Option<Runtime>,
     handle: Option<WebSocketServerHandle>,
     context: Arc<Context>,
     /// The channels of each robot, by topic.
     channels: Vec<Vec<Arc<RawChannel>>>,
     every: u32,
-    /// Cycles so far, of all robots.
+    /// Number of cycles so far, of all robots.
     cycles: u32,
 }
 
 impl Server {
-    /// Starts a server, and returns the address at which it listens.
+    /// Starts a server, and returns its address.
     pub(super) fn start(live: &Live) -> Result<(Self, SocketAddr), RecordError> {
         if live.every == 0 {
             return Err(RecordError::Option {
@@ -68,7 +70,7 @@ impl Server {
             .context(&context)
             .message_backlog_size(BACKLOG)
             .bind(host, address.port());
-        // On a thread of its own, as this one may belong to a runtime.
+        // Runs on a separate thread, because this thread may belong to a runtime.
         let started = thread::scope(|scope| {
             let start = scope.spawn(|| {
                 let runtime = Builder::new_multi_thread()
@@ -99,7 +101,7 @@ impl Server {
         Ok((server, address))
     }
 
-    /// Offers the channels of the next robot.
+    /// Adds the channels of the next robot.
     pub(super) fn add_robot(&mut self, robot: &Robot) -> Result<(), RecordError> {
         let channels = Topic::ALL.map(|topic| {
             let schema = Schema::new(topic.schema(), "protobuf", DESCRIPTORS);
@@ -117,8 +119,8 @@ impl Server {
         Ok(())
     }
 
-    /// Offers a message to the viewers that ask for its channel. Never waits: a viewer that is too
-    /// slow loses the oldest ones.
+    /// Sends a message to the viewers that subscribed to its channel. Never waits: a viewer that is
+    /// too slow loses the oldest messages.
     pub(super) fn send(&mut self, message: &Message) {
         if message.topic == Topic::Cycle {
             self.cycles = self.cycles.wrapping_add(1);
@@ -156,5 +158,5 @@ impl fmt::Debug for Server {
     }
 }
 
-/// Messages that wait for a viewer, who has asked for everything of one robot: two seconds.
+/// Number of messages that wait for a viewer with all channels of one robot: two seconds.
 const BACKLOG: usize = 512;

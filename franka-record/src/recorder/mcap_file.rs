@@ -1,4 +1,4 @@
-//! The bytes of one MCAP file, put together in memory.
+//! The bytes of one MCAP file, built in memory.
 
 use std::collections::BTreeMap;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -15,29 +15,29 @@ use super::session::Session;
 use crate::HostTime;
 use crate::schema::{DESCRIPTORS, METADATA, ROBOT_METADATA, Topic};
 
-/// An MCAP file that grows in memory. What was flushed is a whole number of chunks: a reader needs
-/// nothing that comes later.
+/// An MCAP file that grows in memory. The flushed part is a whole number of chunks: a reader needs
+/// no later data.
 pub(super) struct McapFile {
     writer: Writer<Buffer>,
     buffer: Buffer,
     /// The channels of each robot, by topic.
     channels: Vec<[u16; Topic::ALL.len()]>,
-    /// Messages so far, by channel.
+    /// Number of messages so far, by channel.
     sequences: BTreeMap<u16, u32>,
-    /// Time of the newest message; none is written with an earlier one.
+    /// Time of the newest message; no message is written with an earlier time.
     newest: HostTime,
-    /// When the recording began.
+    /// Start of the recording.
     began: HostTime,
 }
 
 impl McapFile {
-    /// A file of `session`, with all its robots so far.
+    /// Creates a file of `session`, with all its robots so far.
     pub(super) fn begin(session: &Session) -> Result<Self, RecordError> {
         let buffer = Buffer::default();
         let options = WriteOptions::new()
             .compression(Some(Compression::Lz4))
             .chunk_size(Some(CHUNK_MAX))
-            // Chunks then get into the buffer whole.
+            // Chunks then enter the buffer whole.
             .disable_seeking(true)
             .library(concat!("franka-record ", env!("CARGO_PKG_VERSION")));
         let mut file = Self {
@@ -121,7 +121,7 @@ impl McapFile {
         self.writer.attach(&attachment).map_err(encode)
     }
 
-    /// Appends a message. One of a robot that was not added is ignored.
+    /// Appends a message. A message of an unknown robot is ignored.
     pub(super) fn write(&mut self, message: &Message) -> Result<(), RecordError> {
         let Some(channels) = self.channels.get(message.robot) else {
             return Ok(());
@@ -160,17 +160,17 @@ fn encode(error: McapError) -> RecordError {
     }
 }
 
-/// A chunk that gets this long, in bytes, is ended before the next flush: several robots.
+/// Length in bytes at which a chunk ends before the next flush, as with several robots.
 const CHUNK_MAX: u64 = 4 << 20;
 
-/// Bytes of a file that have not been taken yet. It appends only.
+/// Bytes of a file that have not been taken yet. Bytes are only appended.
 #[derive(Clone, Default)]
 struct Buffer(Arc<Mutex<Pending>>);
 
 #[derive(Default)]
 struct Pending {
     bytes: Vec<u8>,
-    /// Bytes that were taken before.
+    /// Number of bytes taken before.
     taken: u64,
 }
 
@@ -195,7 +195,7 @@ impl Write for Buffer {
 }
 
 impl Seek for Buffer {
-    /// Returns the position at the end: no other can be sought.
+    /// Returns the position at the end: seeking elsewhere is not possible.
     fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
         let pending = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let end = pending.taken + pending.bytes.len() as u64;

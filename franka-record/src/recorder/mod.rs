@@ -1,4 +1,4 @@
-//! Writes every cycle of robots, and what happens to them, to files.
+//! Writes every cycle of robots, and their events, to files.
 //!
 //! ```text
 //! control thread --ring of cycles--+
@@ -6,10 +6,10 @@
 //! RecordHandle --bounded queue-----+
 //! ```
 //!
-//! Both threads are ordinary ones. A slow disk delays the second one only: 64 MB wait for it, and
-//! then cycles and what is derived of them are dropped, counted and the count written down. Events
-//! have another 16 MB, and one file of the black box waits. A disk that fails ends the recording
-//! and nothing else.
+//! Both threads are ordinary threads. A slow disk delays only the second one: up to 64 MB wait for
+//! it. Then cycles and data derived from them are dropped and counted, and the count is recorded.
+//! Events have another 16 MB, and one file of the black box waits. A disk failure ends the
+//! recording, but does not affect anything else.
 
 mod black_box;
 mod disk;
@@ -63,22 +63,22 @@ use crate::{Event, EventKind, GripperState, HostTime};
 /// # }
 /// ```
 ///
-/// Nothing it does can delay a cycle. Dropping it ends the recording in the background, as
-/// [`Recorder::finish`] does and waits for.
+/// The recorder cannot delay a cycle. Dropping it ends the recording in the background;
+/// [`Recorder::finish`] does the same and waits for the end.
 #[derive(Debug)]
 pub struct Recorder {
     orders: SyncSender<Order>,
     clock: RecordClock,
     disk: Arc<Mutex<DiskStatus>>,
     drained: Arc<Mutex<DrainStatus>>,
-    /// Ends when the last byte is written. Locked by the one who finishes.
+    /// Ends when the last byte is written. The finishing thread locks it.
     done: Mutex<Receiver<()>>,
     /// The robots so far, by index.
     robots: Mutex<Vec<String>>,
 }
 
 impl Recorder {
-    /// Begins a recording in a new file at `path`.
+    /// Starts a recording in a new file at `path`.
     ///
     /// # Errors
     /// [`RecordError::Exists`], [`RecordError::Create`] (the folder is missing or read-only),
@@ -87,7 +87,7 @@ impl Recorder {
         Self::start(Some(path.as_ref()), options)
     }
 
-    /// Keeps the last seconds in memory only, and writes them when something ends a motion.
+    /// Keeps only the last seconds in memory, and writes them after an incident ends a motion.
     ///
     /// # Errors
     /// [`RecordError::Option`], [`RecordError::Thread`].
@@ -99,10 +99,10 @@ impl Recorder {
         Self::start(None, options)
     }
 
-    /// Records nothing, and serves what a recording would have to Foxglove: see [`Self::serve`].
+    /// Records nothing, and serves the channels of a recording to Foxglove: see [`Self::serve`].
     ///
     /// # Errors
-    /// As [`Self::serve`], and [`RecordError::Thread`].
+    /// The errors of [`Self::serve`], and [`RecordError::Thread`].
     #[cfg(feature = "foxglove")]
     pub fn live(live: &Live) -> Result<(Self, core::net::SocketAddr), RecordError> {
         let recorder = Self::start(None, RecordOptions::default())?;
@@ -112,12 +112,12 @@ impl Recorder {
 
     fn start(path: Option<&Path>, options: RecordOptions) -> Result<Self, RecordError> {
         options.check()?;
-        // Made here, so that the caller has the error.
+        // Created here, so that the caller receives the error.
         let file = path.map(disk::create).transpose()?;
         Self::start_with(path, file, options, HostTime::now)
     }
 
-    /// Begins a recording in `file`, which is at `path`. `wall` is the wall clock.
+    /// Starts a recording in `file`, which is at `path`. `wall` is the wall clock.
     fn start_with(
         path: Option<&Path>,
         file: Option<File>,
@@ -158,8 +158,8 @@ impl Recorder {
         })
     }
 
-    /// Records `robot`, whose cycles come out of `cycles`, until its thread ends or the recording
-    /// does. The handle takes what is not a cycle.
+    /// Records `robot` with its `cycles`, until its thread or the recording ends. The handle
+    /// accepts all other data.
     ///
     /// # Errors
     /// [`RecordError::SameName`], [`RecordError::Option`] for an invalid name, and
@@ -185,11 +185,11 @@ impl Recorder {
 
     /// Serves the channels of the recording from now on, until it ends, to Foxglove ("Open
     /// connection", "Foxglove WebSocket") and other clients that speak `foxglove.sdk.v1`. Returns
-    /// the address, whose port the system chooses if it is 0. A viewer that is too slow loses
-    /// messages; the recording loses none for it. Blocks until the server listens.
+    /// the address; the system chooses the port if it is 0. A viewer that is too slow loses
+    /// messages, but the recording does not. Blocks until the server listens.
     ///
     /// # Errors
-    /// [`RecordError::Live`] if it cannot listen there, [`RecordError::Option`],
+    /// [`RecordError::Live`] if it cannot listen at this address, [`RecordError::Option`],
     /// [`RecordError::Ended`].
     #[cfg(feature = "foxglove")]
     pub fn serve(&self, live: &Live) -> Result<core::net::SocketAddr, RecordError> {
@@ -199,12 +199,12 @@ impl Recorder {
         Ok(address)
     }
 
-    /// The clock of recorded time.
+    /// Returns the clock of recorded time.
     pub fn clock(&self) -> RecordClock {
         self.clock
     }
 
-    /// What was recorded so far, and what has failed.
+    /// Returns the progress of the recording, and its failures.
     pub fn status(&self) -> RecordStatus {
         let disk = lock(&self.disk).clone();
         let drained = *lock(&self.drained);
@@ -221,22 +221,22 @@ impl Recorder {
         }
     }
 
-    /// Ends the recording and waits, 10 s at most, until all is on the disk.
+    /// Ends the recording and waits until everything is on the disk, at most 10 s.
     ///
     /// # Errors
-    /// As [`Recorder::finish_within`].
+    /// The errors of [`Recorder::finish_within`].
     pub fn finish(self) -> Result<RecordStatus, RecordError> {
         self.finish_within(FINISH_MAX)
     }
 
-    /// Ends the recording and waits, up to `limit`, until all is on the disk.
+    /// Ends the recording and waits, up to `limit`, until everything is on the disk.
     ///
     /// # Errors
-    /// [`RecordError::Write`] and others if the file could not be written to its end, and
-    /// [`RecordError::Unfinished`] if the disk was too slow. What was written is readable.
+    /// [`RecordError::Write`] and others if the file could not be completed, and
+    /// [`RecordError::Unfinished`] if the disk was too slow. The written data is readable.
     pub fn finish_within(self, limit: Duration) -> Result<RecordStatus, RecordError> {
         lock(&self.drained).finish = true;
-        // Wakes the thread; if the queue is full it is awake.
+        // Wakes the thread; with a full queue it is already awake.
         let _ = self.orders.try_send(Order::Finish);
         match lock(&self.done).recv_timeout(limit) {
             Ok(()) | Err(RecvTimeoutError::Disconnected) => {}
@@ -258,28 +258,28 @@ impl Drop for Recorder {
     }
 }
 
-/// What was recorded so far, and what has failed.
+/// The progress of a recording, and its failures.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct RecordStatus {
-    /// Cycles taken, of all robots.
+    /// Number of cycles received, of all robots.
     pub cycles: u64,
-    /// Cycles for which there was no room: in the ring, as this host was busy, or in memory or on
-    /// the disk. The file says where they are missing, unless it has ended there.
+    /// Number of cycles without space: in the ring, because this host was busy, or in memory or on
+    /// the disk. The file records where they are missing, unless it ended before.
     pub dropped: u64,
-    /// Events for which there was no room.
+    /// Number of events without space.
     pub events_dropped: u64,
-    /// Bytes in the files of the recording.
+    /// Number of bytes in the files of the recording.
     pub bytes: u64,
-    /// Bytes that wait for the disk.
+    /// Number of bytes that wait for the disk.
     pub waiting: u64,
     /// The files of the recording, oldest first.
     pub files: Vec<PathBuf>,
-    /// The files of the black box that were written.
+    /// The written files of the black box.
     pub black_boxes: Vec<PathBuf>,
-    /// Why the recording ended early.
+    /// The error that ended the recording early.
     pub error: Option<RecordError>,
-    /// Why the newest black box could not be written.
+    /// The error of writing the newest black box.
     pub black_box_error: Option<RecordError>,
 }
 
@@ -294,27 +294,27 @@ pub struct RecordHandle {
 }
 
 impl RecordHandle {
-    /// The clock of recorded time.
+    /// Returns the clock of recorded time.
     pub fn clock(&self) -> RecordClock {
         self.clock
     }
 
-    /// Goes on with the cycles of another control thread of the same robot, when all of the one
-    /// before were taken: after a reconnect. Does nothing where the newest are of that thread
-    /// already. Waits while there is no room for an order.
+    /// Continues with the cycles of another control thread of the same robot after a reconnect,
+    /// once all previous cycles were read. Does nothing if the newest cycles are already from that
+    /// thread. Waits while the queue of orders is full.
     pub fn resume(&self, cycles: CycleReader) {
-        // Fails when the recording has ended.
+        // Fails if the recording has ended.
         let _ = self
             .orders
             .send(Order::Resume(self.robot, Box::new(cycles)));
     }
 
-    /// Records that something happens now.
+    /// Records an event at the current time.
     pub fn event(&self, kind: EventKind) {
         self.event_at(self.clock.now(), kind);
     }
 
-    /// Records that something happened at `time`.
+    /// Records an event at `time`.
     pub fn event_at(&self, time: HostTime, kind: EventKind) {
         let event = Event {
             time,
@@ -343,7 +343,7 @@ impl RecordHandle {
         self.order(Order::Gripper(self.robot, time, state));
     }
 
-    /// True if the recording has ended: nothing that is given to this handle is kept any more.
+    /// True if the recording has ended: data given to this handle is then dropped.
     pub fn has_ended(&self) -> bool {
         lock(&self.drained).ended
     }
@@ -355,12 +355,12 @@ impl RecordHandle {
     }
 }
 
-/// Events that wait for the recorder, which looks 50 times a second.
+/// Capacity of the recorder's queue, which it polls 50 times a second.
 const ORDERS_MAX: usize = 4096;
 
 const FINISH_MAX: Duration = Duration::from_secs(10);
 
-/// Held for some assignments only, by ordinary threads.
+/// Ordinary threads hold the lock for a few assignments.
 fn lock<T>(status: &Mutex<T>) -> MutexGuard<'_, T> {
     status.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,4 +1,4 @@
-//! What a recorder is asked for.
+//! The options of a recorder.
 
 use core::time::Duration;
 use std::collections::BTreeMap;
@@ -8,29 +8,29 @@ use franka_model::RobotKind;
 
 use super::error::RecordError;
 
-/// How a recording is written.
+/// Options of a recording.
 #[derive(Clone, Debug)]
 pub struct RecordOptions {
-    /// Cycles at the full rate only around what is notable, else every tenth, and of what viewers
-    /// show (`/tf`, `/target`, `/joints`, `/scene`) every second message; off by default.
+    /// True to reduce the rate outside notable events: every tenth cycle is kept, and every second
+    /// message for viewers (`/tf`, `/target`, `/joints`, `/scene`). Off by default.
     ///
-    /// Notable are reflexes and other errors, contacts and collisions, a lost link, motions that
-    /// fail or are given up by a guard, lost cycles and remarks of level error: from 0.5 s before
-    /// to 1 s after. Messages are held back for 0.5 s to know that.
+    /// Notable events are reflexes and other errors, contacts and collisions, a lost link, failed
+    /// motions or motions aborted by a guard, lost cycles and remarks of level error. The full rate
+    /// is kept from 0.5 s before to 1 s after. Messages are therefore delayed by 0.5 s.
     pub thinned: bool,
-    /// The longest time between two writes, 1 s by default and at most: what a crash can lose.
+    /// Longest time between two writes, 1 s by default and at most: the largest loss in a crash.
     pub flush: Duration,
-    /// True if each write is forced to the disk, so that a power cut loses no more than a crash.
-    /// On by default; it costs nothing to the robot, as a thread of its own waits for the disk.
+    /// True to force each write to the disk, so that a power failure loses no more than a crash. On
+    /// by default. It does not affect the robot, because a separate thread waits for the disk.
     pub sync: bool,
-    /// When a new file is begun: `run.mcap` is followed by `run-0002.mcap` and so on, without
-    /// the numbers of files that exist.
+    /// When to begin a new file: `run.mcap` is followed by `run-0002.mcap` and so on, skipping the
+    /// numbers of existing files.
     pub rotation: Rotation,
-    /// What is known beforehand about the recording, for its metadata.
+    /// Known facts about the recording, for its metadata.
     pub metadata: BTreeMap<String, String>,
-    /// Files that go into every file of the recording.
+    /// Files that are attached to every file of the recording.
     pub attachments: Vec<Attachment>,
-    /// Whether the last seconds before an incident are written as a file of their own.
+    /// Black box: writes the last seconds before an incident to a separate file, if set.
     pub black_box: Option<BlackBox>,
 }
 
@@ -93,7 +93,7 @@ impl RecordOptions {
         Ok(())
     }
 
-    /// The options by their names, but for metadata and files.
+    /// Returns the options by their names, except metadata and files.
     pub(super) fn described(&self) -> BTreeMap<String, String> {
         let Self {
             thinned,
@@ -130,14 +130,14 @@ impl RecordOptions {
 const FLUSH_MIN: Duration = Duration::from_millis(10);
 pub(super) const FLUSH_MAX: Duration = Duration::from_secs(1);
 
-/// Less than two seconds of one robot.
+/// Smallest size of a file: less than two seconds of one robot.
 const ROTATION_MIN: u64 = 1_000_000;
 
-/// Some 200 MB in memory.
+/// Longest time before an incident: some 200 MB in memory.
 const BEFORE_MAX: Duration = Duration::from_secs(300);
 const AFTER_MAX: Duration = Duration::from_secs(60);
 
-/// When a new file is begun; never, by default.
+/// When a new file begins; never, by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rotation {
     /// After a file has this many bytes.
@@ -157,24 +157,24 @@ pub struct Attachment {
     pub data: Vec<u8>,
 }
 
-/// The last seconds in memory, written to a file when a motion ends in a reflex, for a lost link or
-/// by a guard of the driver ([`Ending::is_incident`](crate::event::Ending::is_incident)).
+/// Keeps the last seconds in memory, and writes them to a file when a motion ends because of a
+/// reflex, a lost link or a guard of the driver
+/// ([`Ending::is_incident`](crate::event::Ending::is_incident)).
 #[derive(Clone, Debug)]
 pub struct BlackBox {
-    /// Where the files go; made if it is not there. They are named by UTC, robot and cause:
+    /// The directory of the files; created if missing. Files are named by UTC, robot and cause:
     /// `20260301T120000.123Z-fr3-reflex.mcap`.
     pub directory: PathBuf,
-    /// How much is kept before the incident, 30 s by default: some 0.7 MB a second and robot.
+    /// Time kept before the incident, 30 s by default: some 0.7 MB per second and robot.
     pub before: Duration,
-    /// How much is added after it, 1 s by default. Another incident meanwhile gets no file of its
-    /// own.
+    /// Time added after it, 1 s by default. Another incident in this time gets no separate file.
     pub after: Duration,
-    /// How many files are kept, 20 by default; the oldest are deleted.
+    /// Number of files kept, 20 by default; the oldest are deleted.
     pub keep: usize,
 }
 
 impl BlackBox {
-    /// A black box that writes to `directory`.
+    /// Creates a black box that writes to `directory`.
     pub fn new(directory: impl Into<PathBuf>) -> Self {
         Self {
             directory: directory.into(),
@@ -185,25 +185,25 @@ impl BlackBox {
     }
 }
 
-/// A robot that is recorded.
+/// A recorded robot.
 #[derive(Clone, Debug)]
 pub struct Robot {
-    /// Its name: letters, digits, `-` and `_`. Empty by default, which does for an only robot:
-    /// channels are then called `/cycle` and so on, and `/left/cycle` with the name `left`.
+    /// Its name: letters, digits, `-` and `_`. Empty by default, which is sufficient for a single
+    /// robot. Channels are then named `/cycle` and so on, or `/left/cycle` with the name `left`.
     pub name: String,
-    /// Which robot it is.
+    /// The kind of robot.
     pub kind: RobotKind,
-    /// Its description, if it is known; attached to the file.
+    /// Its description, if known; attached to the file.
     pub urdf: Option<String>,
-    /// What else is known of it: address, version, options. For the metadata.
+    /// Other known facts: address, version, options. For the metadata.
     pub metadata: BTreeMap<String, String>,
-    /// The robot's clock when it is attached, `[ms]`, which events before the first cycle have; 0
-    /// if it is not known.
+    /// The robot's clock when it is attached, `[ms]`, used for events before the first cycle; 0 if
+    /// unknown.
     pub robot_time: u64,
 }
 
 impl Robot {
-    /// A robot without a name.
+    /// Creates a robot without a name.
     pub fn new(kind: RobotKind) -> Self {
         Self {
             name: String::new(),
@@ -214,7 +214,7 @@ impl Robot {
         }
     }
 
-    /// The same robot, called `name`.
+    /// Sets the name.
     #[must_use]
     pub fn named(self, name: impl Into<String>) -> Self {
         Self {
@@ -236,7 +236,7 @@ impl Robot {
         }
     }
 
-    /// What it is called in metadata and names of files.
+    /// Returns its name for metadata and file names.
     pub(super) fn label(&self) -> &str {
         match self.name.as_str() {
             "" => self.arm(),
@@ -244,7 +244,7 @@ impl Robot {
         }
     }
 
-    /// What `franka_description` calls an arm of its kind.
+    /// Returns the name of its kind of arm in `franka_description`.
     pub(super) fn arm(&self) -> &'static str {
         match self.kind {
             RobotKind::Fer => "fer",

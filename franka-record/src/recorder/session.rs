@@ -1,4 +1,4 @@
-//! What every file of one recording begins with.
+//! The common beginning of every file of one recording.
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -7,7 +7,7 @@ use super::error::RecordError;
 use super::options::{Attachment, RecordOptions, Robot};
 use crate::HostTime;
 
-/// Where recorded time comes from: the wall clock when the recorder was made, and the monotonic
+/// The origin of recorded time: the wall clock at the creation of the recorder, and the monotonic
 /// clock since.
 #[derive(Clone, Copy, Debug)]
 pub struct RecordClock {
@@ -16,7 +16,7 @@ pub struct RecordClock {
 }
 
 impl RecordClock {
-    /// A clock that shows the wall clock's time of now.
+    /// Creates a clock that shows the current wall clock.
     pub(super) fn start() -> Self {
         Self {
             wall: HostTime::now(),
@@ -24,7 +24,7 @@ impl RecordClock {
         }
     }
 
-    /// The time of `instant`.
+    /// Returns the time of `instant`.
     pub fn at(&self, instant: Instant) -> HostTime {
         match instant.checked_duration_since(self.monotonic) {
             Some(since) => self.wall + since,
@@ -32,13 +32,13 @@ impl RecordClock {
         }
     }
 
-    /// The time now.
+    /// Returns the current time.
     pub fn now(&self) -> HostTime {
         self.at(Instant::now())
     }
 }
 
-/// What every file of one recording begins with.
+/// The common beginning of every file of one recording.
 #[derive(Debug)]
 pub(super) struct Session {
     began: HostTime,
@@ -61,7 +61,7 @@ impl Session {
             ("kernel", "/proc/sys/kernel/osrelease"),
             ("kernel_build", "/proc/sys/kernel/version"),
         ] {
-            // There on Linux only.
+            // Exists on Linux only.
             if let Ok(text) = std::fs::read_to_string(path) {
                 metadata.insert(name.to_owned(), text.trim().to_owned());
             }

@@ -1,4 +1,4 @@
-//! Recorders on disks that hang and under a clock that is set.
+//! Recorders with disks that hang, and with a clock that is set.
 
 use std::fs::File;
 use std::io::{PipeReader, Read as _};
@@ -21,7 +21,7 @@ use feed::{Arm, Scratch, quick};
 #[path = "../../tests/recording/feed.rs"]
 mod feed;
 
-/// A disk that takes some bytes and then nothing, until somebody reads the other end.
+/// Returns a disk that accepts some bytes and then blocks, until the other end is read.
 fn hanging() -> (Recorder, PipeReader) {
     let (reader, writer) = std::io::pipe().unwrap();
     let file = File::from(OwnedFd::from(writer));
@@ -44,7 +44,7 @@ fn cycles_and_dropped(recording: &Recording) -> (Vec<Cycle>, u64) {
 fn the_end_of_a_recording_waits_no_longer_than_it_is_told_for_a_disk_that_hangs() {
     let (recorder, reader) = hanging();
     let (mut arm, _handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
-    // Every cycle is taken, whatever the disk does.
+    // Every cycle is received, regardless of the disk.
     arm.run(&recorder, 3000);
     let limit = Duration::from_millis(50);
     let error = recorder.finish_within(limit).unwrap_err();
@@ -52,7 +52,7 @@ fn the_end_of_a_recording_waits_no_longer_than_it_is_told_for_a_disk_that_hangs(
         matches!(error, RecordError::Unfinished { limit: told } if told == limit),
         "{error}"
     );
-    // The rest is written once the disk goes on.
+    // The rest is written once the disk continues.
     let recording = Recording::from_bytes(read_all(reader)).unwrap();
     assert_eq!(recording.damage(), None);
     let (cycles, dropped) = cycles_and_dropped(&recording);
@@ -69,10 +69,10 @@ fn what_is_left_out_while_a_disk_hangs_is_counted_and_told_in_the_file() {
         let patience = Instant::now() + Duration::from_secs(60);
         while recorder.status().waiting < super::files::BACKLOG_MAX {
             assert!(Instant::now() < patience, "{:?}", recorder.status());
-            // Text that no compression makes short.
+            // Text that cannot be compressed.
             let text = (0..4 << 20).map(|_| char::from(random.random_range(b' '..b'~')));
             handle.note(text.collect::<String>());
-            // Cycles that are written as long as there is room.
+            // Cycles that are written while there is space.
             arm.run(&recorder, 200);
         }
         arm.run(&recorder, 1000);
@@ -94,7 +94,7 @@ fn what_is_left_out_while_a_disk_hangs_is_counted_and_told_in_the_file() {
     }
 }
 
-/// Cycles, events and black boxes, without a disk that takes any.
+/// Cycles, events and black boxes, with a disk that accepts none.
 #[test]
 fn memory_is_bounded_while_a_disk_hangs() {
     let (reader, writer) = std::io::pipe().unwrap();
@@ -125,13 +125,13 @@ fn memory_is_bounded_while_a_disk_hangs() {
             ..Outcome::default()
         }));
     }
-    // A chunk and a black box more than what may wait.
+    // The bound plus a chunk and a black box.
     let most = super::files::EVENT_BACKLOG_MAX + (32 << 20);
     let status = recorder.status();
     assert!(status.waiting < most, "{noted} notes: {status:?}");
     let error = status.black_box_error.expect("the disk hangs");
     assert!(error.to_string().contains("the one before"), "{error}");
-    // Without a reader the pipe is broken, and the recording ends with what was written.
+    // Without a reader the pipe is broken, and the recording ends with the data written before.
     drop(reader);
     let error = recorder.finish_within(Duration::from_secs(60)).unwrap_err();
     assert!(matches!(error, RecordError::Write { .. }), "{error}");
@@ -143,7 +143,7 @@ fn read_all(mut reader: PipeReader) -> Vec<u8> {
     bytes
 }
 
-/// How far the wall clock of the test is ahead, and how far it was when it was last read, `[ns]`.
+/// Offset of the test's wall clock, and its value at the last read, `[ns]`.
 static AHEAD: AtomicI64 = AtomicI64::new(0);
 static READ: AtomicI64 = AtomicI64::new(0);
 
@@ -176,7 +176,7 @@ fn a_clock_that_is_set_moves_no_time_of_a_recording() {
         arm.run(&recorder, 2000);
     }
     let status = recorder.finish().unwrap();
-    // 8 s of cycles, and no hour.
+    // 8 s of cycles, without the hour.
     assert!((3..=5).contains(&status.files.len()), "{:?}", status.files);
 
     let (mut cycles, mut steps) = (Vec::new(), Vec::new());
@@ -187,7 +187,7 @@ fn a_clock_that_is_set_moves_no_time_of_a_recording() {
         let of_file: Vec<_> = robot.cycles().map(Result::unwrap).collect();
         for event in robot.events() {
             if let EventKind::ClockStep { by } = event.unwrap().kind {
-                // Rounded to an hour: the clock of this host may be slewed meanwhile.
+                // Rounded to an hour, because the clock of this host may be slewed meanwhile.
                 steps.push((by + by.signum() * HOUR / 2) / HOUR);
             }
         }

@@ -1,5 +1,5 @@
-//! Cycles at the full rate around what is notable, and at a tenth of it elsewhere; what viewers
-//! show, at half its rate elsewhere.
+//! Keeps cycles at the full rate around notable events, and at a tenth of it elsewhere; messages
+//! for viewers at half their rate elsewhere.
 
 use core::time::Duration;
 use std::collections::VecDeque;
@@ -8,18 +8,18 @@ use super::encoder::Message;
 use crate::HostTime;
 use crate::schema::Topic;
 
-/// Holds messages back until it is known whether something notable follows soon.
+/// Delays messages until it is known whether a notable event follows soon.
 #[derive(Debug, Default)]
 pub(super) struct Thinning {
     waiting: VecDeque<(Message, bool)>,
-    /// Until when everything is kept.
+    /// Time until which everything is kept.
     notable_until: HostTime,
-    /// Messages so far, by robot and topic.
+    /// Number of messages so far, by robot and topic.
     counts: Vec<[u64; Topic::ALL.len()]>,
 }
 
 impl Thinning {
-    /// Takes a message; `pass` gets those that need not wait any longer.
+    /// Processes a message; `pass` receives the messages whose delay has ended.
     pub(super) fn push(&mut self, message: Message, mut pass: impl FnMut(Message)) {
         let now = message.time;
         let due = now - BEFORE;
@@ -41,7 +41,7 @@ impl Thinning {
         self.waiting.push_back((message, kept));
     }
 
-    /// Counts a message; returns whether it is kept also where nothing happens.
+    /// Counts a message; returns true if it is kept even without a notable event.
     fn is_next(&mut self, robot: usize, topic: Topic) -> bool {
         if self.counts.len() <= robot {
             self.counts.resize(robot + 1, Default::default());
@@ -52,7 +52,7 @@ impl Thinning {
         is_next
     }
 
-    /// Passes on what waits.
+    /// Forwards the delayed messages.
     pub(super) fn finish(&mut self, mut pass: impl FnMut(Message)) {
         for (message, kept) in self.waiting.drain(..) {
             if kept {
@@ -65,7 +65,7 @@ impl Thinning {
 const BEFORE: Duration = Duration::from_millis(500);
 const AFTER: Duration = Duration::from_secs(1);
 
-/// Of how many messages one is kept where nothing happens.
+/// Returns the number of messages of which one is kept without a notable event.
 fn one_in(topic: Topic) -> u64 {
     match topic {
         Topic::Cycle => 10,
@@ -78,7 +78,7 @@ fn one_in(topic: Topic) -> u64 {
 mod tests {
     use super::*;
 
-    /// The milliseconds of the messages that are kept of two robots with one message each.
+    /// Returns the milliseconds of the kept messages, for two robots with one message each.
     fn kept(topic: Topic, notable: impl Fn(u64) -> bool) -> Vec<u64> {
         let mut thinning = Thinning::default();
         let mut kept = Vec::new();

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Where a recording is read from.
+/// The source of a recording.
 #[derive(Clone, Debug)]
 pub(super) struct Bytes {
     store: Store,
@@ -37,7 +37,7 @@ impl Bytes {
         self.length
     }
 
-    /// `length` bytes from `offset` on, `None` if there are not so many. Nothing is allocated then.
+    /// Returns `length` bytes from `offset` on; `None` if fewer exist, without allocation.
     pub(super) fn read(&self, offset: u64, length: u64) -> io::Result<Option<Vec<u8>>> {
         let end = offset.checked_add(length);
         if end.is_none_or(|end| end > self.length) {
@@ -45,7 +45,7 @@ impl Bytes {
         }
         match &self.store {
             Store::Memory(bytes) => {
-                // No more than there are bytes in memory.
+                // At most the number of bytes in memory.
                 let (start, length) = (offset as usize, length as usize);
                 Ok(Some(bytes[start..start + length].to_vec()))
             }
@@ -53,7 +53,7 @@ impl Bytes {
                 let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
                 file.seek(SeekFrom::Start(offset))?;
                 let mut bytes = Vec::new();
-                // A file that is cut meanwhile has less: the buffer grows with what there is.
+                // A file that is truncated meanwhile has less: the buffer grows with the data.
                 (&mut *file).take(length).read_to_end(&mut bytes)?;
                 Ok((bytes.len() as u64 == length).then_some(bytes))
             }

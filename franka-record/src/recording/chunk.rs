@@ -51,7 +51,7 @@ impl Chunk {
                     got: ZSTD.to_owned(),
                 });
             }
-            // No other is in the format.
+            // The format has no other compression.
             other => return damaged(&format!("its compression is called {other:?}")),
         };
         if records.len() as u64 != header.size {
@@ -67,23 +67,24 @@ impl Chunk {
         })
     }
 
-    /// The next record: its kind and its body. `None` at the end, or where no record can be read.
+    /// Returns the next record: its kind and its body. `None` at the end, or if no record can be
+    /// read.
     pub(super) fn next(&mut self) -> Option<(u8, &[u8])> {
         let (kind, body, _) = wire::split(self.records.get(self.next..)?)?;
         self.next += HEADER as usize + body.len();
         Some((kind, body))
     }
 
-    /// True if records are left that cannot be read.
+    /// True if unreadable records are left.
     pub(super) fn is_cut(&self) -> bool {
         self.next < self.records.len()
     }
 }
 
-/// The compression of the format that is not read.
+/// The compression of the format that is not supported.
 const ZSTD: &str = "zstd";
 
-/// At most one byte more than `size` of LZ4 frames. The memory grows with what comes out.
+/// Returns at most one byte more than `size` from LZ4 frames. The memory grows with the output.
 fn decompress(data: &[u8], size: u64) -> Result<Vec<u8>, String> {
     let mut records = Vec::new();
     let decoder = lz4::Decoder::new(data).map_err(|error| error.to_string())?;

@@ -1,76 +1,76 @@
-//! Why a recording cannot be read.
+//! Errors of reading a recording.
 
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Why a recording, or a part of it, cannot be read.
+/// The reason why a recording, or a part of it, cannot be read.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecordingError {
-    /// The file cannot be opened, or written in a recovery.
+    /// The file cannot be opened, or cannot be written in a recovery.
     #[error("{}: {source}", path.display())]
     File {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: Arc<io::Error>,
     },
-    /// It is no MCAP file.
+    /// The file is not an MCAP file.
     #[error("not an MCAP file: it begins with {got:02x?}")]
     NotMcap {
         /// The bytes at its beginning.
         got: Vec<u8>,
     },
-    /// It is an MCAP file, but not a recording: it describes neither a recording nor a robot.
+    /// The file is an MCAP file, but not a recording: it describes neither a recording nor a robot.
     #[error("not a recording of this program: {content}")]
     Foreign {
-        /// What it is instead, with the program that wrote it if the file names one.
+        /// The actual content, with the program that wrote it if the file names one.
         content: String,
     },
-    /// The system cannot read on.
+    /// The system cannot continue to read.
     #[error("cannot read the recording: {source}")]
     Read {
-        /// What the system says.
+        /// The system's error.
         source: Arc<io::Error>,
     },
-    /// A chunk is damaged. Those after it can be read.
+    /// A chunk is damaged. Later chunks can be read.
     #[error(
         "the chunk at byte {offset} is damaged: {reason}; `Recording::recover` writes a copy without it"
     )]
     Chunk {
-        /// Where it begins.
+        /// Offset of its beginning.
         offset: u64,
-        /// What is wrong.
+        /// The error.
         reason: String,
     },
-    /// A chunk is compressed in another way than recordings are: another tool has written the file
-    /// anew. The tool's option for it is `lz4` or none.
+    /// A chunk has an unsupported compression, because another tool rewrote the file. Use the
+    /// tool's option `lz4` or no compression.
     #[error(
         "the chunk at byte {offset} is compressed with {got:?}; expected \"lz4\" or no compression"
     )]
     Compression {
-        /// Where it begins.
+        /// Offset of its beginning.
         offset: u64,
-        /// What the file says.
+        /// The compression named by the file.
         got: String,
     },
-    /// A message is none of its kind. Those after it can be read.
+    /// A message does not match its kind. Later messages can be read.
     #[error("a message of {topic} in the chunk at byte {offset} is damaged: {reason}")]
     Message {
         /// Its channel.
         topic: String,
-        /// Where its chunk begins.
+        /// Offset of its chunk.
         offset: u64,
-        /// What is wrong.
+        /// The error.
         reason: String,
     },
-    /// There is no robot of that name in the recording.
+    /// The recording contains no robot with this name.
     #[error("no robot is called {name:?} in this recording; there are {robots:?}")]
     NoRobot {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// Those that there are.
+        /// The existing names.
         robots: Vec<String>,
     },
 }
@@ -87,7 +87,7 @@ impl From<io::Error> for RecordingError {
 mod tests {
     use super::*;
 
-    /// `franka recover` is the recovery of a robot from a reflex.
+    /// `franka recover` is the recovery of a robot from a reflex, so the advice must not name it.
     #[test]
     fn advice_about_a_damaged_file_acts_on_no_robot() {
         let error = RecordingError::Chunk {

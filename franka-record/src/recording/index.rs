@@ -1,4 +1,4 @@
-//! Where the chunks of a recording are: by its summary, or by going through it.
+//! The positions of a recording's chunks, from its summary or from a scan.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use super::bytes::Bytes;
 use super::error::RecordingError;
 use super::wire::{self, ChunkHeader, Fields, HEADER, MAGIC, op};
 
-/// Where everything is.
+/// The positions of all parts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Index {
     /// Chunks, in the order of the file.
@@ -15,13 +15,13 @@ pub(super) struct Index {
     pub(super) metadata: Vec<Entry>,
     /// Bodies of schema and channel records outside of chunks.
     pub(super) described: Vec<(u8, Vec<u8>)>,
-    /// Where the data ends, if the file was gone through to there.
+    /// The end of the data, if the file was scanned to this point.
     pub(super) data_end: Option<u64>,
-    /// Why the file is not as it was to be, if it is not.
+    /// The reason why the file is incomplete or damaged, if it is.
     pub(super) damage: Option<String>,
 }
 
-/// Where a chunk is: its whole record.
+/// The position of a chunk's whole record.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ChunkEntry {
     pub(super) offset: u64,
@@ -30,7 +30,7 @@ pub(super) struct ChunkEntry {
     pub(super) end: u64,
 }
 
-/// Where a record is.
+/// The position of a record.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
     pub(super) offset: u64,
@@ -38,7 +38,7 @@ pub(super) struct Entry {
 }
 
 impl Index {
-    /// The index of a file.
+    /// Returns the index of a file.
     pub(super) fn of(bytes: &Bytes) -> Result<Self, RecordingError> {
         Self::check_magic(bytes)?;
         match Self::of_summary(bytes)? {
@@ -59,7 +59,7 @@ impl Index {
         }
     }
 
-    /// The index that the file ends with, or why it has none that can be relied on.
+    /// Returns the index at the end of the file, or the reason why it cannot be used.
     fn of_summary(bytes: &Bytes) -> Result<Result<Self, String>, RecordingError> {
         let missing = |what: &str| Ok(Err(format!("its end is missing: {what}")));
         let Some(start) = bytes.length().checked_sub(FOOTER_LENGTH) else {
@@ -87,7 +87,7 @@ impl Index {
             return missing("no summary");
         };
         if crc != 0 {
-            // With the part of the footer before the checksum itself.
+            // Includes the part of the footer before the checksum itself.
             let mut hasher = crc32fast::Hasher::new();
             hasher.update(&summary);
             hasher.update(&footer[..HEADER as usize + 16]);
@@ -122,7 +122,7 @@ impl Index {
                 _ => {}
             }
         }
-        // One that lies elsewhere is no index of this file.
+        // An entry outside of the file does not belong to its index.
         let inside = |offset: u64, length| {
             offset
                 .checked_add(length)
@@ -133,7 +133,7 @@ impl Index {
         (chunks && entries.all(|entry| inside(entry.offset, entry.length))).then_some(index)
     }
 
-    /// The index found by going from record to record, up to where that ends.
+    /// Builds the index by a scan from record to record, up to the last readable one.
     pub(super) fn of_records(bytes: &Bytes) -> Result<Self, RecordingError> {
         Self::check_magic(bytes)?;
         let mut index = Self::default();
@@ -144,7 +144,7 @@ impl Index {
                 break;
             };
             let Some((kind, body)) = wire::header(&header) else {
-                break; // never: the length is right
+                break; // never happens: the length is right
             };
             let end = offset.checked_add(HEADER).and_then(|o| o.checked_add(body));
             let Some(end) = end.filter(|end| *end <= bytes.length() && kind != 0) else {
@@ -156,7 +156,7 @@ impl Index {
                 op::CHUNK => {
                     let part = body.min(ChunkHeader::LENGTH_MAX);
                     let part = bytes.read(offset + HEADER, part)?.unwrap_or_default();
-                    // One without a header is found to be damaged when it is read.
+                    // A chunk without a header is reported as damaged when it is read.
                     let times = ChunkHeader::read(&mut Fields(&part));
                     let (begin, end) = times.map_or((0, u64::MAX), |c| (c.begin, c.end));
                     index.chunks.push(ChunkEntry {
@@ -194,7 +194,7 @@ fn entry(fields: &mut Fields<'_>) -> Option<Entry> {
 /// Length of the footer with the magic bytes after it.
 const FOOTER_LENGTH: u64 = HEADER + 8 + 8 + 4 + 8;
 
-/// The channels of a recording: what their messages are.
+/// The channels of a recording, with the kinds of their messages.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Channels {
     schemas: BTreeMap<u16, String>,
@@ -210,8 +210,8 @@ pub(super) struct ChannelEntry {
 }
 
 impl Channels {
-    /// Takes a record that describes a schema or a channel; others are ignored. Returns whether it
-    /// could be read.
+    /// Processes a record that describes a schema or a channel; others are ignored. Returns true if
+    /// it could be read.
     pub(super) fn take(&mut self, kind: u8, body: &[u8]) -> bool {
         match kind {
             op::SCHEMA => match wire::Schema::read(body) {
@@ -237,7 +237,7 @@ impl Channels {
         }
     }
 
-    /// The identifier of the channel of this name, whose messages have this schema.
+    /// Returns the identifier of the channel with this name and this schema.
     pub(super) fn find(&self, name: &str, schema: &str) -> Option<u16> {
         let fits = |channel: &ChannelEntry| {
             channel.name == name

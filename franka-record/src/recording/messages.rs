@@ -11,11 +11,11 @@ use super::wire::{self, op};
 use crate::schema::{Topic, franka};
 use crate::{Cycle, Event, GripperState, HostTime};
 
-/// Goes through the chunks that may hold what is wanted.
+/// Walks through the chunks that may contain the requested messages.
 #[derive(Debug)]
 struct Walk {
     bytes: Bytes,
-    /// The chunks that are left, last one first.
+    /// The remaining chunks, last one first.
     chunks: Vec<ChunkEntry>,
     open: Option<Chunk>,
     from: HostTime,
@@ -23,7 +23,7 @@ struct Walk {
 }
 
 impl Walk {
-    /// With `before` more chunks before the first one.
+    /// Starts `before` chunks before the first one.
     fn of(robot: &RobotRecording<'_>, before: usize) -> Self {
         let all = &robot.recording.index.chunks;
         let wanted = |chunk: &ChunkEntry| {
@@ -41,7 +41,7 @@ impl Walk {
         }
     }
 
-    /// Calls `take` with each message until it returns something. `None` at the end.
+    /// Calls `take` with each message until it returns a value. `None` at the end.
     fn next<T>(
         &mut self,
         mut take: impl FnMut(wire::Message<'_>) -> Option<Result<T, (&'static str, String)>>,
@@ -106,7 +106,7 @@ pub struct Cycles {
 impl Cycles {
     pub(super) fn of(robot: &RobotRecording<'_>) -> Self {
         Self {
-            // The tool comes once per chunk, and up to half a second late where cycles are thinned.
+            // Each chunk contains the tool once, up to half a second late if cycles are thinned.
             walk: Walk::of(robot, 2),
             cycles: channel(robot, Topic::Cycle),
             tools: channel(robot, Topic::Tool),
@@ -173,7 +173,7 @@ impl Iterator for Events {
                 return None;
             }
             match franka::Event::decode(message.data) {
-                // One of a kind that only later versions know is left out.
+                // An event of a kind from a later version is ignored.
                 Ok(read) => read.to_event(time).map(Ok),
                 Err(error) => Some(Err(("event", error.to_string()))),
             }
@@ -181,7 +181,7 @@ impl Iterator for Events {
     }
 }
 
-/// The states of the gripper of one robot, each with the time when it came:
+/// The states of the gripper of one robot, each with its time of arrival:
 /// [`RobotRecording::gripper_states`].
 #[derive(Debug)]
 pub struct GripperStates {

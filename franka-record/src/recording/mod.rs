@@ -1,4 +1,4 @@
-//! Reads recordings back.
+//! Reads recordings.
 //!
 //! ```no_run
 //! use franka_record::Recording;
@@ -20,8 +20,8 @@
 //! # Ok::<(), franka_record::recording::RecordingError>(())
 //! ```
 //!
-//! A part of a recording is found by the index at the end of the file, and no more than that part
-//! is read. Where the end is missing, the file is gone through once, from chunk to chunk.
+//! The index at the end of the file locates each part of a recording, and only that part is read.
+//! If the end is missing, the file is scanned once, from chunk to chunk.
 
 mod bytes;
 mod chunk;
@@ -51,7 +51,7 @@ use self::wire::{AttachmentHeader, Fields, MAGIC, op};
 use crate::HostTime;
 use crate::schema::{CASSETTE_METADATA, METADATA, ROBOT_METADATA, Topic};
 
-/// A recording that was opened.
+/// An open recording.
 #[derive(Clone, Debug)]
 pub struct Recording {
     bytes: Bytes,
@@ -66,16 +66,16 @@ pub struct Recording {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RecordedRobot {
-    /// Its name; empty for an only robot.
+    /// Its name; empty for a single robot.
     pub name: String,
-    /// Which robot it is; `None` if the file does not say, or this version does not know it.
+    /// The kind of robot; `None` if the file does not name it, or this version does not know it.
     pub kind: Option<RobotKind>,
-    /// What else was known of it.
+    /// Other known facts.
     pub metadata: BTreeMap<String, String>,
 }
 
 impl Recording {
-    /// Opens a recording. One whose end is missing is read as far as it goes:
+    /// Opens a recording. A recording without an end is read up to the last whole chunk:
     /// [`Recording::damage`].
     ///
     /// # Errors
@@ -90,7 +90,7 @@ impl Recording {
         })?)
     }
 
-    /// As [`Recording::open`], for the bytes of a file in memory.
+    /// Like [`Recording::open`], for the bytes of a file in memory.
     ///
     /// # Errors
     /// [`RecordingError::NotMcap`], [`RecordingError::Foreign`].
@@ -119,8 +119,8 @@ impl Recording {
         Ok(recording)
     }
 
-    /// Returns what a file without the metadata of a recording is; `None` for a recording that was
-    /// cut before it. `others` are the names of the metadata that it has.
+    /// Returns the kind of a file without the metadata of a recording; `None` for a recording that
+    /// was cut before the metadata. `others` are the names of its metadata.
     fn foreign(&self, others: &[String]) -> Result<Option<String>, RecordingError> {
         if others.iter().any(|name| name == CASSETTE_METADATA) {
             return Ok(Some("a cassette, which `franka cassette` reads".to_owned()));
@@ -149,7 +149,7 @@ impl Recording {
         })
     }
 
-    /// Returns the names of the metadata records that are not of a recording.
+    /// Returns the names of the metadata records that do not belong to a recording.
     fn read_metadata(&mut self) -> Result<Vec<String>, RecordingError> {
         let mut others = Vec::new();
         for entry in &self.index.metadata {
@@ -180,12 +180,12 @@ impl Recording {
         Ok(others)
     }
 
-    /// Finds the channels: in the summary, or else in the chunks, the first of which describe them.
+    /// Finds the channels in the summary, or else in the chunks; the first chunks describe them.
     fn read_channels(&mut self) -> Result<(), RecordingError> {
         for (kind, body) in &self.index.described {
             self.channels.take(*kind, body);
         }
-        // Without a summary, chunks describe them: the one in which a robot was attached.
+        // Without a summary, the chunk in which a robot was attached describes its channels.
         for entry in &self.index.chunks {
             if self.knows_channels() {
                 break;
@@ -196,7 +196,7 @@ impl Recording {
                         self.channels.take(kind, body);
                     }
                 }
-                // It is told again where it is read.
+                // The error is reported again when the chunk is read.
                 Err(RecordingError::Chunk { .. } | RecordingError::Compression { .. }) => {}
                 Err(error) => return Err(error),
             }
@@ -208,19 +208,19 @@ impl Recording {
     fn knows_channels(&self) -> bool {
         let schema = Topic::Gripper.schema();
         self.robots.iter().all(|robot| {
-            // The last one to be described.
+            // This channel is the last to be described.
             let name = Topic::Gripper.channel(&robot.name);
             self.channels.find(&name, &schema).is_some()
         })
     }
 
-    /// Why the file is not as its writer was to leave it: its end is missing after a power cut, a
-    /// crash or on a full disk, or its index is damaged. What was flushed can be read all the same.
+    /// Returns the damage of the file, if any: its end is missing after a power failure, a crash or
+    /// on a full disk, or its index is damaged. The flushed data can still be read.
     pub fn damage(&self) -> Option<&str> {
         self.damage.as_deref()
     }
 
-    /// Time of the first and the last message; `None` if there is none.
+    /// Returns the times of the first and the last message; `None` if it has no messages.
     pub fn span(&self) -> Option<(HostTime, HostTime)> {
         let chunks = || self.index.chunks.iter().filter(|chunk| chunk.end > 0);
         let begin = chunks().map(|chunk| chunk.begin).min()?;
@@ -228,17 +228,17 @@ impl Recording {
         Some((HostTime::from_nanos(begin), HostTime::from_nanos(end)))
     }
 
-    /// The metadata of the whole recording: versions, host, kernel, options.
+    /// Returns the metadata of the whole recording: versions, host, kernel, options.
     pub fn metadata(&self) -> &BTreeMap<String, String> {
         &self.metadata
     }
 
-    /// The robots of the recording.
+    /// Returns the robots of the recording.
     pub fn robots(&self) -> &[RecordedRobot] {
         &self.robots
     }
 
-    /// Returns what was recorded of one robot. An only robot has no name unless it was given one.
+    /// Returns the recording of one robot. A single robot has an empty name unless it was named.
     ///
     /// # Errors
     /// [`RecordingError::NoRobot`].
@@ -258,7 +258,7 @@ impl Recording {
         }
     }
 
-    /// The names of the files inside.
+    /// Returns the names of the attached files.
     ///
     /// # Errors
     /// [`RecordingError::Read`].
@@ -274,7 +274,7 @@ impl Recording {
         Ok(names)
     }
 
-    /// The bytes of a file inside; `None` if there is none of that name, or it is damaged.
+    /// Returns the bytes of an attached file; `None` if no file has this name, or it is damaged.
     ///
     /// # Errors
     /// [`RecordingError::Read`].
@@ -291,7 +291,7 @@ impl Recording {
     }
 }
 
-/// Name and bytes of an attachment.
+/// Returns name and bytes of an attachment.
 fn attachment(record: &[u8]) -> Option<(&str, &[u8])> {
     let (op::ATTACHMENT, body, _) = wire::split(record)? else {
         return None;
@@ -305,11 +305,10 @@ fn attachment(record: &[u8]) -> Option<(&str, &[u8])> {
     (crc == 0 || crc32fast::hash(checked) == crc).then_some((name, data))
 }
 
-/// Bytes of the first record that are read; what is longer is not shown to a person.
+/// Largest number of bytes of the first record that are read; longer texts are not shown.
 const HEADER_MAX: u64 = 1024;
 
-/// What was recorded of one robot, from one time to another; from its beginning to its end at
-/// first.
+/// The recording of one robot in a time range; initially the whole recording.
 #[derive(Clone, Debug)]
 pub struct RobotRecording<'a> {
     recording: &'a Recording,
@@ -319,7 +318,7 @@ pub struct RobotRecording<'a> {
 }
 
 impl RobotRecording<'_> {
-    /// What came at `time` and after it.
+    /// Returns the part from `time` on.
     #[must_use]
     pub fn from(&self, time: HostTime) -> Self {
         Self {
@@ -328,7 +327,7 @@ impl RobotRecording<'_> {
         }
     }
 
-    /// What came before `time` and at it.
+    /// Returns the part up to and including `time`.
     #[must_use]
     pub fn to(&self, time: HostTime) -> Self {
         Self {
@@ -337,23 +336,23 @@ impl RobotRecording<'_> {
         }
     }
 
-    /// The cycles, oldest first. After an error the iterator goes on behind what is damaged.
+    /// Returns the cycles, oldest first. After an error the iterator continues behind the damage.
     pub fn cycles(&self) -> Cycles {
         Cycles::of(self)
     }
 
-    /// The events, oldest first; as [`RobotRecording::cycles`].
+    /// Returns the events, oldest first; like [`RobotRecording::cycles`].
     pub fn events(&self) -> Events {
         Events::of(self)
     }
 
-    /// The states of the gripper, oldest first; as [`RobotRecording::cycles`].
+    /// Returns the states of the gripper, oldest first; like [`RobotRecording::cycles`].
     pub fn gripper_states(&self) -> GripperStates {
         GripperStates::of(self)
     }
 
-    /// Cycles at `rate` per second of the robot's clock: at each time the newest one that came
-    /// before. Where cycles are missing, that is an old one.
+    /// Returns cycles at `rate` per second of the robot's clock: at each time the newest cycle
+    /// before it. In a gap, this is an old cycle.
     pub fn resampled(&self, rate: f64) -> Resampled {
         Resampled::of(self.cycles(), rate)
     }

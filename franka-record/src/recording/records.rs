@@ -1,4 +1,4 @@
-//! The records of a whole MCAP file in memory, whatever its bytes.
+//! The records of a whole MCAP file in memory, for any bytes.
 
 use std::collections::BTreeMap;
 
@@ -27,13 +27,12 @@ pub(crate) enum Record<'a> {
 }
 
 /// Calls `take` with all metadata, and then with the channels and messages of every chunk, in the
-/// order of the file. Ends at the first chunk that is damaged. Returns what is wrong with the file,
-/// if something is.
+/// order of the file. Stops at the first damaged chunk. Returns the error of the file, if any.
 ///
-/// No length in the file is believed before the bytes are there.
+/// A length in the file is not trusted before its bytes have been read.
 ///
 /// # Errors
-/// Those of `take`, and [`RecordingError::NotMcap`].
+/// The errors of `take`, and [`RecordingError::NotMcap`].
 pub(crate) fn each_record<E: From<RecordingError>>(
     file: &[u8],
     mut take: impl FnMut(Record<'_>) -> Result<(), E>,
@@ -89,7 +88,8 @@ pub(crate) fn each_record<E: From<RecordingError>>(
         .or_else(|| damage_outside(file, index.data_end)))
 }
 
-/// What is wrong outside of chunks: with the sum over all before `data_end`, or the end.
+/// Returns the error outside of chunks: of the checksum over all bytes before `data_end`, or of the
+/// end.
 fn damage_outside(file: &[u8], data_end: Option<u64>) -> Option<String> {
     let data_end = usize::try_from(data_end?).ok()?;
     let (data, rest) = file.split_at_checked(data_end)?;

@@ -1,4 +1,4 @@
-//! A file without an end made whole again.
+//! Recovery of a file without an end.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::BufWriter;
@@ -14,30 +14,30 @@ use super::error::RecordingError;
 use super::index::Index;
 use super::wire::{self, AttachmentHeader, Fields, op};
 
-/// What was recovered.
+/// The result of a recovery.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Recovery {
-    /// Messages in the new file.
+    /// Number of messages in the new file.
     pub messages: u64,
-    /// Chunks that were whole.
+    /// Number of whole chunks.
     pub chunks: u64,
-    /// Chunks that were not, and are left out.
+    /// Number of damaged chunks, which are left out.
     pub lost: u64,
-    /// What was wrong with the file; `None` if nothing was.
+    /// The damage of the file; `None` if it was not damaged.
     pub damage: Option<String>,
 }
 
 impl Recording {
-    /// Writes all that is whole in the MCAP file `damaged` to a new file, with the index that was
-    /// missing: every message of every whole chunk, attachments and metadata, as the standard
-    /// tool's `mcap recover` does. It does so for any MCAP file that is compressed with LZ4 or not
-    /// at all; messages outside of chunks are left out.
+    /// Writes the intact parts of the MCAP file `damaged` to a new file, with the missing index. As
+    /// in the standard tool's `mcap recover`, these are every message of every whole chunk,
+    /// attachments and metadata. It supports any MCAP file with LZ4 or without compression;
+    /// messages outside of chunks are left out.
     ///
     /// # Errors
     /// [`RecordingError::NotMcap`], [`RecordingError::Compression`], [`RecordingError::Read`], and
-    /// [`RecordingError::File`] if there is a file at `whole` already or it cannot be written; it
-    /// is then removed again.
+    /// [`RecordingError::File`] if `whole` exists or cannot be written; the new file is then
+    /// removed.
     pub fn recover(
         damaged: impl AsRef<Path>,
         whole: impl AsRef<Path>,
@@ -58,7 +58,7 @@ impl Recording {
             .map_err(|error| of_file(whole, error))?;
         let written = write(&bytes, &index, file);
         if written.is_err() {
-            // What is there has no use, and its error was told.
+            // The partial file is useless, and its error was reported.
             let _ = fs::remove_file(whole);
         }
         written.map_err(|failure| match failure {
@@ -131,7 +131,7 @@ fn write(bytes: &Bytes, index: &Index, file: File) -> Result<Recovery, Failure> 
     Ok(recovery)
 }
 
-/// Copies a message, unless its channel is unknown. Returns whether it was.
+/// Copies a message, unless its channel is unknown. Returns true if it was copied.
 fn copy_message(writer: &mut Writer, body: &[u8]) -> Result<bool, McapError> {
     let Some(message) = wire::Message::read(body) else {
         return Ok(false);
@@ -149,7 +149,7 @@ fn copy_message(writer: &mut Writer, body: &[u8]) -> Result<bool, McapError> {
     }
 }
 
-/// Copies a schema or a channel. One that contradicts an earlier one is left out.
+/// Copies a schema or a channel. A record that contradicts an earlier one is left out.
 fn describe(writer: &mut Writer, kind: u8, body: &[u8]) -> Result<(), McapError> {
     let added = match kind {
         op::SCHEMA => wire::Schema::read(body).map(|schema| {
@@ -172,7 +172,7 @@ fn describe(writer: &mut Writer, kind: u8, body: &[u8]) -> Result<(), McapError>
     }
 }
 
-/// Copies metadata or an attachment; a damaged one is left out.
+/// Copies metadata or an attachment; a damaged record is left out.
 fn copy_outside(writer: &mut Writer, record: &[u8]) -> Result<(), McapError> {
     match wire::split(record) {
         Some((op::METADATA, body, _)) => {

@@ -3,24 +3,24 @@
 use super::{Cycles, RecordingError};
 use crate::Cycle;
 
-/// Cycles at a steady rate: [`RobotRecording::resampled`](super::RobotRecording::resampled).
+/// Cycles at a constant rate: [`RobotRecording::resampled`](super::RobotRecording::resampled).
 #[derive(Debug)]
 pub struct Resampled {
     cycles: Cycles,
     /// Time between two samples, `[ms]` of the robot's clock.
     period: f64,
-    /// The newest cycle that is not after the next sample.
+    /// The newest cycle not after the next sample.
     held: Option<Cycle>,
-    /// The cycle after that.
+    /// The following cycle.
     next: Option<Cycle>,
-    /// The robot's time of the first sample, and the samples since.
+    /// The robot's time of the first sample, and the number of samples since.
     first: u64,
     samples: u64,
 }
 
 impl Resampled {
     pub(super) fn of(cycles: Cycles, rate: f64) -> Self {
-        // A rate that is none gives every cycle.
+        // An invalid rate returns every cycle.
         let period = if rate > 0.0 { 1e3 / rate } else { 1.0 };
         Self {
             cycles,
@@ -51,7 +51,7 @@ impl Iterator for Resampled {
             let due = self.due();
             if let (Some(held), Some(next)) = (self.held, self.next) {
                 let (before, after) = (held.record.time, next.record.time);
-                // The robot was started again, or its cycles are missing for long.
+                // The robot was restarted, or cycles are missing for a long time.
                 if after < before || after - before > GAP_MAX_MS {
                     self.next = None;
                     self.begin(next);
@@ -77,5 +77,5 @@ impl Iterator for Resampled {
     }
 }
 
-/// Longest gap that an old cycle stands for, `[ms]`.
+/// Longest gap that an old cycle fills, `[ms]`.
 const GAP_MAX_MS: u64 = 10_000;

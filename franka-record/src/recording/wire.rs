@@ -1,11 +1,11 @@
-//! The records of an MCAP file, as far as a recording is read by them.
+//! The records of an MCAP file that the reader of recordings needs.
 //!
-//! Read here rather than by the crate `mcap`, so that no length of a damaged file is believed
-//! before the bytes are there. Source: the MCAP format specification, version 0.
+//! They are read here rather than by the crate `mcap`, so that a length in a damaged file is not
+//! trusted before its bytes have been read. Source: the MCAP format specification, version 0.
 
 use std::collections::BTreeMap;
 
-/// What an MCAP file begins and ends with.
+/// Bytes at the beginning and at the end of an MCAP file.
 pub(super) const MAGIC: &[u8; 8] = b"\x89MCAP0\r\n";
 
 /// Kinds of record.
@@ -24,16 +24,16 @@ pub(super) mod op {
     pub(in crate::recording) const DATA_END: u8 = 0x0f;
 }
 
-/// Bytes of a record before its body: the kind and the length of the body.
+/// Number of bytes of a record before its body: the kind and the length of the body.
 pub(super) const HEADER: u64 = 9;
 
-/// Kind and length of the body of a record.
+/// Returns kind and length of the body of a record.
 pub(super) fn header(bytes: &[u8]) -> Option<(u8, u64)> {
     let mut fields = Fields(bytes);
     Some((fields.u8()?, fields.u64()?))
 }
 
-/// Splits the first record off: its kind, its body and what follows.
+/// Splits off the first record: its kind, its body and the rest.
 pub(super) fn split(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     let (kind, length) = header(bytes)?;
     let rest = &bytes[HEADER as usize..];
@@ -42,7 +42,7 @@ pub(super) fn split(bytes: &[u8]) -> Option<(u8, &[u8], &[u8])> {
     Some((kind, body, rest))
 }
 
-/// Reads fields, each `None` if there are too few bytes for it.
+/// Reads fields, each `None` if the bytes are not sufficient.
 #[derive(Clone, Copy)]
 pub(super) struct Fields<'a>(pub(super) &'a [u8]);
 
@@ -73,13 +73,13 @@ impl<'a> Fields<'a> {
         self.array().map(u64::from_le_bytes)
     }
 
-    /// A text with its length before it.
+    /// Reads a text with its length before it.
     pub(super) fn text(&mut self) -> Option<&'a str> {
         let length = usize::try_from(self.u32()?).ok()?;
         std::str::from_utf8(self.bytes(length)?).ok()
     }
 
-    /// Texts by their names.
+    /// Reads texts by their names.
     pub(super) fn map(&mut self) -> Option<BTreeMap<String, String>> {
         let length = usize::try_from(self.u32()?).ok()?;
         let mut entries = Fields(self.bytes(length)?);
@@ -92,7 +92,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// A schema, without what it says.
+/// A schema, without its contents.
 pub(super) struct Schema<'a> {
     pub(super) id: u16,
     pub(super) name: &'a str,
@@ -159,7 +159,7 @@ impl<'a> Message<'a> {
     }
 }
 
-/// What a chunk says of itself, before its data.
+/// The header of a chunk, before its data.
 pub(super) struct ChunkHeader<'a> {
     pub(super) begin: u64,
     pub(super) end: u64,
@@ -170,7 +170,7 @@ pub(super) struct ChunkHeader<'a> {
 }
 
 impl<'a> ChunkHeader<'a> {
-    /// The most that it takes, with any compression that is read.
+    /// Largest length of the header, with any supported compression.
     pub(super) const LENGTH_MAX: u64 = 8 + 8 + 8 + 4 + 4 + 16 + 8;
 
     pub(super) fn read(fields: &mut Fields<'a>) -> Option<Self> {
@@ -185,7 +185,7 @@ impl<'a> ChunkHeader<'a> {
     }
 }
 
-/// An attachment, and where its data is in the body of its record.
+/// An attachment, and the position of its data in the body of its record.
 pub(super) struct AttachmentHeader<'a> {
     pub(super) log_time: u64,
     pub(super) create_time: u64,

@@ -1,4 +1,4 @@
-//! Which part of a replay is due at which time of the robot.
+//! The schedule of a replay on the robot's clock.
 
 use core::time::Duration;
 
@@ -8,21 +8,22 @@ use franka_rt::session::Chunk;
 use super::error::ReplayError;
 use super::plan::{PERIOD, ReplayPlan};
 
-/// Targets of a chunk until the next one takes over: 1 s. That one is sent when this one begins.
+/// Number of targets of a chunk until the next chunk takes over: 1 s. The next chunk is sent when
+/// this one begins.
 const WINDOW: usize = 100;
 
-/// Targets that a chunk begins earlier with, so that it agrees with the one before where it takes
-/// its place: 0.2 s.
+/// Number of targets before the takeover, so that a chunk agrees with the previous one at the
+/// takeover: 0.2 s.
 const BEFORE: usize = 20;
 
-/// Targets that a chunk goes on with: 0.5 s more for a host that is late with the next one. Without
-/// one the arm comes to rest there.
+/// Number of additional targets of a chunk: 0.5 s for a host that is late with the next chunk.
+/// Without the next chunk, the arm stops at their end.
 const AFTER: usize = 50;
 
-/// Time from the first chunk being sent to its first target.
+/// Time from the first chunk's departure to its first target.
 const LEAD_IN: Duration = Duration::from_millis(100);
 
-/// A replay on its way: gives its chunks in time. It knows no clock but the robot's.
+/// A running replay: provides its chunks in time. Its only clock is the robot's.
 #[derive(Clone, Copy, Debug)]
 pub struct ReplayCourse {
     /// The time of the first target, `message_id`.
@@ -32,7 +33,7 @@ pub struct ReplayCourse {
 }
 
 impl ReplayCourse {
-    /// A replay that begins a tenth of a second after the state `now`, `message_id`.
+    /// Creates a replay that begins a tenth of a second after the state `now`, `message_id`.
     pub fn new(now: u64) -> Self {
         Self {
             begin: now + milliseconds(LEAD_IN),
@@ -40,21 +41,21 @@ impl ReplayCourse {
         }
     }
 
-    /// The time of the first target, `message_id`.
+    /// Returns the time of the first target, `message_id`.
     pub fn begin(&self) -> u64 {
         self.begin
     }
 
-    /// When the last target is due, `message_id`.
+    /// Returns the time of the last target, `message_id`.
     pub fn end(&self, plan: &ReplayPlan) -> u64 {
         self.begin + milliseconds(plan.duration())
     }
 
-    /// The chunk that has to be sent by the state `now`, `message_id`: the first one at once, each
-    /// other one when the one before it takes over. `None` if none has to.
+    /// Returns the chunk that must be sent by the state `now`, `message_id`: the first one at once,
+    /// every other one when its predecessor takes over. `None` if no chunk is due.
     ///
     /// # Errors
-    /// [`ReplayError::Chunk`] for targets that make no motion.
+    /// [`ReplayError::Chunk`] for targets that do not form a motion.
     pub fn due(
         &mut self,
         plan: &ReplayPlan,
@@ -73,7 +74,7 @@ impl ReplayCourse {
         Ok(Some(chunk.observed_at(self.time_of(first))))
     }
 
-    /// When a target is due, `message_id`.
+    /// Returns the time of a target, `message_id`.
     fn time_of(&self, target: usize) -> u64 {
         self.begin + milliseconds(PERIOD) * target as u64
     }

@@ -1,40 +1,40 @@
-//! How far a replay is from the motion that was recorded.
+//! The deviation of a replay from the recorded motion.
 
 use franka_model::Model;
 use franka_proto::RobotState;
 
 use super::plan::{PERIOD, ReplayPlan, ReplayTargets, pose_at};
 
-/// Distances between the arm and where it was in the recording, collected over a replay.
+/// Distances between the arm and the recorded arm, collected over a replay.
 #[derive(Clone, Debug, Default)]
 pub struct ReplayDeviation {
     joints: Vec<f64>,
     position: Vec<f64>,
 }
 
-/// How far an arm is from where it was in a recording.
+/// The distance of an arm from the recorded arm.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distance {
-    /// Of the joint that is furthest off, `[rad]`.
+    /// Largest distance of a joint, `[rad]`.
     pub joints: f64,
-    /// Of the end effector that was recorded, `[m]`.
+    /// Distance of the recorded end effector, `[m]`.
     pub position: f64,
 }
 
-/// Median, 95th percentile and greatest of some distances.
+/// Median, 95th percentile and maximum of some distances.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// Half of them are less.
+    /// Half of them are smaller.
     pub median: f64,
-    /// 95 % of them are less.
+    /// 95 % of them are smaller.
     pub p95: f64,
-    /// The greatest.
+    /// The maximum.
     pub max: f64,
 }
 
 impl ReplayDeviation {
-    /// Notes a state, `since_begin` milliseconds after the first target was due. Returns how far
-    /// off it is.
+    /// Records a state, `since_begin` milliseconds after the time of the first target. Returns its
+    /// distance.
     pub fn note(
         &mut self,
         plan: &ReplayPlan,
@@ -52,36 +52,36 @@ impl ReplayDeviation {
         Distance { joints, position }
     }
 
-    /// The joint that is furthest off in each state, `[rad]`.
+    /// Returns the largest joint distance in each state, `[rad]`.
     pub fn joints(&self) -> Spread {
         Spread::of(&self.joints)
     }
 
-    /// The distance of the end effector that was recorded, `[m]`.
+    /// Returns the distance of the recorded end effector, `[m]`.
     pub fn position(&self) -> Spread {
         Spread::of(&self.position)
     }
 
-    /// How many states were noted.
+    /// Number of recorded states.
     pub fn len(&self) -> usize {
         self.joints.len()
     }
 
-    /// True if none was.
+    /// True if no state was recorded.
     pub fn is_empty(&self) -> bool {
         self.joints.is_empty()
     }
 }
 
 impl ReplayPlan {
-    /// From this distance of a joint on, `[rad]`, a replay by joints is to be given up. Springs,
-    /// friction and lag make a tenth of it.
+    /// Distance of a joint, `[rad]`, from which a replay by joints should be aborted. Springs,
+    /// friction and lag cause a tenth of it.
     pub const JOINTS_OFF_MAX: f64 = 0.15;
 
-    /// From this distance of the end effector on, `[m]`, a replay by poses is to be given up.
+    /// Distance of the end effector, `[m]`, from which a replay by poses should be aborted.
     pub const POSITION_OFF_MAX: f64 = 0.05;
 
-    /// The distance and what it may be, in words, if the replay is to be given up.
+    /// Returns the distance and its limit as text, if the replay should be aborted.
     pub fn too_far(&self, distance: Distance) -> Option<(String, String)> {
         let (what, got, most, unit) = match self.targets {
             ReplayTargets::Joints => ("a joint", distance.joints, Self::JOINTS_OFF_MAX, "rad"),
@@ -99,7 +99,8 @@ impl ReplayPlan {
         })
     }
 
-    /// Where the arm was when the replay is so many milliseconds under way.
+    /// Returns the recorded position of the arm, `since_begin` milliseconds after the start of the
+    /// replay.
     fn measured_at(&self, since_begin: u64) -> [f64; 7] {
         let period = PERIOD.as_millis() as u64;
         let last = self.measured.len() - 1;

@@ -1,4 +1,4 @@
-//! Why a recording is not replayed.
+//! Errors of replays.
 
 use core::time::Duration;
 
@@ -7,41 +7,41 @@ use franka_rt::session::{ChunkError, GoalError};
 
 use super::plan::ReplayOptions;
 
-/// The longest time without a cycle that is bridged, `[ms]`.
+/// Longest time without a cycle that is bridged, `[ms]`.
 pub(super) const GAP_MAX: u64 = 50;
 
-/// Why a recording is not replayed. Nothing has moved.
+/// The reason why a recording is not replayed. The arm has not moved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReplayError {
     /// The recording is of another kind of robot.
     #[error("the recording is of {got:?}, expected {expected:?}")]
     Kind {
-        /// The robot that was recorded.
+        /// The recorded robot.
         got: RobotKind,
-        /// The robot that is to move.
+        /// The robot of the replay.
         expected: RobotKind,
     },
     /// The speed is out of bounds.
     #[error("speed {got}, expected {} to 1", ReplayOptions::SPEED_MIN)]
     Speed {
-        /// The speed given.
+        /// The given speed.
         got: f64,
     },
-    /// There are not two cycles to move between.
+    /// The recording has fewer than two cycles.
     #[error("{got} cycles, expected 2 or more")]
     Short {
-        /// How many there are.
+        /// Number of cycles.
         got: usize,
     },
-    /// Cycles are missing, or do not follow each other.
+    /// Cycles are missing, or not in order.
     #[error(
         "cycle {to} ms follows {from} ms of the robot's clock, expected at most {GAP_MAX} ms between them"
     )]
     Gap {
-        /// `message_id` of the cycle before.
+        /// `message_id` of the cycle before the gap.
         from: u64,
-        /// `message_id` of the one after it.
+        /// `message_id` of the cycle after the gap.
         to: u64,
     },
     /// A position is not a finite number.
@@ -50,7 +50,7 @@ pub enum ReplayError {
         /// `message_id` of the cycle.
         time: u64,
     },
-    /// Nothing controlled the joints.
+    /// The joints were not under control.
     #[error(
         "no commanded position at {time} ms (robot clock): engage the arm for the whole \
          motion, or follow measured positions (the source `measured`)"
@@ -59,34 +59,34 @@ pub enum ReplayError {
         /// `message_id` of the cycle.
         time: u64,
     },
-    /// A joint would be faster than it may.
+    /// A joint would exceed its velocity limit.
     #[error(
         "joint {joint} at {got:.3} rad/s, expected {most:.3} at most: replay at speed {speed:.2} or less"
     )]
     Fast {
         /// The joint, from 1.
         joint: usize,
-        /// Its greatest velocity, `[rad/s]`.
+        /// Its largest velocity, `[rad/s]`.
         got: f64,
-        /// What a replay may need, `[rad/s]`.
+        /// The allowed velocity of a replay, `[rad/s]`.
         most: f64,
-        /// The speed that would do.
+        /// A speed that is possible.
         speed: f64,
     },
-    /// A target is out of bounds or out of reach.
+    /// A target is outside the limits or out of reach.
     #[error("{after:.3?} after the begin: {error}")]
     Target {
         /// The time in the replay.
         after: Duration,
-        /// The error.
+        /// The error of the target.
         error: GoalError,
     },
-    /// Targets do not make a motion.
+    /// Targets do not form a motion.
     #[error("{after:.3?} after the begin: {error}")]
     Chunk {
         /// The time in the replay.
         after: Duration,
-        /// The error.
+        /// The error of the chunk.
         error: ChunkError,
     },
 }

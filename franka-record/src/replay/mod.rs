@@ -5,11 +5,11 @@
 //!                                   '-- where the arm was --ReplayDeviation--> how far off it is now
 //! ```
 //!
-//! * `plan`: the targets, and the limits that they need. `error`: what is refused.
-//! * `course`: which chunk is due at which time of the robot.
-//! * `deviation`: the distance between the motion and the recorded one.
+//! * `plan`: the targets, and their required limits. `error`: the reasons for refusals.
+//! * `course`: the schedule of the chunks on the robot's clock.
+//! * `deviation`: the distance between the actual and the recorded motion.
 //!
-//! Nothing here moves an arm: `franka-async` does, in a session with all its guards.
+//! This module does not move an arm: `franka-async` does, in a session with all its guards.
 
 mod course;
 mod deviation;

@@ -1,4 +1,4 @@
-//! The targets of a replay, checked before anything moves.
+//! The targets of a replay, checked before a motion.
 
 use core::time::Duration;
 
@@ -14,35 +14,35 @@ use crate::sample::{Sample, told};
 /// Time between targets.
 pub(super) const PERIOD: Duration = Duration::from_millis(10);
 
-/// Half of the time over which measured positions are averaged, `[ms]`.
+/// Half of the averaging time of measured positions, `[ms]`.
 const HALF_WINDOW: u64 = 20;
 
-/// Share of a joint's velocity limit that a replay may need: the rest is for catching up.
+/// Share of a joint's velocity limit that a replay may use: the rest is for catching up.
 const VELOCITY_SHARE_MAX: f64 = 0.9;
 
-/// What a replay may use beyond what the recorded motion needs.
+/// Factor of the limits over the requirements of the recorded motion.
 const RESERVE: f64 = 1.25;
 
-/// What is made of a recording.
+/// Options of a replay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ReplayOptions {
-    /// How fast: 1 as recorded, 0.5 in twice the time.
+    /// Speed relative to the recording: 1 as recorded, 0.5 in twice the time.
     pub speed: f64,
-    /// What the arm follows.
+    /// The recorded positions that the arm follows.
     pub source: ReplaySource,
-    /// What kind of targets it follows.
+    /// The kind of targets that the arm follows.
     pub targets: ReplayTargets,
 }
 
-/// What of a recording the arm follows.
+/// The recorded positions that an arm follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ReplaySource {
-    /// Where the arm was to be; without what was recorded before it was first told so, and after it
-    /// was last.
+    /// The commanded positions, from the first command to the last.
     #[default]
     Reference,
-    /// Where it was, averaged over 40 ms: for arms that were moved by hand, or by torques.
+    /// The measured positions, averaged over 40 ms: for arms that were moved by hand, or by
+    /// torques.
     Measured,
 }
 
@@ -52,7 +52,7 @@ pub enum ReplayTargets {
     /// Joint positions: every joint moves as recorded.
     #[default]
     Joints,
-    /// Poses of the recorded end effector: the hand moves as recorded, the elbow as it can.
+    /// Poses of the recorded end effector: the hand moves as recorded, but the elbow may differ.
     Poses,
 }
 
@@ -67,24 +67,24 @@ impl Default for ReplayOptions {
 }
 
 impl ReplayOptions {
-    /// The least speed.
+    /// Smallest speed.
     pub const SPEED_MIN: f64 = 0.01;
 
-    /// Replaces the speed.
+    /// Sets the speed.
     #[must_use]
     pub fn speed(mut self, speed: f64) -> Self {
         self.speed = speed;
         self
     }
 
-    /// Replaces what the arm follows.
+    /// Sets the recorded positions to follow.
     #[must_use]
     pub fn source(mut self, source: ReplaySource) -> Self {
         self.source = source;
         self
     }
 
-    /// Replaces the kind of targets.
+    /// Sets the kind of targets.
     #[must_use]
     pub fn targets(mut self, targets: ReplayTargets) -> Self {
         self.targets = targets;
@@ -92,27 +92,28 @@ impl ReplayOptions {
     }
 }
 
-/// A recorded motion, made ready for an arm.
+/// A recorded motion, prepared for an arm.
 #[derive(Clone, Debug)]
 pub struct ReplayPlan {
     kind: RobotKind,
     pub(super) targets: ReplayTargets,
     /// Joint positions, [`PERIOD`] apart.
     pub(super) points: Vec<[f64; 7]>,
-    /// Where the arm was meanwhile.
+    /// The measured positions at these times.
     pub(super) measured: Vec<[f64; 7]>,
-    /// From the flange to the end effector that was recorded.
+    /// Pose of the recorded end effector in the flange frame.
     pub(super) tool: Isometry3<f64>,
     budget: Budget,
     speed: f64,
 }
 
 impl ReplayPlan {
-    /// The motion of these samples of a robot of the kind `recorded`, for an arm of this model.
+    /// Creates the motion of these samples of a robot of the kind `recorded`, for an arm of this
+    /// model.
     ///
     /// # Errors
-    /// [`ReplayError`] for what cannot be replayed. Whether the arm reaches the targets as it is
-    /// now says [`Self::check`].
+    /// [`ReplayError`] for recordings that cannot be replayed. [`Self::check`] checks whether the
+    /// arm can reach the targets in its current configuration.
     pub fn new(
         recorded: RobotKind,
         samples: &[Sample],
@@ -151,30 +152,30 @@ impl ReplayPlan {
         })
     }
 
-    /// The kind of robot that it is for.
+    /// Returns the kind of robot of the replay.
     pub fn kind(&self) -> RobotKind {
         self.kind
     }
 
-    /// The first target, joint positions, `[rad]`: the arm has to rest there when the replay
+    /// Returns the first target, joint positions, `[rad]`: the arm must rest there when the replay
     /// begins.
     pub fn start(&self) -> [f64; 7] {
         self.points[0]
     }
 
-    /// How long the replay takes.
+    /// Returns the duration of the replay.
     pub fn duration(&self) -> Duration {
         PERIOD * (self.points.len() as u32 - 1)
     }
 
-    /// The speed of the replay, as a share of the recorded one. The motion to the first target has
-    /// this share of the speed of other goals.
+    /// Returns the speed of the replay, as a share of the recorded one. The motion to the first
+    /// target has this share of the speed of other goals.
     pub fn speed(&self) -> f64 {
         self.speed
     }
 
-    /// The limits that the arm is to follow with: what the motion needs and a quarter more, and
-    /// those of other goals at least.
+    /// Returns the limits for the arm: the requirements of the motion plus a quarter, and at least
+    /// the limits of other goals.
     pub fn budget(&self) -> Budget {
         self.budget
     }
@@ -182,7 +183,7 @@ impl ReplayPlan {
     /// Checks all targets for an arm in this state.
     ///
     /// # Errors
-    /// [`ReplayError::Target`] for the first targets that are out of bounds or out of reach, and
+    /// [`ReplayError::Target`] for the first targets outside the limits or out of reach, and
     /// [`ReplayError::Kind`] for an arm of another kind.
     pub fn check(&self, model: &Model, state: &RobotState) -> Result<(), ReplayError> {
         if model.kind() != self.kind {
@@ -203,7 +204,7 @@ impl ReplayPlan {
         Ok(())
     }
 
-    /// The motion through these targets, the first of them at the origin of the chunk.
+    /// Returns the motion through these targets, the first at the origin of the chunk.
     pub(super) fn chunk(
         &self,
         model: &Model,
@@ -223,7 +224,7 @@ impl ReplayPlan {
     }
 }
 
-/// The pose of the end effector at `q`.
+/// Returns the pose of the end effector at `q`.
 pub(super) fn pose_at(model: &Model, q: &[f64; 7], tool: &Isometry3<f64>) -> Isometry3<f64> {
     let q = JointVector::from(*q);
     let flange = model.pose(Frame::Flange, &q, &EndEffector::default());
@@ -231,7 +232,7 @@ pub(super) fn pose_at(model: &Model, q: &[f64; 7], tool: &Isometry3<f64>) -> Iso
     flange * tool
 }
 
-/// Whether the times of the cycles increase without gaps.
+/// Checks that the times of the cycles increase without gaps.
 fn check_times(samples: &[Sample]) -> Result<(), ReplayError> {
     if samples.len() < 2 {
         return Err(ReplayError::Short { got: samples.len() });
@@ -245,7 +246,7 @@ fn check_times(samples: &[Sample]) -> Result<(), ReplayError> {
     Ok(())
 }
 
-/// The joint positions that are followed, of each sample.
+/// Returns the joint positions to follow, for each sample.
 fn followed(samples: &[Sample], source: ReplaySource) -> Result<Vec<[f64; 7]>, ReplayError> {
     let of = |(i, sample): (usize, &Sample)| {
         let q = match source {
@@ -263,7 +264,8 @@ fn followed(samples: &[Sample], source: ReplaySource) -> Result<Vec<[f64; 7]>, R
     samples.iter().enumerate().map(of).collect()
 }
 
-/// The mean of the measured positions around sample `i`, over as much time before as after it.
+/// Returns the mean of the measured positions around sample `i`, over equal times before and after
+/// it.
 fn averaged(samples: &[Sample], i: usize) -> [f64; 7] {
     let time = samples[i].time;
     let room = (time - samples[0].time).min(samples[samples.len() - 1].time - time);
@@ -283,12 +285,12 @@ fn averaged(samples: &[Sample], i: usize) -> [f64; 7] {
     sum.map(|sum| sum / count)
 }
 
-/// Positions at the times of the targets: on the line between those of the samples around.
+/// Returns positions at the times of the targets, interpolated linearly between samples.
 fn resampled(samples: &[Sample], q: &[[f64; 7]], speed: f64) -> Vec<[f64; 7]> {
     let begin = samples[0].time;
     let step = PERIOD.as_secs_f64() * 1e3 * speed;
     let last = (samples[samples.len() - 1].time - begin) as f64;
-    // The last target is at the last sample or up to a step before it.
+    // The last target is at the last sample or less than a step before it.
     let count = (last / step + 1e-9).floor() as usize + 1;
     let mut next = 1;
     let at = |k: usize| {
@@ -303,7 +305,7 @@ fn resampled(samples: &[Sample], q: &[[f64; 7]], speed: f64) -> Vec<[f64; 7]> {
     (0..count.max(2)).map(at).collect()
 }
 
-/// What the motion needs, and some more.
+/// Returns the limits that the motion needs, plus a reserve.
 fn budget(
     model: &Model,
     points: &[[f64; 7]],
@@ -358,7 +360,7 @@ fn budget(
         (&mut budget.translation, &ends.translation),
         (&mut budget.rotation, &ends.rotation),
     ] {
-        // A recording was made within the robot's limits, whatever its goals were.
+        // A recording is within the robot's limits, regardless of its goals.
         axis.acceleration = most.acceleration;
         axis.jerk = most.jerk;
     }

@@ -1,4 +1,4 @@
-//! Cycles as messages, and back.
+//! Conversion of cycles to messages, and back.
 
 use franka_model::transform;
 use franka_proto::{ControllerMode, Errors, RobotState};
@@ -15,7 +15,7 @@ use super::numbers::{bindings, generator, generator_number, guard_number, robot_
 use crate::{Cycle, HostTime};
 
 impl franka::Cycle {
-    /// Takes over `cycle`, in place of what was there: the memory of the fields is used again.
+    /// Replaces the contents with `cycle`; the memory of the fields is reused.
     pub fn set(&mut self, cycle: &Cycle) {
         let (record, state) = (&cycle.record, &cycle.state);
         self.host_time = cycle.time.as_nanos();
@@ -74,7 +74,7 @@ impl franka::Cycle {
             .map(|slack| (slack.as_nanos() as f64 * 1e-9) as f32);
     }
 
-    /// The cycle of this message, with the tool that was on the arm.
+    /// Returns the cycle of this message, with the tool on the arm.
     pub fn to_cycle(&self, tool: Option<&franka::Tool>) -> Cycle {
         let mut cycle = Cycle {
             time: HostTime::from_nanos(self.host_time),
@@ -130,7 +130,7 @@ impl franka::Cycle {
         state.message_id = self.robot_time;
         state.robot_mode = robot_mode(self.robot_mode);
         state.motion_generator_mode = generator(self.motion_generator_mode);
-        // A larger number is in no file of ours.
+        // Our files contain no larger number.
         let controller = u8::try_from(self.controller_mode).unwrap_or(u8::MAX);
         state.controller_mode = ControllerMode::from_byte(controller);
         state.errors = Errors::from_bits(self.errors);
@@ -155,13 +155,13 @@ impl franka::Cycle {
     }
 }
 
-/// Fills in what follows from the rest.
+/// Fills in the values derived from the others.
 fn derive(state: &mut RobotState) {
     let pose = |matrix| transform::isometry_from_array(matrix).unwrap_or_default();
     let stiffness = pose(&state.O_T_EE) * pose(&state.EE_T_K);
     let [x, y, z, a, b, c] = state.O_F_ext_hat_K;
     let (force, torque) = (Vector3::new(x, y, z), Vector3::new(a, b, c));
-    // In the axes of the base its torque is about the origin of the base.
+    // In the axes of the base, its torque is about the origin of the base.
     let torque = torque - stiffness.translation.vector.cross(&force);
     let force: [f64; 3] = stiffness.inverse_transform_vector(&force).into();
     let torque: [f64; 3] = stiffness.inverse_transform_vector(&torque).into();
@@ -191,7 +191,7 @@ mod tests {
     use nalgebra::Isometry3;
     use prost::Message as _;
 
-    /// A cycle whose numbers all differ, and have few digits.
+    /// Returns a cycle whose numbers all differ, and have few digits.
     fn cycle() -> Cycle {
         let mut next = 0.0;
         let mut number = || {

@@ -1,4 +1,4 @@
-//! Events as messages, and back.
+//! Conversion of events to messages, and back.
 
 use core::time::Duration;
 
@@ -24,8 +24,8 @@ impl From<&Event> for franka::Event {
 }
 
 impl franka::Event {
-    /// The event of this message, `time` being that of its record; `None` if a later version of
-    /// this crate has written it and this one does not know its kind.
+    /// Returns the event of this message; `time` is the time of its record. Returns `None` for a
+    /// kind from a later version of this crate.
     pub fn to_event(&self, time: HostTime) -> Option<Event> {
         Some(Event {
             time,

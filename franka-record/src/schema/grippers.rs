@@ -1,4 +1,4 @@
-//! States of grippers as messages, and back.
+//! Conversion of gripper states to messages, and back.
 
 use franka_proto::{gripper, vacuum};
 
@@ -37,7 +37,7 @@ impl From<&GripperState> for franka::Gripper {
 }
 
 impl franka::Gripper {
-    /// The state of this message; `None` if it is of a kind that this version does not know.
+    /// Returns the state of this message; `None` for a kind that this version does not know.
     pub fn to_state(&self) -> Option<GripperState> {
         Some(match self.kind.as_ref()? {
             franka::gripper::Kind::Hand(hand) => GripperState::Hand(gripper::State {

@@ -12,7 +12,7 @@ mod topic;
 pub use prost::Message;
 pub(crate) use topic::{CASSETTE_METADATA, METADATA, ROBOT_METADATA, Topic};
 
-/// Foxglove's well-known messages, as far as a recording has them.
+/// Foxglove's well-known messages that recordings use.
 #[allow(missing_docs, reason = "documented in the definitions")]
 pub mod foxglove {
     include!("generated/foxglove.rs");
@@ -24,6 +24,6 @@ pub mod franka {
     include!("generated/franka.rs");
 }
 
-/// The descriptors of all messages: a `google.protobuf.FileDescriptorSet`, as a schema record of an
-/// MCAP file holds it.
+/// The descriptors of all messages: a `google.protobuf.FileDescriptorSet`, as in a schema record of
+/// an MCAP file.
 pub const DESCRIPTORS: &[u8] = include_bytes!("generated/descriptors.bin");

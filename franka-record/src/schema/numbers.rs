@@ -1,11 +1,11 @@
-//! What messages have a number for: modes, guards and times.
+//! Values that messages encode as numbers: modes, guards and times.
 
 use core::time::Duration;
 
 use franka_proto::{MotionGeneratorMode, RobotMode};
 use franka_rt::session::{Bindings, Guard};
 
-/// The mode of a number; one without a meaning reads as `Other`.
+/// Returns the mode of a number; an undefined number reads as `Other`.
 pub(super) fn robot_mode(number: i32) -> RobotMode {
     u8::try_from(number).map_or(RobotMode::Other, RobotMode::from_byte)
 }
@@ -34,18 +34,19 @@ pub(super) fn generator(number: u32) -> MotionGeneratorMode {
     }
 }
 
-/// The number of a guard in messages: one more than its own, as 0 is for a guard without a name.
+/// Returns the number of a guard in messages: one more than its own number, because 0 represents an
+/// unnamed guard.
 pub(super) fn guard_number(guard: Guard) -> i32 {
     guard as i32 + 1
 }
 
-/// The guard of a number.
+/// Returns the guard of a number.
 pub(super) fn guard(number: i32) -> Option<Guard> {
     let index = usize::try_from(number).ok()?.checked_sub(1)?;
     Guard::ALL.get(index).copied()
 }
 
-/// The guards of their numbers; those without a meaning are left out.
+/// Returns the guards of these numbers; undefined numbers are ignored.
 pub(super) fn bindings(numbers: &[i32]) -> Bindings {
     let mut bindings = Bindings::default();
     for guard in numbers.iter().filter_map(|&number| guard(number)) {
@@ -54,7 +55,7 @@ pub(super) fn bindings(numbers: &[i32]) -> Bindings {
     bindings
 }
 
-/// A time of a message in seconds; zero for one that is none.
+/// Converts a time of a message in seconds; zero for an invalid time.
 pub(super) fn seconds(seconds: f64) -> Duration {
     Duration::try_from_secs_f64(seconds).unwrap_or_default()
 }

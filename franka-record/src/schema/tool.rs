@@ -1,4 +1,4 @@
-//! The tool of an arm as a message, and back.
+//! Conversion of an arm's tool to a message, and back.
 
 use franka_proto::RobotState;
 
@@ -6,7 +6,7 @@ use super::arrays::get_exact;
 use super::franka;
 
 impl franka::Tool {
-    /// The tool that `state` names.
+    /// Returns the tool in `state`.
     pub fn of(state: &RobotState) -> Self {
         Self {
             robot_time: state.message_id,
@@ -23,7 +23,7 @@ impl franka::Tool {
         }
     }
 
-    /// True if `state` names the same tool.
+    /// True if `state` has the same tool.
     pub fn is_of(&self, state: &RobotState) -> bool {
         self.f_t_ee == state.F_T_EE
             && self.ee_t_k == state.EE_T_K

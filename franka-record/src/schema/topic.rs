@@ -8,13 +8,13 @@ use crate::event::Level;
 /// Name of the metadata of the whole recording.
 pub(crate) const METADATA: &str = "recording";
 
-/// Name of the metadata of a robot, before the robot's name.
+/// Name of a robot's metadata, followed by the robot's name.
 pub(crate) const ROBOT_METADATA: &str = "robot:";
 
 /// Name of the first metadata record of a cassette.
 pub(crate) const CASSETTE_METADATA: &str = "franka cassette";
 
-/// A channel of one robot. Its full name has the robot's name before it.
+/// A channel of one robot. Its full name begins with the robot's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(usize)]
 pub(crate) enum Topic {
@@ -22,13 +22,13 @@ pub(crate) enum Topic {
     Cycle,
     /// The tool, and each change of it.
     Tool,
-    /// What happened, as values.
+    /// Events, as values.
     Event,
-    /// What happened, as text.
+    /// Events, as text.
     Log,
     /// Poses of links, end effector, reference and target.
     Tf,
-    /// The pose that the reference heads for.
+    /// The pose that the reference moves towards.
     Target,
     /// Joint positions, velocities and torques.
     Joints,
@@ -51,7 +51,7 @@ impl Topic {
         Self::Gripper,
     ];
 
-    /// The name of the channel of a robot; the name of an only robot may be empty.
+    /// Returns the name of a robot's channel; the name of a single robot may be empty.
     pub(crate) fn channel(self, robot: &str) -> String {
         match robot {
             "" => format!("/{}", self.name()),
@@ -59,7 +59,7 @@ impl Topic {
         }
     }
 
-    /// The topic and the robot of a channel that [`Self::channel`] names.
+    /// Returns the topic and the robot of a channel named by [`Self::channel`].
     #[cfg(test)]
     pub(crate) fn of_channel(channel: &str) -> Option<(Self, &str)> {
         let (before, name) = channel.rsplit_once('/')?;
@@ -82,7 +82,7 @@ impl Topic {
         }
     }
 
-    /// The full name of its messages.
+    /// Returns the full name of its messages.
     pub(crate) fn schema(self) -> String {
         match self {
             Self::Cycle => franka::Cycle::full_name(),

@@ -1,4 +1,4 @@
-//! Datasets in LeRobot's layout, as their own files say.
+//! Datasets in LeRobot's layout, checked through their own files.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use serde_json::Value;
 
 const STATE: usize = 15;
 
-/// An empty folder for the test of this name.
+/// Returns an empty folder for the test with this name.
 fn folder(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
         .join("lerobot")
@@ -24,8 +24,8 @@ fn folder(name: &str) -> PathBuf {
     }
 }
 
-/// A hand that turns about its own axis while it points down, through the orientation where a
-/// quaternion with a positive last number would change its sign.
+/// Returns a hand that turns about its own axis while it points down, through the orientation where
+/// a quaternion with a positive last number would change its sign.
 fn sample(millisecond: u64) -> Sample {
     let t = millisecond as f64 * 1e-3;
     let q = |t: f64| std::array::from_fn(|i| 0.1 * (t + i as f64).sin());
@@ -138,7 +138,7 @@ fn episodes_are_frames_at_the_rate_of_the_dataset_with_the_next_reference_as_act
             "{index}: {state:?}"
         );
         assert!(near(state[7], here.pose.translation.x), "{index}");
-        // Grippers are read rarely: the width is that of the last sample before.
+        // Grippers are read rarely: the width is from the last sample before.
         assert!((state[14] - here.width.unwrap()).abs() < 2e-5, "{index}");
         let is_last = [39, 49, 52].contains(&index);
         if !is_last {
@@ -186,7 +186,7 @@ fn episodes_are_added_to_a_dataset_that_is_there() {
         episode(&mut dataset, task);
         dataset.finish().unwrap();
     }
-    // One that is given up changes nothing.
+    // A dropped export changes nothing.
     let mut given_up = Dataset::open(&root, options()).unwrap();
     episode(&mut given_up, "never");
     drop(given_up);
@@ -321,12 +321,12 @@ fn dataset_with_cameras_is_refused_by_its_features() {
     ] {
         assert!(error.contains(difference), "{error}");
     }
-    // What is the same is not named.
+    // Equal features are not named.
     assert!(!error.contains("observation.state"), "{error}");
     assert!(error.len() < 400, "{error}");
 }
 
-/// The process that a test starts adds episodes until it is killed.
+/// The process started by the test adds episodes until it is killed.
 #[test]
 fn dataset_of_a_killed_export_takes_the_next_one() {
     const TO: &str = "FRANKA_RECORD_TEST_DATASET";
@@ -383,7 +383,7 @@ fn dataset_of_a_killed_export_takes_the_next_one() {
     assert_eq!(left, ["data", "meta"]);
 }
 
-/// A power cut between any two files of an export that was finished.
+/// Simulates a power failure between any two files of a finished export.
 #[test]
 fn dataset_is_completed_where_a_finished_export_was_cut() {
     let root = folder("cut");

@@ -1,4 +1,4 @@
-//! Exports of made-up motions, read back with a reader of the format.
+//! Exports of synthetic motions, read with a reader of the format.
 
 mod lerobot;
 mod tables;

@@ -1,4 +1,4 @@
-//! Tables of made-up cycles: text and Parquet.
+//! Tables of synthetic cycles: text and Parquet.
 
 use std::fs::{self, File};
 use std::io;
@@ -39,7 +39,7 @@ fn text_has_names_units_and_a_line_for_each_cycle() {
     assert!(lines[0].contains("\"number of the goal, 0 without one\""));
     assert!(lines[1].starts_with("time,host_time,q[0],q[1],"));
     assert!(lines[1].contains(",q[6],goal,activity,slack,O_T_EE[0],"));
-    // A matrix by its rows: x of the position is the fourth number. There is no slack.
+    // A matrix by rows: x of the position is the fourth number. The slack is missing.
     let q = ",0.5".repeat(7);
     let begin = format!("72,2000000{q},2,watching,,1,0,0,0.5,0,1,0,");
     assert!(lines[4].starts_with(&begin), "{}", lines[4]);
@@ -92,7 +92,7 @@ fn tables_replace_no_file_and_leave_none_when_they_fail() {
     assert!(matches!(error, ExportError::Exists { .. }), "{error}");
     let error = NewFile::create(&path).unwrap_err();
     assert!(matches!(error, ExportError::Exists { .. }), "{error}");
-    // Another program has been quicker.
+    // Another program was faster.
     let mut late = NewFile::create(folder.path().join("late.csv")).unwrap();
     write_csv(cycles(), &columns(), true, &mut late).unwrap();
     fs::write(folder.path().join("late.csv"), "of somebody").unwrap();
@@ -109,7 +109,7 @@ fn tables_replace_no_file_and_leave_none_when_they_fail() {
     assert!(!text.contains(".partial"), "{text}");
 }
 
-/// The process that a test starts writes to the file until it is killed.
+/// The process started by the test writes to the file until it is killed.
 #[test]
 fn tables_that_were_interrupted_are_in_no_later_ones_way() {
     const TO: &str = "FRANKA_RECORD_TEST_TABLE";

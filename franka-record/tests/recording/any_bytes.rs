@@ -1,6 +1,5 @@
-//! What reading a recording does with any bytes: the target of the fuzzer in `fuzz/`, and the files
-//! that it starts from.
-// Public in the library of `fuzz/`, which has this source too.
+//! Reads a recording from any bytes: the target of the fuzzer in `fuzz/`, and its initial files.
+// Public in the library of `fuzz/`, which also compiles this file.
 #![allow(unreachable_pub)]
 
 use std::collections::BTreeMap;
@@ -10,8 +9,7 @@ use franka_record::{Cycle, Event, EventKind, HostTime, Recording};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Compression, WriteOptions};
 
-/// Reads all that there is in `bytes`. Never panics, and no result is larger than what the bytes
-/// can hold.
+/// Reads all contents of `bytes`. Never panics, and no result is larger than the bytes can encode.
 pub fn read(bytes: &[u8]) {
     let Ok(recording) = Recording::from_bytes(bytes.to_vec()) else {
         return;
@@ -21,8 +19,8 @@ pub fn read(bytes: &[u8]) {
         assert!(data.is_none_or(|data| data.len() <= bytes.len()));
     }
     let middle = recording.span().map_or(HostTime::default(), |span| span.0);
-    // LZ4 makes at most 255 bytes out of one, and a message takes more than ten; each chunk is told
-    // damaged once, but its index may name the same chunk again and again.
+    // LZ4 produces at most 255 bytes from one, and a message takes more than ten. Each chunk is
+    // reported as damaged once, but its index may name the same chunk repeatedly.
     let most = bytes.len() * 255 * (1 + bytes.len() / 50);
     for robot in recording.robots() {
         let Ok(robot) = recording.robot(&robot.name) else {
@@ -35,14 +33,14 @@ pub fn read(bytes: &[u8]) {
     }
 }
 
-/// Short recordings, whole but without what schemas say.
+/// Returns short recordings, complete but without the contents of schemas.
 pub fn seeds() -> Vec<(&'static str, Vec<u8>)> {
     vec![("lz4", seed(Some(Compression::Lz4))), ("plain", seed(None))]
 }
 
 fn seed(compression: Option<Compression>) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
-    // Where nothing is compressed, there are no sums either: what reads a changed byte meets it.
+    // Without compression there are no checksums either, so a changed byte reaches the reader.
     let sums = compression.is_some();
     let options = WriteOptions::new()
         .compression(compression)

@@ -1,4 +1,4 @@
-//! Files that are cut, damaged or left by a killed program.
+//! Files that are truncated, damaged or left by a killed program.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -16,7 +16,7 @@ use rand::{Rng as _, SeedableRng as _};
 use crate::any_bytes;
 use crate::feed::{Arm, Scratch, quick};
 
-/// A short recording, and where its chunks end.
+/// Returns a short recording, and the ends of its chunks.
 fn recording(scratch: &Scratch, kind: RobotKind) -> (Vec<u8>, Vec<usize>) {
     let path = scratch.path("whole.mcap");
     let options = RecordOptions {
@@ -37,7 +37,7 @@ fn recording(scratch: &Scratch, kind: RobotKind) -> (Vec<u8>, Vec<usize>) {
     (bytes, ends)
 }
 
-/// Cycles in these whole chunks, as the crate of the format reads them.
+/// Returns the number of cycles in these whole chunks, according to the crate of the format.
 fn cycles_by_standard(bytes: &[u8]) -> usize {
     let messages = by_standard(bytes).into_iter();
     messages.filter(|(topic, ..)| topic == "/cycle").count()
@@ -80,7 +80,7 @@ fn damaged_bytes_are_told_and_the_rest_is_read() {
             let at = random.random_range(0..damaged.len());
             damaged[at] ^= 1 << random.random_range(0..8);
         }
-        // What does not begin as such a file is none.
+        // A file with another beginning is refused.
         let Ok(recording) = Recording::from_bytes(damaged) else {
             continue;
         };
@@ -92,7 +92,7 @@ fn damaged_bytes_are_told_and_the_rest_is_read() {
             .filter_map(Result::ok)
             .map(|cycle| cycle.record.time)
             .collect();
-        // Three chunks of 15 at most, if the file can be gone through at all.
+        // Three chunks of 15 at most, if the file can be scanned at all.
         let gone_through = recording.damage().is_none();
         assert!(
             !gone_through || times.len() >= CYCLES - 45,
@@ -118,7 +118,7 @@ fn a_recovered_file_is_whole_and_has_the_same_messages() {
     assert!(recovery.damage.is_some());
 
     let recovered = std::fs::read(&whole).unwrap();
-    // The standard reader takes it without leniency.
+    // The standard reader reads it without leniency.
     let standard = mcap::MessageStream::new(&recovered).unwrap();
     let messages = standard.inspect(|message| assert!(message.is_ok())).count();
     assert_eq!(messages as u64, recovery.messages);
@@ -137,8 +137,8 @@ fn a_recovered_file_is_whole_and_has_the_same_messages() {
     assert!(matches!(again, RecordingError::File { .. }), "{again}");
 }
 
-/// What the standard tool recovers, by its source: the messages of every whole chunk up to where
-/// the file is cut. Its records are read here by the crate of the format.
+/// The result of the standard tool, by its source: the messages of every whole chunk up to the cut.
+/// The crate of the format reads its records here.
 #[test]
 fn files_cut_anywhere_are_recovered_as_the_standard_tool_does() {
     let scratch = Scratch::new();
@@ -160,7 +160,7 @@ fn files_cut_anywhere_are_recovered_as_the_standard_tool_does() {
             assert!(recovery.damage.is_some(), "{cut}");
             let recovered = std::fs::read(&whole).unwrap();
             std::fs::remove_file(&whole).unwrap();
-            // Strictly: with its end, and every sum right.
+            // Read strictly: with its end, and with correct checksums.
             let recovered: Vec<_> = mcap::MessageStream::new(&recovered)
                 .unwrap()
                 .map(|message| {
@@ -183,7 +183,7 @@ fn files_cut_anywhere_are_recovered_as_the_standard_tool_does() {
     }
 }
 
-/// Topic, sequence number, time and data of each message of these whole chunks.
+/// Returns topic, sequence number, time and data of each message of these whole chunks.
 fn by_standard(bytes: &[u8]) -> Vec<(String, u32, u64, Vec<u8>)> {
     use mcap::read::{ChunkFlattener, Options};
     use mcap::records::Record;
@@ -211,7 +211,7 @@ fn a_compression_that_is_not_read_is_an_error_and_no_damage() {
     let (path, whole) = (scratch.path("zstd.mcap"), scratch.path("recovered.mcap"));
     let (bytes, _) = recording(&scratch, RobotKind::Fr3);
     let mut file = bytes;
-    // Its first chunk, as another tool would have named its compression.
+    // Its first chunk, with the name of another tool's compression.
     let at = file
         .windows(7)
         .position(|part| part == b"\x03\0\0\0lz4")
@@ -291,19 +291,19 @@ fn mcap_files_of_other_programs_are_no_recordings() {
         text.contains("\"libmcap 0.8.0\" with the profile \"ros2\""),
         "{text}"
     );
-    // A bag that is still written, or was cut.
+    // A bag that is still being written, or was truncated.
     let bytes = std::fs::read(&path).unwrap();
     let cut = scratch.path("cut.mcap");
     std::fs::write(&cut, &bytes[..bytes.len() / 2]).unwrap();
     assert_eq!(refused(&cut), text);
-    // What is recovered of it is not a recording either.
+    // The recovered file is not a recording either.
     let recovered = scratch.path("recovered.mcap");
     Recording::recover(&path, &recovered).unwrap();
     let text = refused(&recovered);
     assert!(text.contains("describes no robot"), "{text}");
     let text = refused(&bag("", ""));
     assert!(text.contains("does not say what wrote it"), "{text}");
-    // A name of any length is not shown.
+    // A very long name is not shown.
     let text = refused(&bag(&"long ".repeat(1000), ""));
     assert!(text.len() < 200, "{text}");
 }
@@ -360,10 +360,10 @@ fn record_for_ever(path: &Path) -> ! {
     }
 }
 
-/// Cycles of the recording.
+/// Number of cycles of the recording.
 const CYCLES: usize = 500;
 
-/// Names the file to the process that is to be killed.
+/// Environment variable with the file for the process to be killed.
 const CHILD: &str = "FRANKA_RECORD_CHILD";
 
 #[test]
@@ -376,7 +376,7 @@ fn any_bytes_are_read_without_a_panic() {
         assert_eq!((robot.cycles().count(), robot.events().count()), (1, 1));
         for _ in 0..5000 {
             let mut bytes = seed.clone();
-            // The index at the end is checked by a sum: without it, the chunks are gone through.
+            // The index at the end has a checksum: if it is wrong, the chunks are scanned.
             if random.random_bool(0.5) {
                 bytes.truncate(random.random_range(8..bytes.len()));
             }

@@ -1,4 +1,4 @@
-//! Recordings explained from their files.
+//! Explanations of recordings from their files.
 
 use std::time::Duration;
 
@@ -11,8 +11,8 @@ use franka_record::{EventKind, Recording};
 
 use crate::feed::{Arm, Scratch, quick};
 
-/// The bytes of a recording of an arm that is touched at 1501 ms and stops at 1526 ms, and what its
-/// cycles explain without a file.
+/// Returns the bytes of a recording of an arm that is touched at 1501 ms and stops at 1526 ms, and
+/// the explanation of its cycles without a file.
 fn stopped() -> (Vec<u8>, Explanation) {
     let scratch = Scratch::new();
     let path = scratch.path("run.mcap");

@@ -13,8 +13,8 @@ use franka_record::{Episode, EventKind, GripperState, Recording, Sample, Samples
 use crate::feed::{Arm, Scratch, quick};
 use crate::standard::{PYTHON, python};
 
-/// Four seconds of an arm with a gripper that closes; from the first to the third one is an
-/// episode.
+/// Records four seconds of an arm with a gripper that closes; an episode lasts from the first
+/// second to the third.
 fn recorded(path: &std::path::Path) {
     let recorder = Recorder::to_file(path, quick()).unwrap();
     let began = Instant::now();
@@ -46,7 +46,7 @@ fn python_reads_a_dataset_of_a_recording() {
     let folder = scratch.path("dataset");
     let mut dataset = Dataset::create(&folder, DatasetOptions::new("fr3").gripper(true)).unwrap();
     let mut frames = 0;
-    // Twice the same samples, under two tasks.
+    // The same samples twice, with two tasks.
     for task in ["pick the cube", "pick it again"] {
         let samples = Samples::new(robot.cycles(), robot.gripper_states());
         let samples: Vec<Sample> = samples.collect::<Result<_, _>>().unwrap();
@@ -62,7 +62,7 @@ fn python_reads_a_dataset_of_a_recording() {
     }
 }
 
-/// Names an interpreter that has LeRobot.
+/// Environment variable with the path of an interpreter that has LeRobot.
 const LEROBOT: &str = "FRANKA_LEROBOT_PYTHON";
 
 #[test]
@@ -85,7 +85,7 @@ fn an_episode_of_a_file_becomes_a_dataset_a_table_and_a_replay() {
     let samples: Vec<Sample> = Samples::new(part.cycles(), widths)
         .collect::<Result<_, _>>()
         .unwrap();
-    // The cycles' times and those of the marks are taken a moment apart.
+    // The times of the cycles and of the marks are taken at slightly different moments.
     assert!((1990..=2001).contains(&samples.len()), "{}", samples.len());
     let width = samples[0].width.unwrap();
     assert!((width - 0.07).abs() < 2e-3, "{width}");
@@ -100,7 +100,8 @@ fn an_episode_of_a_file_becomes_a_dataset_a_table_and_a_replay() {
     let rows = write_csv(part.cycles(), &columns, false, &mut text).unwrap();
     assert_eq!(rows, samples.len() as u64);
 
-    // The joints of this made-up arm leave their ranges: it can be planned, and is refused then.
+    // The joints of this synthetic arm leave their ranges: the plan succeeds, and the check refuses
+    // it.
     let kind = recording.robots()[0].kind.expect("the file says it");
     let model = Model::of(kind);
     let plan = ReplayPlan::new(kind, &samples, ReplayOptions::default(), model).unwrap();

@@ -1,4 +1,4 @@
-//! Robots whose cycles are made up: a pace, a seed and nothing else.
+//! Robots with synthetic cycles: only a pace and a seed.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -18,7 +18,7 @@ pub(crate) struct Arm {
     feed: CycleFeed,
     began: Instant,
     ms: u64,
-    /// The state of the next cycle, but for what moves.
+    /// The state of the next cycle, except the moving parts.
     pub(crate) state: RobotState,
 }
 
@@ -30,7 +30,7 @@ impl Arm {
         (arm, handle)
     }
 
-    /// An arm of this kind, and a reader of its cycles.
+    /// Creates an arm of this kind, and a reader of its cycles.
     pub(crate) fn new(kind: RobotKind) -> (Self, CycleReader) {
         let version = match kind {
             RobotKind::Fer => Version::V5,
@@ -53,17 +53,17 @@ impl Arm {
         (arm, reader)
     }
 
-    /// A reader of its cycles from now on.
+    /// Returns a reader of its cycles from now on.
     pub(crate) fn reader(&mut self) -> CycleReader {
         let reader = self.feed.attach(RING).unwrap();
         self.publisher.take_attached();
         reader
     }
 
-    /// Feeds `count` cycles of a millisecond each, as fast as `recorder` takes them.
+    /// Feeds `count` cycles of a millisecond each, as fast as `recorder` reads them.
     pub(crate) fn run(&mut self, recorder: &Recorder, count: u64) {
         for cycle in 0..count {
-            // Less than half the ring is on its way.
+            // At most half the ring is unread.
             if cycle % (RING as u64 / 4) == 0 {
                 self.wait(recorder);
             }
@@ -72,7 +72,7 @@ impl Arm {
         self.wait(recorder);
     }
 
-    /// Waits until the recorder has taken every cycle.
+    /// Waits until the recorder has read every cycle.
     pub(crate) fn wait(&self, recorder: &Recorder) {
         let patience = Instant::now() + Duration::from_secs(60);
         while recorder.status().cycles < self.ms {
@@ -91,12 +91,12 @@ impl Arm {
             .push(record, &bytes[..length], self.received());
     }
 
-    /// When its last cycle came, by its pace and not by how fast it is fed.
+    /// Returns the time of its last cycle, according to its pace, independent of the feeding speed.
     pub(crate) fn received(&self) -> Instant {
         self.began + Duration::from_millis(self.ms)
     }
 
-    /// State and record of a cycle.
+    /// Returns state and record of a cycle.
     pub(crate) fn cycle_at(&self, ms: u64) -> (RobotState, Record) {
         let t = ms as f64 * 1e-3;
         let mut state = self.state;
@@ -126,7 +126,7 @@ impl Arm {
         (state, record)
     }
 
-    /// Cycles so far.
+    /// Number of cycles so far.
     pub(crate) fn cycles(&self) -> u64 {
         self.ms
     }
@@ -135,7 +135,7 @@ impl Arm {
 /// Length of the ring in cycles.
 const RING: usize = 4096;
 
-/// A directory that is removed in the end.
+/// A directory that is removed at the end.
 pub(crate) struct Scratch(PathBuf);
 
 impl Scratch {
@@ -159,7 +159,7 @@ impl Drop for Scratch {
     }
 }
 
-/// Options that do not wait for the disk.
+/// Returns options that do not wait for the disk.
 pub(crate) fn quick() -> RecordOptions {
     RecordOptions {
         sync: false,

@@ -1,4 +1,4 @@
-//! What is in the files, whatever happens to them.
+//! The contents of the files, under all conditions.
 
 use std::path::Path;
 use std::process::Command;
@@ -32,8 +32,8 @@ fn every_cycle_is_in_the_file() {
     assert_eq!(cycles, 5000);
 }
 
-/// Also where the recording ends before the recorder has looked at the newest connection, and once
-/// each where a connection comes twice.
+/// Also if the recording ends before the recorder has read the newest connection; a connection that
+/// is reported twice is recorded once.
 #[test]
 fn cycles_of_other_connections_follow_those_of_the_first() {
     let scratch = Scratch::new();
@@ -153,7 +153,7 @@ fn a_recording_goes_on_in_the_next_file() {
     assert_eq!(cycles, arm.cycles());
 }
 
-/// They are of an earlier recording of the same name, whose first file was moved away.
+/// The files belong to an earlier recording with the same name, whose first file was moved away.
 #[test]
 fn rotation_leaves_out_numbers_that_other_files_have() {
     let scratch = Scratch::new();
@@ -219,8 +219,8 @@ fn what_was_written_before_the_disk_was_full_is_readable_and_the_error_is_told_o
     }
     let scratch = Scratch::new();
     let path = scratch.path("full.mcap");
-    // A limit of the process stands for the end of the disk: the write that crosses it is cut short
-    // and the next one fails. Of the shell, it counts blocks of 512 or 1024 bytes.
+    // A limit of the process simulates a full disk: the write that exceeds it is cut short and the
+    // next one fails. The shell counts blocks of 512 or 1024 bytes.
     let mut child = Command::new("sh");
     child
         .arg("-c")
@@ -236,7 +236,7 @@ fn what_was_written_before_the_disk_was_full_is_readable_and_the_error_is_told_o
     assert!(said.contains("full.mcap"), "{said}");
 }
 
-/// Records past the limit of this process.
+/// Records beyond the limit of this process.
 fn record_until_full(path: &Path) {
     tracing_subscriber::fmt().with_ansi(false).init();
     let options = RecordOptions {
@@ -245,7 +245,7 @@ fn record_until_full(path: &Path) {
     };
     let recorder = Recorder::to_file(path, options).unwrap();
     let (mut arm, handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
-    // Cycles are taken, and nobody waits, whatever becomes of the file.
+    // Cycles are read, and no thread waits, regardless of the file.
     let patience = Instant::now() + Duration::from_secs(60);
     while recorder.status().error.is_none() {
         assert!(Instant::now() < patience, "the limit does not hold");
@@ -261,8 +261,8 @@ fn record_until_full(path: &Path) {
     let times: Vec<_> = times.collect();
     assert!(times.len() > 100, "{}", times.len());
     assert_eq!(times, (1..=times.len() as u64).collect::<Vec<_>>());
-    // All others are counted once the disk's thread has seen the last chunk; the newest one with
-    // the one after it.
+    // All other cycles are counted once the disk thread has processed the last chunk; the newest
+    // one is counted with the next chunk.
     let counted = loop {
         let status = recorder.status();
         let kept = status.cycles - status.dropped;
@@ -281,7 +281,7 @@ fn record_until_full(path: &Path) {
     assert_eq!((length, *bytes), (counted.bytes, counted.bytes));
 }
 
-/// A folder that is a file takes none, whoever asks.
+/// A folder path that is a file accepts no files, even for a privileged user.
 #[test]
 fn a_folder_that_takes_no_files_is_told_and_the_recording_goes_on() {
     let scratch = Scratch::new();
@@ -314,5 +314,5 @@ fn a_folder_that_takes_no_files_is_told_and_the_recording_goes_on() {
     assert!(status.black_boxes.is_empty());
 }
 
-/// Names the file to the process whose disk is full.
+/// Environment variable with the file for the process whose disk is full.
 const FULL: &str = "FRANKA_RECORD_FULL";

@@ -1,4 +1,4 @@
-//! A recording that viewers watch while it is made.
+//! A recording with live viewers.
 
 use std::collections::BTreeMap;
 use std::net::{SocketAddr, TcpListener, TcpStream};
@@ -13,10 +13,10 @@ use tungstenite::{Message, WebSocket};
 
 use crate::feed::{Arm, Scratch, quick};
 
-/// A viewer, as Foxglove's application is one.
+/// A viewer, like Foxglove's application.
 struct Viewer {
     socket: WebSocket<TcpStream>,
-    /// Channels that were offered: their numbers and what they hold, by name.
+    /// The offered channels: their numbers and contents, by name.
     channels: BTreeMap<String, (u64, String)>,
 }
 
@@ -35,7 +35,7 @@ impl Viewer {
         }
     }
 
-    /// Waits until so many channels were offered.
+    /// Waits until `count` channels were offered.
     fn wait_for_channels(&mut self, count: usize) {
         while self.channels.len() < count {
             let Message::Text(text) = self.socket.read().unwrap() else {
@@ -56,7 +56,7 @@ impl Viewer {
         }
     }
 
-    /// Asks for channels, which are numbered as they come here.
+    /// Subscribes to channels, which are numbered in the given order.
     fn subscribe(&mut self, topics: &[&str]) {
         let wanted = topics
             .iter()
@@ -67,7 +67,7 @@ impl Viewer {
         self.socket.send(Message::text(order.to_string())).unwrap();
     }
 
-    /// The next message of a channel: which one, and its bytes.
+    /// Returns the next message: the number of its channel, and its bytes.
     fn next(&mut self) -> (u32, Vec<u8>) {
         loop {
             if let Message::Binary(bytes) = self.socket.read().unwrap()
@@ -104,7 +104,7 @@ fn viewers_see_the_messages_of_every_robot_while_they_come() {
         assert_eq!(viewer.channels["/left/cycle"].1, "franka.Cycle");
         assert_eq!(viewer.channels["/right/tf"].1, "foxglove.FrameTransforms");
     }
-    // The server hears of it at some time.
+    // The server is notified after some time.
     let (cycles, transforms) = std::thread::scope(|scope| {
         let watching = scope.spawn(|| {
             let seen = viewers.each_mut().map(|viewer| {
@@ -140,7 +140,7 @@ fn viewers_see_the_messages_of_every_robot_while_they_come() {
     let status = recorder.finish().unwrap();
     assert_eq!((status.cycles, status.dropped), (left.cycles(), 0));
     for mut viewer in viewers {
-        // The server has left.
+        // The server has closed the connection.
         while viewer.socket.read().is_ok() {}
     }
 }
@@ -157,7 +157,7 @@ fn a_viewer_that_never_reads_costs_the_recording_nothing() {
     gone.subscribe(&["/cycle"]);
     drop(gone);
     arm.run(&recorder, 30_000);
-    // It finds the newest messages, not all of them.
+    // It receives the newest messages, not all of them.
     let mut newest = 0;
     while newest < arm.cycles() {
         let (_, bytes) = deaf.next();

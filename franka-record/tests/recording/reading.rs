@@ -1,4 +1,4 @@
-//! What is read back is what was recorded.
+//! Reading returns the recorded data.
 
 use std::time::Duration;
 
@@ -51,7 +51,7 @@ fn a_part_is_found_without_the_rest() {
     let (mut arm, _handle) = Arm::attach(&recorder, Robot::new(RobotKind::Fr3));
     arm.run(&recorder, 20_000);
     recorder.finish().unwrap();
-    // Damaged where nothing is asked for: that part is not read.
+    // Damaged in a part that is not requested, and therefore not read.
     let mut bytes = std::fs::read(&path).unwrap();
     let middle = bytes.len() / 4;
     bytes[middle..middle + 2000].fill(0xff);
@@ -136,7 +136,7 @@ fn events_come_back_in_order_and_changes_are_found() {
     assert_eq!(notes.as_deref(), Some(&b"as agreed"[..]));
     let left = recording.robot("left").unwrap();
     let mut kinds: Vec<_> = left.events().map(|event| event.unwrap().kind).collect();
-    // The host's time and that of the made-up cycles run apart.
+    // The host's time and the time of the synthetic cycles diverge.
     let position = kinds.iter().position(|kind| *kind == goal).unwrap();
     kinds.remove(position);
     assert_eq!(

@@ -1,4 +1,4 @@
-//! Recordings read by the standard reader in Python, and how scripts are run.
+//! Recordings read by the standard reader in Python, and a function to run scripts.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -28,7 +28,7 @@ fn python_decodes_every_message_of_both_robots() {
         recorder.finish().unwrap();
         paths.push(path);
     }
-    // One that was cut and recovered is like any other.
+    // A truncated and recovered file is like any other.
     let bytes = std::fs::read(&paths[0]).unwrap();
     let cut = scratch.path("cut.mcap");
     std::fs::write(&cut, &bytes[..bytes.len() - 40]).unwrap();
@@ -43,8 +43,8 @@ fn python_decodes_every_message_of_both_robots() {
     assert_eq!(said.matches("ok ").count(), paths.len(), "{said}");
 }
 
-/// Runs a script of `tests/python` with the interpreter that `variable` names, and returns what it
-/// prints.
+/// Runs a script of `tests/python` with the interpreter in the environment variable `variable`, and
+/// returns its output.
 pub(crate) fn python(script: &str, variable: &str, arguments: &[OsString]) -> String {
     let interpreter = std::env::var_os(variable).expect("the interpreter is named");
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/python");
@@ -60,5 +60,5 @@ pub(crate) fn python(script: &str, variable: &str, arguments: &[OsString]) -> St
 
 const CYCLES: u64 = 5000;
 
-/// Names the interpreter that has the packages.
+/// Environment variable with the path of the interpreter that has the packages.
 pub(crate) const PYTHON: &str = "FRANKA_RECORD_PYTHON";

@@ -1,4 +1,4 @@
-//! The layout for Foxglove and the blueprint for Rerun name what a recording has.
+//! The layout for Foxglove and the blueprint for Rerun match the contents of a recording.
 
 use std::collections::BTreeSet;
 
@@ -13,7 +13,7 @@ use crate::feed::{Arm, Scratch, quick};
 const LAYOUT: &str = include_str!("../../viewers/foxglove.json");
 const BLUEPRINT: &str = include_str!("../../viewers/rerun_blueprint.py");
 
-/// A recording of an only robot.
+/// Returns a recording of a single robot.
 fn recorded() -> Vec<u8> {
     let scratch = Scratch::new();
     let path = scratch.path("run.mcap");
@@ -24,7 +24,7 @@ fn recorded() -> Vec<u8> {
     std::fs::read(path).unwrap()
 }
 
-/// Its channels.
+/// Returns its channels.
 fn channels() -> BTreeSet<String> {
     let bytes = recorded();
     let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
@@ -32,7 +32,7 @@ fn channels() -> BTreeSet<String> {
     channels.map(|channel| channel.topic.clone()).collect()
 }
 
-/// Every text in a JSON value.
+/// Collects every text in a JSON value.
 fn texts(value: &Value, found: &mut Vec<String>) {
     match value {
         Value::String(text) => found.push(text.clone()),
@@ -73,7 +73,7 @@ fn the_layout_names_only_channels_and_fields_that_exist() {
         }
     }
     assert!(topics >= 10 && paths >= 9, "{topics}, {paths}");
-    // Each panel of the layout is described, and each description is shown.
+    // Each panel of the layout is described, and each description has a panel.
     let panels = layout["configById"].as_object().unwrap();
     let mut shown = Vec::new();
     texts(&layout["layout"], &mut shown);
@@ -94,7 +94,7 @@ fn the_blueprint_names_only_channels_that_exist() {
     }
 }
 
-/// A viewer gives an MCAP file an id by its path, and draws no frame without axes.
+/// A viewer derives the id of an MCAP file from its path, and draws no frame without axes.
 #[test]
 fn the_blueprint_is_saved_for_the_id_that_the_book_converts_to() {
     let id = |text: &str, before: &str| {
@@ -111,7 +111,7 @@ fn the_blueprint_is_saved_for_the_id_that_the_book_converts_to() {
     );
     assert!(BLUEPRINT.contains(".save(APPLICATION_ID, "));
     assert!(BLUEPRINT.contains("overrides={frames: rr.TransformAxes3D("));
-    // The base of an arm is the root of its frames, by which a view finds them.
+    // The base of an arm is the root of its frames, and views find the frames by their root.
     let bytes = recorded();
     let mut messages = mcap::MessageStream::new(&bytes)
         .unwrap()
