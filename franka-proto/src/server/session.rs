@@ -98,7 +98,7 @@ impl<P: Protocol> Session<P> {
     /// Processes a message of the client and returns the resulting event.
     ///
     /// # Errors
-    /// [`Violation`]: the client is to be disconnected.
+    /// [`Violation`]: disconnect the client.
     pub fn on_message(&mut self, message: Message<'_>) -> Result<Event<P>, Violation<P::Command>> {
         let id = message.header.id();
         let request = match self.version.decode_request(&message) {

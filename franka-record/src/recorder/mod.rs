@@ -283,8 +283,8 @@ pub struct RecordStatus {
     pub black_box_error: Option<RecordError>,
 }
 
-/// Takes what is not a cycle of one robot. A cheap handle; none of its methods waits, but for
-/// [`Self::resume`]: what there is no room for is dropped and counted.
+/// Accepts the data of one robot other than cycles. A cheap handle. None of its methods waits,
+/// except [`Self::resume`]: data without space is dropped and counted.
 #[derive(Clone, Debug)]
 pub struct RecordHandle {
     orders: SyncSender<Order>,
