@@ -1,4 +1,4 @@
-//! Who gets in: the checks in front of the files of a page, and of everything else.
+//! Admission: the checks of requests for the files of a page, and of all other requests.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use franka_async::connection::admission::{Admission, Refused};
 
-/// Lets requests for files through.
+/// Checks requests for files.
 pub(crate) async fn files(
     State(admissions): State<Arc<[Admission]>>,
     request: Request,
@@ -20,7 +20,7 @@ pub(crate) async fn files(
     answer(any(checks), request, next).await
 }
 
-/// Lets requests for everything else through.
+/// Checks all other requests.
 pub(crate) async fn rest(
     State(admissions): State<Arc<[Admission]>>,
     request: Request,
@@ -31,7 +31,7 @@ pub(crate) async fn rest(
     answer(any(checks), request, next).await
 }
 
-/// What is fine for one of several robots is; else the reason of the last.
+/// Accepts if any robot accepts; otherwise returns the last robot's reason.
 fn any(mut checks: impl Iterator<Item = Result<(), Refused>>) -> Result<(), Refused> {
     let first = checks.next().expect("a page has a robot");
     checks.fold(first, Result::or)
@@ -49,7 +49,7 @@ fn peer(request: &Request) -> Option<SocketAddr> {
     peer.map(|peer| peer.0)
 }
 
-/// A response that says that nothing comes from elsewhere.
+/// Adds headers that forbid content from other origins.
 fn secured(mut response: Response) -> Response {
     for (name, value) in [
         (header::CONTENT_SECURITY_POLICY, POLICY),

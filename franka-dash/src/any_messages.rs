@@ -1,5 +1,5 @@
-//! Whatever viewers send: read or refused, and never the cause of what they may not do. The check
-//! of a test, and of the fuzz target `dashboard`.
+//! Arbitrary viewer messages are read or refused, and never cause forbidden effects. Used by a
+//! test, and by the fuzz target `dashboard`.
 
 use core::time::Duration;
 use std::time::Instant;
@@ -9,10 +9,10 @@ use franka_async::connection::lease::Lease;
 use crate::authority::{Authority, DEADMAN, Effect, LEASE, Permissions};
 use crate::request::Request;
 
-/// Has an authority take messages, and panics if one of them gets what it must not.
+/// Passes messages to an authority, and panics if a message has a forbidden effect.
 ///
-/// Each line of `bytes` is a message: a byte for the viewer, one for the milliseconds since the
-/// last message, and the text. The first byte of all is what the server permits.
+/// Each line of `bytes` is a message: a byte for the viewer, a byte for the milliseconds since the
+/// last message, and the text. The first byte of all contains the server's permissions.
 pub(crate) fn check(bytes: &[u8]) {
     let Some((permitted, bytes)) = bytes.split_first() else {
         return;
@@ -72,7 +72,7 @@ pub(crate) fn check(bytes: &[u8]) {
     assert!(!authority.status().holding);
 }
 
-/// Messages of every kind, as the page sends them, for one run of [`check`].
+/// Returns messages of every kind, in the page's format, for one run of [`check`].
 pub(crate) fn seeds() -> Vec<Vec<u8>> {
     let session = |permitted: u8| {
         let mut bytes = vec![permitted];

@@ -1,4 +1,4 @@
-//! Where something touches the arm, estimated from its external torques.
+//! Estimates the place of a contact on the arm from its external torques.
 
 use std::time::Duration;
 
@@ -8,22 +8,22 @@ use franka_async::model::{JointVector, Model};
 use franka_async::state::RobotState;
 use serde::Serialize;
 
-/// Where something touches the arm, in the base frame.
+/// A contact on the arm, in the base frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Contact {
-    /// 1 to 7, or 8 for what is mounted on the flange.
+    /// Number of the link, 1 to 7, or 8 for the tool on the flange.
     link: u8,
-    /// `[m]`
+    /// Point of the contact, `[m]`.
     point: [f64; 3],
-    /// On the arm, `[N]`.
+    /// Force on the arm, `[N]`.
     force: [f64; 3],
-    /// How far from the point it may be on that link, `[m]`.
+    /// Uncertainty of the point on that link, `[m]`.
     spread: f64,
-    /// That it is this link, 0 to 1.
+    /// Probability of this link, 0 to 1.
     probability: f64,
 }
 
-/// Looks at states, and knows what their torques are without a contact.
+/// Evaluates states, and learns their torques without a contact.
 #[derive(Debug, Default)]
 pub(crate) struct Watch {
     tare: Tare,
@@ -32,14 +32,14 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// The contact at this state. States may come a few dozen times per second.
+    /// Returns the contact at this state. States may arrive a few dozen times per second.
     pub(crate) fn update(&mut self, model: &Model, state: &RobotState) -> Option<Contact> {
         let last = self.last.replace(state.message_id);
         let passed = state
             .message_id
             .saturating_sub(last.unwrap_or(state.message_id));
         let (q, dq) = (JointVector::from(state.q), JointVector::from(state.dq));
-        // The robot's estimate is what it exerts.
+        // The robot estimates the torque that it exerts itself.
         let read = -JointVector::from(state.tau_ext_hat_filtered);
         let torque = self.tare.update(&read, &dq, passed as f64 * 1e-3);
         if !self.tare.is_touched() || self.tare.learned() < LEARNED {
@@ -54,7 +54,7 @@ impl Watch {
             true => shape.with_hand(),
             false => shape,
         };
-        // Where several links explain the torques, none is shown.
+        // No contact is shown if several links explain the torques.
         let found = locate(&shape.at(&q), &torque, &error).ok()?;
         Some(Contact {
             link: match found.body {
@@ -69,13 +69,13 @@ impl Watch {
     }
 }
 
-/// Time between two looks.
+/// Interval between two evaluations.
 pub(crate) const EVERY: Duration = Duration::from_millis(50);
 
-/// Joint velocity below which the arm rests, `[rad/s]`.
+/// Joint velocity below which the arm is at rest, `[rad/s]`.
 const STILL: f64 = 0.02;
 
-/// For how long the arm has to have been without a contact before one is shown, `[s]`.
+/// Time without a contact before contacts are shown, `[s]`.
 const LEARNED: f64 = 0.5;
 
 #[cfg(test)]

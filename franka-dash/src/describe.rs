@@ -1,4 +1,4 @@
-//! What does not change while a page is open: sent once, first.
+//! The constant data of a page, sent once as the first message.
 
 use franka_async::goal::target_range;
 use franka_async::model::collision::{Body, Obstacle, Shape};
@@ -13,23 +13,23 @@ use crate::hub::Hub;
 use crate::request::{SPEED_MAX, SPEED_MIN, Tuning};
 use crate::simulated::Simulated;
 
-/// The robot and what this viewer may ask for.
+/// The robot, and the permissions of this viewer.
 #[derive(Debug, Serialize)]
 #[serde(tag = "type", rename = "hello")]
 pub(crate) struct Hello {
     frame_version: u8,
     viewer: ViewerId,
-    /// When the server began, `[ms]` since 1970. Its frames have times that count from then.
+    /// Start of the server, `[ms]` since 1970. The times in its frames are relative to it.
     server: u64,
     robot: &'static str,
     /// True if it is simulated, and may be disturbed.
     simulated: bool,
-    /// True if it is simulated with a Hand.
+    /// True if the simulated robot has a Hand.
     simulated_hand: bool,
     /// True if it is simulated in virtual time, whose speed can be set.
     virtual_time: bool,
     motion_allowed: bool,
-    /// True if anything takes command.
+    /// True if the server accepts any commands.
     may_command: bool,
     gripper: bool,
     records: bool,
@@ -50,11 +50,11 @@ pub(crate) struct Hello {
     /// Names of the guards, in the order of the bits of a state frame.
     guards: Vec<String>,
     keep_out: Vec<Region>,
-    /// The names of all robots of the server, if there are several.
+    /// The names of all robots of the server, if it has several.
     siblings: Vec<String>,
 }
 
-/// A region that the arm is kept out of, base frame, `[m]`.
+/// A region that the arm must avoid, base frame, `[m]`.
 #[derive(Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 enum Region {
@@ -87,7 +87,7 @@ impl From<&Obstacle> for Region {
     }
 }
 
-/// A tuning that the page offers.
+/// A named tuning of the page.
 #[derive(Debug, Serialize)]
 struct Named {
     name: &'static str,
@@ -155,7 +155,7 @@ impl Hello {
     }
 }
 
-/// The capsules that the guards keep out of obstacles, on their links.
+/// Returns the capsules that the guards check against obstacles, on their links.
 fn capsules(model: &Model, with_hand: bool) -> Vec<Capsule> {
     let shape = Shape::covering(model.kind()).with_lengths(*model.lengths());
     let shape = if with_hand { shape.with_hand() } else { shape };

@@ -1,5 +1,5 @@
-//! The Franka Hand that viewers move. What is under way ends with the lease of the viewer that
-//! began it, and by a stop; what is held then stays held.
+//! Controls a Franka Hand for viewers. An action ends with the lease of its viewer, and with a
+//! stop; a held object stays held.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -11,14 +11,14 @@ use serde::Serialize;
 use crate::authority::ViewerId;
 use crate::request::GripperAction;
 
-/// The Franka Hand that viewers move.
+/// A Franka Hand that viewers can move.
 #[derive(Clone)]
 pub(crate) struct Fingers {
     pub(crate) gripper: Gripper,
     under_way: Arc<Mutex<Option<UnderWay>>>,
 }
 
-/// What the fingers do now. Dropping it ends that.
+/// The current action. Dropping it ends the action.
 struct UnderWay {
     viewer: ViewerId,
     end: CancellationToken,
@@ -30,14 +30,14 @@ impl Drop for UnderWay {
     }
 }
 
-/// The fingers, for the page.
+/// The state of the fingers for the page.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct FingerState {
     width: f64,
     max_width: f64,
     is_grasped: bool,
     temperature: u16,
-    /// True if an action is under way.
+    /// True if an action is running.
     acting: bool,
 }
 
@@ -49,7 +49,7 @@ impl Fingers {
         }
     }
 
-    /// Between the fingers, `[m]`.
+    /// Distance between the fingers, `[m]`.
     pub(crate) fn width(&self) -> f64 {
         self.gripper.state().width
     }
@@ -65,8 +65,8 @@ impl Fingers {
         }
     }
 
-    /// Begins an action of a viewer, which ends the one before. The future resolves with what came
-    /// of it: whether that was a success, and a line.
+    /// Starts an action of a viewer, which ends the previous one. The future resolves with the
+    /// result: true for success, and a line of text.
     pub(crate) fn begin(
         &self,
         viewer: ViewerId,
@@ -86,7 +86,7 @@ impl Fingers {
                 () = end.cancelled() => return (false, "Gripper: stopped".to_owned()),
                 outcome = act(&fingers.gripper, action) => outcome,
             };
-            // Unless another one has taken its place.
+            // Unless another action has replaced it.
             fingers.lock().take_if(|_| !end.is_cancelled());
             let text = match &outcome {
                 Ok(done) => word(action, *done),
@@ -96,12 +96,12 @@ impl Fingers {
         }
     }
 
-    /// Ends what is under way.
+    /// Ends the current action.
     pub(crate) fn end(&self) {
         self.lock().take();
     }
 
-    /// Ends what is under way unless it is of the viewer that commands.
+    /// Ends the current action unless it belongs to the commander.
     pub(crate) fn end_unless(&self, commander: Option<ViewerId>) {
         self.lock().take_if(|it| Some(it.viewer) != commander);
     }
@@ -136,7 +136,7 @@ async fn act(gripper: &Gripper, action: GripperAction) -> Result<bool, GripperEr
     }
 }
 
-/// What came of an action.
+/// Returns the text of an action's result.
 fn word(action: GripperAction, done: bool) -> &'static str {
     match (action, done) {
         (GripperAction::Home {}, true) => "knows how wide it opens",

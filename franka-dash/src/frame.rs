@@ -1,4 +1,4 @@
-//! The binary state frame: what the page draws, 60 times per second.
+//! The binary state frame, which the page draws 60 times per second.
 //!
 //! Little-endian, unpadded, [`LENGTH`] bytes, version [`VERSION`]:
 //!
@@ -8,9 +8,9 @@
 //! | 2 | u8 | version of this layout |
 //! | 3 | u8 | robot mode: the robot's number, 0 to 6 |
 //! | 4 | u32 | length of the frame in bytes |
-//! | 8 | u64 | time of the server, `[ms]`: to be acknowledged |
+//! | 8 | u64 | time of the server, `[ms]`: for the acknowledgement |
 //! | 16 | u64 | robot time (`message_id`), `[ms]` |
-//! | 24 | u32 | bit 0: a motion runs; bit 1: the reference is that of this driver; bit 2: a hold goes on; bits 3 to 5: the law, see [`law`] |
+//! | 24 | u32 | bit 0: a motion runs; bit 1: the reference is this driver's; bit 2: a hold is active; bits 3 to 5: the law, see [`law`] |
 //! | 28 | f32 | success rate of commands, 0 to 1 |
 //! | 32 | 7 f32 | q, `[rad]` |
 //! | 60 | 7 f32 | dq, `[rad/s]` |
@@ -20,9 +20,9 @@
 //! | 168 | 7 f32 | reference of the joints, `[rad]` |
 //! | 196 | 9 poses | joint frames 1 to 7, flange, end effector, as measured |
 //! | 448 | 9 poses | the same at the reference |
-//! | 700 | u32 | guards that bound within the last 0.1 s, a bit for each in the order of the hello |
-//! | 704 | f32 | width between the fingers, `[m]`; no number where no gripper is known |
-//! | 708 | 7 f32 | dq as a share of the velocity that the joint may have at q, -1 to 1 |
+//! | 700 | u32 | guards that were active within the last 0.1 s, one bit each in the order of the hello |
+//! | 704 | f32 | width between the fingers, `[m]`; NaN without a gripper |
+//! | 708 | 7 f32 | dq as a share of the joint's velocity limit at q, -1 to 1 |
 //!
 //! A pose is 7 f32: position x y z `[m]` and quaternion x y z w, in the base frame.
 
@@ -49,18 +49,18 @@ const FRAMES: [Frame; 9] = [
     Frame::EndEffector,
 ];
 
-/// What the server knows besides the robot's state.
+/// The server's data in addition to the robot's state.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Server {
-    /// Its time, `[ms]`.
+    /// Time of the server, `[ms]`.
     pub(crate) ms: u64,
-    /// Whether a hold goes on.
+    /// True if a hold is active.
     pub(crate) holding: bool,
-    /// Width between the fingers, `[m]`, of a gripper that it is connected to.
+    /// Width between the fingers, `[m]`, of a connected gripper.
     pub(crate) width: Option<f64>,
 }
 
-/// The frame of a sample.
+/// Returns the frame of a sample.
 pub(crate) fn encode(sample: &Sample, model: &Model, server: Server) -> Vec<u8> {
     let Sample {
         state,
@@ -107,7 +107,7 @@ pub(crate) fn encode(sample: &Sample, model: &Model, server: Server) -> Vec<u8> 
         } else {
             upper[joint]
         };
-        // At the end of the range there is none left.
+        // At the end of the range the limit is zero.
         let share = (dq / most.max(1e-9)).clamp(-1.0, 1.0);
         frame.extend((share as f32).to_le_bytes());
     }
@@ -115,8 +115,9 @@ pub(crate) fn encode(sample: &Sample, model: &Model, server: Server) -> Vec<u8> 
     frame
 }
 
-/// What computes the torques of the motion that runs: 0 nothing, 1 target control of this driver, 2
-/// torques of another client or motion, 3 the robot's joint impedance, 4 its Cartesian impedance.
+/// Returns the number of the law that computes the torques: 0 none, 1 target control of this
+/// driver, 2 torques of another client or motion, 3 the robot's joint impedance, 4 its Cartesian
+/// impedance.
 fn law(state: &RobotState, ours: bool) -> u32 {
     if !state.motion_running() {
         return 0;
@@ -130,7 +131,7 @@ fn law(state: &RobotState, ours: bool) -> u32 {
     }
 }
 
-/// Where the frames are at the joint positions `q`.
+/// Returns the poses of the frames at the joint positions `q`.
 pub(crate) fn poses(
     model: &Model,
     state: &RobotState,
@@ -144,7 +145,7 @@ pub(crate) fn poses(
     })
 }
 
-/// The end effector that a state declares; none if it is no rigid transformation.
+/// Returns the end effector in a state; the default if it is not a rigid transformation.
 pub(crate) fn end_effector(state: &RobotState) -> EndEffector {
     let on_flange = pose::from_array(&state.F_T_EE).unwrap_or_default();
     EndEffector {
@@ -206,7 +207,7 @@ mod tests {
         at(116, 0.4);
         at(144, 0.5);
         at(168, 0.6);
-        // The flange at the ready pose; without a tool the end effector is there, too.
+        // The flange at the ready pose; without a tool the end effector is at the flange.
         let flange = model.pose(Frame::Flange, &READY, &EndEffector::default());
         for offset in [196 + 7 * 28, 196 + 8 * 28] {
             at(offset, flange[(0, 3)]);
@@ -216,7 +217,7 @@ mod tests {
         at(448 + 7 * 28, wanted[(0, 3)]);
         assert_eq!(frame[700..704], [1, 2, 0, 0]);
         at(704, 0.03);
-        // Far from the ends of the range the envelope is the nominal velocity.
+        // Far from the ends of the range, the envelope is the nominal velocity.
         at(708, 0.2 / model.joint_limits().velocity[0]);
     }
 

@@ -1,5 +1,5 @@
-//! The motion of one hold: begins a session of target control, moves until it is told to end, lets
-//! the arm go.
+//! The motion of one hold: begins a session of target control, moves until it must end, and
+//! releases the arm.
 
 use std::time::Duration;
 
@@ -18,15 +18,15 @@ use crate::plan::{self, Plan};
 use crate::request::{Axes, Motion, SPEED_MAX, Tuning};
 use crate::way::Way;
 
-/// A hold as the server keeps it. Dropping it brakes the arm: the control thread by the deadman,
-/// whatever becomes of this process's runtime, and the task by the token.
+/// The server's handle of a hold. Dropping it brakes the arm: the deadman stops the control thread,
+/// even if this process's runtime fails, and the token stops the task.
 pub(crate) struct Hold {
     deadman: Deadman,
     end: CancellationToken,
 }
 
 impl Hold {
-    /// The hold, and what its motion needs. News of it may come later by `patience`.
+    /// Creates the hold, and the inputs of its motion. Its messages may be late by `patience`.
     pub(crate) fn new(patience: Duration) -> (Self, DeadmanMonitor, CancellationToken) {
         let (deadman, monitor) = Deadman::new(SILENCE + patience);
         deadman.keep_alive();
@@ -46,24 +46,24 @@ impl Drop for Hold {
     }
 }
 
-/// What may change while a hold goes on.
+/// Settings that may change during a hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Settings {
-    /// Greatest speed of any point of the arm, `[m/s]`.
+    /// Largest speed of any point of the arm, `[m/s]`.
     pub(crate) speed: f64,
     pub(crate) tuning: Tuning,
 }
 
-/// How a motion ended before its button was released.
+/// The end of a motion before its button was released.
 #[derive(Debug)]
 pub(crate) enum Ended {
-    /// At the target, or told to.
+    /// The motion reached its target, or was ended on request.
     AsAsked,
-    /// Otherwise: one line, and what to change.
+    /// The motion failed: one line of text, and the recommended change.
     Failed(String, Option<String>),
 }
 
-/// What is to be done while a button is held.
+/// The task while a button is held.
 pub(crate) struct Task {
     pub(crate) motion: Motion,
     pub(crate) settings: watch::Receiver<Settings>,
@@ -72,14 +72,13 @@ pub(crate) struct Task {
     pub(crate) end: CancellationToken,
 }
 
-/// Moves until the task's end is cancelled or the target is reached. The arm is braked and let go
-/// when it returns. `show` is called with what the motion does, if that is planned, before it
-/// begins.
+/// Moves until the task is cancelled or the target is reached. The arm is braked and released on
+/// return. For a planned motion, `show` is called with the plan before the motion begins.
 pub(crate) async fn run(robot: &Robot, task: Task, show: impl FnOnce(Plan)) -> Ended {
     let end = task.end.clone();
     match attempt(robot, task, show).await {
         Ok(()) => Ended::AsAsked,
-        // What follows on the end of the hold, or on a stop by a viewer.
+        // The consequence of the hold's end, or of a stop by a viewer.
         Err(Fault::Motion(
             MotionError::Stopped | MotionError::Held(_) | MotionError::Disengaged,
         )) if end.is_cancelled() => Ended::AsAsked,
@@ -128,14 +127,14 @@ async fn attempt(robot: &Robot, task: Task, show: impl FnOnce(Plan)) -> Result<(
     moved.and(let_go.map(drop))
 }
 
-/// Why a hold ended before it was told to.
+/// The reason why a hold ended early.
 enum Fault {
-    /// Before it began.
+    /// The motion was refused before it began.
     Refused(String),
     Motion(MotionError),
 }
 
-/// Has the session follow changes of speed and tuning, until it ends.
+/// Applies changes of speed and tuning to the session, until it ends.
 async fn keep_tuned(
     arm: &Arm,
     way: Way,
@@ -154,7 +153,7 @@ async fn keep_tuned(
     arm.ended().await.map(drop)
 }
 
-/// Moves to the target, or along until the future is dropped.
+/// Moves to the target, or in a direction until the future is dropped.
 async fn go(
     arm: &Arm,
     motion: Motion,
@@ -163,7 +162,7 @@ async fn go(
 ) -> Result<(), MotionError> {
     match way {
         Way::Joints { target, .. } => return arm.move_joints(target).await.map(drop),
-        // The way that was planned: straight, or refused.
+        // As planned: straight, or refused.
         Way::Pose(pose) => return arm.move_through([pose]).await.map(drop),
         Way::EndEffector => {}
     }
@@ -205,8 +204,8 @@ async fn go(
     }
 }
 
-/// Linear and angular velocity in base axes for a speed of 1 m/s, `[m/s]` and `[rad/s]`; `None` for
-/// a motion that goes along nothing.
+/// Returns linear and angular velocity in base axes for a speed of 1 m/s, `[m/s]` and `[rad/s]`;
+/// `None` for a motion without a direction.
 fn direction(start: &Pose, motion: Motion) -> Option<(Vector3<f64>, Vector3<f64>)> {
     let along = |direction: [f64; 3], axes: Axes| {
         let direction = Vector3::from(direction).normalize();
@@ -235,8 +234,8 @@ fn ticks(period: Duration) -> tokio::time::Interval {
     clock
 }
 
-/// Silence after which the control thread itself brakes, in the robot's time.
+/// Silence after which the control thread itself brakes, in robot time.
 const SILENCE: Duration = Duration::from_millis(200);
 
-/// Time between two targets of a jog.
+/// Interval between two targets of a jog.
 const STEP: Duration = Duration::from_millis(20);

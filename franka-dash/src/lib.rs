@@ -1,4 +1,4 @@
-//! A page in the browser that shows a robot, and lets one person at a time move it.
+//! A browser page that shows a robot, and allows one person at a time to move it.
 //!
 //! ```text
 //!  Robot or Running ──states──> hub ──newest frame, events──> viewer ──WebSocket──> page
@@ -8,29 +8,29 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | `admission` | the checks in front of the files of a page, and of everything else |
-//! | `any_messages` | what has to hold whatever viewers send, for tests |
+//! | `admission` | the checks of requests for the files of a page, and of all other requests |
+//! | `any_messages` | properties that hold for any viewer messages, for tests |
 //! | `authority` | lease, hold and deadman: a state machine without clock and sockets |
-//! | `contact` | where something touches the arm, estimated |
-//! | `describe` | what a page is told first |
+//! | `contact` | the estimated place of a contact on the arm |
+//! | `describe` | the first message to a page |
 //! | `fingers` | the gripper |
 //! | `frame` | the binary state frame |
 //! | `hold` | the motion of one hold |
-//! | `hub` | what all viewers share |
+//! | `hub` | the shared state of all viewers |
 //! | `news` | events as lines for people |
-//! | `options` | who may see and do what |
-//! | `pace` | how fast the arm may go, so that none of its points exceeds a speed |
+//! | `options` | permissions |
+//! | `pace` | speeds of the arm such that none of its points exceeds a limit |
 //! | `page` | the files of the page |
-//! | `plan` | what a motion with a target does, before it does it |
+//! | `plan` | the preview of a motion with a target |
 //! | `recording` | recordings, in a folder of the server |
-//! | `reply` | what viewers are told, JSON |
-//! | `request` | what viewers ask for, JSON |
+//! | `reply` | messages to viewers, JSON |
+//! | `request` | requests of viewers, JSON |
 //! | `several` | several robots on one server |
-//! | `simulated` | what is done to a simulated robot |
-//! | `source` | where states come from |
-//! | `statistics` | how punctual control is |
+//! | `simulated` | disturbances of a simulated robot |
+//! | `source` | the source of states |
+//! | `statistics` | the punctuality of control |
 //! | `viewer` | one viewer's socket |
-//! | `way` | where a motion goes, how fast and how stiff |
+//! | `way` | path, speed and stiffness of a motion |
 //!
 //! # Example
 //!
@@ -47,28 +47,28 @@
 //! # }
 //! ```
 //!
-//! `axum::serve(listener, page.into_make_service_with_connect_info::<SocketAddr>())` then serves it;
-//! any back end may nest the router instead, under a path that ends with a slash, and has to serve
-//! it so as well: a server that does not know the addresses of its peers asks all of them for a
-//! token. [`several`] serves more than one robot.
+//! `axum::serve(listener, page.into_make_service_with_connect_info::<SocketAddr>())` then serves
+//! it. Any back end may instead nest the router under a path that ends with a slash. It must also
+//! provide the peers' addresses in this way: without them the server requires a token from all
+//! peers. [`several`] serves more than one robot.
 //!
 //! # Moving the arm
 //!
-//! Only a server with [`Options::allow_motion`] moves anything. One viewer has the lease; it is
-//! free again when released, when its socket closes, and after 5 s of silence. Motions go on only
-//! while a button is held: the page then sends 20 messages per second, and the arm brakes when the
-//! next one does not come within 150 ms. The control thread of the driver watches by itself, with
-//! 200 ms. Any viewer can stop the arm.
+//! Only a server with [`Options::allow_motion`] moves an arm. One viewer has the lease; it becomes
+//! free when released, when the viewer's socket closes, and after 5 s of silence. Motions continue
+//! only while a button is held. The page then sends 20 messages per second, and the arm brakes when
+//! the next one does not arrive within 150 ms. The driver's control thread has a separate deadman
+//! of 200 ms. Any viewer can stop the arm.
 //!
-//! The budget of a joint motion keeps every point of the arm below the speed that was asked for,
-//! 0.25 m/s at most. That of the end effector bounds the end effector; the control thread
-//! ends the hold in the cycle in which a joint, the flange or the end effector is above 0.25 m/s.
+//! The budget of a joint motion keeps every point of the arm below the requested speed, 0.25 m/s at
+//! most. The budget of an end-effector motion bounds the end effector. The control thread ends the
+//! hold in the cycle in which a joint, the flange or the end effector exceeds 0.25 m/s.
 //!
 //! A browser is neither an enabling device nor an emergency stop.
 //!
 //! # What it does not do
 //!
-//! TLS: put a proxy in front where the network is not trusted.
+//! TLS: put a proxy in front if the network is not trusted.
 
 mod admission;
 #[cfg(test)]
@@ -115,37 +115,37 @@ pub use options::Options;
 pub use several::{NameError, several};
 use source::{Source, Watched};
 
-// The program in the README compiles.
+// Compiles the program in the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// Why a server cannot listen.
+/// The reason why a server cannot listen.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BindError {
-    /// Other computers could connect, and nothing keeps them out.
+    /// Other computers could connect without authentication.
     #[error(transparent)]
     NoToken(#[from] NoToken),
-    /// The operating system refuses.
+    /// The operating system refuses the address.
     #[error("listening on {address}")]
     Io {
-        /// Where it was to listen.
+        /// The requested address.
         address: SocketAddr,
-        /// Why.
+        /// The system's error.
         source: io::Error,
     },
 }
 
-/// Listens for viewers: on a loopback address, or with a token anywhere. Connections have
-/// `TCP_NODELAY`; a back end that listens by itself should set it, since without it a frame waits
-/// up to 40 ms behind every message that the page does not answer.
+/// Listens for viewers: on a loopback address, or on any address with a token. Connections have
+/// `TCP_NODELAY`. A back end with its own listener should also set it: without it, a frame waits up
+/// to 40 ms behind every message that the page does not answer.
 ///
 /// # Errors
 /// [`BindError`].
 ///
 /// # Cancel safety
-/// Dropping the future leaves nothing behind.
+/// Dropping the future has no further effect.
 pub async fn bind(address: SocketAddr, options: &Options) -> Result<TcpListener, BindError> {
     options.admission.check_listener(address)?;
     listen(address).map_err(|source| BindError::Io { address, source })
@@ -156,30 +156,32 @@ fn listen(address: SocketAddr) -> io::Result<TcpListener> {
         SocketAddr::V4(_) => TcpSocket::new_v4()?,
         SocketAddr::V6(_) => TcpSocket::new_v6()?,
     };
-    // As `TcpListener::bind` does. Elsewhere it means that others may listen there, too.
+    // As in `TcpListener::bind`. On other systems it would allow other programs to listen on the
+    // same address.
     #[cfg(unix)]
     socket.set_reuseaddr(true)?;
-    // The connections that it accepts have it, too.
+    // Accepted connections inherit it.
     socket.set_nodelay(true)?;
     socket.bind(address)?;
     socket.listen(WAITING)
 }
 
-/// The page and its socket (`/ws`) for a connected robot. Must be called within a Tokio runtime.
-/// The router keeps a handle of the robot.
+/// Returns the page and its socket (`/ws`) for a connected robot. Must be called within a Tokio
+/// runtime. The router keeps a handle of the robot.
 pub fn router(robot: Robot, options: Options) -> Router {
     let admission = options.admission.clone();
     serve(Hub::start(Source::Robot(robot), options), admission)
 }
 
-/// The page for a simulated robot that another program controls: it is shown and can be disturbed.
-/// To move it from the page, connect to it and use [`router`] with [`Options::simulated`].
+/// Returns the page for a simulated robot that another program controls: it is shown and can be
+/// disturbed. To move it from the page, connect to it and use [`router`] with
+/// [`Options::simulated`].
 ///
 /// # Errors
 /// [`Stopped`] if the simulation has ended.
 ///
 /// # Cancel safety
-/// Dropping the future leaves nothing behind.
+/// Dropping the future has no further effect.
 pub async fn simulator(running: &Arc<Running>, options: Options) -> Result<Router, Stopped> {
     let newest = |robot: &mut franka_sim::Robot| (robot.config().kind, *robot.state());
     let (kind, state) = running.with(newest).await?;
@@ -193,7 +195,7 @@ fn serve(hub: Arc<Hub>, admission: Admission) -> Router {
     let admissions: Arc<[Admission]> = [admission].into();
     Router::new()
         .route("/ws", get(connect))
-        // A page is not told why its socket was refused: it asks here.
+        // A page cannot see why its socket was refused, so it sends a request here.
         .route("/access", get(async || StatusCode::NO_CONTENT))
         .layer(from_fn_with_state(admissions.clone(), admission::rest))
         .merge(page::routes().layer(from_fn_with_state(admissions, admission::files)))
@@ -220,11 +222,11 @@ async fn connect(State(hub): State<Arc<Hub>>, upgrade: WebSocketUpgrade) -> Resp
 /// The subprotocol of the socket.
 const PROTOCOL: &str = "franka-dash";
 
-/// Connections that may wait to be accepted.
+/// Largest number of connections that wait to be accepted.
 const WAITING: u32 = 1024;
 
-/// Bytes of a request.
+/// Largest request in bytes.
 const MESSAGE_MAX: usize = 4096;
 
-/// Bytes that wait for one viewer's socket.
+/// Largest number of bytes that wait for one viewer's socket.
 const WRITE_MAX: usize = 64 * 1024;

@@ -1,4 +1,4 @@
-//! Who may see and do what.
+//! Permissions of viewers.
 
 use std::future::Future;
 use std::path::PathBuf;
@@ -13,7 +13,7 @@ use franka_sim::Running;
 use crate::recording::Writing;
 use crate::simulated::Simulated;
 
-/// Who may see and do what. The default is view-only, for this computer.
+/// Permissions of viewers. The default is view-only, for this computer.
 #[derive(Clone, Default)]
 #[must_use = "options do nothing until `router` takes them"]
 pub struct Options {
@@ -25,70 +25,70 @@ pub struct Options {
     pub(crate) writing: Writing,
     pub(crate) patience: Duration,
     pub(crate) keep_out: Vec<Obstacle>,
-    /// The names of all robots of the server, if there are several.
+    /// The names of all robots of the server, if it has several.
     pub(crate) siblings: Arc<[String]>,
 }
 
 impl Options {
-    /// Lets the viewer that has the lease move the arm and recover the robot.
+    /// Allows the viewer with the lease to move the arm and recover the robot.
     pub fn allow_motion(mut self) -> Self {
         self.motion = true;
         self
     }
 
-    /// Asks every page for this token, in the fragment of its address: `http://HOST/#TOKEN`. With
-    /// it, other computers are served as well.
+    /// Requires this token from every page, in the fragment of its address: `http://HOST/#TOKEN`.
+    /// Other computers are then served as well.
     pub fn token(mut self, token: Token) -> Self {
         self.admission = self.admission.token(token);
         self
     }
 
-    /// Accepts requests under this name, besides `localhost` and addresses.
+    /// Accepts requests with this host name, in addition to `localhost` and addresses.
     pub fn host(mut self, name: impl Into<String>) -> Self {
         self.admission = self.admission.host(name);
         self
     }
 
-    /// Lets the viewer that has the lease disturb this simulated robot, which has to be the one
-    /// that is shown.
+    /// Allows the viewer with the lease to disturb this simulated robot, which must be the
+    /// displayed robot.
     pub fn simulated(mut self, running: &Arc<Running>) -> Self {
         self.simulated = Some(Simulated::new(running.clone()));
         self
     }
 
-    /// Shows this Franka Hand beside the robot and, where motions are allowed, lets the viewer that
-    /// has the lease move its fingers.
+    /// Shows this Franka Hand with the robot. If motions are allowed, the viewer with the lease can
+    /// move its fingers.
     pub fn gripper(mut self, gripper: Gripper) -> Self {
         self.gripper = Some(gripper);
         self
     }
 
-    /// Lets the viewer that has the lease record the robot, and its gripper, to new files in this
-    /// folder, which has to be there. They are named by the time; one ends when it is an hour long,
-    /// and with the connection to the robot. See [`Self::recordings_ended`].
+    /// Allows the viewer with the lease to record the robot, and its gripper, to new files in this
+    /// existing folder. Files are named by the time. A recording ends after an hour, and with the
+    /// connection to the robot. See [`Self::recordings_ended`].
     pub fn record_to(mut self, folder: impl Into<PathBuf>) -> Self {
         self.recordings = Some(folder.into());
         self
     }
 
-    /// Resolves when no recording is being written that a viewer has begun by these options, or by
-    /// clones of them. Await it before the program ends, after
-    /// [`Robot::shutdown`](franka_async::Robot::shutdown): a recording has no index and not its last
-    /// second until then. The disk has 10 s for that.
+    /// Resolves when all recordings started by viewers with these options, or with clones of them,
+    /// have been written. Await it before the program ends, after
+    /// [`Robot::shutdown`](franka_async::Robot::shutdown): until then, a recording has no index and
+    /// lacks its last second. The disk has 10 s for this.
     pub fn recordings_ended(&self) -> impl Future<Output = ()> + Send + 'static {
         self.writing.clone().none()
     }
 
     /// Keeps the arm out of these regions, base frame, in the motions of the page, which shows
-    /// them. See [`Engage::keep_out`](franka_async::Engage::keep_out), which says how many there
-    /// may be.
+    /// them. See [`Engage::keep_out`](franka_async::Engage::keep_out) for the number of regions
+    /// allowed.
     pub fn keep_out(mut self, regions: impl IntoIterator<Item = Obstacle>) -> Self {
         self.keep_out = regions.into_iter().collect();
         self
     }
 
-    /// Lets messages of a held button come this much later than they must: for tests of the page on
-    /// a busy computer. Counts with [`Self::simulated`] only: a robot has no patience.
+    /// Allows messages of a held button to be late by this duration, for tests of the page on a
+    /// busy computer. Only has an effect with [`Self::simulated`], never with a real robot.
     pub fn patience(mut self, patience: Duration) -> Self {
         self.patience = patience;
         self
@@ -96,7 +96,7 @@ impl Options {
 }
 
 impl std::fmt::Debug for Options {
-    /// Without the token.
+    /// Omits the token.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Options")
             .field("motion", &self.motion)

@@ -1,4 +1,4 @@
-//! How fast the arm may go, so that none of its points exceeds a speed.
+//! Speeds of the arm such that none of its points exceeds a limit.
 
 use franka_async::goal::Budget;
 use franka_async::model::Model;
@@ -6,11 +6,11 @@ use franka_async::model::geometry::{FLANGE, JOINT_ORIGINS};
 use franka_async::nalgebra::Vector3;
 use franka_async::state::RobotState;
 
-/// Half the width of a hand, and more than the radius of any link, `[m]`.
+/// Half the width of a hand, which is more than the radius of any link, `[m]`.
 const BODY: f64 = 0.11;
 
-/// Bound on the distance of any point of the arm from the axis of each joint, `[m]`, at any
-/// posture, with a tool that ends `tool` from the flange: the sum of what is between.
+/// Returns a bound on the distance of any point of the arm from the axis of each joint, `[m]`, at
+/// any posture, with a tool that ends `tool` from the flange: the sum of the lengths in between.
 fn reach(tool: f64) -> [f64; 7] {
     let mut rest = FLANGE + tool + BODY;
     let mut reach = [rest; 7];
@@ -25,8 +25,8 @@ fn tool_length(state: &RobotState) -> f64 {
     Vector3::new(state.F_T_EE[12], state.F_T_EE[13], state.F_T_EE[14]).norm()
 }
 
-/// The budget for joints that go by `way`, `[rad]`, so that no point of the arm is faster than
-/// `speed`, `[m/s]`: each joint's share of it is as large as its share of the way.
+/// Returns the budget for a joint motion by `way`, `[rad]`, such that no point of the arm is faster
+/// than `speed`, `[m/s]`. Each joint's share of the speed equals its share of the way.
 pub(crate) fn joints(model: &Model, state: &RobotState, way: [f64; 7], speed: f64) -> Budget {
     let reach = reach(tool_length(state));
     let way = way.map(|joint| joint.abs().max(SHORTEST));
@@ -38,8 +38,9 @@ pub(crate) fn joints(model: &Model, state: &RobotState, way: [f64; 7], speed: f6
     budget
 }
 
-/// The budget for an end effector that goes at `speed`, `[m/s]`, or turns so that what is around it
-/// does. It bounds the end effector only; the rest of the arm has the session's speed cap.
+/// Returns the budget for an end effector that moves at `speed`, `[m/s]`, or turns so that points
+/// at [`TURNING_RADIUS`] do. It bounds only the end effector; the session's speed cap bounds the
+/// rest of the arm.
 pub(crate) fn end_effector_at(model: &Model, speed: f64) -> Budget {
     let mut budget = Budget::of(model.joint_limits());
     budget.translation.velocity = speed;
@@ -47,10 +48,10 @@ pub(crate) fn end_effector_at(model: &Model, speed: f64) -> Budget {
     budget
 }
 
-/// A way of a joint that counts as this long at least, `[rad]`: velocities are above zero.
+/// Smallest way of a joint that is used, `[rad]`, because velocities must be above zero.
 const SHORTEST: f64 = 1e-3;
 
-/// Distance from the end effector at which a turn has the speed that was asked for, `[m]`.
+/// Distance from the end effector at which a turn has the requested speed, `[m]`.
 pub(crate) const TURNING_RADIUS: f64 = 0.25;
 
 #[cfg(test)]
@@ -61,7 +62,7 @@ mod tests {
 
     use super::*;
 
-    /// Postures all over the ranges, by a sequence that repeats.
+    /// Returns postures over the whole ranges, from a repeatable sequence.
     fn postures(model: &Model) -> impl Iterator<Item = JointVector> + '_ {
         let limits = model.joint_limits();
         (0..500u32).map(|k| {
@@ -88,7 +89,7 @@ mod tests {
                     }
                     for end in [capsule.start, capsule.end] {
                         let off = (end - origin).cross(&axis).norm();
-                        // The axis of the capsule: links are thinner than the capsules.
+                        // The axis of the capsule, because links are thinner than the capsules.
                         assert!(off <= *reach, "{body:?} {joint} {off}");
                     }
                 }

@@ -1,4 +1,4 @@
-//! The page: files that are part of the program. `cargo xtask assets` makes them.
+//! The page's files, which are part of the program. `cargo xtask assets` generates them.
 
 use axum::Router;
 use axum::extract::OriginalUri;
@@ -6,17 +6,17 @@ use axum::http::{HeaderName, StatusCode, header};
 use axum::response::IntoResponse;
 use axum::routing::get;
 
-/// The routes of the files of a robot's page.
+/// Returns the routes of the files of a robot's page.
 pub(crate) fn routes<S: Clone + Send + Sync + 'static>() -> Router<S> {
     files(INDEX)
 }
 
-/// The routes of the files of the page that shows several robots.
+/// Returns the routes of the files of the page that shows several robots.
 pub(crate) fn overview<S: Clone + Send + Sync + 'static>() -> Router<S> {
     files(OVERVIEW)
 }
 
-/// Whether a page has a file of this name, or a folder.
+/// True if a page has a file, or a folder, with this name.
 pub(crate) fn is_file(name: &str) -> bool {
     let first = |path: &str| path.split('/').nth(1) == Some(name);
     let files = FILES.iter().chain(COMPRESSED).chain(MESHES);
@@ -24,7 +24,7 @@ pub(crate) fn is_file(name: &str) -> bool {
     paths.any(|path| first(path)) || ["ws", "access", "robots.json"].contains(&name)
 }
 
-/// The routes of all files; `page` is what comes first.
+/// Returns the routes of all files; `page` is the main page.
 fn files<S: Clone + Send + Sync + 'static>(page: &'static [u8]) -> Router<S> {
     let first = async move |OriginalUri(asked): OriginalUri| {
         if asked.path().ends_with('/') {
@@ -44,7 +44,8 @@ fn files<S: Clone + Send + Sync + 'static>(page: &'static [u8]) -> Router<S> {
     router
 }
 
-/// Why there is no page at a path whose files a browser would look for elsewhere.
+/// Returns the error text for a page path without a slash, from which a browser would look for the
+/// files elsewhere.
 fn needs_a_slash(path: &str) -> String {
     format!("the page's files are beside it: nest its router under \"{path}/\", got \"{path}\"\n")
 }
@@ -53,7 +54,7 @@ const HTML: &str = "text/html; charset=utf-8";
 static INDEX: &[u8] = include_bytes!("../page/index.html");
 static OVERVIEW: &[u8] = include_bytes!("../page/overview.html");
 
-/// Kept by no cache, so that page and server are of one version.
+/// Headers that forbid caching, so that page and server have the same version.
 fn headers(kind: &'static str) -> [(HeaderName, &'static str); 2] {
     [
         (header::CONTENT_TYPE, kind),
@@ -80,7 +81,7 @@ static FILES: &[(&str, &str, &[u8])] = &[
     ),
 ];
 
-/// The same, compressed: every browser takes gzip.
+/// The same files, compressed: every browser supports gzip.
 static COMPRESSED: &[(&str, &str, &[u8])] = &[(
     "/dash.js",
     "text/javascript; charset=utf-8",
@@ -97,8 +98,8 @@ macro_rules! meshes {
     };
 }
 
-/// The shapes of the links, each in the axes of its frame, compressed. Their source and changes:
-/// `page/meshes/NOTICE`.
+/// The shapes of the links, each in the axes of its frame, compressed. See `page/meshes/NOTICE` for
+/// their source and changes.
 static MESHES: &[(&str, &str, &[u8])] = meshes! {
     "hand" "finger"
     "fr3/link0" "fr3/link1" "fr3/link2" "fr3/link3" "fr3/link4" "fr3/link5" "fr3/link6" "fr3/link7"

@@ -1,5 +1,4 @@
-//! What a motion with a target does, before it does it: for the page, and for the hold, which
-//! refuses what this refuses.
+//! Previews of motions with a target, for the page and for the hold: both refuse the same motions.
 
 use franka_async::error::PathError;
 use franka_async::model::JointVector;
@@ -14,17 +13,17 @@ use crate::frame;
 use crate::request::{Motion, SPEED_MAX};
 use crate::way::Way;
 
-/// A viewer asks what a motion would do.
+/// A viewer's question about a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Question {
-    /// The answer has it, too.
+    /// Number of the question, repeated in the answer.
     pub(crate) number: u32,
     pub(crate) motion: Motion,
-    /// Greatest speed, `[m/s]`.
+    /// Largest speed, `[m/s]`.
     pub(crate) speed: f64,
 }
 
-/// True if a motion has an end that its viewer has chosen, so that there is something to plan.
+/// True if a motion has an end chosen by its viewer, so that it can be planned.
 pub(crate) fn has_end(motion: &Motion) -> bool {
     matches!(
         motion,
@@ -32,25 +31,25 @@ pub(crate) fn has_end(motion: &Motion) -> bool {
     )
 }
 
-/// What a motion would do.
+/// The preview of a motion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Plan {
-    /// Until it is there, if nothing holds it up, `[s]`.
+    /// Time until arrival without delays, `[s]`.
     duration: f64,
-    /// Of the end effector, `[m]`.
+    /// Length of the end effector's path, `[m]`.
     length: f64,
-    /// Of the fastest joint, the flange or the end effector on the way, `[m/s]`.
+    /// Largest speed of the joints, the flange and the end effector on the path, `[m/s]`.
     fastest: f64,
     /// Joint positions at the end, `[rad]`.
     q: [f64; 7],
-    /// Where the frames of a state frame are then: position and quaternion x y z w of each.
+    /// Poses of the state frame's frames at the end: position and quaternion x y z w of each.
     poses: Vec<f64>,
-    /// The end effector on the way, `[m]`.
+    /// Path of the end effector, `[m]`.
     line: Vec<[f64; 3]>,
 }
 
-/// What a motion that [has an end](has_end) would do if it began now, or why it must not begin. It
-/// takes milliseconds.
+/// Previews a motion that [has an end](has_end), starting now, or returns the reason for a refusal.
+/// It takes milliseconds.
 pub(crate) fn plan(
     robot: &Robot,
     motion: &Motion,
@@ -96,7 +95,7 @@ pub(crate) fn plan(
     })
 }
 
-/// As [`plan`], computed where nothing waits for it.
+/// Like [`plan`], computed in a task that delays nothing else.
 pub(crate) async fn in_background(
     robot: &Robot,
     motion: Motion,
@@ -109,7 +108,8 @@ pub(crate) async fn in_background(
     planned.unwrap_or_else(|error| Err(error.to_string()))
 }
 
-/// The text of a refusal, without the number of a waypoint: a viewer gives one target.
+/// Returns the text of a refusal, without the number of a waypoint, because a viewer sets one
+/// target.
 fn refusal(error: MotionError) -> String {
     match error {
         MotionError::Path(PathError::Waypoint { error, .. }) => error.to_string(),
@@ -143,7 +143,7 @@ fn millimetres(at: Vector3<f64>) -> String {
     format!("({x}, {y}, {z}) mm")
 }
 
-/// The speed of the fastest point on the way, `[m/s]`.
+/// Returns the speed of the fastest point on the path, `[m/s]`.
 fn fastest(robot: &Robot, state: &RobotState, preview: &Preview) -> f64 {
     let tool = frame::end_effector(state);
     let speeds = preview.postures.windows(2).map(|ends| {
@@ -155,7 +155,7 @@ fn fastest(robot: &Robot, state: &RobotState, preview: &Preview) -> f64 {
     speeds.fold(0.0, f64::max)
 }
 
-/// At most [`LINE_MAX`] points of a line, its ends among them.
+/// Returns at most [`LINE_MAX`] points of a line, including its ends.
 fn thinned(line: &[Vector3<f64>]) -> Vec<[f64; 3]> {
     let last = line.len().saturating_sub(1);
     let count = last.min(LINE_MAX - 1);
@@ -163,7 +163,7 @@ fn thinned(line: &[Vector3<f64>]) -> Vec<[f64; 3]> {
     points.map(Into::into).collect()
 }
 
-/// Points of a line that are sent.
+/// Largest number of points of a line that are sent.
 const LINE_MAX: usize = 100;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Recordings that viewers begin and end, in a folder of the server.
+//! Recordings controlled by viewers, in a folder of the server.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -20,7 +20,7 @@ pub(crate) struct Recordings {
     progress: watch::Sender<Option<Progress>>,
 }
 
-/// The recording that goes on.
+/// The current recording.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Progress {
     /// Name of its file in the folder.
@@ -40,19 +40,19 @@ impl Recordings {
         }
     }
 
-    /// The recording that goes on, if one does.
+    /// Returns the current recording, if any.
     pub(crate) fn progress(&self) -> Option<Progress> {
         self.progress.borrow().clone()
     }
 
-    /// Ends the recording that goes on, if one does.
+    /// Ends the current recording, if any.
     pub(crate) fn end(&self) {
         self.lock().cancel();
     }
 
-    /// Begins a recording, of the gripper as well if there is one, and resolves when it has ended:
-    /// by [`Self::end`], after [`LONGEST`], with the connection, or as it fails. The result is a
-    /// line about it. Without effect, and `None`, while another goes on.
+    /// Records the robot, and the gripper if there is one. Resolves when the recording has ended:
+    /// through [`Self::end`], after [`LONGEST`], with the connection, or with an error. The result
+    /// is a line of text about it. Returns `None` without effect while another recording runs.
     pub(crate) async fn record(
         &self,
         robot: &Robot,
@@ -136,12 +136,12 @@ impl Recordings {
     }
 }
 
-/// How many recordings of several servers are being written.
+/// Number of recordings of all servers that are being written.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Writing(Arc<watch::Sender<usize>>);
 
 impl Writing {
-    /// Counts one until the result is dropped.
+    /// Counts one recording until the result is dropped.
     fn begin(&self) -> impl Drop + use<> {
         struct One(Writing);
         impl Drop for One {
@@ -153,14 +153,14 @@ impl Writing {
         One(self.clone())
     }
 
-    /// Waits until there is none.
+    /// Waits until the count is zero.
     pub(crate) async fn none(self) {
-        // The sender lives as long as this.
+        // The sender lives as long as this value.
         let _ = self.0.subscribe().wait_for(|count| *count == 0).await;
     }
 }
 
-/// Runs what waits for a disk where it holds up no other task.
+/// Runs a function that waits for the disk without delaying other tasks.
 async fn off_the_runtime<T: Send + 'static>(
     work: impl FnOnce() -> T + Send + 'static,
 ) -> Result<T, String> {
@@ -168,8 +168,8 @@ async fn off_the_runtime<T: Send + 'static>(
     done.map_err(|error| error.to_string())
 }
 
-/// Time after which a recording ends by itself: a page that was closed does not end it.
+/// Time after which a recording ends automatically, because closing a page does not end it.
 const LONGEST: Duration = Duration::from_secs(3600);
 
-/// Time between two looks at what has been recorded.
+/// Interval between two updates of the progress.
 const PROGRESS: Duration = Duration::from_millis(200);

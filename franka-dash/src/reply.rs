@@ -1,4 +1,4 @@
-//! What viewers are told, as JSON. State frames are binary: [`frame`](crate::frame).
+//! Messages to viewers, as JSON. State frames are binary: [`frame`](crate::frame).
 
 use franka_async::state::WrenchTare;
 use serde::Serialize;
@@ -12,61 +12,61 @@ use crate::request::Tuning;
 use crate::simulated::Setting;
 use crate::statistics::Statistics;
 
-/// To a viewer.
+/// A message to a viewer.
 #[derive(Clone, Debug, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Reply {
-    /// A request that had no effect, and why.
+    /// A request had no effect, with the reason.
     Refused {
         why: String,
-        /// As in `Status`, when the request was refused.
+        /// As in `Status`, at the time of the refusal.
         begun: u64,
     },
-    /// Who may command, and what is going on.
+    /// The current commander and its hold.
     Status {
         #[serde(flatten)]
         status: Status,
-        /// Requests of this viewer to begin a hold that had been handled by then. A page tells by
-        /// it whether a message is about its newest hold or about an earlier one.
+        /// Number of this viewer's requests to begin a hold that have been processed. A page uses
+        /// it to decide whether a message belongs to its newest hold.
         begun: u64,
     },
     /// A stop of this viewer has been received.
     Stopping {},
-    /// Something that happened.
+    /// An event.
     Event(News),
-    /// Events that this viewer was too slow for.
+    /// Number of events that this viewer missed because it was too slow.
     Missed { events: u64 },
-    /// How punctual control is.
+    /// The punctuality of control.
     Statistics(Statistics),
     /// The fingers of the gripper.
     Gripper(FingerState),
-    /// The recording that goes on.
+    /// The current recording.
     Recording { recording: Option<Progress> },
-    /// What the motion of a question would do, or why it would be refused.
+    /// The preview for a question, or the reason for a refusal.
     Preview {
-        /// Of the question.
+        /// Number of the question.
         number: u32,
         way: Option<Plan>,
         refused: Option<String>,
     },
-    /// What the motion of the hold that goes on does; nothing if none goes on, or it has no end.
+    /// The plan of the active hold; `null` without a hold, or if its motion has no end.
     Heading { way: Option<Plan> },
-    /// Where something touches the arm, as far as its torques tell; nothing if nothing seems to.
+    /// The estimated contact on the arm; `null` without a contact.
     Contact { contact: Option<Contact> },
-    /// What is taken off the wrench of a frame; nothing without a tare.
+    /// The tare of a frame's wrench; `null` without a tare.
     Tare { tare: Option<TareShown> },
 }
 
-/// What is taken off the wrench, and where it holds.
+/// The tare of the wrench, and its range of validity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct TareShown {
     /// Force, then torque about the stiffness frame, in base axes, `[N, N m]`.
     wrench: [f64; 6],
-    /// Standard deviation of each of its numbers.
+    /// Standard deviation of each of the six numbers.
     deviation: [f64; 6],
-    /// Joint positions in which it was taken, `[rad]`.
+    /// Joint positions at the time of the tare, `[rad]`.
     q: [f64; 7],
-    /// It is taken to hold within so much of them, `[rad]` of any joint.
+    /// Largest distance of any joint from these positions at which the tare is valid, `[rad]`.
     near: f64,
 }
 
@@ -82,7 +82,7 @@ impl From<WrenchTare> for TareShown {
 }
 
 impl Reply {
-    /// The answer to a question of this number.
+    /// Returns the answer to the question with this number.
     pub(crate) fn preview(number: u32, planned: Result<Plan, String>) -> Self {
         let (way, refused) = match planned {
             Ok(plan) => (Some(plan), None),
@@ -95,25 +95,25 @@ impl Reply {
         }
     }
 
-    /// What the motion of a hold does, without the number of the hold.
+    /// Returns the plan of a hold, without the number of the hold.
     pub(crate) fn heading(heading: Option<(u64, Plan)>) -> Self {
         let way = heading.map(|(_, plan)| plan);
         Self::Heading { way }
     }
 }
 
-/// What goes on, and what is set.
+/// The current state and settings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Status {
     #[serde(flatten)]
     pub(crate) authority: authority::Status,
-    /// How stiff the arm is while it is held.
+    /// The stiffness of the arm during a hold.
     pub(crate) tuning: Tuning,
     /// `None` for a robot that viewers cannot disturb.
     pub(crate) simulation: Option<Setting>,
 }
 
-/// How much an event asks for attention.
+/// The severity of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Level {
@@ -122,7 +122,7 @@ pub(crate) enum Level {
     Error,
 }
 
-/// Something that happened.
+/// An event.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct News {
     /// Time of the server, `[ms]`.
@@ -130,6 +130,6 @@ pub(crate) struct News {
     pub(crate) level: Level,
     /// One line.
     pub(crate) text: String,
-    /// Why, and what to change; several lines.
+    /// The reason and the recommended change; several lines.
     pub(crate) detail: Option<String>,
 }

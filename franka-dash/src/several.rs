@@ -1,4 +1,4 @@
-//! Several robots on one server: a page for each, and one with all of them side by side.
+//! Several robots on one server: a page for each, and a page with all of them side by side.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -15,17 +15,18 @@ use crate::options::Options;
 use crate::source::Source;
 use crate::{admission, page, serve};
 
-/// Why names of robots are not accepted: they are parts of addresses.
+/// The reason why names of robots are not accepted: they are parts of addresses.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NameError {
-    /// A name is empty, longer than 40 characters, or has others than letters, digits and `-_.:~`.
+    /// A name is empty, is longer than 40 characters, or contains characters other than letters,
+    /// digits and `-_.:~`.
     #[error("{name:?} is no part of an address: expected 1 to 40 of a-z, A-Z, 0-9 and -_.:~")]
     Characters {
         /// The name.
         name: String,
     },
-    /// Two robots have the same name, or it is that of a file of the page.
+    /// Two robots have the same name, or a file of the page has it.
     #[error("{name:?} is the name of something else already")]
     Taken {
         /// The name.
@@ -33,12 +34,13 @@ pub enum NameError {
     },
 }
 
-/// The pages of several robots: that of each at `/NAME/`, as [`router`](crate::router) serves it,
-/// and at `/` all of them side by side, to be looked at and stopped. Must be called within a Tokio
-/// runtime. Each robot has a commander of its own. A token should be the same for all.
+/// Returns the pages of several robots. Each robot's page is at `/NAME/`, as served by
+/// [`router`](crate::router). The page at `/` shows all of them side by side, for viewing and
+/// stopping. Must be called within a Tokio runtime. Each robot has a separate commander. Use the
+/// same token for all.
 ///
 /// # Errors
-/// [`NameError`]; nothing has been started then.
+/// [`NameError`]; nothing has been started in this case.
 pub fn several<N: Into<String>>(
     robots: impl IntoIterator<Item = (N, Robot, Options)>,
 ) -> Result<Router, NameError> {
@@ -84,7 +86,7 @@ pub fn several<N: Into<String>>(
 
 fn is_part_of_an_address(name: &str) -> bool {
     let fits = |c: char| c.is_ascii_alphanumeric() || "-_.:~".contains(c);
-    // Dots alone are steps between folders.
+    // Names of dots only are steps between folders.
     (1..=40).contains(&name.len()) && name.chars().all(fits) && name.contains(|c| c != '.')
 }
 

@@ -1,4 +1,4 @@
-//! The simulated robot that viewers disturb.
+//! The simulated robot that viewers can disturb.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use crate::request::{ArmKind, Conditions, Disturbance, PUSH_MS};
 
-/// The simulated robot to disturb.
+/// The simulated robot.
 #[derive(Clone)]
 pub(crate) struct Simulated {
     running: Arc<Running>,
@@ -20,18 +20,18 @@ pub(crate) struct Simulated {
     setting: Arc<Mutex<Setting>>,
 }
 
-/// What is simulated; `None` for what is as it was when the simulator was started.
+/// The simulated conditions; `None` for values unchanged since the start of the simulator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Setting {
-    /// Of all its randomness; `None` until it is known.
+    /// Seed of all its randomness; `None` while unknown.
     seed: Option<u64>,
     arm: Option<ArmKind>,
     network: Option<Conditions>,
     /// Width of the object between the fingers, `[m]`.
     object: Option<f64>,
-    /// What hangs on the flange, `[kg]`.
+    /// Mass on the flange, `[kg]`.
     load: f64,
-    /// How fast robot time passes in virtual time; 0 is a pause, `None` as fast as it can.
+    /// Speed of robot time in virtual time; 0 is a pause, `None` is as fast as possible.
     speed: Option<f64>,
 }
 
@@ -44,7 +44,7 @@ impl Simulated {
         }
     }
 
-    /// True if it has a Hand, which an object can be put into.
+    /// True if it has a Hand, which can hold an object.
     pub(crate) fn has_hand(&self) -> bool {
         self.running.hand().is_some()
     }
@@ -61,7 +61,7 @@ impl Simulated {
         }
     }
 
-    /// Reads how the simulator was started.
+    /// Reads the start options of the simulator.
     pub(crate) async fn look(&self) {
         let started = self.running.with(|robot| {
             let config = robot.config();
@@ -87,10 +87,10 @@ impl Simulated {
         }
     }
 
-    /// Does what was [checked](crate::request::Request::check).
+    /// Performs a [checked](crate::request::Request::check) disturbance.
     ///
     /// # Errors
-    /// Why it was not done.
+    /// The reason why it was not performed.
     pub(crate) async fn disturb(&self, disturbance: Disturbance) -> Result<(), String> {
         self.apply(disturbance).await?;
         let mut setting = self.lock();
@@ -134,7 +134,7 @@ impl Simulated {
                     match width {
                         Some(width) => fingers.place_object(width),
                         None => {
-                            // There may be none.
+                            // There may be no object.
                             let _ = fingers.take_object();
                             true
                         }
@@ -160,8 +160,7 @@ impl Simulated {
         }
     }
 
-    /// Copies the newest state to `watched`, as often as the page wants it. Ends with the
-    /// simulation.
+    /// Copies the newest state to `watched`, at the rate of the page. Ends with the simulation.
     pub(crate) async fn copy_to(&self, watched: impl Fn(RobotState) -> bool) {
         let mut clock = tokio::time::interval(Duration::from_millis(10));
         clock.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Skip);
@@ -179,7 +178,7 @@ impl Simulated {
     }
 }
 
-/// What the robot itself is done. `pushing` is the push that may still go on.
+/// Applies a disturbance of the robot itself. `pushing` is the push that may still be active.
 fn apply(disturbance: Disturbance, robot: &mut Robot, pushing: &mut Option<TouchId>) {
     match disturbance {
         Disturbance::Push {
@@ -208,7 +207,7 @@ fn apply(disturbance: Disturbance, robot: &mut Robot, pushing: &mut Option<Touch
             inertia: Matrix3::zeros(),
         }),
         Disturbance::Arm { arm } => robot.fit(simulate(arm, robot.config().kind)),
-        // Not the robot's.
+        // Not disturbances of the robot itself.
         Disturbance::Network { .. }
         | Disturbance::Cut { .. }
         | Disturbance::Object { .. }
@@ -225,7 +224,7 @@ fn simulate(arm: ArmKind, kind: RobotKind) -> Arm {
     }
 }
 
-/// The network under these conditions; `None` if they are those of the host.
+/// Returns the network with these conditions; `None` for the host's own conditions.
 fn network_under(conditions: Conditions, seed: u64) -> Option<Network> {
     let Conditions {
         loss,
@@ -246,7 +245,7 @@ fn network_under(conditions: Conditions, seed: u64) -> Option<Network> {
         jitter: milliseconds(jitter_ms),
         ..network::Conditions::default()
     };
-    // It is the robot's interface that stalls.
+    // The pauses are those of the robot's interface.
     let stalls = (stalls_per_second > 0.0 && stall_ms > 0.0).then(|| Stalls {
         per_second: stalls_per_second,
         shortest: milliseconds(stall_ms),

@@ -1,4 +1,4 @@
-//! Where states come from: a connected robot, or a simulated one that another program controls.
+//! The source of states: a connected robot, or a simulated robot that another program controls.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -7,17 +7,17 @@ use franka_async::model::{Model, RobotKind};
 use franka_async::record::Bindings;
 use franka_async::state::RobotState;
 
-/// What the page shows of one moment.
+/// The data that the page shows for one moment.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     pub(crate) state: RobotState,
-    /// Joint positions that this driver has the arm at, `[rad]`; `None` while it moves nothing.
+    /// This driver's reference of the joints, `[rad]`; `None` while it moves nothing.
     pub(crate) reference: Option<[f64; 7]>,
-    /// What has held it back lately.
+    /// Guards that were active recently.
     pub(crate) guards: Bindings,
 }
 
-/// Where states come from.
+/// The source of states.
 pub(crate) enum Source {
     /// A robot that this process is connected to, simulated or not.
     Robot(Robot),

@@ -1,4 +1,4 @@
-//! How punctual control is, for the page.
+//! The punctuality of control, for the page.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -12,15 +12,15 @@ use serde::Serialize;
 pub(crate) struct Statistics {
     /// Round trip to this page, `[ms]`; `None` before the first one.
     round_trip_ms: Option<f64>,
-    /// `None` where another program controls the robot.
+    /// Values of the control thread; `None` if another program controls the robot.
     thread: Option<Thread>,
-    /// Since the last statistics of this viewer; `None` in the first.
+    /// Values since the last statistics of this viewer; `None` in the first.
     recent: Option<Recent>,
 }
 
 #[derive(Clone, Debug, Serialize)]
 struct Thread {
-    /// Of `SCHED_FIFO`; `None` if it was not granted.
+    /// Priority under `SCHED_FIFO`; `None` if it was not granted.
     priority: Option<i32>,
     states: u64,
     lost: u64,
@@ -30,25 +30,25 @@ struct Thread {
     slack: Option<Spread>,
 }
 
-/// Shortest, median and longest of the last cycles, to 1/16, `[us]`.
+/// Minimum, median and maximum of the last cycles, with a resolution of 1/16, `[us]`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 struct Recent {
     turnaround: [f64; 3],
     slack: [f64; 3],
 }
 
-/// What the histograms had when a viewer was last told of them.
+/// Contents of the histograms at a viewer's last statistics.
 #[derive(Debug, Default)]
 pub(crate) struct Counts {
     turnaround: Buckets,
     slack: Buckets,
 }
 
-/// How many durations there are up to each one.
+/// Number of durations up to each bound.
 type Buckets = BTreeMap<Duration, u64>;
 
 impl Counts {
-    /// What has come since the last call; `None` for nothing, and at first.
+    /// Returns the values since the last call; `None` without new values, and for the first call.
     fn take(&mut self, stats: &Stats) -> Option<Recent> {
         let turnaround = since(&mut self.turnaround, &stats.turnaround);
         let slack = since(&mut self.slack, &stats.slack);
@@ -59,8 +59,8 @@ impl Counts {
     }
 }
 
-/// Shortest, median and longest of what a histogram has more than `before`, which becomes what it
-/// has now.
+/// Returns minimum, median and maximum of a histogram's new values since `before`, which is then
+/// updated.
 fn since(before: &mut Buckets, histogram: &Histogram) -> Option<[f64; 3]> {
     spread(before, histogram.buckets().collect())
 }
@@ -68,7 +68,7 @@ fn since(before: &mut Buckets, histogram: &Histogram) -> Option<[f64; 3]> {
 fn spread(before: &mut Buckets, now: Buckets) -> Option<[f64; 3]> {
     let before = std::mem::replace(before, now.clone());
     let more = now.into_iter().filter_map(|(duration, count)| {
-        // Those of another connection begin anew.
+        // The counts of another connection begin at zero.
         let count = count.saturating_sub(before.get(&duration).copied().unwrap_or(0));
         (count > 0).then_some((duration, count))
     });
@@ -96,7 +96,7 @@ struct Spread {
 }
 
 impl Statistics {
-    /// `before` is what this viewer was told last.
+    /// Creates the statistics; `before` holds this viewer's last ones.
     pub(crate) fn of(
         robot: Option<&Robot>,
         round_trip: Option<Duration>,
@@ -147,7 +147,7 @@ mod tests {
         let now = buckets(&[(5, 10), (7, 3), (20, 1), (900, 1)]);
         assert_eq!(spread(&mut before, now.clone()), Some([5.0, 7.0, 20.0]));
         assert_eq!(spread(&mut before, now), None, "nothing has come");
-        // Another connection: its counts begin anew.
+        // Another connection: its counts begin at zero.
         assert_eq!(spread(&mut before, buckets(&[(6, 2)])), Some([6.0; 3]));
     }
 }

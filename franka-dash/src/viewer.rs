@@ -1,9 +1,9 @@
-//! One viewer's socket: requests in; frames, events and statistics out.
+//! One viewer's socket: receives requests, and sends frames, events and statistics.
 //!
-//! A frame is sent only when the one before has been acknowledged, and then it is the newest: what
-//! a slow viewer does not read is never made. Reading goes on while a send waits, so that a stop
-//! gets through. A viewer that does not take a message within [`SEND`], or is silent for
-//! [`SILENCE`], is disconnected.
+//! A frame is sent only when the previous one has been acknowledged, and then it is the newest:
+//! frames that a slow viewer would not read are never created. Reading continues while a send
+//! waits, so that a stop is received. A viewer that does not accept a message within [`SEND`], or
+//! is silent for [`SILENCE`], is disconnected.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -27,7 +27,7 @@ use crate::reply::{Reply, Status};
 use crate::request::Request;
 use crate::statistics::{Counts, Statistics};
 
-/// Serves a viewer until it goes, and then ends what it held.
+/// Serves a viewer until it disconnects, and then ends its hold.
 pub(crate) async fn attend(hub: Arc<Hub>, socket: WebSocket) {
     let viewer = hub.next_viewer();
     let (sink, stream) = socket.split();
@@ -43,20 +43,20 @@ pub(crate) async fn attend(hub: Arc<Hub>, socket: WebSocket) {
     hub.gone(viewer);
 }
 
-/// What is known of the way to the page and back.
+/// The state of the connection to the page.
 #[derive(Default)]
 struct Link {
-    /// Time of the server of the newest frame that was sent, `[ms]`.
+    /// Server time of the newest frame sent, `[ms]`.
     sent: AtomicU64,
-    /// Whether it has been acknowledged, or none was sent.
+    /// True until the newest frame is acknowledged.
     in_flight: AtomicBool,
-    /// Requests to begin a hold that have been handled.
+    /// Number of processed requests to begin a hold.
     begun: AtomicU64,
     round_trip: Mutex<Option<(Instant, Duration)>>,
 }
 
 impl Link {
-    /// Takes an acknowledgement. One of another frame than the newest is none.
+    /// Processes an acknowledgement. Acknowledgements of older frames are ignored.
     fn seen(&self, server_ms: u64, now_ms: u64) {
         if server_ms != self.sent.load(Ordering::Relaxed)
             || !self.in_flight.swap(false, Ordering::Relaxed)
@@ -67,7 +67,8 @@ impl Link {
         *self.lock() = Some((Instant::now(), took));
     }
 
-    /// The newest round trip, if it is fresh. While a frame is in flight for longer, that counts.
+    /// Returns the newest round trip, if it is recent. If a frame has been in flight for longer,
+    /// returns this time.
     fn round_trip(&self, now_ms: u64) -> Option<Duration> {
         let (at, took) = (*self.lock())?;
         let waiting = match self.in_flight.load(Ordering::Relaxed) {
@@ -93,7 +94,7 @@ impl Link {
     }
 }
 
-/// Takes requests until the socket ends, or replies are not read.
+/// Processes requests until the socket ends, or replies are not read.
 async fn read(
     hub: &Arc<Hub>,
     viewer: ViewerId,
@@ -108,7 +109,7 @@ async fn read(
         if window.0.elapsed() > Duration::from_secs(1) {
             window = (Instant::now(), 0);
         } else if window.1 > MESSAGES_PER_SECOND {
-            // What it sends meanwhile waits in its own connection.
+            // Further messages wait in the viewer's own connection.
             sleep(Duration::from_secs(1).saturating_sub(window.0.elapsed())).await;
         }
         let why = match message {
@@ -122,7 +123,7 @@ async fn read(
                     let begins = matches!(request, Request::Begin { .. });
                     let is_stop = matches!(request, Request::Stop {});
                     let handled = hub.handle(viewer, round_trip, request);
-                    // Nothing is sent between the two: this task writes, too.
+                    // No message is sent in between, because this task also writes.
                     link.begun.fetch_add(u64::from(begins), Ordering::Relaxed);
                     if is_stop && replies.try_send(Reply::Stopping {}).is_err() {
                         return;
@@ -151,7 +152,7 @@ async fn read(
     }
 }
 
-/// Answers the newest question, one at a time, until the viewer goes.
+/// Answers the newest question, one at a time, until the viewer disconnects.
 async fn answer(
     hub: &Hub,
     mut questions: watch::Receiver<Option<Question>>,
@@ -172,7 +173,7 @@ async fn answer(
     }
 }
 
-/// Sends what there is until the socket fails.
+/// Sends all messages until the socket fails.
 async fn write(
     hub: &Hub,
     viewer: ViewerId,
@@ -253,7 +254,7 @@ async fn write(
     }
 }
 
-/// What changes all the time, and is told a few times per second.
+/// Returns values that change continuously, and are sent a few times per second.
 fn figures(hub: &Hub, link: &Link, before: &mut Counts) -> impl Iterator<Item = Reply> + use<> {
     let round_trip = link.round_trip(hub.now_ms());
     let statistics = Statistics::of(hub.source.robot(), round_trip, before);
@@ -268,7 +269,7 @@ fn figures(hub: &Hub, link: &Link, before: &mut Counts) -> impl Iterator<Item = 
         .flatten()
 }
 
-/// Sends a message in time; `None` if that fails.
+/// Sends a message within the time limit; `None` if that fails.
 async fn send(sink: &mut SplitSink<WebSocket, Message>, message: Message) -> Option<()> {
     timeout(SEND, sink.send(message)).await.ok()?.ok()
 }
@@ -281,17 +282,17 @@ fn text(message: &impl Serialize) -> Message {
 const FRAME: Duration = Duration::from_nanos(16_666_667);
 const STATISTICS: Duration = Duration::from_millis(200);
 
-/// Time in which a viewer has to take a message.
+/// Time limit for a viewer to accept a message.
 const SEND: Duration = Duration::from_secs(2);
 
-/// Silence of a viewer after which it counts as gone: it acknowledges frames all the time.
+/// Silence after which a viewer counts as disconnected: it acknowledges frames continuously.
 const SILENCE: Duration = Duration::from_secs(10);
 
-/// Age from which on a round trip says nothing.
+/// Age from which a round trip is no longer used.
 const FRESH: Duration = Duration::from_secs(1);
 
-/// Replies that may wait for a viewer.
+/// Largest number of replies that wait for a viewer.
 const REPLIES: usize = 32;
 
-/// More than a page sends: 60 acknowledgements, 20 holds, 20 pushes.
+/// Largest message rate, above the page's own: 60 acknowledgements, 20 holds, 20 pushes.
 const MESSAGES_PER_SECOND: u32 = 250;

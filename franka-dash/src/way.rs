@@ -1,4 +1,4 @@
-//! Where a motion goes, how fast and how stiff.
+//! Path, speed and stiffness of a motion.
 
 use franka_async::goal::{Budget, Gains, Target, target_range};
 use franka_async::{Pose, READY, Robot, pose};
@@ -6,14 +6,14 @@ use franka_async::{Pose, READY, Robot, pose};
 use crate::pace;
 use crate::request::{Motion, SPEED_MAX, Tuning};
 
-/// Where a motion goes.
+/// The path of a motion.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Way {
-    /// The joints to a target, from where they were, `[rad]`.
+    /// The joints to a target, with the displacement from their start, `[rad]`.
     Joints { target: [f64; 7], way: [f64; 7] },
     /// The end effector to a pose, on a straight line.
     Pose(Pose),
-    /// The end effector, along.
+    /// The end effector in a direction.
     EndEffector,
 }
 
@@ -23,7 +23,7 @@ impl Way {
         let state = robot.state();
         let target = match motion {
             Motion::Joint { joint, up } => {
-                // The others stay where they are, wherever that is.
+                // The other joints stay at their positions, even outside their ranges.
                 let mut q = state.q_d;
                 let index = joint - 1;
                 let (lower, upper) = range[index];
@@ -47,7 +47,7 @@ impl Way {
         Self::Joints { target, way }
     }
 
-    /// Where it ends; `None` if it goes on while its button is held.
+    /// Returns the end of the motion; `None` if it continues while its button is held.
     pub(crate) fn target(&self) -> Option<Target> {
         match self {
             Self::Joints { target, .. } => Some(Target::Joints(*target)),
@@ -56,18 +56,18 @@ impl Way {
         }
     }
 
-    /// So that no point of the arm is faster than `speed`, `[m/s]`, where joints move, and the end
-    /// effector is not otherwise.
+    /// Returns the budget such that no point of the arm is faster than `speed`, `[m/s]`, in joint
+    /// motions, and the end effector is not in other motions.
     pub(crate) fn budget(&self, robot: &Robot, speed: f64) -> Budget {
         match self {
             Self::Joints { way, .. } => pace::joints(robot.model(), &robot.state(), *way, speed),
             Self::Pose(_) => pace::end_effector_at(robot.model(), speed),
-            // A moving target leaves a tenth for catching up.
+            // A moving target needs a reserve of a tenth for catching up.
             Self::EndEffector => pace::end_effector_at(robot.model(), (speed / 0.9).min(SPEED_MAX)),
         }
     }
 
-    /// The driver's gains for this kind of motion, tuned.
+    /// Returns the driver's gains for this kind of motion, with the tuning.
     pub(crate) fn gains(&self, tuning: &Tuning) -> Gains {
         let preset = match self {
             Self::Joints { .. } => Gains::joint(),

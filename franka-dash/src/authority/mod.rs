@@ -1,4 +1,4 @@
-//! Who may move the arm, and until when: a state machine without clock and sockets.
+//! The authority to move the arm, and its time limits: a state machine without clock and sockets.
 //!
 //! ```text
 //!             take                begin                 hold 1, 2, 3 .. in time
@@ -7,10 +7,10 @@
 //!    └─ socket closed       └── end, gap, silence, stop, arrival, socket closed
 //! ```
 //!
-//! Requests and the time go in ([`Authority::handle`], [`Authority::tick`]); effects and refusals
-//! come out. Time is any monotonic count; one that goes back counts as standing still. The lease is
-//! that of the robot, which others may hold, too. A hold that has ended stays ended: only another
-//! `Begin` moves the arm.
+//! Requests and the time are inputs ([`Authority::handle`], [`Authority::tick`]); effects and
+//! refusals are outputs. Time is any monotonic count; a time that decreases counts as unchanged.
+//! The lease belongs to the robot, so other services may hold it too. A hold that has ended stays
+//! ended: only another `Begin` moves the arm.
 
 mod refusal;
 #[cfg(test)]
@@ -26,45 +26,45 @@ use serde::Serialize;
 
 use crate::request::{Disturbance, GripperAction, Motion, Request, Tuning};
 
-/// Numbers a viewer.
+/// Number of a viewer.
 pub(crate) type ViewerId = u64;
 
-/// What viewers may ask of this server.
+/// The requests that viewers may make to this server.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Permissions {
-    /// Motions, and recoveries.
+    /// Motions and recoveries.
     pub(crate) motion: bool,
     /// Disturbances of a simulated robot.
     pub(crate) disturbances: bool,
-    /// Motions of the fingers, where there are motions at all.
+    /// Motions of the fingers, if motions are allowed at all.
     pub(crate) gripper: bool,
     /// Recordings.
     pub(crate) recording: bool,
-    /// How much later messages may come: none but for a simulated robot.
+    /// Extra time for late messages: zero except for a simulated robot.
     pub(crate) patience: Duration,
 }
 
-/// Who may command, and what is going on.
+/// The current commander and its hold.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct Status {
-    /// Number of the viewer that has the lease; `None` for a holder that is no viewer.
+    /// Number of the viewer that has the lease; `None` for a holder that is not a viewer.
     pub(crate) commander: Option<u64>,
     /// Name of the holder of the lease.
     pub(crate) name: Option<String>,
-    /// True if a hold goes on.
+    /// True if a hold is active.
     pub(crate) holding: bool,
-    /// True if the last hold of the commander has ended by silence.
+    /// True if the commander's last hold ended because of silence.
     pub(crate) expired: bool,
 }
 
 impl Permissions {
-    /// True if there is anything that takes command.
+    /// True if the server accepts any commands.
     pub(crate) fn any(&self) -> bool {
         self.motion || self.disturbances || self.recording
     }
 }
 
-/// What the server has to do.
+/// An action of the server.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Effect {
     /// Begin the motion of this hold.
@@ -73,7 +73,7 @@ pub(crate) enum Effect {
         motion: Motion,
         speed: f64,
     },
-    /// Say what a motion would do.
+    /// Preview a motion.
     Preview {
         number: u32,
         motion: Motion,
@@ -81,14 +81,14 @@ pub(crate) enum Effect {
     },
     /// Feed the deadman of the hold.
     KeepAlive,
-    /// Brake whatever moves, ours or not.
+    /// Brake any motion, including motions of other programs.
     Stop,
     Recover,
-    /// Hold the arm so, in this hold and those to come.
+    /// Set the tuning of the arm, in this hold and later ones.
     Tune(Tuning),
-    /// Take a tare of the wrench, or forget it.
+    /// Take a tare of the wrench, or clear it.
     Tare(bool),
-    /// Go on at this speed, `[m/s]`.
+    /// Continue at this speed, `[m/s]`.
     Speed(f64),
     Gripper(GripperAction),
     /// Begin or end a recording.
@@ -96,7 +96,7 @@ pub(crate) enum Effect {
     Disturb(Disturbance),
 }
 
-/// Why a hold ended.
+/// The reason why a hold ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum Lost {
     #[error("let go")]
@@ -115,16 +115,16 @@ pub(crate) enum Lost {
     Stopped,
 }
 
-/// What comes of a request.
+/// The result of a request.
 #[derive(Debug, Default, PartialEq)]
 pub(crate) struct Step {
-    /// The hold has ended: brake, before anything else.
+    /// The hold has ended: brake first.
     pub(crate) ended: Option<Lost>,
     pub(crate) effect: Option<Effect>,
     pub(crate) refusal: Option<Refusal>,
 }
 
-/// See the [module](self).
+/// The state machine; see the [module](self).
 #[derive(Debug)]
 pub(crate) struct Authority {
     permissions: Permissions,
@@ -153,7 +153,7 @@ struct Hold {
 }
 
 impl Authority {
-    /// The commander holds `lease`. Time counts from `start`.
+    /// Creates an authority whose commander holds `lease`. Time counts from `start`.
     pub(crate) fn new(permissions: Permissions, lease: Lease, start: Instant) -> Self {
         Self {
             permissions,
@@ -179,8 +179,8 @@ impl Authority {
         self.start + self.now
     }
 
-    /// Takes a request of a viewer. `round_trip` is the newest one that was measured with it,
-    /// `None` if none is fresh.
+    /// Processes a request of a viewer. `round_trip` is the newest round trip measured with it,
+    /// `None` if there is no recent one.
     pub(crate) fn handle(
         &mut self,
         now: Duration,
@@ -188,13 +188,13 @@ impl Authority {
         round_trip: Option<Duration>,
         request: Request,
     ) -> Step {
-        // A request cannot revive what its own lateness has ended.
+        // A late request must not revive a hold that has expired.
         let mut silent = self.tick(now);
         let now = self.instant();
         if let Some(commander) = self.commander_mut(viewer)
             && commander.holder.keep_alive(now).is_err()
         {
-            // Another service has looked at the lease since `now`.
+            // Another service has checked the lease since `now`.
             silent = silent.or(self.lose());
         }
         let valid = request.check().map_err(Refusal::Value);
@@ -221,7 +221,7 @@ impl Authority {
         }
     }
 
-    /// Ends what has been silent for too long. To be called every few milliseconds.
+    /// Ends holds and leases that have been silent for too long. Call it every few milliseconds.
     pub(crate) fn tick(&mut self, now: Duration) -> Option<Lost> {
         self.now = self.now.max(now);
         let (deadman, now) = (DEADMAN + self.permissions.patience, self.instant());
@@ -235,19 +235,19 @@ impl Authority {
         }
     }
 
-    /// Takes the command from a viewer that has lost the lease.
+    /// Removes the command from a viewer that has lost the lease.
     fn lose(&mut self) -> Option<Lost> {
         let commander = self.commander.take()?;
         commander.hold.map(|_| Lost::Silent)
     }
 
-    /// A viewer has gone.
+    /// Processes the disconnection of a viewer.
     pub(crate) fn gone(&mut self, viewer: ViewerId) -> Option<Lost> {
         let commander = self.commander.take_if(|it| it.viewer == viewer)?;
         commander.hold.map(|_| Lost::Disconnected)
     }
 
-    /// The motion of a hold has ended by itself.
+    /// Processes the end of a hold's motion.
     pub(crate) fn ended(&mut self, number: u64) {
         if let Some(commander) = &mut self.commander {
             commander.hold.take_if(|hold| hold.number == number);
@@ -276,7 +276,7 @@ impl Authority {
         self.commander.as_mut().filter(|it| it.viewer == viewer)
     }
 
-    /// What only the commander may ask for.
+    /// Processes a request that only the commander may make.
     fn commanded(
         &mut self,
         viewer: ViewerId,
@@ -338,7 +338,7 @@ impl Authority {
                 hold.heard = now;
                 effect(Effect::KeepAlive)
             }
-            // Without effect if it has ended by itself in the meantime.
+            // Without effect if the motion has already ended.
             Request::End {} => ended(commander.hold.take(), Lost::LetGo),
             Request::Speed { .. } if commander.hold.is_none() => return Err(Refusal::NoHold),
             Request::Speed { speed } => effect(Effect::Speed(speed)),
@@ -385,7 +385,7 @@ fn effect(effect: Effect) -> Step {
     }
 }
 
-/// The end of a hold, if there was one.
+/// Returns the end of a hold, if there was one.
 fn ended(hold: Option<Hold>, lost: Lost) -> Step {
     Step {
         ended: hold.map(|_| lost),
@@ -393,13 +393,13 @@ fn ended(hold: Option<Hold>, lost: Lost) -> Step {
     }
 }
 
-/// Silence after which a hold ends. The page sends every 50 ms, so that two messages may be late.
+/// Silence after which a hold ends. The page sends every 50 ms, so two messages may be late.
 pub(crate) const DEADMAN: Duration = Duration::from_millis(150);
 
 /// Silence after which a lease is free.
 pub(crate) const LEASE: Duration = Duration::from_secs(5);
 
-/// Greatest round trip to begin a motion with.
+/// Longest round trip with which a motion may begin.
 pub(crate) const ROUND_TRIP_MAX: Duration = Duration::from_millis(100);
 
 const _: () = assert!(DEADMAN.as_millis() <= 200);

@@ -1,4 +1,4 @@
-//! What is done when the authority has allowed a request.
+//! Performs the effects of allowed requests.
 
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -15,7 +15,7 @@ use crate::request::{Disturbance, GripperAction, Motion};
 use crate::source::Source;
 
 impl Hub {
-    /// Carries an effect out, or returns the question that the socket of the viewer answers.
+    /// Performs an effect, or returns the question that the viewer's socket answers.
     pub(super) fn perform(
         self: &Arc<Self>,
         command: &mut Command,
@@ -82,7 +82,7 @@ impl Hub {
         tokio::spawn(async move {
             let show = |plan| drop(hub.heading.send_replace(Some((number, plan))));
             let ended = hold::run(&robot, task, show).await;
-            // A newer hold may have begun while the arm was let go.
+            // A newer hold may have begun during the release.
             hub.heading.send_if_modified(|heading| {
                 let own = |(of, _): &mut (u64, Plan)| *of == number;
                 heading.take_if(own).is_some()
@@ -126,7 +126,7 @@ impl Hub {
         });
     }
 
-    /// Brakes whatever moves, and ends what the fingers do. Another program's simulated robot is
+    /// Brakes any motion, and ends the action of the fingers. Another program's simulated robot is
     /// stopped by its user stop.
     fn stop(self: &Arc<Self>) {
         if let Some(fingers) = &self.fingers {
@@ -136,7 +136,7 @@ impl Hub {
             Source::Watched(_) => self.disturb(Disturbance::UserStop { pressed: true }),
             Source::Robot(robot) => {
                 if self.stopping.swap(true, Ordering::Relaxed) {
-                    return; // one is under way
+                    return; // an action is already running
                 }
                 let (robot, hub) = (robot.clone(), self.clone());
                 tokio::spawn(async move {

@@ -1,4 +1,4 @@
-//! What all viewers share: the robot, who may command it, and what happened.
+//! The shared state of all viewers: the robot, its commander, and the events.
 
 mod effects;
 mod taring;
@@ -24,21 +24,21 @@ use crate::simulated::Simulated;
 use crate::source::Source;
 use taring::Tared;
 
-/// What all viewers share.
+/// The shared state of all viewers.
 pub(crate) struct Hub {
     pub(crate) source: Source,
     pub(crate) permissions: Permissions,
     pub(crate) news: broadcast::Sender<News>,
     pub(crate) status: watch::Sender<Status>,
-    /// The number of the hold that goes on, and what its motion does, if that is planned.
+    /// The number of the active hold, and its motion if it is planned.
     pub(crate) heading: watch::Sender<Option<(u64, Plan)>>,
-    /// Where something touches the arm.
+    /// The current contact on the arm.
     pub(crate) contact: watch::Sender<Option<Contact>>,
-    /// What is taken off the wrench.
+    /// The tare of the wrench.
     pub(crate) tare: watch::Sender<Tared>,
-    /// Regions that the arm is kept out of.
+    /// Regions that the arm must avoid.
     pub(crate) keep_out: Vec<Obstacle>,
-    /// The names of all robots of the server, if there are several.
+    /// The names of all robots of the server, if it has several.
     pub(crate) siblings: Arc<[String]>,
     /// One permit per viewer.
     pub(crate) seats: Arc<Semaphore>,
@@ -60,7 +60,7 @@ struct Command {
 }
 
 impl Hub {
-    /// Starts the tasks that end with the last handle. Needs a Tokio runtime.
+    /// Starts the tasks, which end with the last handle. Needs a Tokio runtime.
     pub(crate) fn start(source: Source, options: Options) -> Arc<Self> {
         let Options {
             admission: _,
@@ -128,7 +128,7 @@ impl Hub {
         u64::try_from(self.now().as_millis()).unwrap_or(u64::MAX)
     }
 
-    /// A number that no viewer had before.
+    /// Returns an unused viewer number.
     pub(crate) fn next_viewer(&self) -> ViewerId {
         self.viewers.fetch_add(1, Ordering::Relaxed) + 1
     }
@@ -140,11 +140,11 @@ impl Hub {
             text,
             detail,
         };
-        // There may be no viewer.
+        // An error means that there is no viewer.
         let _ = self.news.send(news);
     }
 
-    /// Does what a viewer asks for, or returns why not; or returns what the viewer is to be told.
+    /// Processes a viewer's request. Returns a refusal, or a message for the viewer.
     pub(crate) fn handle(
         self: &Arc<Self>,
         viewer: ViewerId,
@@ -164,7 +164,7 @@ impl Hub {
         refusal.map_or(Ok(question), Err)
     }
 
-    /// A viewer has gone: what it held ends.
+    /// Processes the disconnection of a viewer: its hold ends.
     pub(crate) fn gone(&self, viewer: ViewerId) {
         let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
         let ended = command.authority.gone(viewer);
@@ -179,7 +179,7 @@ impl Hub {
         self.publish(&command);
     }
 
-    /// The motion of this hold has ended by itself.
+    /// Processes the end of this hold's motion.
     fn motion_ended(&self, number: u64) {
         let mut command = self.command.lock().unwrap_or_else(PoisonError::into_inner);
         let holding = command.authority.status().holding;
@@ -190,7 +190,7 @@ impl Hub {
         self.publish(&command);
     }
 
-    /// Brakes, where a hold has ended.
+    /// Brakes if a hold has ended.
     fn end(&self, command: &mut Command, ended: Option<Lost>) {
         let Some(lost) = ended else { return };
         command.hold = None;
@@ -199,7 +199,7 @@ impl Hub {
         }
     }
 
-    /// Shows all viewers what has changed. What a commander has set ends with its lease.
+    /// Publishes changes to all viewers. A commander's settings end with its lease.
     fn publish(&self, command: &Command) {
         let authority = command.authority.status();
         if authority.commander != self.status.borrow().authority.commander {
@@ -222,8 +222,8 @@ impl Hub {
     }
 }
 
-/// Events that a viewer may lag behind before it misses some.
+/// Number of events that a viewer may lag behind before it misses some.
 const NEWS: usize = 64;
 
-/// Viewers at once.
+/// Largest number of simultaneous viewers.
 const VIEWERS_MAX: usize = 256;

@@ -1,4 +1,4 @@
-//! What is taken off the wrench that the robot shows.
+//! The tare of the displayed wrench.
 
 use std::sync::Arc;
 
@@ -8,16 +8,16 @@ use franka_async::supervision::EventKind;
 use super::Hub;
 use crate::reply::Level;
 
-/// What is taken off the wrench, and of which request it is.
+/// The tare of the wrench, and the number of its request.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Tared {
-    /// How often it was asked for or forgotten.
+    /// Number of requests to take or clear it.
     number: u64,
     pub(crate) tare: Option<WrenchTare>,
 }
 
 impl Hub {
-    /// Takes a tare of the wrench, or forgets it. The newest request counts.
+    /// Takes a tare of the wrench, or clears it. The newest request counts.
     pub(super) fn tare(self: &Arc<Self>, on: bool) {
         let Some(robot) = self.source.robot() else {
             return;
@@ -49,8 +49,8 @@ impl Hub {
         });
     }
 
-    /// Forgets a tare, and one that is being taken, if the robot computes its wrench otherwise
-    /// since this event.
+    /// Clears the tare, and cancels a running one, if this event changed the robot's computation of
+    /// the wrench.
     pub(super) fn check_tare(&self, event: &EventKind) {
         let why = match event {
             EventKind::LoadChanged { .. } => "the load has changed",

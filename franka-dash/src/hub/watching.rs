@@ -1,5 +1,5 @@
-//! What is looked at while the server runs, whoever watches. These tasks end with the last handle
-//! of the hub.
+//! Background tasks of the server, independent of viewers. They end with the last handle of the
+//! hub.
 
 use std::sync::{Arc, Weak};
 use std::time::Duration;
@@ -35,7 +35,7 @@ pub(super) fn begin(hub: &Arc<Hub>) {
     }
 }
 
-/// Ends holds and leases that have gone silent.
+/// Ends silent holds and leases.
 async fn watch_silence(hub: Weak<Hub>) {
     let mut clock = interval(Duration::from_millis(10));
     clock.set_missed_tick_behavior(MissedTickBehavior::Skip);
@@ -77,7 +77,7 @@ async fn tell_events(mut events: franka_async::supervision::Events, hub: Weak<Hu
     }
 }
 
-/// Copies the states of a simulated robot that another program controls, and tells of changes.
+/// Copies the states of a simulated robot that another program controls, and reports changes.
 async fn follow_simulation(simulated: Simulated, hub: Weak<Hub>) {
     let copy = |state| {
         let Some(hub) = hub.upgrade() else {

@@ -1,10 +1,10 @@
-//! What a viewer can do to a simulated robot.
+//! Disturbances of a simulated robot by viewers.
 
 use serde::{Deserialize, Serialize};
 
 use super::within;
 
-/// What a viewer can do to a simulated robot.
+/// A disturbance of a simulated robot by a viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Disturbance {
@@ -26,21 +26,22 @@ pub(crate) enum Disturbance {
     Reflex {},
     /// Sets the conditions of the network, both ways.
     Network { conditions: Conditions },
-    /// Loses every state and command for so long, `[ms]`.
+    /// Loses every state and command for this duration, `[ms]`.
     Cut { milliseconds: u32 },
-    /// Puts an object of this width between the fingers, `[m]`, in place of any before; takes it
-    /// away for `null`.
+    /// Puts an object of this width between the fingers, `[m]`, replacing any other; removes it for
+    /// `null`.
     Object { width: Option<f64> },
-    /// Hangs so much on the flange, `[kg]`, 5 cm from it, in place of any before, undeclared.
+    /// Attaches this mass to the flange, `[kg]`, 5 cm from it, replacing any other, without
+    /// declaring it.
     Load { mass: f64 },
-    /// Puts another arm in place of the present one, at rest where that is.
+    /// Replaces the arm with another one, at rest in the current position.
     Arm { arm: ArmKind },
-    /// Has robot time pass so many times as fast as the clock on the wall; 0 is a pause, `null` as
-    /// fast as it can. In virtual time only.
+    /// Sets the speed of robot time relative to the wall clock; 0 pauses, `null` is as fast as
+    /// possible. In virtual time only.
     Speed { speed: Option<f64> },
 }
 
-/// Families of simulated arms, by how they differ from their model.
+/// Families of simulated arms, by their deviation from the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum ArmKind {
@@ -54,17 +55,17 @@ pub(crate) enum ArmKind {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Conditions {
-    /// Share of the datagrams that is lost.
+    /// Share of lost datagrams.
     pub(crate) loss: f64,
-    /// How many are lost in a row, in the mean.
+    /// Mean number of consecutive lost datagrams.
     pub(crate) burst: f64,
-    /// What each way takes, `[ms]`.
+    /// Delay of each direction, `[ms]`.
     pub(crate) delay_ms: f64,
-    /// Up to so much more, `[ms]`.
+    /// Largest additional delay, `[ms]`.
     pub(crate) jitter_ms: f64,
-    /// How often the robot's interface sends nothing for a while, `[1/s]`.
+    /// Rate at which the robot's interface pauses, `[1/s]`.
     pub(crate) stalls_per_second: f64,
-    /// How long, `[ms]`.
+    /// Duration of a pause, `[ms]`.
     pub(crate) stall_ms: f64,
 }
 
@@ -81,7 +82,7 @@ impl Conditions {
 }
 
 impl Disturbance {
-    /// Whether its numbers are within bounds; otherwise what they have to be.
+    /// Checks that its numbers are in range; otherwise returns the valid range.
     pub(super) fn check(&self) -> Result<(), String> {
         match self {
             Self::Push {
@@ -107,14 +108,14 @@ impl Disturbance {
             | Self::Brakes { .. }
             | Self::Reflex {}
             | Self::Object { width: None }
-            // Which speeds are possible, the simulator says.
+            // The simulator checks the speed.
             | Self::Speed { .. }
             | Self::Arm { .. } => Ok(()),
         }
     }
 }
 
-/// How long one push lasts, `[ms]`; the page renews it every 50 ms while the pointer drags.
+/// Duration of one push, `[ms]`; the page renews it every 50 ms while the pointer drags.
 pub(crate) const PUSH_MS: u64 = 200;
 
 const OFFSET_MAX: f64 = 1.0;

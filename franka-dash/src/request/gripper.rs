@@ -1,16 +1,16 @@
-//! What the fingers of a Franka Hand are to do.
+//! Actions of a Franka Hand's fingers.
 
 use serde::Deserialize;
 
 use super::within;
 
-/// What the fingers of a Franka Hand are to do.
+/// An action of a Franka Hand's fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum GripperAction {
-    /// Find how wide they open.
+    /// Determine the largest opening.
     Home {},
-    /// Go to a width, `[m]`, at a speed, `[m/s]`.
+    /// Move to a width, `[m]`, at a speed, `[m/s]`.
     Move { width: f64, speed: f64 },
     /// Close on an object of a width, `[m]`, up to `tolerance` wider or narrower, at a speed,
     /// `[m/s]`, and hold it with a force, `[N]`.
@@ -20,7 +20,7 @@ pub(crate) enum GripperAction {
         speed: f64,
         force: f64,
     },
-    /// Stop, and let go of what is held.
+    /// Stop, and release the object.
     Stop {},
 }
 

@@ -1,4 +1,4 @@
-//! What viewers ask for, as JSON: plain data, and whether its numbers make sense.
+//! Requests of viewers, as JSON: plain data, with range checks.
 
 mod disturbance;
 mod gripper;
@@ -15,47 +15,47 @@ pub(crate) use gripper::GripperAction;
 pub(crate) use motion::{Axes, Motion, SPEED_MAX, SPEED_MIN};
 pub(crate) use tuning::Tuning;
 
-/// From a viewer.
+/// A message from a viewer.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Request {
-    /// Acknowledges the state frame of this time of the server, `[ms]`: the next one may be sent.
+    /// Acknowledges the state frame with this server time, `[ms]`: the next one may be sent.
     Seen { server_ms: u64 },
-    /// Asks for the lease, under a name that the others see.
+    /// Requests the lease, with a name that the others see.
     Take { name: String },
     /// Keeps the lease.
     Alive {},
-    /// Gives the lease back.
+    /// Releases the lease.
     Release {},
     /// Begins a hold: the arm moves while `Hold` follows.
     Begin {
         motion: Motion,
-        /// Greatest speed of any point of the arm, `[m/s]`.
+        /// Largest speed of any point of the arm, `[m/s]`.
         speed: f64,
     },
-    /// Asks what a motion with a target would do. Nothing moves.
+    /// Requests the preview of a motion with a target. The arm does not move.
     Preview {
-        /// Of the question: the answer has it.
+        /// Number of the question, repeated in the answer.
         number: u32,
         motion: Motion,
-        /// As for `Begin`.
+        /// The speed, as for `Begin`.
         speed: f64,
     },
-    /// Goes on with the hold; counts from 1 without a gap.
+    /// Continues the hold; counts from 1 without a gap.
     Hold { seq: u32 },
-    /// The pointer or key was let go.
+    /// The pointer or key was released.
     End {},
-    /// Brakes whatever moves. Open to every viewer.
+    /// Brakes any motion. Allowed for every viewer.
     Stop {},
-    /// Recovers the robot from a reflex; moves nothing.
+    /// Recovers the robot from a reflex; does not move it.
     Recover {},
-    /// Sets how stiff the arm is, in the hold that goes on and in those to come.
+    /// Sets the stiffness of the arm, in the active hold and in later ones.
     Tune { tuning: Tuning },
-    /// Takes what the robot shows of forces at rest for zero, or no longer; moves nothing.
+    /// Takes or clears a tare of the displayed wrench at rest; does not move the robot.
     Tare { on: bool },
-    /// Sets the greatest speed of any point of the arm in the hold that goes on, `[m/s]`.
+    /// Sets the largest speed of any point of the arm in the active hold, `[m/s]`.
     Speed { speed: f64 },
-    /// Has the fingers do something.
+    /// Starts an action of the fingers.
     Gripper { action: GripperAction },
     /// Begins or ends a recording.
     Record { on: bool },
@@ -64,7 +64,8 @@ pub(crate) enum Request {
 }
 
 impl Request {
-    /// Whether its numbers make sense; otherwise what was got, and what they have to be.
+    /// Checks that its numbers are in range; otherwise returns the received value and the valid
+    /// range.
     pub(crate) fn check(&self) -> Result<(), String> {
         match self {
             Self::Begin { motion, speed } | Self::Preview { motion, speed, .. } => {
@@ -97,8 +98,8 @@ fn check_speed(speed: f64) -> Result<(), String> {
     within("a speed", " m/s", speed, SPEED_MIN..=SPEED_MAX)
 }
 
-/// Whether `got` is in a range; otherwise a text that says so. `what` is the name of the number,
-/// and `unit` follows it: empty, or with a space before it.
+/// Checks that `got` is in a range; otherwise returns an error text. `what` is the name of the
+/// number, and `unit` follows it: empty, or with a space before it.
 fn within<T: PartialOrd + Display>(
     what: &str,
     unit: &str,
@@ -115,7 +116,7 @@ fn within<T: PartialOrd + Display>(
     }
 }
 
-/// Characters of a name.
+/// Largest number of characters of a name.
 const NAME_MAX: usize = 40;
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
-//! What moves while a hold goes on.
+//! The motion during a hold.
 
 use serde::Deserialize;
 
 use super::within;
 
-/// Axes that a direction is given in.
+/// The axes of a direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Axes {
@@ -12,7 +12,7 @@ pub(crate) enum Axes {
     Tool,
 }
 
-/// What moves while a hold goes on.
+/// The motion during a hold.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Motion {
@@ -20,25 +20,25 @@ pub(crate) enum Motion {
     Translate { direction: [f64; 3], axes: Axes },
     /// The end effector about an axis through its origin.
     Rotate { direction: [f64; 3], axes: Axes },
-    /// One joint, 1 to 7, up or down, as far as its range.
+    /// One joint, 1 to 7, up or down, to the end of its range.
     Joint { joint: usize, up: bool },
     /// All joints to these positions, `[rad]`.
     Joints { q: [f64; 7] },
     /// All joints to the ready pose.
     Ready {},
-    /// Nowhere: the arm is held where it is, as stiff as it is tuned.
+    /// No motion: the arm is held in place, with its current tuning.
     Stay {},
     /// The end effector on a straight line to a pose in the base frame.
     Pose {
-        /// x y z, `[m]`.
+        /// Position x y z, `[m]`.
         position: [f64; 3],
-        /// A quaternion, x y z w; of any length but none.
+        /// A quaternion, x y z w, of any non-zero length.
         orientation: [f64; 4],
     },
 }
 
 impl Motion {
-    /// Whether the numbers make a motion; otherwise what is wrong with them.
+    /// Checks that the numbers form a motion; otherwise returns the error.
     pub(super) fn check(&self) -> Result<(), String> {
         match self {
             Self::Translate { direction, .. } | Self::Rotate { direction, .. } => {
@@ -69,11 +69,11 @@ impl Motion {
     }
 }
 
-/// Greatest speed of any point of the arm, `[m/s]`: the reduced speed of ISO 10218-1.
+/// Largest speed of any point of the arm, `[m/s]`: the reduced speed of ISO 10218-1.
 pub(crate) const SPEED_MAX: f64 = 0.25;
 
-/// Least speed, `[m/s]`.
+/// Smallest speed, `[m/s]`.
 pub(crate) const SPEED_MIN: f64 = 0.001;
 
-/// Bound of coordinates, `[m]`: farther than any arm gets.
+/// Bound of coordinates, `[m]`: beyond the reach of any arm.
 const FAR: f64 = 2.0;

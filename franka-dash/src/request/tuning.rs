@@ -1,28 +1,28 @@
-//! How stiff the arm is while a button is held.
+//! The stiffness of the arm while a button is held.
 
 use serde::{Deserialize, Serialize};
 
 use super::within;
 
-/// How stiff the arm is while a button is held: factors on the driver's gains for the kind of
-/// motion, and what it may press with.
+/// The stiffness of the arm while a button is held: factors on the driver's gains for the kind of
+/// motion, and the force limit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Tuning {
     /// Factor on the springs at the end effector. Their damping grows with its square root.
     pub(crate) end_effector: f64,
-    /// The same of the joints.
+    /// Factor on the springs at the joints, with the same rule for damping.
     pub(crate) joints: f64,
     /// Factor on all damping.
     pub(crate) damping: f64,
-    /// With how much force springs and dampers may press, `[N]`.
+    /// Largest force of springs and dampers, `[N]`.
     pub(crate) force_cap: f64,
     /// True if friction and undeclared loads are compensated.
     pub(crate) compensation: bool,
 }
 
 impl Default for Tuning {
-    /// The driver's.
+    /// Returns the driver's gains.
     fn default() -> Self {
         Self {
             end_effector: 1.0,
@@ -35,8 +35,8 @@ impl Default for Tuning {
 }
 
 impl Tuning {
-    /// The tunings that the page offers by name. Stiffer ones have not been seen to stay quiet on
-    /// all simulated arms: the book's chapter on arms that stick has the table.
+    /// Returns the named tunings of the page. Stiffer tunings were not observed to be stable on all
+    /// simulated arms: see the table in the book's chapter on arms that stick.
     pub(crate) fn presets() -> [(&'static str, Self); 4] {
         let default = Self::default();
         let soft = Self {

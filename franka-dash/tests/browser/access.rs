@@ -8,7 +8,7 @@ use crate::served::{Served, wait};
 /// Token of the server.
 const SECRET: &str = "correct-horse-battery";
 
-/// The page says that its token is missing or wrong, and shows the robot once it is right.
+/// Checks that the page reports a missing or wrong token, and shows the robot once it is right.
 pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let address = served.with_token(SECRET)?;
     for (fragment, why) in [
@@ -28,7 +28,7 @@ pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
         let lines = page.run("return document.querySelectorAll('#events li').length")?;
         ensure!(lines == 1, "{fragment}: {lines} lines");
     }
-    // A person corrects the address of a page that is open.
+    // The user corrects the address of an open page.
     page.run(&format!("location.hash = '#{SECRET}'"))?;
     wait("the robot", || Ok(page.state()?["ready"] == true))
 }

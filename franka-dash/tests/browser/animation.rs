@@ -1,4 +1,5 @@
-//! An animated PNG of at most 256 colours, each frame of which has what has changed since the last.
+//! An animated PNG with at most 256 colours, each frame of which contains the changes since the
+//! last.
 
 use std::collections::HashMap;
 use std::fs::File;
@@ -12,7 +13,7 @@ use png::{BitDepth, BlendOp, ColorType, Compression, Decoder, Encoder, Filter, T
 /// Red, green and blue.
 type Colour = [u8; 3];
 
-/// What is shown from a time on.
+/// The picture from a time on.
 pub(crate) struct Frame {
     pub(crate) at: Duration,
     size: (u32, u32),
@@ -38,12 +39,12 @@ impl Frame {
     }
 }
 
-/// Writes frames, the last of which ends at `end`, as an animation that repeats for ever.
+/// Writes frames, the last of which ends at `end`, as an animation that repeats indefinitely.
 pub(crate) fn write(file: &Path, frames: &[Frame], end: Duration) -> anyhow::Result<()> {
     let (width, height) = frames[0].size;
     let (palette, places) = colours(frames);
     let indexed = |frame: &Frame| -> Vec<u8> { frame.pixels.iter().map(|it| places[it]).collect() };
-    // A frame that shows nothing new prolongs the one before it.
+    // A frame without changes prolongs the previous frame.
     let mut shown: Vec<(Duration, Vec<u8>)> = Vec::new();
     for frame in frames {
         let pixels = indexed(frame);
@@ -55,7 +56,7 @@ pub(crate) fn write(file: &Path, frames: &[Frame], end: Duration) -> anyhow::Res
     encoder.set_color(ColorType::Indexed);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_palette(palette.concat());
-    // Only the last place shows what was there before.
+    // The last palette entry means unchanged.
     let mut seen = vec![255; palette.len()];
     seen[usize::from(KEPT)] = 0;
     encoder.set_trns(seen);
@@ -87,7 +88,7 @@ struct Area {
     height: usize,
 }
 
-/// The smallest area of a picture outside of which it is as before, and what it has there.
+/// Returns the smallest area that contains all changes of a picture, and its contents.
 fn changes(before: &[u8], after: &[u8], width: usize) -> (Area, Vec<u8>) {
     let differing = || (0..after.len()).filter(|i| before[*i] != after[*i]);
     let (mut left, mut right) = (width, 0);
@@ -113,8 +114,8 @@ fn changes(before: &[u8], after: &[u8], width: usize) -> (Area, Vec<u8>) {
     (area, changed)
 }
 
-/// A palette, and the place in it of each colour there is: the more pixels have a colour, the
-/// nearer to it is the one that stands for it.
+/// Returns a palette, and the palette index of each colour. The more pixels have a colour, the
+/// closer is its palette entry.
 fn colours(frames: &[Frame]) -> (Vec<Colour>, HashMap<Colour, u8>) {
     let mut counts: HashMap<Colour, u32> = HashMap::new();
     for pixel in frames.iter().flat_map(|frame| &frame.pixels) {
@@ -123,7 +124,7 @@ fn colours(frames: &[Frame]) -> (Vec<Colour>, HashMap<Colour, u8>) {
     let mut counts: Vec<_> = counts.into_iter().collect();
     counts.sort_unstable_by_key(|&(colour, count)| (std::cmp::Reverse(count), colour));
     let mut palette = Vec::new();
-    // Twice the error allowed is tried until the colours are few enough.
+    // Doubles the allowed error until the colours are few enough.
     let mut error = 32.0;
     loop {
         palette.clear();
@@ -152,11 +153,11 @@ fn colours(frames: &[Frame]) -> (Vec<Colour>, HashMap<Colour, u8>) {
     (palette, places)
 }
 
-/// The square of the distance of two colours.
+/// Returns the squared distance of two colours.
 fn apart(a: &Colour, b: &Colour) -> u32 {
     let off = |i: usize| u32::from(a[i].abs_diff(b[i])).pow(2);
     off(0) + off(1) + off(2)
 }
 
-/// The place in the palette of a pixel that stays as it was.
+/// The palette index of an unchanged pixel.
 const KEPT: u8 = 255;

@@ -1,4 +1,4 @@
-//! What a person does with the page, and what has to come of it.
+//! User actions on the page, and their expected effects.
 
 use std::time::{Duration, Instant};
 
@@ -12,10 +12,10 @@ use crate::panels;
 use crate::served::{PATIENCE, Served, wait};
 use crate::targets;
 
-/// One thing that a person does or sees.
+/// One user action or observation.
 type Check = fn(&Browser, &Served) -> anyhow::Result<()>;
 
-/// All checks, one after the other.
+/// Runs all checks, one after the other.
 pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let checks: [(&str, Check); 22] = [
         ("load", load),
@@ -58,7 +58,7 @@ pub(crate) fn load(page: &Browser, served: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The end effector of the scene is that of the robot.
+/// The end effector of the scene matches the robot's.
 pub(crate) fn shows_the_robot(page: &Browser, served: &Served) -> anyhow::Result<()> {
     wait("the drawn arm", || {
         let shown = page.state()?["endEffector"].clone();
@@ -68,7 +68,7 @@ pub(crate) fn shows_the_robot(page: &Browser, served: &Served) -> anyhow::Result
     })
 }
 
-/// The fingers of the scene are as wide apart as those of the hand.
+/// The fingers of the scene are as far apart as the robot's.
 fn shows_the_fingers(page: &Browser, served: &Served) -> anyhow::Result<()> {
     wait("the drawn fingers", || {
         let shown = page.state()?["width"].as_f64();
@@ -77,7 +77,7 @@ fn shows_the_fingers(page: &Browser, served: &Served) -> anyhow::Result<()> {
     })
 }
 
-/// Another socket of the same page is another viewer: what it asks for is refused, but for a stop.
+/// Another socket of the same page is another viewer: its requests are refused, except a stop.
 fn second_viewer(page: &Browser, served: &Served) -> anyhow::Result<()> {
     take(page)?;
     let start = served.robot.state().q;
@@ -111,10 +111,10 @@ fn second_viewer(page: &Browser, served: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The last seconds can be looked at again, and then what is now.
+/// The last seconds can be replayed, and then the live view.
 fn look_back(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let height = || page.state()?["endEffector"][2].as_f64().context("a height");
-    // Of the robot: a page on a busy machine shows it later.
+    // Uses the robot's value: a page on a busy machine shows it later.
     let now = served.height();
     let scrub = |seconds: f64| {
         page.run(&format!(
@@ -122,7 +122,7 @@ fn look_back(page: &Browser, served: &Served) -> anyhow::Result<()> {
              it.dispatchEvent(new Event('input'))"
         ))
     };
-    // As far back as there is anything: before the jog.
+    // As far back as possible: before the jog.
     scrub(-60.0)?;
     wait("what was", || Ok(height()? < now - 2e-3))?;
     ensure!(page.state()?["live"] == false, "it is live");
@@ -135,8 +135,8 @@ fn look_back(page: &Browser, served: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The links are drawn as they look, and the fingers; from then on as capsules, which take less of
-/// a computer without a graphics card, and the arm goes faster.
+/// The links and the fingers are drawn as meshes. Later checks use capsules, which need less
+/// computation without a graphics card, and the arm moves faster.
 pub(crate) fn looks(page: &Browser, served: &Served) -> anyhow::Result<()> {
     wait("the meshes", || Ok(page.state()?["meshes"] == true))?;
     shows_the_fingers(page, served)?;
@@ -149,27 +149,27 @@ pub(crate) fn looks(page: &Browser, served: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Takes command, again where a page that was too busy has lost its connection.
+/// Takes command, repeatedly if a page that was too busy has lost its connection.
 pub(crate) fn take(page: &Browser) -> anyhow::Result<()> {
     let commands = || Ok(page.state()?["commands"] == true);
     let begin = Instant::now();
     while !commands()? {
         ensure!(begin.elapsed() < LONGEST, "the page gets no lease");
         page.click("#lease")?;
-        // Else the server is asked once more.
+        // Otherwise the server is asked once more.
         let _ = wait("the lease", commands);
     }
     Ok(())
 }
 
-/// Presses the button that moves up until the arm has moved. It is held on return.
+/// Presses the button that moves up until the arm has moved. It is still held on return.
 pub(crate) fn hold_up(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let start = served.height();
     hold_until(page, "[data-jog='Z+']", || served.height() > start + 0.003)
 }
 
-/// Presses a button, again if the machine was too busy for a hold, until `done`. It may be held on
-/// return.
+/// Presses a button, repeatedly if the machine was too busy for a hold, until `done`. It may be
+/// held on return.
 pub(crate) fn hold_until(
     page: &Browser,
     selector: &str,
@@ -214,7 +214,7 @@ fn jog(page: &Browser, served: &Served) -> anyhow::Result<()> {
     })
 }
 
-/// A step goes as far as it says, and ends by itself.
+/// A step moves by its stated distance, and ends automatically.
 fn step(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let choose = |step| page.run(&format!("document.getElementById('step').value = '{step}'"));
     choose("10")?;
@@ -224,7 +224,7 @@ fn step(page: &Browser, served: &Served) -> anyhow::Result<()> {
         take(page)?;
         let start = served.height();
         page.pointer(&[move_to(page.find("[data-jog='Z+']")?), down()])?;
-        // There, or lost on a machine that is too busy for a hold.
+        // The step has ended, or was lost on a machine that is too busy for a hold.
         wait("the end", || Ok(page.state()?["holding"] == false))?;
         page.pointer(&[up()])?;
         served.check_rest()?;
@@ -245,7 +245,7 @@ fn top_lines(page: &Browser) -> anyhow::Result<Value> {
     )
 }
 
-/// Each way in which a browser takes a held button away.
+/// Tests each way in which a browser can take a held button away.
 fn lose_the_hold(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let button = "document.querySelector(\"[data-jog='Z+']\")";
     for way in [
@@ -256,7 +256,7 @@ fn lose_the_hold(page: &Browser, served: &Served) -> anyhow::Result<()> {
         "document.dispatchEvent(new Event('visibilitychange'))".to_owned(),
         format!("{button}.dispatchEvent(new PointerEvent('pointercancel'))"),
         format!("{button}.dispatchEvent(new PointerEvent('lostpointercapture'))"),
-        // A page that hangs: no timer runs.
+        // A page that hangs: timers do not run.
         format!("const until = Date.now() + {HANGS}; while (Date.now() < until);"),
     ] {
         hold_up(page, served)?;
@@ -275,7 +275,7 @@ fn lose_the_hold(page: &Browser, served: &Served) -> anyhow::Result<()> {
     page.pointer(&[up()])
 }
 
-/// Enter switches the compensation where Tab has reached it.
+/// Enter toggles the compensation when it has the focus.
 fn checkbox(page: &Browser, _: &Served) -> anyhow::Result<()> {
     take(page)?;
     let compensates = || anyhow::Ok(page.state()?["status"]["tuning"]["compensation"] == true);
@@ -290,8 +290,8 @@ fn checkbox(page: &Browser, _: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The space bar stops a motion with the focus on an element of each kind, as Tab reaches it, and
-/// does nothing else there.
+/// The space bar stops a motion with the focus on an element of each kind, reached with Tab, and
+/// has no other effect there.
 fn space_bar(page: &Browser, served: &Served) -> anyhow::Result<()> {
     take(page)?;
     press(page, TAB)?;
@@ -373,7 +373,7 @@ fn keyboard(page: &Browser, served: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Drags link 6: the robot feels it, and the page draws the force.
+/// Drags link 6: the robot measures it, and the page draws the force.
 fn push(page: &Browser, served: &Served) -> anyhow::Result<()> {
     served.make_ready()?;
     drag_until(page, (0.0, -150.0), || {
@@ -387,8 +387,8 @@ fn push(page: &Browser, served: &Served) -> anyhow::Result<()> {
     })
 }
 
-/// Drags link 6 of the drawn arm, again where a page that was too busy has let it go, until the
-/// force is drawn and `felt`. It is held on return.
+/// Drags link 6 of the drawn arm, repeatedly if a page that was too busy has released it, until the
+/// force is drawn and `felt`. It is still held on return.
 pub(crate) fn drag_until(
     page: &Browser,
     by: (f64, f64),
@@ -409,7 +409,7 @@ pub(crate) fn drag_until(
     anyhow::bail!("no force is drawn: {}", page.state()?)
 }
 
-/// Presses on link 6 of the drawn arm, and drags it by so many pixels.
+/// Presses on link 6 of the drawn arm, and drags it by this number of pixels.
 pub(crate) fn drag(page: &Browser, (right, down_by): (f64, f64)) -> anyhow::Result<()> {
     page.run("scrollTo(0, 0)")?;
     let (x, y) = point(&page.state()?["links"][5])?;
@@ -417,15 +417,15 @@ pub(crate) fn drag(page: &Browser, (right, down_by): (f64, f64)) -> anyhow::Resu
     page.pointer(&[move_to((x + right, y + down_by))])
 }
 
-/// Begins to hold the arm where it is, by the keyboard: a pointer can push it meanwhile.
+/// Starts to hold the arm in place, by the keyboard, so that a pointer can push it.
 pub(crate) fn hold_here(page: &Browser) -> anyhow::Result<()> {
     let button = "document.querySelector(\"[data-jog='Hold here']\")";
     page.run(&format!("{button}.focus({{preventScroll: true}})"))?;
     page.key("keyDown", ENTER)
 }
 
-/// Pushes the arm while it is held, by less than its collision thresholds: it gives way, and the
-/// reference is drawn where the driver has it.
+/// Pushes the arm while it is held, by less than its collision thresholds: it yields, and the
+/// reference is drawn at the driver's position.
 fn bend(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let apart = |a: &Value, b: &Value| {
         let off = |i: usize| Some((a[i].as_f64()? - b[i].as_f64()?).powi(2));
@@ -469,19 +469,19 @@ fn reflex_and_recovery(page: &Browser, served: &Served) -> anyhow::Result<()> {
     wait("the recovery", || is(RobotMode::Idle))
 }
 
-/// The page goes away in mid-motion.
+/// The page is closed in mid-motion.
 fn leave(page: &Browser, served: &Served) -> anyhow::Result<()> {
     hold_up(page, served)?;
     page.go("about:blank")?;
     served.check_rest().context("the page was left")
 }
 
-/// How long a page hangs, `[ms]`: longer than the server waits for a message.
+/// Time for which a page hangs, `[ms]`: longer than the server waits for a message.
 const HANGS: u128 = PATIENCE.as_millis() + 500;
 
-/// Until a hold begins, on a machine where the page answers late.
+/// Time limit for a hold to begin, on a machine where the page answers late.
 const LONGEST: Duration = Duration::from_secs(60);
 
-/// Keys, as WebDriver writes them.
+/// Keys, in WebDriver's notation.
 pub(crate) const ENTER: &str = "\u{e007}";
 const TAB: &str = "\u{e004}";

@@ -36,7 +36,7 @@ impl Driver {
 
 impl Drop for Driver {
     fn drop(&mut self) {
-        // It may have ended already.
+        // The process may have ended already.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
@@ -84,12 +84,12 @@ impl Browser {
         self.post("execute/sync", &json!({"script": script, "args": []}))
     }
 
-    /// What the page says that it shows.
+    /// Returns the page's displayed state.
     pub(crate) fn state(&self) -> anyhow::Result<Value> {
         self.run("return window.__state ? window.__state() : {}")
     }
 
-    /// True if the element of this `id` has this text.
+    /// True if the element with this `id` has this text.
     pub(crate) fn shows(&self, id: &str, text: &str) -> anyhow::Result<bool> {
         let all = self.run(&format!(
             "return document.getElementById({id:?}).textContent"
@@ -97,7 +97,7 @@ impl Browser {
         Ok(all.as_str().is_some_and(|all| all.contains(text)))
     }
 
-    /// Where the middle of an element is on the page.
+    /// Returns the position of an element's centre on the page.
     pub(crate) fn find(&self, selector: &str) -> anyhow::Result<(f64, f64)> {
         let middle = self.run(&format!(
             "const it = document.querySelector({selector:?}); it.scrollIntoView({{block: 'center'}}); \
@@ -113,7 +113,7 @@ impl Browser {
         self.pointer(&[up()])
     }
 
-    /// Does what a pointer does.
+    /// Performs pointer actions.
     pub(crate) fn pointer(&self, actions: &[Value]) -> anyhow::Result<()> {
         self.act(json!({"type": "pointer", "id": "pointer", "actions": actions}))
     }
@@ -129,7 +129,7 @@ impl Browser {
             .map(drop)
     }
 
-    /// What the window shows, as a PNG.
+    /// Returns a screenshot of the window, as a PNG.
     pub(crate) fn shot(&self) -> anyhow::Result<Vec<u8>> {
         let url = format!("{}/screenshot", self.session);
         let answer: Value = ureq::get(&url).call()?.body_mut().read_json()?;
@@ -141,7 +141,7 @@ impl Browser {
         Ok(std::fs::write(path, self.shot()?)?)
     }
 
-    /// Takes away what the page has logged so far.
+    /// Discards the messages that the page has logged so far.
     pub(crate) fn forget_console(&self) -> anyhow::Result<()> {
         self.post("se/log", &json!({"type": "browser"})).map(drop)
     }
@@ -158,7 +158,7 @@ impl Browser {
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        // Its driver ends it otherwise.
+        // Otherwise its driver ends it.
         let _ = ureq::delete(&self.session).call();
     }
 }

@@ -1,4 +1,4 @@
-//! The film of the README: a target is placed, the arm goes there, and is pushed while it is held.
+//! The film of the README: a target is placed, the arm moves there, and is pushed while it is held.
 
 use std::path::Path;
 use std::time::Duration;
@@ -11,7 +11,7 @@ use crate::driver::{Browser, down, move_to, point, up};
 use crate::pictures::resize_scaled;
 use crate::served::{Served, wait};
 
-/// Shots of the page, one after the other. Their time is the robot's.
+/// Consecutive screenshots of the page, timed by the robot's clock.
 struct Film<'a> {
     page: &'a Browser,
     served: &'a Served,
@@ -24,7 +24,7 @@ impl Film<'_> {
         Duration::from_millis(self.served.robot.state().message_id)
     }
 
-    /// Takes a shot when the time of the next one has come.
+    /// Takes a screenshot when the next one is due.
     fn shoot(&mut self) -> anyhow::Result<()> {
         ensure!(self.frames.len() < LONGEST, "the film does not end");
         if let Some(last) = self.frames.last().map(|last| last.at) {
@@ -35,12 +35,12 @@ impl Film<'_> {
         Ok(())
     }
 
-    /// Takes so many shots.
+    /// Takes this number of screenshots.
     fn shoot_on(&mut self, shots: usize) -> anyhow::Result<()> {
         (0..shots).try_for_each(|_| self.shoot())
     }
 
-    /// Moves the pointer within so many shots.
+    /// Moves the pointer within this number of screenshots.
     fn glide(&mut self, (x, y): (f64, f64), shots: u32) -> anyhow::Result<()> {
         let from = self.pointer;
         for shot in 1..=shots {
@@ -54,7 +54,7 @@ impl Film<'_> {
         Ok(())
     }
 
-    /// Where the middle of an element is on the page, which is not scrolled.
+    /// Returns the position of an element's centre on the page, which is not scrolled.
     fn middle(&self, selector: &str) -> anyhow::Result<(f64, f64)> {
         point(&self.page.run(&format!(
             "const box = document.querySelector({selector:?}).getBoundingClientRect(); \
@@ -127,22 +127,22 @@ pub(crate) fn record(page: &Browser, served: &Served, file: &Path) -> anyhow::Re
     Ok(())
 }
 
-/// How fast the robot's time passes.
+/// Speed of the robot's time.
 const SPEED: f64 = 0.15;
 
-/// From one shot to the next one, at least.
+/// Smallest interval between screenshots.
 const EVERY: Duration = Duration::from_millis(100);
 
-/// For how long the last shot is seen.
+/// Duration of the last screenshot.
 const REST: Duration = Duration::from_millis(600);
 
-/// Shots of a film that goes wrong.
+/// Number of screenshots after which a film has failed.
 const LONGEST: usize = 200;
 
-/// How long the robot waits for a command on a busy machine.
+/// Time for which the robot waits for a command on a busy machine.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(500);
 
-/// A speed that leaves room below the greatest, a nearer look, and a pointer: shots have none.
+/// A speed below the largest, a closer view, and a pointer, because screenshots show none.
 const PREPARE: &str = "\
     const speed = document.getElementById('speed'); \
     speed.value = 200; \
@@ -159,7 +159,7 @@ const PREPARE: &str = "\
       it.style.left = `${event.clientX - 2}px`; it.style.top = `${event.clientY - 1}px`; \
     }, {capture: true})";
 
-/// Goes a third of the way to where the guards are seen.
+/// Scrolls a third of the way to the guards.
 const SCROLL: &str = "\
     const panel = document.getElementById('guards-list').parentElement; \
     window.__way ??= panel.getBoundingClientRect().bottom + 8 - innerHeight; \

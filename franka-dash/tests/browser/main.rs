@@ -1,5 +1,5 @@
-//! The page in a real browser, before simulated robots: what it shows is what the robot is, what a
-//! person does with it has its effect, and a hold that is lost in any way has the arm rest.
+//! Tests the page in a real browser with simulated robots: it shows the robot's true state, user
+//! actions have their effects, and the arm stops after any loss of a hold.
 
 mod access;
 mod animation;
@@ -32,7 +32,7 @@ fn the_page_shows_and_moves_simulated_robots() -> anyhow::Result<()> {
     let fer = Served::new(franka_sim::Sim::fer(), "fer")?;
     let open = |size| Browser::open(&driver, &browser, size);
     std::thread::scope(|scope| {
-        // Side by side: most of the time is spent on waiting for arms.
+        // In parallel, because most of the time is spent waiting for arms.
         let beside = scope.spawn(|| {
             let page = open((1440, 900))?;
             pictures::run(&page, &fer, "fer", &folder)?;
@@ -40,7 +40,7 @@ fn the_page_shows_and_moves_simulated_robots() -> anyhow::Result<()> {
         });
         let page = open((900, 640))?;
         let mut checked = checks::run(&page, &fr3);
-        // Without it, these panels are tested by the server's requests alone: see `sockets`.
+        // Without it, only the server's requests test these panels: see `sockets`.
         if checked.is_ok() && std::env::var_os("FRANKA_THOROUGH").is_some() {
             checked = panels::run(&page, &fr3, &folder.join("panels.png"));
         }
@@ -55,7 +55,7 @@ fn the_page_shows_and_moves_simulated_robots() -> anyhow::Result<()> {
     restart::run(&page, &fr3)?;
     several::run(&page, [&fr3, &fer], &folder.join("several.png"))?;
     page.check_console()?;
-    // Its console has what the server refused.
+    // Its console contains the server's refusals.
     access::run(&open((900, 640))?, &fr3)?;
     println!("pictures: {}", folder.display());
     Ok(())
@@ -66,7 +66,7 @@ fn the_page_shows_and_moves_simulated_robots() -> anyhow::Result<()> {
 fn the_film_of_the_readme_is_recorded() -> anyhow::Result<()> {
     let (driver, browser) = (variable("FRANKA_WEBDRIVER")?, variable("FRANKA_BROWSER")?);
     let driver = Driver::start(&driver)?;
-    // In its own time, slowly: a picture of the browser takes a while without a graphics card.
+    // In slow virtual time, because a screenshot takes long without a graphics card.
     let sim = franka_sim::Sim::fr3().virtual_time(film::PATIENCE);
     let fr3 = Served::new(sim, "film")?;
     let page = Browser::open(&driver, &browser, (1440, 900))?;

@@ -1,4 +1,4 @@
-//! What a person does with the panels, and what has to come of it.
+//! User actions on the panels, and their expected effects.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::checks::{hold_up, load, looks, take};
 use crate::driver::{Browser, up};
 use crate::served::{Served, wait};
 
-/// All checks, one after the other, and a picture of what is left in the panels.
+/// Runs all checks, one after the other, and takes a picture of the panels at the end.
 pub(crate) fn run(page: &Browser, served: &Served, picture: &Path) -> anyhow::Result<()> {
     load(page, served)?;
     looks(page, served)?;
@@ -33,7 +33,7 @@ pub(crate) fn tune(page: &Browser, _: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A tare is shown with where it holds, until it is cleared.
+/// A tare is shown with its range of validity, until it is cleared.
 pub(crate) fn tare(page: &Browser, served: &Served) -> anyhow::Result<()> {
     served.check_rest()?;
     take(page)?;
@@ -51,10 +51,11 @@ pub(crate) fn tare(page: &Browser, served: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Every quantity draws a line in colour, and the table has a row per frame, the newest joints in
-/// the last.
+/// Every quantity draws a coloured line, and the table has a row per frame, with the newest joints
+/// in the last.
 pub(crate) fn plots_and_export(page: &Browser, served: &Served) -> anyhow::Result<()> {
-    // The last quantities are those of control, and the plot has the last 20 s: they come first.
+    // The last quantities are about control, and the plot covers the last 20 s: so they are tested
+    // first.
     hold_up(page, served)?;
     page.pointer(&[up()])?;
     served.check_rest()?;
@@ -115,7 +116,7 @@ fn record(page: &Browser, served: &Served) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Homes, is given an object of 40 mm, and holds it.
+/// Homes the fingers, places an object of 40 mm, and grasps it.
 fn grip(page: &Browser, served: &Served) -> anyhow::Result<()> {
     page.click("[data-gripper='Home']")?;
     wait("the homing", || Ok(served.gripper.state().max_width > 0.07))?;
@@ -134,7 +135,7 @@ fn grip(page: &Browser, served: &Served) -> anyhow::Result<()> {
     })
 }
 
-/// Cuts the network for 25 ms, while nothing moves.
+/// Cuts the network for 25 ms, while the arm is at rest.
 pub(crate) fn cut(page: &Browser, served: &Served) -> anyhow::Result<()> {
     take(page)?;
     let lost = || served.robot.stats().lost.get();

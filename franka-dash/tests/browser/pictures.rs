@@ -8,8 +8,8 @@ use crate::checks::{drag_until, load, shows_the_robot};
 use crate::driver::{Browser, up};
 use crate::served::{Served, wait};
 
-/// Takes pictures of the page with a hand that is pushed, `NAME-SIZE-SCHEME.png` each, and one of a
-/// window that is high enough for all there is.
+/// Takes pictures of the page while the hand is pushed, `NAME-SIZE-SCHEME.png` each, and a picture
+/// of a window that shows the whole page.
 pub(crate) fn run(
     page: &Browser,
     served: &Served,
@@ -37,12 +37,12 @@ pub(crate) fn run(
     page.picture(&folder.join(format!("{name}-all.png")))
 }
 
-/// Gives the page a size, pixels.
+/// Sets the size of the page, in pixels.
 pub(crate) fn resize(page: &Browser, width: u32, height: u32) -> anyhow::Result<()> {
     resize_scaled(page, width, height, 1.0)
 }
 
-/// [`resize`], with so many pixels of a picture to each of the page.
+/// Like [`resize`], with this number of picture pixels per page pixel.
 pub(crate) fn resize_scaled(
     page: &Browser,
     width: u32,
@@ -56,14 +56,14 @@ pub(crate) fn resize_scaled(
         Ok(page.run("return [innerWidth, innerHeight]")? == json!([width, height]))
     })?;
     page.run("scrollTo(0, 0)")?;
-    // The next picture of the browser has the scene in its new size.
+    // The next frame of the browser draws the scene in its new size.
     page.run(
         "return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))",
     )?;
     Ok(())
 }
 
-/// Commands the browser itself.
+/// Sends a command to the browser itself.
 fn tell(page: &Browser, what: &str, how: Value) -> anyhow::Result<()> {
     page.post("goog/cdp/execute", &json!({"cmd": what, "params": how}))?;
     Ok(())

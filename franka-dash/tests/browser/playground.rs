@@ -14,8 +14,8 @@ use crate::driver::{Browser, down, move_to, point, up};
 use crate::pictures;
 use crate::served::wait;
 
-/// Uses the page that was built in a folder, first with an arm like a real one, then with an ideal
-/// one of the other kind.
+/// Tests the page that was built in a folder, first with a realistic arm, then with an ideal arm of
+/// the other kind.
 pub(crate) fn run(page: &Browser, built: PathBuf, folder: &Path) -> anyhow::Result<()> {
     let runtime = Runtime::new()?;
     let address = serve(&runtime, built)?;
@@ -37,7 +37,8 @@ pub(crate) fn run(page: &Browser, built: PathBuf, folder: &Path) -> anyhow::Resu
     Ok(())
 }
 
-/// The drawn end effector is where the robot measures it: the page computes it from the joints.
+/// The drawn end effector is at the robot's measured position, which the page computes from the
+/// joints.
 fn drawn_where_it_is(page: &Browser) -> anyhow::Result<()> {
     wait("the drawn arm", || {
         let state = page.state()?;
@@ -49,7 +50,7 @@ fn drawn_where_it_is(page: &Browser) -> anyhow::Result<()> {
     })
 }
 
-/// The target jumps, and the arm arrives without being faster than its cap.
+/// The target jumps, and the arm arrives without exceeding its speed cap.
 fn step(page: &Browser, near: f64) -> anyhow::Result<()> {
     wait("the start", || Ok(number(page, "state")? == 0.0))?;
     page.click("#next")?;
@@ -60,13 +61,13 @@ fn step(page: &Browser, near: f64) -> anyhow::Result<()> {
 fn arrive(page: &Browser, near: f64) -> anyhow::Result<()> {
     wait("the arm to arrive", || {
         let speed = number(page, "speed")?;
-        // Measured, with noise.
+        // The measured value contains noise.
         ensure!(speed < 0.3, "{speed} m/s");
         Ok(number(page, "distance")? < near)
     })
 }
 
-/// The middle of the handle is dragged: the target follows, and then the arm.
+/// The centre of the handle is dragged: the target follows, and then the arm.
 fn drag_the_target(page: &Browser) -> anyhow::Result<()> {
     let (x, y) = point(&page.state()?["gizmo"])?;
     page.pointer(&[move_to((x, y)), down()])?;
@@ -75,7 +76,7 @@ fn drag_the_target(page: &Browser) -> anyhow::Result<()> {
     arrive(page, 1e-3)
 }
 
-/// The hand is pressed and dragged: the robot feels it, and gives way until it is let go.
+/// The hand is pressed and dragged: the robot measures it, and yields until it is released.
 fn push(page: &Browser, picture: &Path) -> anyhow::Result<()> {
     press_the_hand(page, (-35.0, 10.0))?;
     wait("the force", || {
@@ -84,13 +85,13 @@ fn push(page: &Browser, picture: &Path) -> anyhow::Result<()> {
     ensure!(page.state()?["pullShown"] == true, "no arrow");
     page.picture(picture)?;
     page.pointer(&[up()])?;
-    // Friction and bias of an arm like a real one are felt as a force of some newtons, too.
+    // Friction and bias of a realistic arm also appear as a force of some newtons.
     wait("the end of the force", || Ok(force(page)? < 7.0))?;
     arrive(page, 1e-3)
 }
 
-/// The hand is pushed too hard: the robot stops itself, and goes on. Then an obstacle holds it
-/// while it is to go elsewhere.
+/// The hand is pushed too hard: the robot stops, and then continues. Then an obstacle blocks it
+/// during a motion.
 fn stop_and_recover(page: &Browser, picture: &Path) -> anyhow::Result<()> {
     press_the_hand(page, (-300.0, 150.0))?;
     wait("the reflex", || Ok(number(page, "state")? == 2.0))?;
@@ -106,18 +107,18 @@ fn stop_and_recover(page: &Browser, picture: &Path) -> anyhow::Result<()> {
     page.click("#reset")
 }
 
-/// Presses on the hand as it is drawn, and drags it by so many pixels.
+/// Presses on the drawn hand, and drags it by this number of pixels.
 fn press_the_hand(page: &Browser, (right, down_by): (f64, f64)) -> anyhow::Result<()> {
     let state = page.state()?;
     let ((x7, y7), (x, y)) = (point(&state["links"][6])?, point(&state["gizmo"])?);
-    // The flange is halfway from joint 7 to the end effector, where the handle is.
+    // The flange is between joint 7 and the handle at the end effector.
     let along = |from: f64, to: f64| from + 0.64 * (to - from);
     let hand = (along(x7, x), along(y7, y));
     page.pointer(&[move_to(hand), down()])?;
     page.pointer(&[move_to((hand.0 + right, hand.1 + down_by))])
 }
 
-/// A number of what the page has of the arm.
+/// Returns a number from the page's state of the arm.
 fn number(page: &Browser, name: &str) -> anyhow::Result<f64> {
     let state = page.state()?;
     state["view"][name]
@@ -125,7 +126,7 @@ fn number(page: &Browser, name: &str) -> anyhow::Result<f64> {
         .with_context(|| name.to_owned())
 }
 
-/// The force that the robot estimates, `[N]`.
+/// Returns the force estimated by the robot, `[N]`.
 fn force(page: &Browser) -> anyhow::Result<f64> {
     let state = page.state()?;
     let force = state["view"]["force"].as_array().context("a force")?;

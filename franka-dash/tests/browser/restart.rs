@@ -1,4 +1,4 @@
-//! A server that ends under an open page, and another one in its place.
+//! A server that ends while a page is open, and another server in its place.
 
 use anyhow::{Context as _, ensure};
 use franka_async::MotionError;
@@ -6,8 +6,8 @@ use franka_async::MotionError;
 use crate::driver::Browser;
 use crate::served::{Served, wait};
 
-/// A stop that is pressed meanwhile is shown as not sent and stops the arm as soon as the page is
-/// connected again, whose buffer then begins anew.
+/// A stop that is pressed meanwhile is shown as not sent. It stops the arm as soon as the page is
+/// connected again, and the page's buffer is then reset.
 pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let (address, server) = served.again("127.0.0.1:0".parse()?)?;
     page.go(&format!("http://{address}/"))?;
@@ -40,6 +40,6 @@ pub(crate) fn run(page: &Browser, served: &Served) -> anyhow::Result<()> {
     ensure!(shown < before, "{shown} frames, {before} before");
     page.go("about:blank")?;
     drop(server);
-    // The errors of the connections that nothing answered.
+    // The errors of the unanswered connections.
     page.forget_console()
 }

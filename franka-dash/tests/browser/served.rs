@@ -22,14 +22,14 @@ pub(crate) struct Served {
     pub(crate) address: SocketAddr,
     pub(crate) robot: Robot,
     pub(crate) gripper: Gripper,
-    /// Where recordings go.
+    /// Folder of the recordings.
     pub(crate) folder: PathBuf,
     pub(crate) running: Arc<Running>,
     runtime: Runtime,
 }
 
 impl Served {
-    /// Serves it; `name` is that of nothing else in this program.
+    /// Serves a robot; `name` must be unique in this program.
     pub(crate) fn new(sim: Sim, name: &str) -> anyhow::Result<Self> {
         let runtime = Runtime::new()?;
         let folder =
@@ -77,7 +77,7 @@ impl Served {
         Ok((address, runtime))
     }
 
-    /// Serves the page of this robot and of another one together.
+    /// Serves the page of this robot and another one together.
     pub(crate) fn beside(&self, other: &Self) -> anyhow::Result<SocketAddr> {
         self.runtime.block_on(async {
             let options = Options::default();
@@ -121,12 +121,12 @@ impl Served {
         Ok(())
     }
 
-    /// What has become of a motion.
+    /// Returns the result of a motion.
     pub(crate) fn outcome(&self, motion: JoinHandle<Outcome>) -> anyhow::Result<Outcome> {
         Ok(self.runtime.block_on(motion)?)
     }
 
-    /// Height of the region that the arm is kept out of, `[m]`.
+    /// Height of the region that the arm must avoid, `[m]`.
     pub(crate) fn region_top(&self) -> f64 {
         2.0 * BLOCK
     }
@@ -135,7 +135,7 @@ impl Served {
         self.robot.pose().translation.z
     }
 
-    /// The arm is where it was, but for what it creeps at rest.
+    /// Checks that the arm has not moved, except for creep at rest.
     pub(crate) fn check_still(&self, before: [f64; 7]) -> anyhow::Result<()> {
         let now = self.robot.state().q;
         let moved = now.iter().zip(before).map(|(q, before)| (q - before).abs());
@@ -143,7 +143,7 @@ impl Served {
         Ok(())
     }
 
-    /// Waits until the arm rests: it has 5 s for that, and then may creep by a millimetre.
+    /// Waits until the arm is at rest, for at most 5 s; then it may creep by a millimetre.
     pub(crate) fn check_rest(&self) -> anyhow::Result<()> {
         let moving = || {
             let state = self.robot.state();
@@ -161,7 +161,7 @@ impl Served {
 impl Drop for Served {
     fn drop(&mut self) {
         self.runtime.block_on(self.robot.shutdown());
-        // What is left of it does no harm.
+        // Remaining files are harmless.
         let _ = std::fs::remove_dir_all(&self.folder);
     }
 }
@@ -180,7 +180,7 @@ pub(crate) fn wait(
     anyhow::bail!("waited for {what} in vain")
 }
 
-/// A region to keep out of, before the arm.
+/// Returns a region to avoid, in front of the arm.
 fn block() -> Obstacle {
     Obstacle::Box {
         pose: Pose::translation(0.45, 0.0, BLOCK),
@@ -191,6 +191,6 @@ fn block() -> Obstacle {
 /// Half of its height, `[m]`.
 const BLOCK: f64 = 0.1;
 
-/// How much later than on a robot the browser may send: pictures are drawn without a graphics card,
-/// beside whatever else the machine does.
+/// Additional time for the browser's messages, compared with a real robot: pictures are drawn
+/// without a graphics card on a busy machine.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(2);

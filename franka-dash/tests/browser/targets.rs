@@ -1,4 +1,4 @@
-//! Targets: shown before anything moves, refused with a reason, and gone to while a button is held.
+//! Targets: shown before a motion, refused with a reason, and reached while a button is held.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use crate::checks::{hold_until, take};
 use crate::driver::{Browser, down, move_to, point, up};
 use crate::served::{Served, wait};
 
-/// Types into the numbers of the target.
+/// Types into the number fields of the target.
 fn aim(page: &Browser, numbers: &[(&str, f64)]) -> anyhow::Result<()> {
     for (name, number) in numbers {
         page.run(&format!(
@@ -19,7 +19,7 @@ fn aim(page: &Browser, numbers: &[(&str, f64)]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Waits for what the page says about the target.
+/// Waits for the page's text about the target.
 fn said(page: &Browser, wanted: &str) -> anyhow::Result<()> {
     let waited = wait(wanted, || {
         let said = page.state()?["said"].clone();
@@ -28,8 +28,8 @@ fn said(page: &Browser, wanted: &str) -> anyhow::Result<()> {
     waited.with_context(|| format!("{:?}", page.state().map(|state| state["said"].clone())))
 }
 
-/// Drags the handle of a target: the page shows what the motion would do, and nothing moves until
-/// a button is held. Then the arm goes where the ghost is.
+/// Drags the handle of a target: the page shows the preview, and the arm does not move until a
+/// button is held. Then the arm moves to the ghost.
 pub(crate) fn preview_and_go(page: &Browser, served: &Served) -> anyhow::Result<()> {
     // A page that was too busy may lose the lease before the click.
     wait("the handle", || {
@@ -40,7 +40,7 @@ pub(crate) fn preview_and_go(page: &Browser, served: &Served) -> anyhow::Result<
     page.run("scrollTo(0, 0)")?;
     let (x, y) = point(&page.state()?["gizmo"])?;
     let before = served.robot.state().q;
-    // The middle of the handle: in the plane of the picture.
+    // The centre of the handle moves in the plane of the picture.
     page.pointer(&[move_to((x, y)), down()])?;
     page.pointer(&[
         move_to((x + 15.0, y + 5.0)),
@@ -71,8 +71,8 @@ pub(crate) fn preview_and_go(page: &Browser, served: &Served) -> anyhow::Result<
     Ok(())
 }
 
-/// A target in a region to keep out of, and one out of reach, are refused with a reason, also by
-/// the server; a way down to the region is slowed down, and its guard lights up.
+/// A target in a forbidden region, or out of reach, is refused with a reason, also by the server. A
+/// path down to the region is slowed down, and its guard is highlighted.
 pub(crate) fn keep_out(page: &Browser, served: &Served) -> anyhow::Result<()> {
     ensure!(page.state()?["regions"] == 1, "the region is not drawn");
     let at = served.robot.pose().translation.vector * 1e3;
@@ -100,7 +100,7 @@ pub(crate) fn keep_out(page: &Browser, served: &Served) -> anyhow::Result<()> {
     wait("no ghost", || Ok(page.state()?["ghost"].is_null()))
 }
 
-/// A slider shows where its joint would go.
+/// A slider shows the target of its joint.
 pub(crate) fn sliders(page: &Browser, served: &Served) -> anyhow::Result<()> {
     let wanted = served.robot.state().q[0] + 0.1;
     page.run(&format!(

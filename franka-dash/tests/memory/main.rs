@@ -1,5 +1,5 @@
-//! A viewer that never reads costs the server no memory, and the other viewers nothing. An
-//! allocator counts what is in use, so this is the only test of its program.
+//! A viewer that never reads does not increase the server's memory, and does not affect other
+//! viewers. An allocator counts the memory in use, so this is the only test of its program.
 
 #[path = "../sockets/viewer.rs"]
 #[allow(dead_code, reason = "other programs use the rest")]
@@ -17,7 +17,7 @@ use tungstenite::client::IntoClientRequest as _;
 
 use viewer::{LONGEST, Served, Viewer};
 
-/// Bytes in use, and the most that there have been since it was set.
+/// Bytes in use, and the largest value since it was reset.
 static IN_USE: AtomicI64 = AtomicI64::new(0);
 static MOST: AtomicI64 = AtomicI64::new(0);
 
@@ -28,12 +28,12 @@ fn count(bytes: i64) {
     MOST.fetch_max(now, Ordering::Relaxed);
 }
 
-// SAFETY: every method hands its arguments to the system's allocator unchanged and returns what
-// that returns; counting is a change of atomics, which neither allocates nor fails.
+// SAFETY: every method passes its arguments to the system's allocator unchanged and returns its
+// result; counting changes atomics, which neither allocates nor fails.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         count(layout.size() as i64);
-        // SAFETY: the caller's obligations are those of the system's allocator.
+        // SAFETY: the caller's obligations are the same as for the system's allocator.
         unsafe { System.alloc(layout) }
     }
 
@@ -47,7 +47,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
-/// A connection that has room for little of what it does not read.
+/// Returns a connection with little space for unread data.
 fn deaf(address: SocketAddr) -> tungstenite::WebSocket<std::net::TcpStream> {
     let socket = Socket::new(Domain::IPV4, Type::STREAM, None).expect("a socket");
     socket.set_recv_buffer_size(4096).expect("an option");
@@ -58,12 +58,12 @@ fn deaf(address: SocketAddr) -> tungstenite::WebSocket<std::net::TcpStream> {
     socket
 }
 
-/// Asks for what is refused at length, and reads no answer, until the server gives it up. Returns
-/// the bytes of the answers to what was sent, about.
+/// Sends requests with long refusals, and reads no answers, until the server disconnects. Returns
+/// the approximate number of bytes of the answers.
 fn flood(address: SocketAddr) -> usize {
     let mut socket = deaf(address);
     let begin = Instant::now();
-    // The answer repeats it.
+    // The answer repeats the request.
     let request = format!(r#"{{"type":"{}"}}"#, "x".repeat(4000));
     let mut sent = 0;
     while socket.send(Message::text(request.as_str())).is_ok() {
@@ -98,7 +98,7 @@ fn a_viewer_that_never_reads_costs_no_memory_and_the_others_nothing() {
             });
         }
         more(Instant::now());
-        // One that asks for nothing as well, and stays until it is given up.
+        // A viewer that also sends nothing, and stays until it is disconnected.
         let silent = deaf(served.address);
         let before = IN_USE.load(Ordering::Relaxed);
         MOST.store(before, Ordering::Relaxed);
@@ -112,12 +112,12 @@ fn a_viewer_that_never_reads_costs_no_memory_and_the_others_nothing() {
     });
 }
 
-/// Viewers that read.
+/// Number of viewers that read.
 const OTHERS: usize = 10;
 
-/// Connections of one that does not.
+/// Number of connections that do not read.
 const FLOODS: usize = 3;
 
-/// Most that may be in use beside what was: replies and frames that wait, the buffers of the
-/// flooding connection on both sides, and what threads of robot and viewers use for a moment.
+/// Largest increase of memory in use: waiting replies and frames, the buffers of the flooding
+/// connection on both sides, and temporary memory of the robot's and viewers' threads.
 const GROWTH_MAX: i64 = 1024 * 1024;

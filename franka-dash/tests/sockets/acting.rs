@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use crate::viewer::{Served, Viewer};
 
-/// A folder that is removed in the end.
+/// A folder that is removed at the end.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -29,7 +29,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // What is left of it does no harm.
+        // Remaining files are harmless.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }
@@ -68,7 +68,7 @@ fn the_gripper_homes_opens_holds_an_object_and_loses_it() {
     act(&mut viewer, grasp);
     viewer.event("Gripper: holds the object");
     viewer.wait_until("gripper", |it| it["is_grasped"] == true);
-    // A stop is for what moves: the object stays held.
+    // A stop ends motions only: the object stays held.
     viewer.send(json!({"type": "stop"}));
     viewer.event("Stopped by a viewer");
     let held = viewer.wait_for("gripper");
@@ -79,7 +79,7 @@ fn the_gripper_homes_opens_holds_an_object_and_loses_it() {
     viewer.event("Gripper: let go");
 }
 
-/// Ends what the fingers of the first viewer do; the second one is another.
+/// Ends the action of the first viewer's fingers; the second viewer is another one.
 type Way = dyn Fn(&mut Viewer, &mut Viewer);
 
 #[test]
@@ -102,12 +102,12 @@ fn fingers_stop_by_a_stop_of_any_viewer_and_with_the_lease() {
         viewer.wait_until("gripper", |it| it["width"] != before["width"]);
         end(&mut viewer, &mut other);
         viewer.event("Gripper: stopped");
-        // The order has gone to the Hand; its states say when it rests.
+        // The command was sent to the Hand; its states show when it is at rest.
         let (mut last, mut now) = (Value::Null, viewer.wait_for("gripper"));
         while now != last {
             (last, now) = (now, viewer.wait_for("gripper"));
         }
-        // It has not found out how wide it opens.
+        // It has not determined its largest opening.
         assert_eq!(
             (&now["acting"], &now["max_width"]),
             (&json!(false), &json!(0.0))
@@ -115,8 +115,7 @@ fn fingers_stop_by_a_stop_of_any_viewer_and_with_the_lease() {
     }
 }
 
-/// How far the end effector has been pushed up from where it was, `[m]`, once it has come to rest
-/// there.
+/// Distance by which the end effector has been pushed up, `[m]`, once it is at rest.
 fn pushed<'a>(served: &'a Served, from: f64) -> impl Fn() -> bool + 'a {
     let last = Cell::new((0, 0.0));
     move || {
@@ -158,7 +157,7 @@ fn gains_change_how_far_a_push_gets_while_the_arm_is_held() {
     viewer.send(json!({"type": "end"}));
     served.with(|robot| robot.let_go());
     served.wait_for_rest();
-    // The next commander begins with the driver's gains.
+    // The next commander starts with the driver's gains.
     viewer.send(json!({"type": "release"}));
     viewer.wait_for_status(|it| it["tuning"]["end_effector"] == 1.0);
 }
@@ -169,7 +168,7 @@ fn the_speed_of_a_hold_changes_while_it_goes_on() {
     let served = Served::equipped(&folder.0);
     let mut viewer = Viewer::connect(served.address);
     viewer.take();
-    // The mean over what the arm does in 300 ms of its time, m/s.
+    // The mean velocity over 300 ms of robot time, m/s.
     let fast = |least: f64, most: f64| {
         let (last, served) = (Cell::new((0, 0.0)), &served);
         move || {
@@ -203,7 +202,7 @@ fn a_recording_is_made_in_the_folder_of_the_server() {
     let mut viewer = Viewer::connect(served.address);
     viewer.take();
     assert_eq!(viewer.wait_for("recording")["recording"], Value::Null);
-    // The second one has no effect.
+    // The second request has no effect.
     viewer.send(json!({"type": "record", "on": true}));
     viewer.send(json!({"type": "record", "on": true}));
     let under_way = viewer.wait_until("recording", |it| {

@@ -1,4 +1,4 @@
-//! Which requests the server answers.
+//! The requests that the server answers.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream};
@@ -14,12 +14,12 @@ const UPGRADE: &str = "Connection: Upgrade\r\nUpgrade: websocket\r\n\
 
 const SECRET: &str = "correct-horse-battery";
 
-/// The status of the answer to a request for a socket with these lines.
+/// Returns the status of the answer to a request for a socket with these lines.
 fn status(address: SocketAddr, lines: &str) -> u16 {
     status_of(address, "/ws", lines)
 }
 
-/// The same at another path.
+/// Like [`status`], at another path.
 fn status_of(address: SocketAddr, path: &str, lines: &str) -> u16 {
     let mut stream = TcpStream::connect(address).expect("a connection");
     let request = format!("GET {path} HTTP/1.1\r\n{UPGRADE}{lines}\r\n\r\n");
@@ -74,13 +74,13 @@ fn a_token_is_asked_for() {
     ] {
         assert_eq!(status(address, &lines), wanted, "{lines}");
     }
-    // A page is no secret, and says in words what is missing.
+    // A page is public, and explains the missing token.
     assert_eq!(status_of(address, "/", "Host: 192.168.0.7"), 200);
     let bearer = format!("Host: localhost\r\nAuthorization: Bearer {SECRET}");
     assert_eq!(status_of(address, "/access", &bearer), 204);
 }
 
-/// The header is written by whoever asks: it does not say where that is.
+/// The client writes the header, so it is not evidence of the client's location.
 #[test]
 fn a_peer_elsewhere_that_says_localhost_needs_a_token() {
     let far = |peer: &str, options: Options| {

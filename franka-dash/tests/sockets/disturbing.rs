@@ -1,4 +1,4 @@
-//! What viewers do to a simulated robot.
+//! Disturbances of a simulated robot by viewers.
 
 use std::time::{Duration, Instant};
 
@@ -81,7 +81,7 @@ fn virtual_time_is_paused_and_goes_on_with_the_robot_still_connected() {
     disturb(&mut viewer, json!({"kind": "speed", "speed": 0}));
     viewer.wait_for_status(|it| it["simulation"]["speed"] == 0.0);
     let (begun, before) = (Instant::now(), time());
-    // For longer than what clients take for a lost connection.
+    // Longer than the time after which clients consider the connection lost.
     std::thread::sleep(Duration::from_millis(1500));
     let passed = time() - before;
     assert!(

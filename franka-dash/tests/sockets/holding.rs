@@ -1,4 +1,4 @@
-//! A hold over a socket: it moves the arm, and what ends it has the arm rest.
+//! A hold over a socket: it moves the arm, and the arm stops at its end.
 
 use std::time::{Duration, Instant};
 
@@ -6,7 +6,7 @@ use serde_json::json;
 
 use crate::viewer::{Served, Viewer};
 
-/// Ends a hold of a viewer; the number is that of the next message of the hold.
+/// Ends a hold of a viewer; the number is that of the hold's next message.
 type Way = dyn Fn(&mut Viewer, u32);
 
 fn up() -> serde_json::Value {
@@ -23,7 +23,7 @@ fn the_arm_moves_while_held_and_rests_when_the_hold_is_lost() {
         &|viewer, _| viewer.send(json!({"type": "end"})),
         &|viewer, next| viewer.send(json!({"type": "hold", "seq": next + 1})),
         &|viewer, _| viewer.send(json!({"type": "stop"})),
-        // Silence, while frames are read on.
+        // Silence, while frames are still read.
         &|viewer, _| {
             while viewer.holding {
                 viewer.wait_for("frame");
@@ -55,7 +55,7 @@ fn the_arm_rests_when_the_page_of_its_commander_has_gone() {
     viewer.hold_until(&joint, || served.robot.state().q[0] > start + 0.01);
     drop(viewer);
     served.wait_for_rest();
-    // The lease is free for the next one.
+    // The lease is free for the next viewer.
     Viewer::connect(served.address).take();
 }
 

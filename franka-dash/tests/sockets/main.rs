@@ -1,5 +1,5 @@
-//! The server over real sockets, before a simulated robot: who gets in, who may move it, and what
-//! ends a motion.
+//! The server over real sockets, with a simulated robot: admission, commands, and the ends of
+//! motions.
 
 mod acting;
 mod admission;

@@ -1,4 +1,4 @@
-//! Viewers that mean harm, beside one that moves the arm.
+//! Malicious viewers, together with a viewer that moves the arm.
 
 use std::io::{Read as _, Write as _};
 use std::net::{Shutdown, SocketAddr, TcpStream};
@@ -14,7 +14,7 @@ use serde_json::json;
 
 use crate::viewer::{Served, Viewer};
 
-/// What no viewer without the lease may have done, and what is no request at all.
+/// Requests that need the lease, and invalid requests.
 const TEXTS: [&str; 20] = [
     r#"{"type":"take","name":"Mallory"}"#,
     r#"{"type":"release"}"#,
@@ -38,8 +38,8 @@ const TEXTS: [&str; 20] = [
     "\u{0}\u{7f}",
 ];
 
-/// A frame of a WebSocket with this first byte, masked unless it is `bare`. The length may be a
-/// lie.
+/// Returns a WebSocket frame with this first byte, masked unless it is `bare`. The length may be
+/// wrong.
 fn frame(first: u8, length: u64, content: &[u8], bare: bool) -> Vec<u8> {
     let mask = if bare { 0 } else { 0x80 };
     let mut frame = vec![first];
@@ -55,14 +55,14 @@ fn frame(first: u8, length: u64, content: &[u8], bare: bool) -> Vec<u8> {
         }
     }
     if !bare {
-        // A mask of zeros leaves the content as it is.
+        // A zero mask leaves the content unchanged.
         frame.extend([0; 4]);
     }
     frame.extend(content);
     frame
 }
 
-/// What one of them does, until it gives up or the server closes the connection.
+/// Performs an attack, until it ends or the server closes the connection.
 fn attack(address: SocketAddr, random: &mut SmallRng) -> std::io::Result<()> {
     let mut stream = TcpStream::connect(address)?;
     stream.set_read_timeout(Some(Duration::from_millis(20)))?;
@@ -115,14 +115,14 @@ fn attack(address: SocketAddr, random: &mut SmallRng) -> std::io::Result<()> {
     }
 }
 
-/// Only what every viewer may do is left out: to stop the arm.
+/// The only excluded request is the one allowed for every viewer: to stop the arm.
 #[test]
 fn a_hundred_viewers_that_mean_harm_change_nothing_for_one_that_jogs() {
     let seed: u64 = rand::rng().random();
     println!("seed {seed}");
     let served = Served::new(|running| {
         let options = Options::default().allow_motion().simulated(running);
-        // The machine is busy by all of them: what counts here is that nothing else ends the hold.
+        // The attackers keep the machine busy: the test checks that nothing else ends the hold.
         options.patience(Duration::from_secs(30))
     });
     let mut commander = Viewer::connect(served.address);
@@ -156,12 +156,12 @@ fn a_hundred_viewers_that_mean_harm_change_nothing_for_one_that_jogs() {
     let state = served.robot.state();
     assert_eq!(state.robot_mode, RobotMode::Idle);
     assert_eq!(served.robot.stats().lost.get(), 0);
-    // And it goes on.
+    // The motion continues.
     let up = json!({"kind": "joint", "joint": 1, "up": false});
     commander.hold_until(&up, || served.robot.state().q[0] < state.q[0] - 0.005);
 }
 
 const HARMFUL: usize = 100;
 
-/// Connections of each.
+/// Number of connections of each attacker.
 const ATTACKS: usize = 3;

@@ -1,4 +1,4 @@
-//! What a motion would do is said before it does it, and then it does that.
+//! The preview of a motion, which the motion then follows.
 
 use franka_async::Pose;
 use franka_async::goal::target_range;
@@ -15,7 +15,7 @@ fn motion(pose: &Pose) -> Value {
     json!({"kind": "pose", "position": position, "orientation": orientation})
 }
 
-/// The answer to a question.
+/// Returns the answer to a question.
 fn preview(viewer: &mut Viewer, number: u32, motion: &Value) -> Value {
     viewer.send(json!({"type": "preview", "number": number, "motion": motion, "speed": 0.2}));
     let answer = viewer.wait_for("preview");
@@ -50,7 +50,7 @@ fn a_target_is_previewed_and_then_gone_to() {
     assert!(!served.robot.state().motion_running());
     let off = || (served.robot.pose().translation.vector - there.translation.vector).norm();
     viewer.hold_until(&motion(&there), || off() < 4e-3);
-    // The others see where it goes, too.
+    // The other viewers see the plan too.
     while other.wait_for("heading")["way"].is_null() {}
     viewer.send(json!({"type": "end"}));
     served.wait_for_rest();

@@ -56,7 +56,7 @@ fn each_robot_has_a_page_and_a_commander_of_its_own() {
     };
     assert_eq!(get("robots.json"), "[\"left\",\"right\"]");
     assert!(get("").contains("id=\"overview\""));
-    // The first of these is redirected to the second, whose files are beside it.
+    // The first path is redirected to the second, whose files are next to it.
     for path in ["left", "left/", "right/"] {
         assert!(get(path).contains("id=\"scene\""), "{path}");
     }
@@ -74,7 +74,7 @@ fn each_robot_has_a_page_and_a_commander_of_its_own() {
     );
 }
 
-/// A page there would look for its files in the folder above.
+/// A page at this path would look for its files in the parent folder.
 #[test]
 fn a_page_nested_under_a_path_without_a_slash_says_so() {
     let runtime = Runtime::new().expect("a runtime");

@@ -1,4 +1,4 @@
-//! The wrench without what the robot shows of an untouched arm, over a socket.
+//! The wrench without its offset for an untouched arm, over a socket.
 
 use franka_async::nalgebra::Vector3;
 use franka_sim::Touch;
@@ -10,7 +10,7 @@ fn tare(viewer: &mut Viewer, on: bool) {
     viewer.send(json!({"type": "tare", "on": on}));
 }
 
-/// Force along z of the newest frame, `[N]`.
+/// Returns the force along z of the newest frame, `[N]`.
 fn force_z(viewer: &mut Viewer) -> f64 {
     viewer.wait_for("frame");
     let bytes = viewer.frame[152..156].try_into().expect("four bytes");
@@ -25,7 +25,7 @@ fn a_tare_is_shown_to_every_viewer_until_it_is_cleared() {
     tare(&mut other, true);
     assert!(other.refusal().contains("take the lease"));
     viewer.take();
-    // A weight that nobody has declared.
+    // An undeclared weight.
     served.with(|robot| robot.touch(Touch::force(Vector3::new(0.0, 0.0, -5.0))));
     while force_z(&mut viewer) < 2.0 {}
     served.wait_for_rest();
@@ -47,7 +47,7 @@ fn a_tare_is_shown_to_every_viewer_until_it_is_cleared() {
     }
     assert_eq!(taken["near"], 0.035);
     assert!(!state.motion_running());
-    // A viewer that comes later has it, also when the commander has gone.
+    // A later viewer receives it, even after the commander has disconnected.
     viewer.send(json!({"type": "release"}));
     let mut late = Viewer::connect(served.address);
     late.take();
@@ -62,10 +62,10 @@ fn a_newcomer_is_told_the_tare_and_a_cleared_one_does_not_come_back() {
     viewer.take();
     tare(&mut viewer, true);
     viewer.event("The wrench is tared");
-    // The socket says it before anything happens.
+    // The socket sends it as its first message.
     let mut late = Viewer::greeted(served.address, "ws");
     assert_ne!(late.wait_for("tare")["tare"], Value::Null);
-    // The second is under way when it is taken back.
+    // The second tare is cancelled while it is running.
     tare(&mut viewer, true);
     tare(&mut viewer, false);
     late.wait_until("tare", |it| it["tare"] == Value::Null);
@@ -97,7 +97,7 @@ fn an_arm_that_moves_is_not_tared() {
     let start = served.height();
     let up = json!({"kind": "translate", "direction": [0, 0, 1], "axes": "base"});
     viewer.hold_until(&up, || served.height() > start + 0.005);
-    // Refused at once, while it goes up or brakes.
+    // Refused at once while the arm moves up or brakes.
     tare(&mut viewer, true);
     viewer.event("Tare: ");
     viewer.send(json!({"type": "end"}));

@@ -1,4 +1,4 @@
-//! A server before a simulated robot, and a viewer of it that is no browser.
+//! A server with a simulated robot, and a viewer that is not a browser.
 
 use std::net::{SocketAddr, TcpStream};
 use std::path::Path;
@@ -17,7 +17,7 @@ use tokio::runtime::Runtime;
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, WebSocket};
 
-/// A server, the robot that it shows, and the simulator of that.
+/// A server, its robot, and the robot's simulator.
 pub(crate) struct Served {
     pub(crate) address: SocketAddr,
     pub(crate) robot: Robot,
@@ -27,19 +27,19 @@ pub(crate) struct Served {
 }
 
 impl Served {
-    /// A server with these options, which may know the simulator.
+    /// Starts a server with these options, which may use the simulator.
     pub(crate) fn new(options: impl FnOnce(&Arc<Running>) -> Options) -> Self {
         Self::start(Sim::fr3(), async |running| options(running))
     }
 
-    /// A server to which all requests come from this address.
+    /// Starts a server to which all requests come from this address.
     pub(crate) fn seen_from(peer: SocketAddr, options: Options) -> Self {
         let peer = Extension(ConnectInfo(peer));
         Self::start_as(Sim::fr3(), async |_| options, |page| page.layer(peer))
     }
 
-    /// A server of an ideal arm with a Hand that may do all there is, and records to `folder`. A
-    /// hold outlasts a busy machine.
+    /// Starts a server with all permissions for an ideal arm with a Hand, which records to
+    /// `folder`. A hold survives a busy machine.
     pub(crate) fn equipped(folder: &Path) -> Self {
         let sim = Sim::fr3().ideal().tool(Tool::hand());
         Self::start(sim.hand(Fingers::new(), 0), async |running| {
@@ -84,7 +84,7 @@ impl Served {
         }
     }
 
-    /// Does something to the simulated robot.
+    /// Runs a function with the simulated robot.
     pub(crate) fn with<R: Send + 'static>(
         &self,
         job: impl FnOnce(&mut franka_sim::Robot) -> R + Send + 'static,
@@ -104,13 +104,13 @@ impl Served {
         set.expect("the robot takes it");
     }
 
-    /// Ends the connection, and waits for what is written then.
+    /// Ends the connection, and waits until the recordings are written.
     pub(crate) fn shut_down(&self) {
         self.runtime.block_on(self.robot.shutdown());
         self.runtime.block_on(self.options.recordings_ended());
     }
 
-    /// A server that may do all to a robot in virtual time.
+    /// Starts a server with all permissions for a robot in virtual time.
     pub(crate) fn in_virtual_time() -> Self {
         let sim = Sim::fr3().virtual_time(Duration::from_millis(1));
         Self::start(sim, async |running| {
@@ -126,7 +126,7 @@ impl Served {
         self.robot.pose().translation.z
     }
 
-    /// Waits until the arm rests, which it has to within a few seconds.
+    /// Waits until the arm is at rest, for at most a few seconds.
     pub(crate) fn wait_for_rest(&self) {
         let begin = Instant::now();
         let moving = |dq: &f64| dq.abs() > 2e-3;
@@ -152,13 +152,13 @@ pub(crate) struct Viewer {
     /// The newest frame.
     pub(crate) frame: Vec<u8>,
     pub(crate) holding: bool,
-    /// Requests that were refused.
+    /// Number of refused requests.
     pub(crate) refused: usize,
     /// The newest status.
     status: Value,
     pub(crate) commander: Option<u64>,
     pub(crate) number: u64,
-    /// What it was told first.
+    /// The first message.
     pub(crate) hello: Value,
 }
 
@@ -170,13 +170,13 @@ impl Viewer {
     /// Connects to the socket at this path.
     pub(crate) fn connect_to(address: SocketAddr, path: &str) -> Self {
         let mut viewer = Self::greeted(address, path);
-        // The first frame, so that a round trip has been measured.
+        // Waits for the first frame, so that a round trip has been measured.
         viewer.wait_for("frame");
         viewer.wait_for("frame");
         viewer
     }
 
-    /// Connects, and reads the greeting and nothing else.
+    /// Connects, and reads only the greeting.
     pub(crate) fn greeted(address: SocketAddr, path: &str) -> Self {
         let stream = TcpStream::connect(address).expect("a connection");
         let timeout = Some(Duration::from_secs(10));
@@ -208,7 +208,8 @@ impl Viewer {
         sent.expect("the server reads");
     }
 
-    /// The next message, acknowledged if it is a frame; `None` when the server has closed.
+    /// Returns the next message, acknowledged if it is a frame; `None` when the server has closed
+    /// the connection.
     pub(crate) fn read(&mut self) -> Option<Value> {
         match self.socket.read() {
             Ok(Message::Binary(frame)) => {
@@ -233,12 +234,12 @@ impl Viewer {
         }
     }
 
-    /// The next message, without an acknowledgement.
+    /// Returns the next message, without an acknowledgement.
     pub(crate) fn read_only(&mut self) -> Message {
         self.socket.read().expect("a message")
     }
 
-    /// Reads on to a message of this type.
+    /// Reads until a message of this type.
     pub(crate) fn wait_for(&mut self, kind: &str) -> Value {
         loop {
             let message = self.read().expect("the server has closed");
@@ -260,7 +261,7 @@ impl Viewer {
         }
     }
 
-    /// Reads on until something has happened whose line has this text.
+    /// Reads until an event whose line contains this text.
     pub(crate) fn event(&mut self, text: &str) {
         let begin = Instant::now();
         loop {
@@ -275,7 +276,7 @@ impl Viewer {
         }
     }
 
-    /// Reads messages of this type until one is as wanted.
+    /// Reads messages of this type until one is `wanted`.
     pub(crate) fn wait_until(&mut self, kind: &str, wanted: impl Fn(&Value) -> bool) -> Value {
         let begin = Instant::now();
         loop {
@@ -287,7 +288,7 @@ impl Viewer {
         }
     }
 
-    /// Reads on until the newest status is as wanted.
+    /// Reads until the newest status is `wanted`.
     pub(crate) fn wait_for_status(&mut self, wanted: impl Fn(&Value) -> bool) {
         let begin = Instant::now();
         while !wanted(&self.status) {
@@ -296,8 +297,8 @@ impl Viewer {
         }
     }
 
-    /// Begins a hold, as often as the machine is too busy for it, and goes on until `reached`.
-    /// Returns the number of the next message of the hold, which goes on.
+    /// Begins a hold, repeatedly if the machine is too busy for it, and continues until `reached`.
+    /// Returns the number of the next message of the hold, which is still active.
     pub(crate) fn hold_until(&mut self, motion: &Value, reached: impl Fn() -> bool) -> u32 {
         let begin = Instant::now();
         loop {
@@ -309,7 +310,7 @@ impl Viewer {
         }
     }
 
-    /// Goes on with a hold from this message until `reached`; `None` if it has ended.
+    /// Continues a hold from this message until `reached`; `None` if it has ended.
     pub(crate) fn go_on_until(&mut self, next: u32, reached: impl Fn() -> bool) -> Option<u32> {
         let begin = Instant::now();
         let mut last = begin;
@@ -334,5 +335,5 @@ impl Viewer {
     }
 }
 
-/// For what a busy machine takes long for.
+/// Time limit for slow steps on a busy machine.
 pub(crate) const LONGEST: Duration = Duration::from_secs(60);

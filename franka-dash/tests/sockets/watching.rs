@@ -1,4 +1,4 @@
-//! What viewers see.
+//! The data that viewers see.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -25,7 +25,7 @@ fn frames_show_the_robot() {
         let shown = number(&viewer.frame, 32 + 4 * joint);
         assert!((shown - q).abs() < 1e-3, "joint {joint}: {shown}, {q}");
     }
-    // The end effector of the last pose but those of the reference.
+    // The end effector is the last pose before the poses of the reference.
     let height = number(&viewer.frame, 196 + 8 * 28 + 8);
     assert!((height - served.height()).abs() < 1e-3);
 }
@@ -71,7 +71,7 @@ fn a_simulated_robot_of_another_program_is_shown_and_pushed() {
     assert!(viewer.refusal().contains("view-only"));
     let push = json!({"kind": "push", "link": 7, "offset": [0, 0, 0], "force": [0, 0, -30]});
     let begin = Instant::now();
-    // The robot's estimate is the force that it exerts: upwards.
+    // The robot estimates the force that it exerts: upwards.
     while number(&viewer.frame, 144 + 8) < 10.0 {
         viewer.send(json!({"type": "disturb", "disturbance": push}));
         viewer.wait_for("frame");

@@ -1,4 +1,4 @@
-//! A hold that is lost in every way.
+//! Tests of every way in which a hold is lost.
 
 use super::*;
 
@@ -13,12 +13,12 @@ fn a_hold_goes_on_while_messages_come_in_time() {
 
 #[test]
 fn a_hold_ends_by_silence_within_the_deadman() {
-    // A hidden or frozen page, a cable that is cut: what all of them look like from here.
+    // A hidden or frozen page, or a cut cable: all look the same to the server.
     for messages in [0, 1, 7] {
         let mut server = Server::holding(messages);
         assert_eq!(server.pass(151), Some(Lost::Silent));
         server.assert_at_rest();
-        // Shown until the next one.
+        // Shown until the next hold.
         assert!(server.authority.status().expired);
         server.begin(COMMANDER);
         assert!(!server.authority.status().expired);
@@ -30,7 +30,7 @@ fn a_hold_ends_by_silence_within_the_deadman() {
 #[test]
 fn a_message_that_comes_too_late_does_not_save_the_hold() {
     let mut server = Server::holding(3);
-    // The server itself was held up, and has not looked meanwhile.
+    // The server itself was delayed, and has not checked meanwhile.
     server.now += Duration::from_millis(151);
     let step = server.ask(COMMANDER, Request::Hold { seq: 4 });
     assert_eq!(step.ended, Some(Lost::Silent));
@@ -76,7 +76,7 @@ fn a_hold_ends_when_it_is_let_go_released_replaced_or_stopped() {
         assert_eq!(server.ask(viewer, request).ended, Some(lost));
         server.assert_at_rest();
     }
-    // What does not end it: taking a lease that one has.
+    // Taking a lease again does not end the hold.
     let mut server = Server::holding(3);
     assert_eq!(
         server.ask(COMMANDER, Request::Take { name }),

@@ -1,4 +1,4 @@
-//! An authority and its viewers, without a clock and sockets; any requests at all.
+//! An authority and its viewers, without a clock and sockets, with arbitrary requests.
 
 mod holds;
 mod refusals;
@@ -17,10 +17,10 @@ const UP: Motion = Motion::Translate {
     axes: Axes::Base,
 };
 
-/// An authority, and the time that it is told.
+/// An authority, and its simulated time.
 struct Server {
     authority: Authority,
-    /// Of the robot.
+    /// Lease of the robot.
     lease: Lease,
     /// Time zero.
     start: Instant,
@@ -53,7 +53,8 @@ impl Server {
         self.authority.handle(self.now, viewer, round_trip, request)
     }
 
-    /// Time passes, in the steps in which the server looks. Returns what was lost meanwhile.
+    /// Advances the time, in the steps of the server's checks. Returns the reason if a hold was
+    /// lost.
     fn pass(&mut self, milliseconds: u64) -> Option<Lost> {
         let mut lost = None;
         for _ in 0..milliseconds {
@@ -72,7 +73,7 @@ impl Server {
         self.ask(viewer, begin(0.05))
     }
 
-    /// A server whose commander holds, and has sent `messages` in time.
+    /// Returns a server whose commander holds, and has sent `messages` in time.
     fn holding(messages: u32) -> Self {
         let mut server = Self::new();
         assert_eq!(server.take(COMMANDER), Step::default());
@@ -86,7 +87,7 @@ impl Server {
         server
     }
 
-    /// Asserts that nothing moves, and nothing but another `Begin` changes that.
+    /// Asserts that the arm does not move, and that only another `Begin` changes that.
     fn assert_at_rest(&mut self) {
         assert!(!self.authority.status().holding);
         for seq in 0..20 {
@@ -100,8 +101,8 @@ fn begin(speed: f64) -> Request {
     Request::Begin { motion: UP, speed }
 }
 
-/// Whatever viewers send, and whenever: the arm moves only for the holder of the lease, and never
-/// for longer than the deadman after the last message that counted.
+/// For any messages at any times, the arm moves only for the holder of the lease, and at most until
+/// the deadman expires after the last valid message.
 #[test]
 fn nothing_moves_without_the_messages_of_its_commander() {
     let seed: u64 = rand::rng().random();

@@ -1,4 +1,4 @@
-//! Who may command, and what is refused.
+//! Commanders and refused requests.
 
 use franka_async::connection::lease::Taken;
 
@@ -59,7 +59,7 @@ fn lease_of_another_service_keeps_viewers_from_commanding() {
 #[test]
 fn lease_that_another_service_finds_lost_ends_the_hold() {
     let mut server = Server::holding(3);
-    // The other one looks later than this server has, and takes the lease.
+    // The other service checks later than this server, and takes the lease.
     let later = server.start + server.now + LEASE + Duration::from_millis(1);
     let other = server.lease.take("a joystick", LEASE, later);
     let other = other.expect("it is free");
@@ -127,7 +127,7 @@ fn a_view_only_server_takes_stops_and_nothing_else() {
     assert_eq!(server.begin(COMMANDER).refusal, Some(Refusal::NoLease));
     let stopped = server.ask(OTHER, Request::Stop {});
     assert_eq!(stopped, effect(Effect::Stop));
-    // A simulated robot that another program moves: it can be disturbed, but not moved.
+    // A simulated robot moved by another program: it can be disturbed, but not moved.
     let mut server = Server::with(Permissions {
         disturbances: true,
         ..Permissions::default()
@@ -169,7 +169,7 @@ fn gripper_and_recorder_are_there_or_refused() {
             },
             [Some(Refusal::NoGripper), Some(Refusal::NoRecordings)],
         ),
-        // A page that is only watched may record.
+        // A view-only page may record.
         (
             Permissions {
                 gripper: true,
