@@ -1,4 +1,4 @@
-//! Which robot, connecting to it, and whether it may be moved.
+//! Selection of the robot, connection, and permission to move it.
 
 use std::fmt;
 use std::net::SocketAddr;
@@ -16,7 +16,7 @@ use crate::ending::{Ending, Failure};
 use crate::output::say;
 use crate::robots_file::{Realtime, RobotsFile, check_name};
 
-/// What a [`ConnectError`] of any device shows.
+/// Classifies a [`ConnectError`] of any device.
 macro_rules! seen {
     ($error:expr) => {
         match &$error {
@@ -48,10 +48,10 @@ pub(crate) struct Which {
     pub(crate) robot: Option<String>,
 }
 
-/// Where a robot is.
+/// The address of a robot.
 #[derive(Clone, Debug)]
 pub(crate) struct Place {
-    /// As the user has it.
+    /// The user's text.
     name: String,
     /// The address of a robot that has a name.
     listed: Option<String>,
@@ -67,12 +67,12 @@ impl fmt::Display for Place {
 }
 
 impl Which {
-    /// The robot called `robot`, or the one that counts without a name.
+    /// Selects the robot named `robot`, or the default robot.
     pub(crate) fn of(robot: Option<String>) -> Self {
         Self { robot }
     }
 
-    /// Where the robot is.
+    /// Returns the place of the robot.
     pub(crate) fn place(&self) -> anyhow::Result<Place> {
         let variable = || {
             std::env::var("FRANKA_ROBOT")
@@ -84,7 +84,7 @@ impl Which {
             let parsed = text.parse::<Endpoint>();
             parsed.map_err(|error| Failure::usage(error.to_string()))
         };
-        // A port in it is that of the device that is asked for.
+        // A port in the address belongs to the requested device.
         let unlisted = |name: String| {
             let address = endpoint(&name)?;
             Ok(Place {
@@ -95,7 +95,7 @@ impl Which {
                 realtime: None,
             })
         };
-        // In a container or a service there may be no directory for the file.
+        // A container or a service may have no directory for the file.
         if let Some(address) = named.clone().filter(|name| check_name(name).is_err()) {
             return unlisted(address);
         }
@@ -129,7 +129,7 @@ impl Which {
         })
     }
 
-    /// Connects for commands that move nothing, which need no real-time scheduling and bear any
+    /// Connects for commands without motion, which need no real-time scheduling and accept any
     /// geometry.
     pub(crate) async fn connect(&self) -> anyhow::Result<(Robot, Place)> {
         let place = self.place()?;
@@ -143,7 +143,8 @@ impl Which {
 }
 
 impl Place {
-    /// What a device of this robot is called: the robot's name, if it has one with this address.
+    /// Returns the name of a device of this robot: the robot's name, if it has one with this
+    /// address.
     fn with(&self, address: Option<impl fmt::Display>) -> String {
         match address {
             Some(address) => format!("{} ({address})", self.name),
@@ -151,7 +152,7 @@ impl Place {
         }
     }
 
-    /// As the user has it.
+    /// Returns the user's text.
     pub(crate) fn name(&self) -> &str {
         &self.name
     }
@@ -161,7 +162,8 @@ impl Place {
         self.listed.is_some()
     }
 
-    /// Connects to the robot. `realtime` is what was asked for; otherwise the file counts.
+    /// Connects to the robot. `realtime` is the requested option; without it, the file's setting
+    /// counts.
     pub(crate) async fn connect(
         &self,
         realtime: Option<Realtime>,
@@ -171,7 +173,7 @@ impl Place {
         robot.map_err(|(_, failure)| failure.into())
     }
 
-    /// [`Self::connect`], with what kept the connection from being made.
+    /// Like [`Self::connect`], with the reason why the connection failed.
     pub(crate) async fn attempt(
         &self,
         realtime: Option<Realtime>,
@@ -252,7 +254,7 @@ impl Place {
     }
 }
 
-/// What kept a connection from being made, whatever the device.
+/// The reason why a connection failed, for any device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seen {
     Refused,
@@ -264,7 +266,8 @@ pub(crate) enum Seen {
     Other,
 }
 
-/// Checks that the robot would take a motion: that it rests, ready, and nobody else moves it.
+/// Checks that the robot would accept a motion: it is at rest and ready, and no other program moves
+/// it.
 pub(crate) fn check_ready(state: &RobotState, place: &Place) -> Result<(), Failure> {
     let refused =
         |ending, message: String, advice: &str| Err(Failure::new(ending, message).advice(advice));
@@ -305,7 +308,7 @@ pub(crate) fn check_ready(state: &RobotState, place: &Place) -> Result<(), Failu
     }
 }
 
-/// What people call a kind of robot.
+/// Returns the common name of a kind of robot.
 pub(crate) fn kind_name(kind: RobotKind) -> &'static str {
     match kind {
         RobotKind::Fr3 => "FR3",
@@ -314,10 +317,10 @@ pub(crate) fn kind_name(kind: RobotKind) -> &'static str {
     }
 }
 
-/// Where a Hand is beside its robot.
+/// Port of a Hand at the robot's address.
 const HAND: u16 = 1338;
 
-/// The first address of an endpoint, with the usual port of the device unless it has one.
+/// Returns the first address of an endpoint, with the device's usual port unless it has one.
 pub(crate) async fn resolve(endpoint: &Endpoint, port: u16) -> anyhow::Result<SocketAddr> {
     let text = endpoint.to_string();
     let has_port = match text.rsplit_once(':') {

@@ -1,4 +1,4 @@
-//! How the program ends: exit codes, and errors that say what to do next.
+//! The end of the program: exit codes, and errors with the next step.
 
 use std::fmt;
 use std::io;
@@ -7,29 +7,29 @@ use std::process::ExitCode;
 use franka_async::error::{CommandError, ConnectError, Party};
 use franka_async::{Error, MotionError};
 
-/// How a command ended. The numbers are the exit codes.
+/// The result of a command. The numbers are the exit codes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum Ending {
-    /// It did what was asked.
+    /// The command succeeded.
     Done = 0,
-    /// The robot refused it, or a motion ended short of its goal.
+    /// The robot refused the command, or a motion ended before its goal.
     Failed = 1,
-    /// The arguments make no sense. The same code as that of the parser of arguments.
+    /// The arguments are invalid. The same code as in the argument parser.
     Usage = 2,
-    /// There is no connection to the robot, or it was lost.
+    /// No connection to the robot, or a lost connection.
     NoRobot = 3,
-    /// Somebody else has the robot.
+    /// Another client uses the robot.
     Taken = 4,
-    /// Nobody agreed to the motion.
+    /// The motion was not confirmed.
     NotConfirmed = 5,
     /// Local problem: rights, files, ports.
     Host = 6,
     /// The robot needs a person: at the user stop, or in Desk.
     Person = 7,
-    /// Ctrl-C, as shells have it.
+    /// Ctrl-C, with the code of shells.
     Interrupted = 130,
-    /// SIGTERM, as shells have it.
+    /// SIGTERM, with the code of shells.
     Terminated = 143,
 }
 
@@ -52,7 +52,7 @@ impl Ending {
         ExitCode::from(self as u8)
     }
 
-    /// Its name in JSON.
+    /// Returns its name in JSON.
     pub(crate) fn kind(self) -> &'static str {
         match self {
             Self::Done => "done",
@@ -68,7 +68,7 @@ impl Ending {
         }
     }
 
-    /// How an error ends the program.
+    /// Returns the ending for an error.
     pub(crate) fn of(error: &anyhow::Error) -> Self {
         if let Some(failure) = error.downcast_ref::<Failure>() {
             return failure.ending;
@@ -87,7 +87,8 @@ impl Ending {
     }
 }
 
-/// Who can act on an error of the driver, and the name of its row in the book's chapter of errors.
+/// Returns the party that can act on an error of the driver, and the name of its row in the book's
+/// chapter of errors.
 fn of_driver(error: &anyhow::Error) -> Option<(Party, &'static str)> {
     macro_rules! first_of {
         ($($kind:ty),*) => {
@@ -100,7 +101,7 @@ fn of_driver(error: &anyhow::Error) -> Option<(Party, &'static str)> {
     None
 }
 
-/// As [`of_driver`], also of errors that a command has put into its own words.
+/// Like [`of_driver`], also for errors that a command has rephrased.
 pub(crate) fn origin_of(error: &anyhow::Error) -> Option<(Party, &'static str)> {
     match error.downcast_ref::<Failure>() {
         Some(failure) => failure.origin,
@@ -108,13 +109,14 @@ pub(crate) fn origin_of(error: &anyhow::Error) -> Option<(Party, &'static str)> 
     }
 }
 
-/// What went wrong, how that ends the program, and what to do next.
+/// A failure with its ending, and the next step.
 #[derive(Debug)]
 pub(crate) struct Failure {
     ending: Ending,
     message: String,
     pub(crate) advice: Option<String>,
-    /// Who can act on an error of the driver, and its row in the book's chapter of errors.
+    /// The party that can act on an error of the driver, and its row in the book's chapter of
+    /// errors.
     origin: Option<(Party, &'static str)>,
 }
 
@@ -132,7 +134,7 @@ impl Failure {
         Self::new(Ending::Usage, message)
     }
 
-    /// An option that this program was built without.
+    /// Creates the failure for an option that this program was built without.
     #[cfg(not(feature = "full"))]
     pub(crate) fn without(option: &str, feature: &str) -> Self {
         let message = format!("{option}: this `franka` was built without the feature `{feature}`");
@@ -148,7 +150,7 @@ impl Failure {
         self
     }
 
-    /// The same failure, of an error of the driver.
+    /// Returns the same failure, marked as an error of the driver.
     pub(crate) fn of(mut self, party: Party, entry: &'static str) -> Self {
         self.origin = Some((party, entry));
         self

@@ -3,12 +3,12 @@
 use franka_async::state::RobotState;
 use serde_json::{Map, Value};
 
-/// The fields, with values that mean nothing.
+/// Returns the fields, with meaningless values.
 pub(crate) fn fields() -> Map<String, Value> {
     values(&RobotState::default())
 }
 
-/// A state by its fields.
+/// Returns a state by its fields.
 pub(crate) fn values(state: &RobotState) -> Map<String, Value> {
     match serde_json::to_value(state) {
         Ok(Value::Object(fields)) => fields,

@@ -11,12 +11,12 @@ use crate::ending::{Ending, Failure};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Interruption {
     CtrlC,
-    /// SIGTERM, as of `kill` and of service managers.
+    /// SIGTERM, as sent by `kill` and by service managers.
     Terminated,
 }
 
 impl Interruption {
-    /// How the program ends that did not do what was asked.
+    /// Returns the failure of a program that was interrupted before it was done.
     pub(crate) fn failure(self, message: &str) -> Failure {
         let ending = match self {
             Self::CtrlC => Ending::Interrupted,
@@ -35,7 +35,7 @@ impl fmt::Display for Interruption {
     }
 }
 
-/// Returns what resolves when the program is told to end from now on.
+/// Returns a future that resolves when the program receives a signal to end from now on.
 pub(crate) fn interrupted() -> std::io::Result<impl Future<Output = Interruption>> {
     let mut interrupt = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;

@@ -1,4 +1,4 @@
-//! `franka`: one command line for the robot, the simulator and what they record.
+//! `franka`: one command line for the robot, the simulator and their recordings.
 //!
 //! ```text
 //! arguments --> command --> [robot: robots file, connection] --> [question] --> facts or a motion --> exit code
@@ -6,17 +6,17 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`ending`] | exit codes, and errors that say what to do next |
-//! | [`report`] | why a command failed, printed |
+//! | [`ending`] | exit codes, and errors with the next step |
+//! | [`report`] | error messages |
 //! | [`robots_file`] | robots by name |
-//! | [`connection`] | which robot, connecting to it, whether it may be moved |
-//! | [`question`] | what will move, how far and how fast; asked before it does |
-//! | [`motion`] | a motion under way: progress, recording, braking |
+//! | [`connection`] | selection of the robot, connection, permission to move it |
+//! | [`question`] | the description of a motion, and its confirmation |
+//! | [`motion`] | a running motion: progress, recording, braking |
 //! | [`fields`] | a state by the names of its fields |
 //! | [`interrupt`] | Ctrl-C and SIGTERM |
 //! | [`output`] | text and JSON |
 //! | [`values`] | checked values of arguments |
-//! | [`command`] | a file per command |
+//! | [`command`] | the commands, one file each |
 
 mod command;
 mod connection;
@@ -77,8 +77,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// True if this stream takes colours, by NO_COLOR, CLICOLOR_FORCE and the like, as for all other
-/// output.
+/// True if this stream takes colours, by NO_COLOR, CLICOLOR_FORCE and similar variables, as for all
+/// other output.
 fn has_colours(stream: &impl anstream::stream::RawStream) -> bool {
     anstream::AutoStream::choice(stream) != anstream::ColorChoice::Never
 }
@@ -163,7 +163,7 @@ mod tests {
         assert!(count > 30, "{count} commands");
     }
 
-    /// Commands that make a robot do something, or change it.
+    /// Commands that act on a robot or change its settings.
     const ACTING: [&str; 11] = [
         "bench",
         "collision",
@@ -178,14 +178,14 @@ mod tests {
         "trial",
     ];
 
-    /// Places that advise one of them, because nothing else helps there.
+    /// Places that recommend such a command, because it is necessary there.
     const ADVISED: [(&str, &str); 8] = [
-        // The robot has stopped itself; the text asks to see to the cause first.
+        // The robot has stopped itself; the text first recommends to remove the cause.
         ("franka-cli/src/connection.rs", "recover"),
         ("franka-cli/src/motion.rs", "recover"),
         ("franka-doctor/src/at_rest.rs", "recover"),
         ("franka-doctor/src/at_rest.rs", "recover"),
-        // Fingers that have not been homed know no width.
+        // Fingers that have not been homed do not know their width.
         ("franka-cli/src/command/gripper.rs", "gripper"),
         // Examples in the command's own help.
         ("franka-cli/src/command/trial.rs", "trial"),
@@ -238,7 +238,7 @@ mod tests {
         assert_eq!(advised(unsafe_advice), ["recover"]);
     }
 
-    /// Commands that act on a robot, where a text of the source names them.
+    /// Returns the commands that act on a robot and are named in a text of the source.
     fn advised(source: &str) -> Vec<&'static str> {
         let mut found = Vec::new();
         for line in source.lines() {

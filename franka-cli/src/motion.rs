@@ -1,4 +1,4 @@
-//! A motion under way: connecting for it, recording it, its progress, Ctrl-C.
+//! A running motion: connection, recording, progress, Ctrl-C.
 
 use std::future::Future;
 use std::path::PathBuf;
@@ -23,7 +23,7 @@ use crate::output::{Output, say};
 use crate::question;
 use crate::robots_file::Realtime;
 
-/// Options of whatever moves the arm.
+/// Options of all commands that move the arm.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Mover {
     #[command(flatten)]
@@ -60,26 +60,26 @@ pub(crate) struct Moving {
 }
 
 impl Mover {
-    /// Connects to the robot, and checks that it takes a motion.
+    /// Connects to the robot, and checks that it accepts a motion.
     pub(crate) async fn begin(&self) -> anyhow::Result<Moving> {
         self.how.begin(&self.which).await
     }
 }
 
 impl MoverOptions {
-    /// Connects to this robot, and checks that it takes a motion.
+    /// Connects to this robot, and checks that it accepts a motion.
     pub(crate) async fn begin(&self, which: &Which) -> anyhow::Result<Moving> {
         self.begin_with(which, RecordOptions::default()).await
     }
 
-    /// As [`Self::begin`], recorded with these options.
+    /// Like [`Self::begin`], recorded with these options.
     pub(crate) async fn begin_with(
         &self,
         which: &Which,
         options: RecordOptions,
     ) -> anyhow::Result<Moving> {
         let place = which.place()?;
-        // An error then carries the last second.
+        // An error then contains the last second.
         let accepts = self.accept_geometry_error;
         let robot = place.connect(self.realtime, |builder| {
             builder.log_size(1000).accept_geometry_error(accepts)
@@ -106,7 +106,8 @@ impl MoverOptions {
 }
 
 impl Moving {
-    /// Asks whether the arm may do this, and checks that it is where it was when that was said.
+    /// Asks for permission to move the arm, and then checks that it has not moved since the
+    /// question.
     pub(crate) async fn ask(&self, title: &str, what: &str) -> anyhow::Result<()> {
         let before = self.robot.state();
         let title = question::title(title, self.robot.model().kind(), &self.place);
@@ -114,7 +115,7 @@ impl Moving {
         let now = self.state_from_now().await?;
         check_ready(&now, &self.place)?;
         for (i, (from, to)) in before.q.iter().zip(now.q).enumerate() {
-            // A position that is not finite counts as moved.
+            // A non-finite position counts as moved.
             let stayed = (to - from).abs() < MOVED;
             if !stayed {
                 let message = format!(
@@ -127,11 +128,11 @@ impl Moving {
         Ok(())
     }
 
-    /// A state that the robot has sent since the call.
+    /// Returns a state that the robot sent after the call.
     async fn state_from_now(&self) -> Result<RobotState, Error> {
         let mut newest = self.robot.state();
         let mut states = self.robot.states();
-        // The first one may have been on its way.
+        // The first state may have been in transit.
         for _ in 0..2 {
             let before = newest.message_id;
             newest = states.wait_for(|state| state.message_id > before).await?;
@@ -171,8 +172,8 @@ impl Moving {
         outcome
     }
 
-    /// Brakes, and says what came of it. Without an interruption, as the arm does not rest by
-    /// itself.
+    /// Brakes, and returns the result. `by` is `None` if the arm did not stop without an
+    /// interruption.
     pub(crate) async fn brake(&self, by: Option<Interruption>) -> anyhow::Error {
         say(&by.map_or("braking".into(), |by| format!("{by}: braking")));
         match tokio::time::timeout(PATIENCE, self.robot.stop()).await {
@@ -193,7 +194,7 @@ impl Moving {
         }
     }
 
-    /// Why a motion failed, with what to do next.
+    /// Returns the reason why a motion failed, with the next step.
     pub(crate) async fn explain(&self, error: impl Into<Cause>) -> anyhow::Error {
         let error = match error.into() {
             Cause::Motion(error) => error,
@@ -204,7 +205,8 @@ impl Moving {
             _ => Ending::Failed,
         };
         let failure = Failure::new(ending, error.to_string()).of(error.party(), error.entry());
-        // For want of packets, with the causes on this computer; else why the robot stopped.
+        // After missing packets, names the causes on this computer; otherwise explains why the
+        // robot stopped.
         let advice = match doctor::diagnose(&error, self.robot.address().ip()).await {
             Some(diagnosis) => Some(diagnosis.to_string()),
             None => error.diagnose().map(|diagnosis| diagnosis.to_string()),
@@ -221,7 +223,7 @@ impl Moving {
         }
     }
 
-    /// Closes the connection and ends the recording, however the command went.
+    /// Closes the connection and ends the recording, after a success or a failure.
     pub(crate) async fn end<T>(self, outcome: anyhow::Result<T>) -> anyhow::Result<T> {
         self.robot.shutdown().await;
         let Some(recorder) = self.recorder else {
@@ -237,16 +239,16 @@ impl Moving {
     }
 }
 
-/// What tells how long a motion takes.
+/// The source of a motion's duration.
 pub(crate) enum Length {
     /// The motion itself.
     Of(MotionHandle),
-    /// It was known beforehand, or about.
+    /// A known or approximate duration.
     About(Duration),
 }
 
 impl Length {
-    /// The part in `[0, 1]` of a motion that is over, and the time that is left, if that is known.
+    /// Returns the completed share of a motion in `[0, 1]`, and the remaining time, if known.
     fn gone(&self, begin: Instant) -> Option<(f64, Duration)> {
         match self {
             Self::Of(handle) => {
@@ -262,7 +264,7 @@ impl Length {
     }
 }
 
-/// What was recorded, in a line.
+/// Returns a line about a recording.
 pub(crate) fn recorded(status: &RecordStatus) -> String {
     let file = status.files.first().map(|file| file.display().to_string());
     format!(
@@ -273,7 +275,7 @@ pub(crate) fn recorded(status: &RecordStatus) -> String {
     )
 }
 
-/// Why a motion, or a series of them, did not come to its end.
+/// The reason why a motion, or a series of motions, failed.
 pub(crate) enum Cause {
     Motion(MotionError),
     Other(String),
@@ -303,13 +305,13 @@ impl From<ReplayFailure> for Cause {
     }
 }
 
-/// A bar of a thousand, hidden where standard error is no terminal.
+/// Returns a progress bar of a thousand steps, hidden if standard error is not a terminal.
 pub(crate) fn progress_bar() -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}");
     ProgressBar::new(1000).with_style(style.expect("a template"))
 }
 
-/// Awaits what takes about as long as `length`, with its progress on the terminal.
+/// Awaits a future that takes about `length`, with its progress on the terminal.
 pub(crate) async fn shown<T>(what: &str, length: Duration, work: impl Future<Output = T>) -> T {
     let (bar, length, begin) = (progress_bar(), Length::About(length), Instant::now());
     bar.set_message(what.to_owned());
@@ -330,7 +332,7 @@ pub(crate) async fn shown<T>(what: &str, length: Duration, work: impl Future<Out
     result
 }
 
-/// Does what takes a while that is not known, with a sign of life on the terminal.
+/// Runs a function of unknown duration, with an activity display on the terminal.
 pub(crate) fn while_turning<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let bar = ProgressBar::new_spinner().with_message(what.to_owned());
     bar.enable_steady_tick(Duration::from_millis(100));
@@ -339,8 +341,8 @@ pub(crate) fn while_turning<T>(what: &str, work: impl FnOnce() -> T) -> T {
     result
 }
 
-/// How far a joint may be from where a question was asked, `[rad]`.
+/// Largest distance of a joint from its position at the question, `[rad]`.
 const MOVED: f64 = 0.01;
 
-/// How long braking may take: a quarter of a second as a rule.
+/// Time limit for braking, which usually takes a quarter of a second.
 const PATIENCE: Duration = Duration::from_secs(5);

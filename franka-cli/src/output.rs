@@ -1,4 +1,4 @@
-//! Facts on standard output: text for people, JSON for programs.
+//! Results on standard output: text for people, JSON for programs.
 
 use std::io::Write;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::ending::Ending;
 
-/// How facts are printed.
+/// The format of results.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
 pub(crate) struct Output {
     /// Print JSON
@@ -16,7 +16,7 @@ pub(crate) struct Output {
 }
 
 impl Output {
-    /// Prints a value: as JSON, or as the text that `text` makes.
+    /// Prints a value: as JSON, or as the text from `text`.
     pub(crate) fn print(
         self,
         value: &impl Serialize,
@@ -36,7 +36,7 @@ pub(crate) fn json_line(value: &impl Serialize) -> anyhow::Result<()> {
     line(&serde_json::to_string(&Versioned::new(value))?)
 }
 
-/// Facts, an object, with the version of their format.
+/// A result, an object, with the version of its format.
 #[derive(Serialize)]
 struct Versioned<'a, T> {
     schema: u32,
@@ -53,11 +53,11 @@ impl<'a, T> Versioned<'a, T> {
     }
 }
 
-/// Version of what commands print as JSON; `franka doctor` has its own. Raised when a field goes or
-/// changes its meaning, and not for new ones.
+/// Version of the commands' JSON output; `franka doctor` has its own. Increased when a field is
+/// removed or changes its meaning, but not for new fields.
 const SCHEMA: u32 = 1;
 
-/// Prints a line on standard output, without its colours where they are not wanted.
+/// Prints a line on standard output, without its colours if they are disabled.
 pub(crate) fn line(text: &str) -> anyhow::Result<()> {
     let mut out = anstream::stdout().lock();
     writeln!(out, "{text}")?;
@@ -65,23 +65,23 @@ pub(crate) fn line(text: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Tells a person what happens, on standard error.
+/// Prints a message for the user on standard error.
 pub(crate) fn say(text: &str) {
     anstream::eprintln!("{text}");
 }
 
-/// Titles.
+/// Style of titles.
 pub(crate) const BOLD: Style = Style::new().bold();
-/// What is as it should be.
+/// Style of good values.
 pub(crate) const GOOD: Style = AnsiColor::Green.on_default();
-/// What is near a limit.
+/// Style of values near a limit.
 pub(crate) const WARN: Style = AnsiColor::Yellow.on_default();
-/// What is wrong.
+/// Style of wrong values.
 pub(crate) const BAD: Style = AnsiColor::Red.on_default().bold();
-/// What matters less.
+/// Style of less important text.
 pub(crate) const DIM: Style = Style::new().dimmed();
 
-/// Numbers in columns that line up, whatever their signs.
+/// Formats numbers in aligned columns, with any signs.
 pub(crate) fn numbers(values: &[f64], decimals: usize) -> String {
     let width = decimals + 6;
     let cells = values.iter().map(|value| {
@@ -91,7 +91,7 @@ pub(crate) fn numbers(values: &[f64], decimals: usize) -> String {
     cells.collect()
 }
 
-/// The value, without a minus before what is shown as zero.
+/// Returns the value, without a minus sign if it is shown as zero.
 pub(crate) fn unsigned_zero(value: f64, decimals: i32) -> f64 {
     let is_zero = value.abs() < 0.5 * 0.1_f64.powi(decimals);
     if is_zero { 0.0 } else { value }

@@ -1,4 +1,4 @@
-//! What will move, how far and how fast: said before anything does, and asked.
+//! The description of a motion before it begins, and its confirmation.
 
 use std::io::{self, BufRead, IsTerminal, Write};
 
@@ -34,7 +34,7 @@ pub(crate) async fn ask(what: &str, yes: bool) -> anyhow::Result<()> {
         "Clear the path of the arm, and keep the user stop within reach. {BOLD}Continue? [y/N]{BOLD:#} "
     )?;
     terminal.flush()?;
-    // On a separate thread, which Ctrl-C leaves behind.
+    // On a separate thread, which is abandoned after Ctrl-C.
     let (answer, answered) = oneshot::channel();
     std::thread::spawn(move || {
         let mut line = String::new();
@@ -62,8 +62,8 @@ pub(crate) enum Target {
 }
 
 impl Target {
-    /// Describes the motion to this target: how far each joint and the hand move, and the top
-    /// speed.
+    /// Describes the motion to this target: the displacement of each joint and of the hand, and the
+    /// top speed.
     pub(crate) fn describe(&self, robot: &Robot, speed: f64) -> anyhow::Result<String> {
         let (state, start) = (robot.state(), robot.pose());
         let model = robot.model();
@@ -130,7 +130,7 @@ impl Target {
     }
 }
 
-/// Title of a question about a robot.
+/// Returns the title of a question about a robot.
 pub(crate) fn title(what: &str, kind: RobotKind, place: &impl std::fmt::Display) -> String {
     let kind = crate::connection::kind_name(kind);
     format!("{BOLD}{what}: {kind}, {place}{BOLD:#}")

@@ -1,4 +1,4 @@
-//! Why a command failed, printed: for people, and as JSON for programs.
+//! Error messages of failed commands: for people, and as JSON for programs.
 
 use std::io;
 
@@ -9,8 +9,7 @@ use serde_json::json;
 use crate::ending::{Ending, Failure, origin_of};
 use crate::output::json_line;
 
-/// Prints why a command failed, with `json` as JSON, too, and returns how that ends the
-/// program.
+/// Prints why a command failed, with `json` also as JSON, and returns the program's ending.
 pub(crate) fn report(error: &anyhow::Error, json: bool) -> Ending {
     let ending = Ending::of(error);
     // The reader has closed the pipe: an error text would reach no one.
@@ -18,7 +17,7 @@ pub(crate) fn report(error: &anyhow::Error, json: bool) -> Ending {
         return Ending::Done;
     }
     if json {
-        // Its reader may be gone; the exit code says the rest.
+        // The reader may have closed the pipe; the exit code is still set.
         let _ = json_line(&json!({ "error": Reported::of(error) }));
     }
     let style = Style::new().fg_color(Some(AnsiColor::Red.into())).bold();
@@ -33,13 +32,13 @@ pub(crate) fn report(error: &anyhow::Error, json: bool) -> Ending {
     ending
 }
 
-/// Why a command failed, for programs.
+/// The failure of a command, for programs.
 #[derive(Debug, Serialize)]
 struct Reported {
     /// The exit code, by its name.
     kind: &'static str,
     exit_code: u8,
-    /// Who can act on an error of the driver.
+    /// The party that can act on an error of the driver.
     party: Option<String>,
     /// Its row in the book's chapter of errors.
     entry: Option<&'static str>,
@@ -74,9 +73,9 @@ impl Reported {
     }
 }
 
-/// Prints as JSON that the arguments make no sense.
+/// Prints the error of invalid arguments as JSON.
 pub(crate) fn report_usage(text: &str) {
-    // As for `report`.
+    // As in `report`.
     let _ = json_line(&json!({ "error": Reported::usage(text) }));
 }
 

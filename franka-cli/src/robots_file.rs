@@ -47,12 +47,12 @@ pub(crate) struct Entry {
 pub(crate) struct RobotsFile {
     pub(crate) path: PathBuf,
     pub(crate) robots: BTreeMap<String, Entry>,
-    /// Its text, with the comments of the user.
+    /// Its text, with the user's comments.
     document: DocumentMut,
 }
 
 impl RobotsFile {
-    /// Reads the file; one that is not there has no robots.
+    /// Reads the file; a missing file has no robots.
     pub(crate) fn read() -> anyhow::Result<Self> {
         let path = path()?;
         let text = match fs::read_to_string(&path) {
@@ -90,7 +90,7 @@ impl RobotsFile {
             let mut new = Value::from(new);
             match fields.get_mut(key).and_then(Item::as_value_mut) {
                 Some(old) => {
-                    // The comment behind it.
+                    // Keeps the comment after it.
                     *new.decor_mut() = old.decor().clone();
                     *old = new;
                 }
@@ -101,12 +101,12 @@ impl RobotsFile {
         }
     }
 
-    /// Removes a robot, and returns whether the file had it.
+    /// Removes a robot, and returns true if the file had it.
     pub(crate) fn remove(&mut self, name: &str) -> bool {
         self.document.remove(name).is_some()
     }
 
-    /// Writes the file: a new one takes the place of the old one.
+    /// Writes the file: a new file replaces the old one.
     pub(crate) fn write(&self) -> anyhow::Result<()> {
         let write = || {
             if let Some(directory) = self.path.parent() {
@@ -140,7 +140,7 @@ fn parse(text: &str) -> Result<(BTreeMap<String, Entry>, DocumentMut), String> {
     Ok((robots, document))
 }
 
-/// Checks that a robot can be called so: names are no addresses and no fields of a state.
+/// Checks that a name is valid: not an address, and not a field of a state.
 pub(crate) fn check_name(name: &str) -> Result<(), String> {
     let is_word = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     if name.is_empty() || !name.chars().all(is_word) {
@@ -156,7 +156,7 @@ pub(crate) fn check_name(name: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// `robots.toml` in `franka` of the XDG configuration directory.
+/// Returns the path of `robots.toml` in `franka` of the XDG configuration directory.
 fn path() -> anyhow::Result<PathBuf> {
     let absolute = |variable: &str| {
         let path = env::var_os(variable).map(PathBuf::from);
@@ -218,11 +218,11 @@ mod tests {
         assert_eq!(file.document.to_string(), format!("{changed}{third}"));
         assert!(file.remove("third") && !file.remove("third"));
         assert_eq!(file.document.to_string(), changed);
-        // One that has no real-time option any more.
+        // An entry that no longer has a real-time option.
         file.insert("right", &entry("172.16.0.3"));
         let changed = changed.replace("realtime = \"ignore\"\n", "");
         assert_eq!(file.document.to_string(), changed);
-        // The file of a user who writes it in another way.
+        // A file with another style of TOML.
         let (robots, document) = parse("left = { address = 'a' } # short\n").unwrap();
         let mut file = RobotsFile {
             path: PathBuf::new(),

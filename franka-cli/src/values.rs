@@ -15,7 +15,7 @@ pub(crate) struct PartialPose {
 }
 
 impl PartialPose {
-    /// The whole pose, with the rotation of `now` where none was given.
+    /// Returns the whole pose, with the rotation of `now` if none was given.
     pub(crate) fn complete(self, now: &Pose) -> Pose {
         let translation = Translation3::from(self.position);
         Pose::from_parts(translation, self.rotation.unwrap_or(now.rotation))
@@ -53,7 +53,7 @@ pub(crate) fn partial_pose(text: &str) -> Result<PartialPose, String> {
     }
 }
 
-/// A number above zero.
+/// Parses a number above zero.
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
     let [value] = numbers::<1>(text)?;
     if value <= 0.0 {
@@ -62,7 +62,7 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     Ok(value)
 }
 
-/// Seconds, up to a day.
+/// Parses seconds, up to a day.
 pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = positive(text)?;
     match Duration::try_from_secs_f64(seconds) {
@@ -74,7 +74,7 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// Times a second.
+/// Parses a rate per second.
 pub(crate) fn rate(text: &str) -> Result<f64, String> {
     let rate = positive(text)?;
     if !(0.1..=100.0).contains(&rate) {

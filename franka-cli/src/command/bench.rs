@@ -1,4 +1,4 @@
-//! `franka bench`: this computer, without a robot.
+//! `franka bench`: measurements of this computer, without a robot.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -86,7 +86,7 @@ impl Wake {
 
 impl Loop {
     async fn run(self) -> anyhow::Result<Ending> {
-        // It waits for commands that a busy computer sends late, rather than stop itself.
+        // It waits for late commands of a busy computer instead of stopping.
         let sim = Sim::fr3().wait_for_commands(PATIENCE);
         let DryRun {
             outcome,
@@ -114,7 +114,7 @@ impl Loop {
     }
 }
 
-/// The scheduling of a thread, by its `SCHED_FIFO` priority.
+/// Returns the text for a thread's scheduling, by its `SCHED_FIFO` priority.
 fn scheduling(priority: Option<i32>) -> String {
     match priority {
         Some(priority) => format!("SCHED_FIFO {priority}"),
@@ -122,14 +122,14 @@ fn scheduling(priority: Option<i32>) -> String {
     }
 }
 
-/// How the control loop ran against a simulated robot.
+/// The result of a control loop against a simulated robot.
 pub(super) struct DryRun {
     pub(super) outcome: Result<MotionReport, MotionError>,
-    /// What the loop has counted.
+    /// The counts of the loop.
     pub(super) stats: Arc<Stats>,
-    /// What the operating system granted it.
+    /// The rights granted by the operating system.
     pub(super) granted: Arc<Granted>,
-    /// When each command had left, with the `message_id` of the state that it answers.
+    /// The time when each command left, with the `message_id` of the state that it answers.
     pub(super) left: Vec<(u64, Instant)>,
 }
 
@@ -158,7 +158,7 @@ pub(super) async fn dry_run(sim: Sim, length: Duration) -> anyhow::Result<DryRun
     })
 }
 
-/// When commands left, until the connection has ended.
+/// Returns the times when commands left, until the connection ends.
 fn departures(mut cycles: CycleReader) -> Vec<(u64, Instant)> {
     let mut left = Vec::new();
     while !cycles.has_ended() {
@@ -173,5 +173,5 @@ fn departures(mut cycles: CycleReader) -> Vec<(u64, Instant)> {
     left
 }
 
-/// For a command of a computer that is busy with something else.
+/// Time limit for a command of a busy computer.
 const PATIENCE: Duration = Duration::from_secs(1);

@@ -1,4 +1,4 @@
-//! `franka cassette`: what a tap has recorded.
+//! `franka cassette`: recordings of a tap.
 
 use std::fs::File;
 use std::io::Write as _;

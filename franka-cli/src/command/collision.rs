@@ -1,4 +1,4 @@
-//! `franka collision`: when the robot takes a force for a contact, and when it stops itself.
+//! `franka collision`: the thresholds at which the robot detects a contact, and at which it stops.
 
 use clap::{Args, ValueEnum};
 use franka_async::settings::CollisionBehavior;

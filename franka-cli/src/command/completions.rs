@@ -1,4 +1,4 @@
-//! `franka completions`: scripts that complete arguments in a shell.
+//! `franka completions`: shell completion scripts.
 
 use std::fmt::Write as _;
 
@@ -30,8 +30,8 @@ impl Completions {
     }
 }
 
-/// The lines for fish that `clap_complete` leaves out: values of positional arguments, and no file
-/// names where none are accepted.
+/// Returns the lines for fish that `clap_complete` leaves out: values of positional arguments, and
+/// no file names unless they are accepted.
 fn positionals(program: &Command) -> Result<String, std::fmt::Error> {
     let mut lines = String::new();
     for command in program.get_subcommands() {

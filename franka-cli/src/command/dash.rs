@@ -49,7 +49,7 @@ pub(crate) struct Dash {
     access: Access,
 }
 
-/// Token that admits other computers to a page.
+/// The token with which other computers can open a page.
 #[derive(Debug, Args)]
 #[group(multiple = false)]
 struct Access {
@@ -71,7 +71,7 @@ impl Access {
         .map_err(no_token)
     }
 
-    /// Fragment of the addresses that are printed. A token that the user has is not shown again.
+    /// Returns the fragment of the printed addresses. The user's own token is not shown again.
     fn fragment(&self, token: Option<&Token>) -> String {
         match token {
             Some(token) if self.new_token => format!("#{}", token.reveal()),
@@ -109,7 +109,7 @@ impl Dash {
             true => vec![None],
             false => self.robots.iter().cloned().map(Some).collect(),
         };
-        // A page that moves nothing needs no real-time scheduling.
+        // A view-only page needs no real-time scheduling.
         let realtime = match self.allow_motion {
             true => self.realtime,
             false => Some(Realtime::Ignore),
@@ -126,7 +126,7 @@ impl Dash {
         }
         let mut robots = Vec::new();
         for place in places {
-            // Events are explained by the last second.
+            // The last second explains events.
             let robot = place.connect(realtime, |builder| {
                 builder.log_size(1000).accept_geometry_error(accepts)
             });
@@ -164,7 +164,7 @@ impl Dash {
             let (place, robot) = (place.to_string(), robot.clone());
             closed.spawn(async move { (place, robot.closed().await) });
         }
-        // One robot that is lost takes neither the page nor its Stop button from the others.
+        // If one robot is lost, the other robots keep their page and its Stop button.
         let all_closed = async {
             let mut last = String::new();
             while let Some(Ok((place, reason))) = closed.join_next().await {
@@ -199,7 +199,7 @@ pub(super) async fn listen(address: SocketAddr, options: &Options) -> Result<Tcp
     })
 }
 
-/// Failure of a token that was given.
+/// Returns the failure of an invalid token.
 pub(super) fn no_token(error: TokenError) -> Failure {
     let text = format!("{:#}", anyhow::Error::new(error));
     Failure::usage(text).advice(ADVICE)
@@ -208,5 +208,5 @@ pub(super) fn no_token(error: TokenError) -> Failure {
 const ADVICE: &str = "Put a token into the variable FRANKA_ACCESS_TOKEN. franka dash also has --token-file FILE, and \
     --new-token, which makes one.";
 
-/// Where pages find the dashboard by default.
+/// Default address of the dashboard.
 pub(super) const PAGE: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 8080));

@@ -1,4 +1,4 @@
-//! `franka doctor`: this computer and the way to a robot, checked before an arm moves.
+//! `franka doctor`: checks of this computer and the connection to a robot, before an arm moves.
 
 use std::net::{IpAddr, SocketAddr};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -100,8 +100,8 @@ impl Doctor {
             Some(place) => Some(resolve(&place.address, ROBOT).await?),
             None => None,
         };
-        // The robot first: with another client connected, checks that would disturb it are left
-        // out.
+        // The robot is checked first: if another client is connected, checks that would disturb it
+        // are skipped.
         let selection = Selection::new(self.only.clone(), self.skip.clone());
         let mut found = Vec::new();
         let mut taken = false;
@@ -141,7 +141,7 @@ impl Doctor {
         })
     }
 
-    /// How long states are counted, and the dry run takes.
+    /// Returns the duration of the count of states, and of the dry run.
     fn length(&self) -> Duration {
         Duration::from_secs(match (self.quick, self.long) {
             (true, _) => 1,
@@ -150,8 +150,8 @@ impl Doctor {
         })
     }
 
-    /// The checks of this computer, with the card on the way to `robot`, which may be sent echo
-    /// requests if `ping`.
+    /// Runs the checks of this computer, including the card on the route to `robot`, to which echo
+    /// requests are sent if `ping`.
     async fn host(
         &self,
         robot: Option<IpAddr>,
@@ -182,7 +182,7 @@ impl Doctor {
         Ok(report)
     }
 
-    /// The control loop of the driver against a simulated robot in this process.
+    /// Runs the driver's control loop against a simulated robot in this process.
     async fn dry_run(&self) -> Option<Finding> {
         let (begin, length) = (Instant::now(), self.length());
         let sent = Arc::new(Mutex::new(Vec::with_capacity(1 << 17)));
@@ -203,7 +203,7 @@ impl Doctor {
                 };
                 Some(dry_run(&run, self.purpose.purpose()))
             }
-            // The report is about the rest all the same.
+            // The report still contains the other checks.
             Err(error) => {
                 say(&format!(
                     "there was no dry run of the control loop: {error:#}"
@@ -213,7 +213,8 @@ impl Doctor {
         }
     }
 
-    /// The findings on the robot's address and its states, and whether another client is connected.
+    /// Returns the findings on the robot's address and its states, and true if another client is
+    /// connected.
     async fn robot(
         &self,
         place: &Place,
@@ -221,7 +222,7 @@ impl Doctor {
     ) -> anyhow::Result<(Vec<Finding>, bool)> {
         let mut found = Vec::new();
         let purpose = self.purpose.purpose();
-        // Before connecting: what Desk says is the reason of a refusal.
+        // Before connecting, because Desk knows the reason of a refusal.
         #[cfg(feature = "desk")]
         found.extend(self.desk(address).await?);
         let connected = place
@@ -239,7 +240,7 @@ impl Doctor {
                 found.extend(arrivals(&states?, purpose));
                 (answered, Some(true), Some(state))
             }
-            // The report is about the rest all the same.
+            // The report still contains the other checks.
             Err((seen, failure)) => {
                 say(&format!("the robot's states were not checked: {failure}"));
                 let answered = match seen {
@@ -266,7 +267,8 @@ impl Doctor {
         Ok((found, taken))
     }
 
-    /// What Desk says, at the address that was given, or beside a robot on the usual port.
+    /// Returns the finding about Desk, at the given address, or at the robot's address with the
+    /// usual port.
     #[cfg(feature = "desk")]
     async fn desk(&self, robot: SocketAddr) -> anyhow::Result<Option<Finding>> {
         let desk = match &self.desk {
@@ -279,10 +281,10 @@ impl Doctor {
     }
 }
 
-/// A simulated robot that keeps its millisecond as well as this computer can, and ends a motion if
-/// too many commands are late. Notes when it has `sent` each state.
+/// Returns a simulated robot that keeps its millisecond as precisely as this computer can, and ends
+/// a motion if too many commands are late. It records when it has `sent` each state.
 fn punctual(sent: Arc<Mutex<Vec<(u64, Instant)>>>) -> Sim {
-    // On the thread of the robot. What is refused leaves it as it is.
+    // Runs on the thread of the robot. If it is refused, the thread keeps its scheduling.
     let mut scheduling = Some(Scheduling {
         realtime: franka_async::Realtime::Ignore,
         prefault_stack: 0,
@@ -298,7 +300,7 @@ fn punctual(sent: Arc<Mutex<Vec<(u64, Instant)>>>) -> Sim {
     })
 }
 
-/// States as they arrive, for some seconds.
+/// Returns the states that arrive during this time.
 async fn received(robot: &Robot, length: Duration) -> anyhow::Result<Vec<Received>> {
     let begin = Instant::now();
     let mut reader = robot.cycles(CycleFeed::<()>::DEFAULT_CAPACITY)?;
@@ -316,7 +318,7 @@ async fn received(robot: &Robot, length: Duration) -> anyhow::Result<Vec<Receive
     Ok(tokio::task::spawn_blocking(read).await?)
 }
 
-/// The checks that ask the robot, or Desk.
+/// The checks that contact the robot, or Desk.
 const ROBOT_CHECKS: [&str; 13] = [
     "net.firewall",
     "robot.busy",
@@ -333,9 +335,9 @@ const ROBOT_CHECKS: [&str; 13] = [
     "robot.web",
 ];
 
-/// Where robots listen.
+/// Port of the robot.
 const ROBOT: u16 = 1337;
 
-/// Where Desk listens.
+/// Port of Desk.
 #[cfg(feature = "desk")]
 const DESK: u16 = 443;

@@ -1,4 +1,4 @@
-//! `franka explain`: why a motion ended, by its recording or by a log of libfranka.
+//! `franka explain`: the reason for the end of a motion, from its recording or a log of libfranka.
 
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -70,7 +70,7 @@ pub(crate) enum Source {
 }
 
 impl Recorded {
-    /// Opens the file, whose content says what it is.
+    /// Opens the file; its content determines the kind.
     pub(super) fn open_any(&self) -> anyhow::Result<Source> {
         match Recording::open(&self.file) {
             Ok(recording) => {
@@ -168,7 +168,7 @@ impl Explain {
     fn explain_log(&self, mut file: ControlLogFile) -> anyhow::Result<Ending> {
         let model = self.kind.map(Kind::model);
         let model = model.or_else(|| file.kind().map(Model::of));
-        // No number of a text depends on the robot.
+        // Without a table, no number in the text depends on the robot.
         if model.is_none() && !file.log.is_empty() {
             let path = self.recorded.file.display();
             let message = format!("which kind of robot is the log of? {path} does not say");

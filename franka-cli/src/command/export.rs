@@ -122,8 +122,8 @@ impl Export {
         })
     }
 
-    /// Writes the tables that were asked for, of the chosen ones of these columns; returns the
-    /// number of rows.
+    /// Writes the requested tables with the chosen ones of these columns; returns the number of
+    /// rows.
     fn write_tables<E, I>(
         &self,
         cycles: impl Fn() -> I,
@@ -158,7 +158,7 @@ impl Export {
         Ok(rows)
     }
 
-    /// Adds the chosen episodes to a dataset, and returns how many episodes and frames.
+    /// Adds the chosen episodes to a dataset, and returns the numbers of episodes and frames.
     #[cfg(feature = "export")]
     fn add_to_dataset(
         &self,
@@ -215,7 +215,7 @@ impl Export {
     }
 }
 
-/// Ends an export at Ctrl-C. What is not complete is then deleted, as after any other error.
+/// Ends an export at Ctrl-C. Incomplete output is then deleted, as after any other error.
 struct Stop(Arc<OnceLock<Interruption>>);
 
 impl Stop {
@@ -223,7 +223,7 @@ impl Stop {
         let by = Arc::<OnceLock<Interruption>>::default();
         let (interrupt, to) = (interrupted()?, by.clone());
         tokio::spawn(async move {
-            // The first one counts.
+            // The first signal counts.
             let _ = to.set(interrupt.await);
         });
         Ok(Self(by))
@@ -233,7 +233,7 @@ impl Stop {
         self.0.get().copied()
     }
 
-    /// The items, with an error once the export is to end.
+    /// Returns the items, with an error once the export must end.
     fn until_asked<T, E: Error + Send + Sync + 'static>(
         &self,
         items: impl Iterator<Item = Result<T, E>>,
@@ -245,7 +245,7 @@ impl Stop {
     }
 }
 
-/// How an error of an exported file ends the program.
+/// Converts an error of an exported file to the program's failure.
 pub(super) fn of_file(error: ExportError) -> anyhow::Error {
     match error {
         ExportError::Exists { .. } | ExportError::Io { .. } => {

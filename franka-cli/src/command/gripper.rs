@@ -138,7 +138,7 @@ impl Gripper {
                 fingers.act(&hand, what, hand.homing(), not).await
             }
             Self::Stop { mut fingers } => {
-                // Stopping is never asked about.
+                // A stop needs no confirmation.
                 fingers.yes = true;
                 let hand = fingers.connect().await?;
                 let what = "The fingers stop and release the object";
@@ -163,7 +163,7 @@ impl Fingers {
         )
     }
 
-    /// Asks, lets the fingers do it, and says what came of it. Ctrl-C stops them.
+    /// Asks, moves the fingers, and reports the result. Ctrl-C stops them.
     async fn act(
         &self,
         hand: &Hand,
@@ -189,7 +189,7 @@ impl Fingers {
     }
 }
 
-/// Stops the fingers; returns how that ends the program.
+/// Stops the fingers; returns the program's failure.
 async fn stopped(hand: &Hand, by: Interruption) -> Failure {
     say(&format!("{by}: stopping the fingers"));
     let why = match timeout(PATIENCE, hand.stop()).await {
@@ -207,7 +207,7 @@ async fn stopped(hand: &Hand, by: Interruption) -> Failure {
     )
 }
 
-/// Moves the fingers; false if they did not arrive, for instance as something holds them up: the
+/// Moves the fingers; returns false if they did not arrive, for example because of an obstacle: the
 /// Hand itself would try for minutes.
 async fn moved(hand: &Hand, width: f64, speed: f64) -> Result<bool, GripperError> {
     let stuck = async {
@@ -215,7 +215,7 @@ async fn moved(hand: &Hand, width: f64, speed: f64) -> Result<bool, GripperError
         loop {
             tokio::time::sleep(LOOK).await;
             let now = hand.state();
-            // By the Hand's clock: a Hand that does not tell where it is may be moving.
+            // Uses the Hand's clock: a Hand that does not report its state may be moving.
             if (now.width - before.width).abs() >= STILL {
                 before = now;
             } else if now.message_id.wrapping_sub(before.message_id) >= STUCK_MS {
@@ -246,14 +246,14 @@ fn print(state: &State, output: Output) -> anyhow::Result<Ending> {
     })
 }
 
-/// For the answer to a stop.
+/// Time limit for the answer to a stop.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Fingers that come no further than [`STILL`] in this time are held up.
+/// Time after which fingers that moved less than [`STILL`] count as blocked.
 const STUCK_MS: u32 = 1000;
 
-/// How often the fingers are looked at.
+/// Interval between two checks of the fingers.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// `[m]`.
+/// Distance of fingers at rest, `[m]`.
 const STILL: f64 = 1e-4;

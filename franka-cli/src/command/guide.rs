@@ -1,4 +1,4 @@
-//! `franka guide`: the arm yields to a hand.
+//! `franka guide`: guiding the arm by hand.
 
 use std::time::Duration;
 
@@ -30,7 +30,7 @@ pub(crate) struct Guide {
     seconds: Option<Duration>,
 }
 
-/// What is free.
+/// The free directions.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum What {
     /// Position, orientation and elbow
@@ -96,7 +96,7 @@ impl Guide {
             self.free.text()
         );
         moving.ask("guide", &what).await?;
-        // From before the session begins, so that Ctrl-C always ends it.
+        // Installed before the session begins, so that Ctrl-C always ends it.
         let interrupt = interrupted()?;
         let guided = async {
             let arm = robot.engage(Engage::default()).await?;
@@ -119,7 +119,7 @@ impl Guide {
                 arm.at_rest().await?;
                 arm.disengage().await
             };
-            // A hand that keeps pushing keeps the arm from resting.
+            // A hand that continues to push prevents the arm from being at rest.
             tokio::select! {
                 held = timeout(PATIENCE, held) => match held {
                     Ok(held) => Ok(held.map(drop)?),
@@ -144,7 +144,7 @@ impl Guide {
 /// Reasons why guiding failed.
 enum Guiding {
     Failed(MotionError),
-    /// It was held, and did not come to rest.
+    /// The arm was still moved by hand, and did not stop.
     NotAtRest(Option<Interruption>),
     Host(std::io::Error),
 }
@@ -161,5 +161,5 @@ impl From<std::io::Error> for Guiding {
     }
 }
 
-/// Time for the arm to come to rest.
+/// Time limit for the arm to stop.
 const PATIENCE: Duration = Duration::from_secs(5);

@@ -34,7 +34,7 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    /// The model of its constants.
+    /// Returns the model of its constants.
     pub(crate) fn model(self) -> &'static Model {
         Model::of(match self {
             Self::Fr3 => RobotKind::Fr3,

@@ -54,7 +54,7 @@ pub(crate) enum Model {
     },
 }
 
-/// Which arm, and where it is.
+/// The arm, and its joint positions.
 #[derive(Debug, Args)]
 pub(crate) struct Arm {
     #[command(flatten)]
@@ -69,7 +69,7 @@ pub(crate) struct Arm {
     output: Output,
 }
 
-/// The frames of an arm by their names, as [`Frame::ALL`] has them.
+/// The names of an arm's frames, in the order of [`Frame::ALL`].
 const FRAMES: [&str; 10] = [
     "joint1",
     "joint2",
@@ -93,7 +93,7 @@ fn frame() -> impl TypedValueParser<Value = Frame> {
     })
 }
 
-/// What is computed with.
+/// The inputs of the computation.
 struct Known {
     model: ArmModel,
     q: JointVector,

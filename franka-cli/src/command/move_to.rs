@@ -1,4 +1,4 @@
-//! `franka move`: to joint positions, to a pose, away from where the arm is.
+//! `franka move`: motions to joint positions, to a pose, or by an offset.
 
 use clap::Args;
 use franka_async::goal::Destination;
@@ -33,7 +33,7 @@ pub(crate) struct Move {
     speed: f64,
 }
 
-/// Where to.
+/// The target of the motion.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = false)]
 struct Aim {
@@ -98,7 +98,7 @@ impl Move {
     }
 }
 
-/// Prints how a motion went.
+/// Prints the result of a motion.
 fn print(report: &MotionReport, output: Output) -> anyhow::Result<Ending> {
     output.print(report, || {
         let off = report.final_error.map(|error| {

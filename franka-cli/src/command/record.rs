@@ -1,4 +1,4 @@
-//! `franka record`: what happens to a robot, in a file.
+//! `franka record`: a recording of a robot.
 
 use std::net::SocketAddr;
 use std::path::PathBuf;

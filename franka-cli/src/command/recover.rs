@@ -1,4 +1,4 @@
-//! `franka recover`: out of a reflex.
+//! `franka recover`: recovery from a reflex.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -78,7 +78,8 @@ impl Recover {
     }
 }
 
-/// Explains why the robot stopped, from its errors only: the cycles before went to another program.
+/// Explains why the robot stopped, from its errors only, because another program received the
+/// cycles before.
 fn diagnosis(state: &RobotState, robot: &Robot) -> String {
     let case = Case {
         commander: Commander::Goals,
@@ -89,5 +90,5 @@ fn diagnosis(state: &RobotState, robot: &Robot) -> String {
     Diagnosis::of(&case, robot.model()).to_string()
 }
 
-/// Time for a robot to become ready.
+/// Time limit for a robot to become ready.
 const PATIENCE: Duration = Duration::from_secs(10);

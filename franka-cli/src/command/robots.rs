@@ -1,4 +1,4 @@
-//! `franka robots`: the file with the robots that have names.
+//! `franka robots`: the file of named robots.
 
 use clap::Subcommand;
 use franka_async::connection::Endpoint;

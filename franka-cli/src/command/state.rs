@@ -1,4 +1,4 @@
-//! `franka state`: the newest state, once or again and again.
+//! `franka state`: the newest state, once or repeatedly.
 
 use std::io::{self, IsTerminal, Write};
 use std::pin::pin;
@@ -45,7 +45,7 @@ impl State {
         let outcome = if self.watch {
             self.watch(&robot, &place).await
         } else {
-            // Long enough for a picture of the link.
+            // Long enough for statistics of the link.
             tokio::time::sleep(LOOK).await;
             let value = view::value(&robot, &place);
             self.output.print(&value, || view::text(&robot, &place))
@@ -67,7 +67,7 @@ impl State {
                 _ = &mut interrupt => return Ok(Ending::Done),
                 _ = clock.tick() => {}
             }
-            // A state that came after the last look: a link that has died is noticed.
+            // Waits for a state after the last update, so that a lost link is detected.
             let newest = tokio::time::timeout(SILENCE, states.changed()).await;
             let lost = match newest {
                 Ok(Ok(_)) => None,
@@ -86,7 +86,7 @@ impl State {
     }
 }
 
-/// The terminal's other screen, until it is dropped.
+/// The terminal's alternate screen, until it is dropped.
 struct Screen {
     is_coloured: bool,
 }
@@ -94,7 +94,7 @@ struct Screen {
 impl Screen {
     fn open() -> io::Result<Self> {
         let choice = anstream::AutoStream::choice(&io::stdout());
-        // Other screen, no cursor, and lines that are too long are cut.
+        // Alternate screen, no cursor, and long lines are cut.
         let mut out = io::stdout().lock();
         out.write_all(b"\x1b[?1049h\x1b[?25l\x1b[?7l")?;
         out.flush()?;
@@ -103,9 +103,9 @@ impl Screen {
         })
     }
 
-    /// Replaces what is shown, without a blank screen in between.
+    /// Replaces the shown page, without a blank screen in between.
     fn draw(&self, page: &str) -> io::Result<()> {
-        // One line more would scroll.
+        // Another line would scroll.
         let (rows, _) = Term::stdout().size();
         let lines = page.lines().chain(["", "Ctrl-C ends."]);
         let page: Vec<&str> = lines.take(usize::from(rows)).collect();
@@ -114,7 +114,7 @@ impl Screen {
             true => page,
             false => strip_str(&page).to_string(),
         };
-        // Each line is cleared behind its text, and the rest of the screen below.
+        // Each line is cleared after its text, and so is the rest of the screen.
         let lines = page.replace('\n', "\x1b[K\r\n");
         let mut out = io::stdout().lock();
         write!(out, "\x1b[H{lines}\x1b[K\x1b[J")?;
@@ -124,15 +124,15 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
-        // A terminal that is gone needs no restoring.
+        // A closed terminal needs no restoration.
         let mut out = io::stdout().lock();
         let _ = out.write_all(b"\x1b[?7h\x1b[?25h\x1b[?1049l");
         let _ = out.flush();
     }
 }
 
-/// How long states are counted before they are shown once.
+/// Duration of the count of states before they are shown once.
 const LOOK: Duration = Duration::from_millis(200);
 
-/// After which silence the link counts as lost.
+/// Silence after which the link counts as lost.
 const SILENCE: Duration = Duration::from_secs(1);

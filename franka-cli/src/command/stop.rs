@@ -1,4 +1,4 @@
-//! `franka stop`: whatever this computer can stop.
+//! `franka stop`: stops the motions that this computer can stop.
 
 use clap::Args;
 use franka_async::state::RobotMode;
@@ -23,7 +23,7 @@ pub(crate) struct Stop {
 impl Stop {
     pub(super) async fn run(self) -> anyhow::Result<Ending> {
         let (robot, place) = self.which.connect().await?;
-        // A motion of an earlier client ended with its connection.
+        // A motion of an earlier client ended with that client's connection.
         let stopped = robot.stop().await;
         let state = robot.state();
         robot.shutdown().await;

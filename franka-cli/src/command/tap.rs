@@ -1,4 +1,4 @@
-//! `franka tap`: what passes between clients and a robot, byte for byte.
+//! `franka tap`: the traffic between clients and a robot, byte for byte.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ pub(crate) struct Tap {
     output: Output,
 }
 
-/// Where clients connect to.
+/// The addresses for clients.
 #[derive(Clone, Copy, Debug, Args)]
 pub(crate) struct Listening {
     /// Address for clients
@@ -42,7 +42,7 @@ pub(crate) struct Listening {
 }
 
 impl Listening {
-    /// The address for clients of a device.
+    /// Returns the address for clients of a device.
     pub(super) fn at(self, device: Device) -> SocketAddr {
         let port = match self.port {
             0 => 0,
@@ -105,7 +105,7 @@ impl Tap {
     }
 }
 
-/// What becomes of an error with a cassette.
+/// Converts an error of a cassette to the program's failure.
 pub(super) fn failed(file: &Path, error: &CassetteError) -> Failure {
     Failure::new(Ending::Host, format!("{}: {error}", file.display()))
 }

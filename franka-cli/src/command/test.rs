@@ -1,4 +1,4 @@
-//! `franka test communication`: is the way to a robot fit for control at 1 kHz?
+//! `franka test communication`: tests whether a connection is suitable for control at 1 kHz.
 
 use std::time::Duration;
 
@@ -116,7 +116,7 @@ impl Communication {
             one.drive(nothing(one, self.seconds), length),
             other.drive(nothing(other, self.seconds), None)
         );
-        // One that fails, or is interrupted, ends the other one.
+        // If one fails, or is interrupted, the other one ends too.
         if both.is_err() {
             let stopped = tokio::join!(one.robot.stop(), other.robot.stop());
             if let (Err(error), _) | (_, Err(error)) = stopped {
@@ -131,7 +131,7 @@ impl Communication {
     }
 }
 
-/// No torques, for a while.
+/// Commands zero torques for a while.
 async fn nothing(moving: &Moving, seconds: Duration) -> Result<MotionReport, MotionError> {
     let mut time = Duration::ZERO;
     let control = moving.robot.control_torques(move |_, step| {
@@ -157,20 +157,20 @@ fn figures(
     })
 }
 
-/// Of times, in microseconds.
+/// Returns quantiles of times, in microseconds.
 pub(super) fn quantiles(times: &Histogram) -> Value {
     let at = |quantile| times.quantile(quantile).map(|time| time.as_micros() as u64);
     json!({ "p50": at(0.5), "p99": at(0.99), "p999": at(0.999), "max": at(1.0) })
 }
 
-/// Such times as text.
+/// Returns the quantiles as text.
 pub(super) fn times(quantiles: &Value) -> String {
     let at = |quantile: &str| quantiles[quantile].as_u64().unwrap_or(0);
     let [p50, p99, p999, max] = ["p50", "p99", "p999", "max"].map(at);
     format!("p50 {p50:>6}  p99 {p99:>6}  p99.9 {p999:>6}  max {max:>6}  us")
 }
 
-/// The figures of one robot as text.
+/// Returns the figures of one robot as text.
 pub(super) fn table(figures: &Value) -> String {
     let rate = |of: &str| figures["success_rate"][of].as_f64().unwrap_or(0.0);
     format!(

@@ -44,16 +44,17 @@ pub(crate) struct Trial {
 
 impl Trial {
     pub(super) async fn run(mut self) -> anyhow::Result<Ending> {
-        // From here on every signal ends it in order, also between two steps.
+        // From here on every signal ends the trial properly, also between two steps.
         let mut interrupt = pin!(interrupted()?);
         let recording = self.recording()?;
         let mut file = NewFile::create(&self.report).map_err(of_file)?;
         let options = RecordOptions {
-            // Recordings of trials are passed on.
+            // Recordings of trials are shared, so the host is not named.
             metadata: BTreeMap::from([("host".to_owned(), String::new())]),
             ..RecordOptions::default()
         };
-        // A signal meanwhile is seen after that, so that there is a report beside the recording.
+        // A signal in the meantime is handled afterwards, so that a report exists in addition to
+        // the recording.
         let moving = self.mover.how.begin_with(&self.mover.which, options);
         let moving = moving.await?;
         let secrets = secrets(&moving);
@@ -83,7 +84,8 @@ impl Trial {
         output.print(&report, || report.summary())
     }
 
-    /// Names the recording, if no other name was given. Returns the name without its folder.
+    /// Sets the name of the recording, if no other name was given. Returns the name without its
+    /// folder.
     fn recording(&mut self) -> anyhow::Result<String> {
         let beside = self.report.with_extension("mcap");
         let path = self.mover.how.record.get_or_insert(beside);
@@ -101,7 +103,7 @@ impl Trial {
     }
 }
 
-/// What a report does not name.
+/// Returns the texts that a report must not contain.
 fn secrets(moving: &Moving) -> Vec<String> {
     let address = moving.robot.address();
     vec![
@@ -115,5 +117,5 @@ fn secrets(moving: &Moving) -> Vec<String> {
 /// Speed, as a factor of the default: 75 mm/s at most.
 const PACE: f64 = 0.25;
 
-/// The most that the hand presses with, `[N]`.
+/// Largest force of the hand, `[N]`.
 const FORCE: f64 = 15.0;

@@ -1,4 +1,4 @@
-//! The state of a robot as a page of text.
+//! The state of a robot as a text page.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use crate::connection::{Place, kind_name};
 use crate::output::{BAD, BOLD, DIM, GOOD, WARN, unsigned_zero};
 
-/// The newest state with all that is known beside it, as JSON.
+/// Returns the newest state with all other known data, as JSON.
 pub(super) fn value(robot: &Robot, place: &Place) -> Value {
     let stats = robot.stats();
     let microseconds = |quantile| {
@@ -34,7 +34,7 @@ pub(super) fn value(robot: &Robot, place: &Place) -> Value {
     })
 }
 
-/// The newest state as lines of 80 columns at most.
+/// Returns the newest state as lines of at most 80 columns.
 pub(super) fn text(robot: &Robot, place: &Place) -> String {
     let state = robot.state();
     let mut text = String::new();
@@ -112,7 +112,7 @@ fn joints(text: &mut String, state: &RobotState, model: &Model) {
     }
 }
 
-/// A line with a mark at a share of its length.
+/// Returns a line with a mark at a share of its length.
 fn bar(share: f64, style: Style) -> String {
     let at = (share * (BAR - 1) as f64).round() as usize;
     let (before, after) = ("─".repeat(at), "─".repeat(BAR - 1 - at));

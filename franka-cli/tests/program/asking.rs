@@ -7,7 +7,7 @@ use crate::program::{Home, until};
 use crate::simulated::Simulated;
 use crate::terminal::Terminal;
 
-/// A motion of the hand by 50 mm.
+/// Returns the arguments of a motion of the hand by 50 mm.
 fn up(robot: &str) -> [&str; 6] {
     ["move", robot, "--by", "0,0,0.05", "--realtime", "ignore"]
 }
@@ -96,7 +96,7 @@ fn an_arm_that_moves_while_somebody_reads_is_not_moved_as_said() {
     );
 }
 
-/// Where an arm was, but for the noise of its sensors and its brakes.
+/// Checks a position, within the noise of the sensors and the motion of the brakes.
 #[track_caller]
 fn near(q: [f64; 7], expected: [f64; 7]) {
     for (q, expected) in q.iter().zip(expected) {

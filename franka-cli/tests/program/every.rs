@@ -1,4 +1,4 @@
-//! What holds for every command: tables of commands, each in the same situation.
+//! Properties of every command: tables of commands, each in the same situation.
 
 use std::net::TcpListener;
 use std::path::Path;
@@ -14,7 +14,7 @@ use crate::program::{Home, until};
 use crate::simulated::Simulated;
 use crate::terminal::Terminal;
 
-/// Commands that only look, or set something. `run.mcap` is a recording.
+/// Commands without motion: reading and settings. `run.mcap` is a recording.
 const STILL: [&str; 16] = [
     "state ROBOT",
     "read ROBOT robot_mode",
@@ -44,7 +44,7 @@ const MOVING: [&str; 6] = [
     "trial ROBOT --report new.md --yes --realtime ignore",
 ];
 
-/// Others that connect.
+/// Other commands that connect.
 const OTHER: [&str; 4] = [
     "state ROBOT --watch --json",
     "dash ROBOT --listen 127.0.0.1:0",
@@ -52,14 +52,14 @@ const OTHER: [&str; 4] = [
     "gripper grasp HAND --width 0.03 --yes",
 ];
 
-/// Motions that are soon over, and the checks that ask the robot.
+/// Short motions, and the checks that contact the robot.
 const SHORT: [&str; 3] = [
     "guide ROBOT --seconds 0.1 --yes --realtime ignore",
     "test communication ROBOT --seconds 0.2 --yes --realtime ignore",
     "doctor ROBOT --only robot,disk --for read --quick",
 ];
 
-/// Commands that go on until Ctrl-C, which is their end, and what they show once they have begun.
+/// Commands that run until Ctrl-C, and the text that they show at their beginning.
 const LASTING: [(&str, &str); 7] = [
     ("sim --port 0", "vacuum gripper on"),
     ("sim --robot fer --port 0", "vacuum gripper on"),
@@ -83,7 +83,7 @@ const ALONE: [&str; 9] = [
     "bench loop --seconds 0.1",
 ];
 
-/// The words of a command, with these addresses.
+/// Returns the words of a command, with these addresses.
 fn words<'a>(command: &'a str, robot: &'a str, hand: &'a str) -> Vec<&'a str> {
     let word = |word| match word {
         "ROBOT" => robot,
@@ -93,7 +93,7 @@ fn words<'a>(command: &'a str, robot: &'a str, hand: &'a str) -> Vec<&'a str> {
     command.split(' ').map(word).collect()
 }
 
-/// Records a motion of a robot like this to `run.mcap`; returns the robot.
+/// Records a motion of such a robot to `run.mcap`; returns the robot.
 fn record(home: &Home, sim: Sim) -> Simulated {
     let sim = Simulated::fast(sim);
     let robot = sim.address();
@@ -213,7 +213,7 @@ fn everything_fits_into_a_terminal_of_80_columns() {
         fits("tap", &home, tape, &[0]);
         for command in STILL.iter().chain(&ALONE).chain(&SHORT) {
             let terminal = Terminal::run(&home, &words(command, &robot, &hand));
-            // The doctor has found something that fails, on a busy host.
+            // On a busy host, a check of the doctor may fail.
             let codes: &[i32] = match command.starts_with("doctor") {
                 true => &[0, 1],
                 false => &[0],
@@ -234,7 +234,8 @@ fn everything_fits_into_a_terminal_of_80_columns() {
     });
 }
 
-/// Waits for the end of a command with one of these `codes`. Everything that it has shown fits.
+/// Waits for the end of a command with one of these `codes`, and checks that its output fits the
+/// terminal.
 #[track_caller]
 fn fits(command: &str, home: &Home, terminal: Terminal, codes: &[i32]) {
     let (code, shown) = terminal.ended();
@@ -243,10 +244,10 @@ fn fits(command: &str, home: &Home, terminal: Terminal, codes: &[i32]) {
         "{command}: {shown}"
     );
     let shown = anstream::adapter::strip_str(&shown).to_string();
-    // A progress bar begins its line again, and a page at the first line.
+    // A progress bar rewrites its line, and a page its first line.
     let lines = shown.split(['\n', '\r']).map(|line| line.chars().count());
     let longest = lines.max().unwrap_or(0);
-    // Names of files are as long as they are, and a log is for other programs, too.
+    // File names have their own length, and a log is for other programs, too.
     let has_path = shown.contains(&*home.as_ref().to_string_lossy()) || shown.contains(" INFO ");
     assert!(longest <= 80 || has_path, "{command}: {shown}");
     assert!(longest > 0 || command.contains(" convert "), "{command}");
@@ -255,7 +256,7 @@ fn fits(command: &str, home: &Home, terminal: Terminal, codes: &[i32]) {
     }
 }
 
-/// Deletes a file, if it is there.
+/// Deletes a file, if it exists.
 fn remove(file: &Path) {
     if file.exists() {
         std::fs::remove_file(file).expect("deleted");

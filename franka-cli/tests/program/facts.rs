@@ -1,4 +1,4 @@
-//! Commands that print facts.
+//! Commands that print results.
 
 use crate::program::Home;
 use crate::simulated::Simulated;
@@ -49,7 +49,7 @@ fn colours_of_logs_follow_the_rules_of_no_color() {
     assert!(!log_lines(&shown).contains('\x1b'), "{shown:?}");
 }
 
-/// The lines of a log, by its level.
+/// Returns the lines of a log, by their level.
 fn log_lines(shown: &str) -> String {
     let lines = shown.lines().filter(|line| line.contains("INFO"));
     let lines = lines.collect::<Vec<_>>().join("\n");
@@ -173,7 +173,7 @@ fn robots_have_names() {
         home.run(&["robots", "list", "--json"]).json()["robots"]["left"]["realtime"],
         "ignore"
     );
-    // The only one counts without its name, which is given with the address elsewhere.
+    // A single robot needs no name; an address replaces it.
     let text = home.run(&["state"]).done();
     assert!(text.contains(&format!("left ({robot})")), "{text}");
     home.run(&["robots", "add", "right", "127.0.0.1:1"]).done();
@@ -191,7 +191,7 @@ fn robots_have_names() {
         .failed(2, &["robots.toml", "port"]);
 }
 
-/// As in a container: the file of names is not needed, and there is no place for it.
+/// As in a container: the file of names is not needed, and its directory does not exist.
 #[test]
 fn an_address_needs_no_home() {
     let (home, sim) = (Home::new(), Simulated::fr3());
@@ -252,7 +252,7 @@ fn failures_are_json_on_standard_output_too() {
         "--json",
     ];
     assert_eq!(error(&asked, 5)["kind"], "not_confirmed");
-    // Without the option, nothing.
+    // Without the option, nothing is printed.
     let ran = home.run(&["state", &nowhere]);
     assert_eq!(ran.out, "", "{ran:?}");
 }

@@ -30,7 +30,7 @@ fn the_hand_opens_grasps_and_lets_go() {
         let state = home.run(&["gripper", "state", &hand, "--json"]).json();
         assert_eq!(state["is_grasped"], false, "{state}");
         run(&["open"]).done();
-        // The object is in the way.
+        // The object blocks the fingers.
         run(&["close"]).failed(1, &["did not close"]);
     });
 }

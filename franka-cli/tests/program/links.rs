@@ -1,4 +1,4 @@
-//! A robot that takes no motion, one that goes away.
+//! A robot that accepts no motion, and a robot that disconnects.
 
 use franka_async::state::RobotMode;
 use nix::sys::signal::Signal;
@@ -57,13 +57,13 @@ fn ctrl_c_ends_the_watching_with_code_0() {
     watching.ended().done();
 }
 
-/// The next line of its output.
+/// Returns the next line of its output.
 fn read_line(program: &mut crate::program::Started) -> String {
     use std::io::Read;
     let mut line = Vec::new();
     let out = program.child().stdout.as_mut().expect("piped");
     let mut byte = [0];
-    // Byte by byte: nothing of what comes later is taken.
+    // Byte by byte, so that later output is not consumed.
     while byte[0] != b'\n' {
         out.read_exact(&mut byte).expect("a line");
         line.push(byte[0]);

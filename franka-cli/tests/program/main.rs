@@ -1,15 +1,15 @@
-//! The program `franka` against simulated robots in the process of the tests: in pipes, and in
-//! pseudo-terminals where it asks or draws. Simulators wait for commands that a busy computer sends
-//! late; no verdict depends on how punctual it is.
+//! The program `franka` against simulated robots in the test process, in pipes, and in
+//! pseudo-terminals for questions and drawings. Simulators wait for late commands of a busy
+//! computer; no verdict depends on its punctuality.
 //!
-//! | module | what |
+//! | module | content |
 //! |---|---|
-//! | `facts` | commands that print facts, wrong arguments, names of robots |
-//! | `links` | a robot that takes no motion, one that goes away |
+//! | `facts` | commands that print results, wrong arguments, names of robots |
+//! | `links` | a robot that accepts no motion, a robot that disconnects |
 //! | `watching` | `--watch` |
 //! | `asking` | questions before motions |
-//! | `every` | tables of all commands: no robot, one that is taken, Ctrl-C, reflexes, a terminal |
-//! | `moving` | motions, and what ends them early |
+//! | `every` | tables of all commands: no robot, a robot in use, Ctrl-C, reflexes, a terminal |
+//! | `moving` | motions, and their early ends |
 //! | `fingers` | the Hand |
 //! | `settings` | tool, collision, recovery, stop |
 //! | `recording` | recordings and cassettes |

@@ -1,4 +1,4 @@
-//! Tests of connections, benchmarks, and the simulator as a command. No figure is judged.
+//! Tests of connections, benchmarks, and the simulator as a command. No measured figure is judged.
 
 #[path = "../../../franka-doctor/tests/trace/harm.rs"]
 mod harm;
@@ -39,7 +39,7 @@ fn a_connection_is_tested_or_two() {
     let json: Value = serde_json::from_str(&ran.out).unwrap_or_else(|_| panic!("{ran:?}"));
     let robots = json["robots"].as_array().expect("robots");
     assert_eq!(robots.len(), 2, "{json}");
-    // A machine that is busy has commands of both come late.
+    // On a busy machine, the commands of both are late.
     let rates = robots.iter().map(|it| it["success_rate"]["avg"].as_f64());
     let worst = rates.map(|rate| rate.expect("a rate")).fold(1.0, f64::min);
     let expected = match worst {
@@ -104,7 +104,7 @@ fn this_computer_and_the_way_to_a_robot_are_checked() {
     Simulated::each(|sim| {
         let robot = sim.address();
         let ran = home.run(&["doctor", &robot, "--for", "read", "--quick", "--json"]);
-        // Whether this computer is fit for it is not judged here.
+        // The test does not judge the suitability of this computer.
         assert!(matches!(ran.code, Some(0 | 1)), "{ran:?}");
         assert_eq!(ran.err, "", "{ran:?}");
         let json: serde_json::Value = serde_json::from_str(&ran.out).expect("JSON");
@@ -136,7 +136,7 @@ fn this_computer_and_the_way_to_a_robot_are_checked() {
     );
 }
 
-/// The dry run of the control loop, and a robot that is connected to, included.
+/// Includes the dry run of the control loop, and a connected robot.
 #[test]
 fn a_doctor_changes_nothing_on_this_computer() {
     let (home, sim) = (Home::new(), Simulated::fr3());
@@ -155,7 +155,7 @@ fn a_doctor_changes_nothing_on_this_computer() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
-/// What a report in JSON says of this check.
+/// Returns the verdict on this check in a JSON report.
 fn verdict<'a>(report: &'a serde_json::Value, id: &str) -> &'a str {
     let findings = report["findings"].as_array().expect("findings");
     let found = findings.iter().find(|finding| finding["id"] == id);
@@ -168,11 +168,11 @@ fn what_desk_says_is_the_reason_of_a_refusal() {
     let home = Home::new();
     let desk = TcpListener::bind("127.0.0.1:0").expect("a port");
     let address = desk.local_addr().expect("bound").to_string();
-    // Serves whoever comes until the process ends: a Desk whose system is starting.
+    // Serves all clients until the process ends: a Desk whose system is starting.
     std::thread::spawn(move || {
         for client in desk.incoming() {
             let mut client = client.expect("a client");
-            // Not TLS: the client then asks plainly.
+            // Not TLS: the client then uses plain HTTP.
             let mut request = [0; 512];
             let length = client.read(&mut request).expect("a request");
             let json = match &request[..length] {
@@ -183,7 +183,7 @@ fn what_desk_says_is_the_reason_of_a_refusal() {
             };
             let head = "HTTP/1.1 200 OK\r\nConnection: close\r\nContent-Length:";
             let answer = format!("{head} {}\r\n\r\n{json}", json.len());
-            // A client that wants TLS goes away.
+            // A client that expects TLS disconnects.
             let _ = client.write_all(answer.as_bytes());
         }
     });
@@ -215,13 +215,13 @@ fn a_robot_that_is_taken_or_too_old_is_reported() {
     });
     let old = TcpListener::bind("127.0.0.1:0").expect("a port");
     let robot = old.local_addr().expect("bound").to_string();
-    // Serves whoever comes until the process ends.
+    // Serves all clients until the process ends.
     std::thread::spawn(move || {
         for client in old.incoming() {
             let mut client = client.expect("a client");
             let mut handshake = [0; 16];
             client.read_exact(&mut handshake).expect("a handshake");
-            // The answer to the first request, of 15 bytes in all: incompatible, version 7.
+            // The answer to the first request, 15 bytes in total: incompatible, version 7.
             let refusal = [0, 0, 0, 0, 0, 0, 0, 0, 15, 0, 0, 0, 1, 7, 0];
             client.write_all(&refusal).expect("sent");
         }

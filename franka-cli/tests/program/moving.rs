@@ -1,4 +1,4 @@
-//! Motions, and what ends them early.
+//! Motions, and their early ends.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -13,13 +13,13 @@ use nix::unistd::Pid;
 use crate::program::{Home, until};
 use crate::simulated::Simulated;
 
-/// Arguments of a motion that starts without a question.
+/// Returns the arguments of a motion that starts without a question.
 fn moving<'a>(robot: &'a str, rest: &[&'a str]) -> Vec<&'a str> {
     let all = ["move", robot, "--realtime", "ignore", "--yes"];
     all.iter().chain(rest).copied().collect()
 }
 
-/// One that takes some seconds.
+/// A motion of some seconds.
 const SLOW: [&str; 4] = ["--by", "0,0.2,0", "--speed", "0.3"];
 
 #[test]
@@ -70,7 +70,7 @@ fn what_cannot_be_reached_is_refused_before_anything_moves() {
 fn without_real_time_rights_nothing_moves() {
     let (home, sim) = (Home::new(), Simulated::fr3());
     let ran = home.run(&["move", &sim.address(), "--ready", "--yes"]);
-    // A host that grants them moves the arm.
+    // A host that grants the rights moves the arm.
     if ran.code != Some(0) {
         ran.failed(6, &["--realtime ignore"]);
     }
@@ -152,7 +152,7 @@ fn ctrl_c_at_a_recovery_says_that_it_may_go_on() {
     });
 }
 
-/// Interrupts a program, and waits for its end or some seconds: the robot stands still meanwhile.
+/// Interrupts a program, and waits for its end or some seconds: the robot is at rest meanwhile.
 fn interrupt_and_wait(id: u32) {
     kill(Pid::from_raw(id as i32), Signal::SIGINT).expect("it runs");
     let begin = Instant::now();
@@ -167,7 +167,7 @@ fn interrupt_and_wait(id: u32) {
 
 #[test]
 fn a_motion_that_ends_for_want_of_packets_names_causes_on_this_computer() {
-    // After some 200 commands no more get through.
+    // After about 200 commands all are lost.
     let lost = Conditions {
         loss: Loss::Bursts(BurstLoss {
             begin: 0.005,
@@ -205,7 +205,7 @@ fn a_guided_arm_is_held_again_at_the_end() {
     });
 }
 
-/// By a second Ctrl-C, and without one after some seconds.
+/// Through a second Ctrl-C, or automatically after some seconds.
 #[test]
 fn guide_ends_while_a_hand_pushes_on() {
     for again in [true, false] {
@@ -234,7 +234,7 @@ fn guide_ends_while_a_hand_pushes_on() {
             }
             let ran = program.ended();
             ended.store(true, Ordering::Relaxed);
-            // The arm rests between two pushes, or is not seen to.
+            // The arm may be at rest between two pushes.
             assert!(matches!(ran.code, Some(1 | 130)), "{ran:?}");
             assert!(begin.elapsed() < Duration::from_secs(30), "{ran:?}");
         });

@@ -11,7 +11,7 @@ use tungstenite::client::IntoClientRequest as _;
 use crate::program::{Home, Started, until};
 use crate::simulated::Simulated;
 
-/// The address in the first line that has one, and that serves the page.
+/// Returns the address from the first line with an address that serves the page.
 fn page(program: &mut Started) -> String {
     let out = program.child().stdout.as_mut().expect("piped");
     let lines = BufReader::new(out).lines().map(|line| line.expect("text"));
@@ -20,7 +20,7 @@ fn page(program: &mut Started) -> String {
     address.trim_end_matches('/').to_owned()
 }
 
-/// What the server answers to a browser.
+/// Returns the server's answer to a browser.
 fn get(address: &str, path: &str) -> String {
     let mut socket = TcpStream::connect(address).expect("it listens");
     let request = format!("GET {path} HTTP/1.1\r\nHost: {address}\r\nConnection: close\r\n\r\n");
@@ -181,7 +181,7 @@ fn recording_of_a_page_is_complete_after_ctrl_c_and_a_lost_robot() {
             socket.send(request).expect("it reads");
         }
         let file = || std::fs::read_dir(&folder).expect("a folder").next();
-        // The first write comes after a second; what follows is not on the disk yet.
+        // The first write happens after a second; later data is not on the disk yet.
         until("a chunk", || {
             let length = file().map_or(0, |it| it.expect("a file").metadata().expect("it").len());
             length > 10_000

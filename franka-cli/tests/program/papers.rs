@@ -30,7 +30,7 @@ fn shells_complete_arguments() {
     }
 }
 
-/// The arguments that fish offers; nothing is checked where it is not installed.
+/// Checks the arguments offered by fish; skipped if fish is not installed.
 #[test]
 fn fish_offers_files_only_where_they_are_taken() {
     let home = Home::new();
@@ -108,7 +108,7 @@ fn the_book_has_the_exit_codes_of_the_help() {
     assert_eq!(count, 10);
 }
 
-/// The script of the action that other repositories use in their CI.
+/// The script of the action for other repositories' CI.
 #[test]
 fn the_action_starts_a_simulator_and_says_why_not() {
     let home = Home::new();
@@ -126,7 +126,7 @@ fn the_action_starts_a_simulator_and_says_why_not() {
         command.env("GITHUB_OUTPUT", home.path("outputs"));
         command.output().expect("bash")
     };
-    // Of several lines, and with quotes.
+    // Arguments on several lines, and with quotes.
     let said = start("--port\n'0'\n--virtual-time", "60");
     let outputs = std::fs::read_to_string(home.path("outputs")).expect("it has outputs");
     let pid = outputs.lines().find_map(|line| line.strip_prefix("pid="));

@@ -1,4 +1,4 @@
-//! The program, with a configuration of its own.
+//! The program, with a separate configuration.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -22,12 +22,12 @@ impl Home {
         Self(folder)
     }
 
-    /// A path in it.
+    /// Returns a path in the folder.
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.0.join(name)
     }
 
-    /// The program with these arguments, not started.
+    /// Returns the program with these arguments, not started.
     pub(crate) fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_franka"));
         command
@@ -58,7 +58,7 @@ impl Home {
 
 impl Drop for Home {
     fn drop(&mut self) {
-        // Left behind if it cannot be deleted.
+        // The folder is left behind if it cannot be deleted.
         let _ = fs::remove_dir_all(&self.0);
     }
 }
@@ -69,7 +69,7 @@ impl AsRef<Path> for Home {
     }
 }
 
-/// How the program ended.
+/// The end of the program.
 #[derive(Debug)]
 pub(crate) struct Ran {
     pub(crate) code: Option<i32>,
@@ -86,7 +86,7 @@ impl Ran {
         }
     }
 
-    /// It ended with this code, and its errors have these texts.
+    /// Checks that it ended with this code, and that its errors contain these texts.
     #[track_caller]
     pub(crate) fn failed(&self, code: i32, texts: &[&str]) {
         assert_eq!(self.code, Some(code), "{self:?}");
@@ -96,14 +96,14 @@ impl Ran {
         assert!(!self.err.contains("panicked"), "{self:?}");
     }
 
-    /// It did what was asked; returns what it printed.
+    /// Checks that it succeeded; returns its output.
     #[track_caller]
     pub(crate) fn done(self) -> String {
         assert_eq!(self.code, Some(0), "{self:?}");
         self.out
     }
 
-    /// It did what was asked; returns the JSON that it printed.
+    /// Checks that it succeeded; returns its JSON output.
     #[track_caller]
     pub(crate) fn json(self) -> serde_json::Value {
         let out = self.done();
@@ -114,7 +114,7 @@ impl Ran {
     }
 }
 
-/// A program that runs; killed when dropped.
+/// A running program; killed when dropped.
 pub(crate) struct Started(Option<Child>);
 
 impl Started {
@@ -137,21 +137,21 @@ impl Started {
 impl Drop for Started {
     fn drop(&mut self) {
         if let Some(child) = &mut self.0 {
-            // It may have ended by itself.
+            // The process may have ended already.
             let _ = child.kill();
             let _ = child.wait();
         }
     }
 }
 
-/// The first address of a robot in what a tap or a player says, if the whole of it is there.
+/// Returns the first address of a robot in the output of a tap or a player, if it is complete.
 pub(crate) fn robot_address(text: &str) -> Option<String> {
     let (_, rest) = text.split_once("robot at ")?;
     let end = rest.find([',', '\r', '\n'])?;
     Some(rest[..end].to_owned())
 }
 
-/// Waits until something is so; the limit is for a program that hangs.
+/// Waits until a condition is true; the limit is for a program that hangs.
 #[track_caller]
 pub(crate) fn until(what: &str, mut is_so: impl FnMut() -> bool) {
     let begin = Instant::now();

@@ -67,11 +67,11 @@ fn a_motion_is_recorded_exported_and_replayed() {
             "nothing",
         ];
         home.run(&bad).failed(2, &["nothing"]);
-        // Targets come by the clock on the wall.
+        // Targets arrive by the wall clock.
         let robot = patient.address();
         let replay = ["replay", "run.mcap", &robot, "--speed", "0.8"];
         let ran = home.run(&replay[..3]);
-        // A host that grants real-time rights is asked.
+        // On a host with real-time rights, the question is asked.
         if ran.code != Some(5) {
             ran.failed(6, &["realtime"]);
         }
@@ -152,7 +152,8 @@ fn a_file_of_another_program_is_refused_with_its_name() {
     assert!(!home.path("bag.csv").exists() && !home.path("data").exists());
 }
 
-/// An MCAP file with nothing but what each has: the record that names its writer, and an end.
+/// Returns an MCAP file with the minimum of every file: the record that names its writer, and an
+/// end.
 fn foreign_mcap() -> Vec<u8> {
     let text = |text: &str| [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat();
     let record = |kind: u8, body: &[u8]| {
@@ -162,7 +163,7 @@ fn foreign_mcap() -> Vec<u8> {
     let magic = b"\x89MCAP0\r\n";
     let header = [text("ros2"), text("libmcap 0.8.0")].concat();
     let mut file = [&magic[..], &record(0x01, &header), &record(0x0f, &[0; 4])].concat();
-    // The summary has one record, of statistics: none of anything.
+    // The summary has one record, of statistics, all zero.
     let summary = (file.len() as u64).to_le_bytes();
     file.extend(record(0x0b, &[0; 46]));
     let footer = [&summary[..], &[0; 12]].concat();
@@ -171,7 +172,7 @@ fn foreign_mcap() -> Vec<u8> {
     file
 }
 
-/// A table of libfranka 0.9.2 in which joint 4 leaps, and the text of its exception.
+/// Returns a table of libfranka 0.9.2 in which joint 4 jumps, and the text of its exception.
 fn log_of_libfranka() -> String {
     let vectors = [
         ("state.q", 7),
@@ -260,7 +261,7 @@ fn episodes_become_a_dataset() {
             let recorder = Recorder::to_file(&file, RecordOptions::default())?;
             recorder.attach(&robot, Track::default()).await?;
             recorder.attach_gripper(&gripper, "")?;
-            // From when it has said where it is, as the robot's time is fast.
+            // From the time when it has reported its address, because the robot's time is fast.
             gripper.homing().await?;
             for (name, way) in [("one", 0.03), ("two", -0.03)] {
                 recorder.begin_episode(name, "move the hand")?;
@@ -274,7 +275,7 @@ fn episodes_become_a_dataset() {
         };
         runtime.block_on(recorded).expect("recorded");
         let export = ["export", "run.mcap", "--lerobot", "data", "--fps", "20"];
-        // Nothing leads the arm before and after its motions: those frames are left out.
+        // The arm is not under control before and after its motions: those frames are left out.
         let led = home.run(&[&export[..], &["--json"]].concat()).json();
         std::fs::remove_dir_all(home.path("data")).expect("deleted");
         let export = [&export[..], &["--measured"]].concat();
@@ -285,7 +286,7 @@ fn episodes_become_a_dataset() {
         assert_eq!(led["episodes"], 2, "{led}");
         let led = led["frames"].as_u64().expect("a count");
         assert!((5..=frames).contains(&led), "{led} of {frames}");
-        // They are added to the dataset that is there.
+        // They are added to the existing dataset.
         let text = home.run(&export).done();
         assert_eq!(text.trim(), format!("2 episodes, {frames} frames"));
         let info = std::fs::read_to_string(home.path("data/meta/info.json")).expect("a dataset");
@@ -385,7 +386,7 @@ fn a_session_is_tapped_played_and_converted() {
             text.contains(" connections, ") && text.contains("0 dropped"),
             "{text}"
         );
-        // Of each connection; an FER refuses the first one, whose version is too new.
+        // For each connection; an FER refuses the first one, whose version is too new.
         let datagrams = |file: &str| -> Vec<u64> {
             let info = home.run(&["cassette", "info", file, "--json"]).json();
             let connections = info["connections"].as_array().expect("a list");
@@ -416,7 +417,7 @@ fn a_session_is_tapped_played_and_converted() {
     });
 }
 
-/// The address of the robot, from the first line on standard error.
+/// Returns the address of the robot, from the first line on standard error.
 fn address(program: &mut crate::program::Started) -> String {
     use std::io::Read;
     let (mut line, mut byte) = (Vec::new(), [0]);

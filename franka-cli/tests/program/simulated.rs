@@ -9,7 +9,7 @@ use tokio::runtime::Runtime;
 
 use crate::program::until;
 
-/// A simulated robot with a Hand, and the runtime that it runs on.
+/// A simulated robot with a Hand, and its runtime.
 pub(crate) struct Simulated {
     runtime: Runtime,
     sim: Running,
@@ -24,18 +24,19 @@ impl Simulated {
         Self::of(Sim::fer())
     }
 
-    /// Both robots, side by side.
+    /// Runs a test with both robots, in parallel.
     pub(crate) fn each(test: impl Fn(&Self) + Sync) {
         Self::each_kind(|_, sim| test(sim));
     }
 
-    /// Both robots, one after the other, as [`Self::fast`] makes them: each keeps a processor busy.
+    /// Runs a test with both robots, one after the other, from [`Self::fast`]: each keeps a
+    /// processor busy.
     pub(crate) fn each_fast(test: impl Fn(&Self)) {
         test(&Self::fast(Sim::fr3()));
         test(&Self::fast(Sim::fer()));
     }
 
-    /// Both robots, side by side, with others like them that have not been started.
+    /// Runs a test with both robots, in parallel, and with unstarted robots of the same kind.
     pub(crate) fn each_kind(test: impl Fn(Sim, &Self) + Sync) {
         thread::scope(|scope| {
             for kind in [Sim::fr3 as fn() -> Sim, Sim::fer] {
@@ -45,7 +46,7 @@ impl Simulated {
         });
     }
 
-    /// Its clock goes as fast as the program answers: for motions that nothing interrupts.
+    /// Starts a robot whose clock runs as fast as the program answers, for uninterrupted motions.
     pub(crate) fn fast(sim: Sim) -> Self {
         Self::start(sim.virtual_time(PATIENCE))
     }
@@ -54,7 +55,7 @@ impl Simulated {
         Self::start(sim.wait_for_commands(PATIENCE))
     }
 
-    /// As it is, with a tool and a Hand.
+    /// Starts a robot with a tool and a Hand.
     pub(crate) fn start(sim: Sim) -> Self {
         let runtime = Runtime::new().expect("a runtime");
         let object = Fingers::new().with_object(0.03);
@@ -63,17 +64,17 @@ impl Simulated {
         Self { runtime, sim }
     }
 
-    /// Where the robot is.
+    /// Returns the robot's address.
     pub(crate) fn address(&self) -> String {
         self.sim.addr().to_string()
     }
 
-    /// Where its Hand is.
+    /// Returns the address of its Hand.
     pub(crate) fn hand(&self) -> String {
         self.sim.hand().expect("a Hand").addr().to_string()
     }
 
-    /// How far the fingers are apart, `[m]`.
+    /// Returns the distance between the fingers, `[m]`.
     pub(crate) fn fingers_width(&self) -> f64 {
         let hand = self.sim.hand().expect("a Hand");
         let width = hand.with(|hand| hand.state().width);
@@ -101,7 +102,7 @@ impl Simulated {
         });
     }
 
-    /// The arm rests, and the robot is in this mode.
+    /// Checks that the arm is at rest, and the robot is in this mode.
     #[track_caller]
     pub(crate) fn rests(&self, mode: RobotMode) {
         until("rest", || {
@@ -116,12 +117,12 @@ impl Simulated {
     }
 }
 
-/// The fastest joint, `[rad/s]`.
+/// Returns the speed of the fastest joint, `[rad/s]`.
 fn speed(state: &RobotState) -> f64 {
     state.dq.iter().fold(0.0, |most, dq| dq.abs().max(most))
 }
 
-/// For commands of a busy computer: twenty that are missing in a row end a motion. A command that
-/// the driver has skipped is waited for that long, too, without a state; after a second without any
-/// the driver gives the robot up.
+/// Time limit for commands of a busy computer: twenty consecutive missing commands end a motion.
+/// The robot also waits this long, without sending states, for a command that the driver has
+/// skipped. After a second without states the driver considers the robot lost.
 const PATIENCE: Duration = Duration::from_millis(100);

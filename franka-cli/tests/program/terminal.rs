@@ -13,11 +13,11 @@ use nix::unistd::Pid;
 
 use crate::program::{Home, robot_address, until};
 
-/// A program, and the terminal that it runs in. Killed when dropped.
+/// A program with its terminal. Killed when dropped.
 pub(crate) struct Terminal {
     child: Child,
     input: File,
-    /// What it has shown so far.
+    /// Its output so far.
     shown: Arc<Mutex<String>>,
     /// Ends when the program has closed the terminal.
     reader: Option<JoinHandle<()>>,
@@ -28,7 +28,7 @@ impl Terminal {
         Self::with(home, arguments, &[])
     }
 
-    /// With these variables of the environment.
+    /// Starts the program with these environment variables.
     pub(crate) fn with(home: &Home, arguments: &[&str], variables: &[(&str, &str)]) -> Self {
         let size = Winsize {
             ws_row: 30,
@@ -78,7 +78,7 @@ impl Terminal {
         until(&format!("{text:?}"), || self.shown().contains(text));
     }
 
-    /// Waits for the address of the robot that a tap or a player shows.
+    /// Waits for the robot's address in the output of a tap or a player.
     pub(crate) fn address(&self) -> String {
         let mut address = None;
         until("an address", || {
@@ -96,10 +96,10 @@ impl Terminal {
         kill(Pid::from_raw(self.child.id() as i32), signal).expect("it runs");
     }
 
-    /// Waits for its end; returns the exit code, and what it has shown.
+    /// Waits for its end; returns the exit code, and its output.
     pub(crate) fn ended(mut self) -> (Option<i32>, String) {
         let code = self.child.wait().expect("it ends").code();
-        // What it wrote last is on its way.
+        // Its last output is in transit.
         let reader = self.reader.take().expect("not ended");
         reader.join().expect("no panic");
         let shown = mem::take(&mut *self.shown.lock().expect("no panic"));
@@ -109,7 +109,7 @@ impl Terminal {
 
 impl Drop for Terminal {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // The process may have ended already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -13,13 +13,13 @@ use crate::program::{Home, until};
 use crate::simulated::Simulated;
 use crate::terminal::Terminal;
 
-/// Arguments of a trial; one with `--yes` asks nothing.
+/// Returns the arguments of a trial; with `--yes` it asks nothing.
 fn trial<'a>(robot: &'a str, rest: &[&'a str]) -> Vec<&'a str> {
     let all = ["trial", robot, "--realtime", "ignore"];
     all.iter().chain(rest).copied().collect()
 }
 
-/// The report of a trial, and the figures in it.
+/// Returns the report of a trial, and its figures.
 #[track_caller]
 fn report(home: &Home, name: &str) -> (String, Value) {
     let text = fs::read_to_string(home.path(name)).expect("a report");
@@ -29,7 +29,7 @@ fn report(home: &Home, name: &str) -> (String, Value) {
     (text, all["trial"].clone())
 }
 
-/// The findings of this step and check.
+/// Returns the findings of this step and check.
 #[track_caller]
 fn found<'a>(report: &'a Value, step: &str, check: &str) -> &'a Value {
     let by = |list: &'a Value, key: &str, name: &str| {
@@ -51,7 +51,7 @@ fn figure(finding: &Value, name: &str) -> f64 {
 /// Steps that move the arm or hold it.
 const STEPS: [&str; 5] = ["hold", "1 cm", "5 cm", "one joint", "a stream"];
 
-/// Arms that stick, flex and are off as real ones are.
+/// Arms with stiction, elasticity and deviations like real arms.
 #[test]
 fn a_trial_ends_in_a_report_and_a_recording() {
     for (sim, seed) in [(Sim::fr3(), 1), (Sim::fer(), 2)] {
@@ -85,11 +85,11 @@ fn a_trial_ends_in_a_report_and_a_recording() {
         assert_eq!(found(&trial, "at rest", "limits")["verdict"], "good");
         assert!(figure(found(&trial, "hold", "drift"), "translation_mm") < 0.5);
         assert!(found(&trial, "at rest", "wrench")["figures"]["wrench"].is_array());
-        // The recording has all of it, and not the name of this computer.
+        // The recording is complete, but does not contain the name of this computer.
         home.run(&["explain", "trial.mcap"]).done();
         let recording = fs::read(home.path("trial.mcap")).expect("a recording");
         assert!(recording.len() > 1_000_000, "{}", recording.len());
-        // Metadata are not compressed: the key and an empty text, each behind its length.
+        // Metadata are not compressed: the key and an empty text, each after its length.
         let nameless = b"\x04\0\0\0host\0\0\0\0";
         assert!(
             recording
@@ -124,13 +124,13 @@ fn a_trial_asks_before_each_step_and_replaces_no_file() {
         "{text}"
     );
     found(&trial_of, "hold", "drift");
-    // Neither the report nor the recording is replaced, and nothing is left behind.
+    // Neither the report nor the recording is replaced, and no other files remain.
     home.run(&trial(&robot, &["--yes"])).failed(6, &["trial."]);
     fs::remove_file(home.path("trial.mcap")).expect("it is there");
     let again = home.run(&trial(&robot, &["--yes"]));
     again.failed(6, &["trial.md", "exists"]);
     assert_eq!(report(&home, "trial.md").0, text);
-    // Without a terminal nothing moves, and the report says so.
+    // Without a terminal the arm does not move, and the report contains the reason.
     let other = home.run(&trial(&robot, &["--report", "other.md"]));
     other.failed(5, &["no terminal"]);
     assert_eq!(report(&home, "other.md").1["ended"]["step"], "hold");
@@ -144,7 +144,7 @@ fn a_trial_asks_before_each_step_and_replaces_no_file() {
     );
 }
 
-/// Pushed while it goes up 5 cm.
+/// Pushed while it moves up 5 cm.
 #[test]
 fn a_reflex_ends_a_trial_with_its_report() {
     for kind in [Sim::fr3 as fn() -> Sim, Sim::fer] {
@@ -193,7 +193,7 @@ fn an_interrupted_trial_brakes_and_says_that_it_is_incomplete() {
     }
 }
 
-/// While the arm is looked at, no motion is under way.
+/// During the observation of the arm, no motion runs.
 #[test]
 fn a_trial_that_is_interrupted_at_rest_moves_nothing() {
     let (home, sim) = (Home::new(), Simulated::fr3());
@@ -209,7 +209,7 @@ fn a_trial_that_is_interrupted_at_rest_moves_nothing() {
 #[test]
 fn a_load_that_is_not_declared_ends_a_trial_before_anything_moves() {
     let (home, sim) = (Home::new(), Simulated::fast(Sim::fr3()));
-    // Thresholds that it does not reach.
+    // Thresholds that are not reached.
     let robot = sim.address();
     home.run(&["collision", "insensitive", &robot]).done();
     sim.with(|robot| {

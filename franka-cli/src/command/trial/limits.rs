@@ -1,12 +1,12 @@
-//! The joint limits that a robot serves, against those that are known.
+//! Comparison of the robot's joint limits with the known limits.
 
 use franka_async::model::limits::JointLimits;
 use franka_async::model::{JointVector, RobotKind};
 
-/// A table of limits, and whose they are.
+/// A table of limits, and its name.
 type Table = (&'static str, &'static JointLimits);
 
-/// Tables of this kind of robot.
+/// Returns the tables for this kind of robot.
 fn tables(kind: RobotKind) -> Vec<Table> {
     match kind {
         RobotKind::Fr3 => vec![
@@ -17,7 +17,7 @@ fn tables(kind: RobotKind) -> Vec<Table> {
     }
 }
 
-/// The table that is nearest to these limits, and the greatest difference from it, if there is any.
+/// Returns the closest table, and the largest difference from it, if any.
 pub(super) fn nearest(kind: RobotKind, served: &JointLimits) -> (&'static str, Option<String>) {
     let compared = tables(kind).into_iter().map(|(name, table)| {
         let most = differences(served, table)
@@ -31,7 +31,7 @@ pub(super) fn nearest(kind: RobotKind, served: &JointLimits) -> (&'static str, O
     (name, most.map(|(_, text)| text))
 }
 
-/// By how much each limit differs, and a text of it.
+/// Returns the difference of each limit, with a text.
 fn differences(served: &JointLimits, table: &JointLimits) -> impl Iterator<Item = (f64, String)> {
     let (of_served, of_table) = (columns(served), columns(table));
     of_served
@@ -49,7 +49,7 @@ fn differences(served: &JointLimits, table: &JointLimits) -> impl Iterator<Item 
         })
 }
 
-/// The limits that descriptions of robots have.
+/// Returns the limits that robot descriptions contain.
 pub(super) fn columns(limits: &JointLimits) -> [(&'static str, &'static str, JointVector); 7] {
     let (deceleration, offset) = match &limits.envelope {
         Some(envelope) => (envelope.deceleration, envelope.offset),
@@ -66,7 +66,7 @@ pub(super) fn columns(limits: &JointLimits) -> [(&'static str, &'static str, Joi
     ]
 }
 
-/// Differences up to this one are of the digits of a text.
+/// Largest difference that comes from the digits of a text.
 const SAME: f64 = 1e-4;
 
 #[cfg(test)]

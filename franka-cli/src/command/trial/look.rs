@@ -1,5 +1,5 @@
-//! Looking at an arm for a while: its mean pose, what its states leave at zero, and how well they
-//! fit the model.
+//! Observation of an arm for a while: its mean pose, zero fields of its states, and the match with
+//! the model.
 
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -30,20 +30,20 @@ impl Mean {
         }
     }
 
-    /// The pose that the robot reports, if it is one.
+    /// Returns the pose reported by the robot, if it is a valid pose.
     pub(super) fn pose(&self) -> Option<Pose> {
         let count = f64::from(self.count);
         pose::from_array(&self.pose.map(|sum| sum / count)).ok()
     }
 
-    /// Joint positions, `[rad]`.
+    /// Returns the joint positions, `[rad]`.
     pub(super) fn q(&self) -> [f64; 7] {
         let count = f64::from(self.count);
         self.q.map(|sum| sum / count)
     }
 }
 
-/// Distance `[m]` and angle `[rad]` between two poses.
+/// Returns distance `[m]` and angle `[rad]` between two poses.
 pub(super) fn apart(one: &Pose, other: &Pose) -> (f64, f64) {
     let way = one.translation.vector - other.translation.vector;
     (way.norm(), one.rotation.angle_to(&other.rotation))
@@ -52,25 +52,25 @@ pub(super) fn apart(one: &Pose, other: &Pose) -> (f64, f64) {
 /// Fields that some robots leave at zero.
 pub(super) const SPARSE: [&str; 4] = ["O_T_EE_c", "elbow_c", "tau_J_d", "O_ddP_O"];
 
-/// States of a while.
+/// Statistics of the states of an observation.
 #[derive(Debug)]
 pub(super) struct Look {
     /// `message_id` of the first and the last state.
     ids: Option<(u64, u64)>,
-    /// How many states came.
+    /// Number of received states.
     pub(super) states: u64,
-    /// Of the third second, when whatever began with the first state is over.
+    /// Mean over the third second, after initial transients.
     pub(super) begin: Mean,
-    /// Of the last second.
+    /// Mean over the last second.
     pub(super) end: Mean,
     /// True for each of [`SPARSE`] that was zero in every state.
     pub(super) zero: [bool; SPARSE.len()],
-    /// Distance of reported poses from those of each of [`sets`], `[m]`.
+    /// Distances between reported poses and the poses of each of [`sets`], `[m]`.
     gaps: Vec<[f64; SETS]>,
 }
 
 impl Look {
-    /// Before the first state.
+    /// Creates statistics without states.
     fn new() -> Self {
         Self {
             ids: None,
@@ -82,7 +82,7 @@ impl Look {
         }
     }
 
-    /// Looks for so long, by the robot's clock.
+    /// Observes for this duration, by the robot's clock.
     pub(super) async fn over(robot: &Robot, duration: Duration) -> Result<Self, ReadError> {
         let mut look = Self::new();
         let sets = sets(&described(robot));
@@ -99,7 +99,7 @@ impl Look {
         Ok(look)
     }
 
-    /// Takes in a state; returns how long it is after the first one, `[ms]`.
+    /// Processes a state; returns the time since the first one, `[ms]`.
     fn push(&mut self, state: &RobotState, sets: &[Model; SETS], duration: u64) -> u64 {
         let id = state.message_id;
         let (first, _) = self.ids.unwrap_or((id, id));
@@ -121,7 +121,7 @@ impl Look {
         for (zero, field) in self.zero.iter_mut().zip(sparse) {
             *zero &= field.iter().all(|value| *value == 0.0);
         }
-        // Enough for a median, and little to compute.
+        // Sufficient for a median, and cheap to compute.
         if self.states % 10 == 1 {
             self.gaps
                 .push(std::array::from_fn(|i| gap(&sets[i], state)));
@@ -129,14 +129,14 @@ impl Look {
         since
     }
 
-    /// How many states between the first and the last did not come.
+    /// Number of missing states between the first and the last.
     pub(super) fn missing(&self) -> u64 {
         let (first, last) = self.ids.unwrap_or_default();
         (last - first + 1).saturating_sub(self.states)
     }
 
-    /// How far reported poses are from those of each of the lengths, `[m]`: the medians. The first
-    /// lengths are those of the model.
+    /// Returns the median distance of reported poses for each of the lengths, `[m]`. The first
+    /// lengths are the model's.
     pub(super) fn geometry(&self, model: &Model) -> [(Lengths, f64); SETS] {
         let lengths = sets(model).map(|model| *model.lengths());
         std::array::from_fn(|i| {
@@ -150,13 +150,13 @@ impl Look {
     }
 }
 
-/// The model with the lengths in the robot's description.
+/// Returns the model with the lengths of the robot's description.
 pub(super) fn described(robot: &Robot) -> Model {
     let described = robot.geometry_check().described;
     robot.model().clone().with_lengths(described)
 }
 
-/// The model as it is, and with each set of lengths that robots are known to have.
+/// Returns the model unchanged, and with each known set of lengths.
 fn sets(model: &Model) -> [Model; SETS] {
     std::array::from_fn(|i| match i {
         0 => model.clone(),
@@ -164,7 +164,7 @@ fn sets(model: &Model) -> [Model; SETS] {
     })
 }
 
-/// Distance of the pose that a state reports from that of the model, `[m]`.
+/// Returns the distance of a state's reported pose from the model's pose, `[m]`.
 fn gap(model: &Model, state: &RobotState) -> f64 {
     let ee = EndEffector::from_arrays(&state.F_T_EE, &state.EE_T_K);
     let pose = model.pose(Frame::EndEffector, &state.q.into(), &ee);
@@ -177,7 +177,7 @@ const SETS: usize = 1 + Lengths::KNOWN.len();
 /// Time after which a drift is measured, `[ms]`.
 const SETTLED: u64 = 2000;
 
-/// `[ms]`.
+/// One second, `[ms]`.
 const SECOND: u64 = 1000;
 
 #[cfg(test)]
@@ -187,7 +187,7 @@ mod tests {
 
     use super::*;
 
-    /// States of an arm with these lengths that creeps up, by metres per second.
+    /// Returns an observation of an arm with these lengths that creeps up, in metres per second.
     fn look(lengths: Lengths, creep: f64) -> Look {
         let arm = Model::fr3().clone().with_lengths(lengths);
         let pose = arm.pose(Frame::EndEffector, &READY, &EndEffector::default());

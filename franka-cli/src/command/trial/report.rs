@@ -1,4 +1,4 @@
-//! What a trial found, as a text that people read and programs, too.
+//! The result of a trial, as a text for people and programs.
 
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ use crate::connection::kind_name;
 use crate::ending::{Ending, Failure};
 use crate::output::{BAD, GOOD, WARN, say};
 
-/// What was found, in the order in which it was.
+/// The findings, in the order of the trial.
 #[derive(Debug, Serialize)]
 pub(super) struct Report {
     driver: &'static str,
@@ -25,12 +25,12 @@ pub(super) struct Report {
     force_cap: f64,
     recording: String,
     complete: bool,
-    /// Why it is not complete.
+    /// The reason why it is incomplete.
     ended: Option<Ended>,
     pub(super) steps: Vec<Step>,
 }
 
-/// What was done, and found meanwhile.
+/// A step, with its findings.
 #[derive(Debug, Serialize)]
 pub(super) struct Step {
     name: &'static str,
@@ -46,24 +46,24 @@ pub(super) struct Finding {
     figures: Value,
 }
 
-/// How what was found compares with what was expected.
+/// The comparison of a finding with its expected value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Verdict {
     Good,
-    /// Worth a look, and no reason to stop.
+    /// Noticeable, but not a reason to stop.
     Look,
     /// Ends the trial.
     Bad,
 }
 
 impl Verdict {
-    /// Good up to the first of two limits, worth a look up to the second.
+    /// Returns good up to the first of two limits, and noticeable up to the second.
     pub(super) fn of(value: f64, [good, bad]: [f64; 2]) -> Self {
         match value {
             value if value <= good => Self::Good,
             value if value <= bad => Self::Look,
-            // What is not a number as well.
+            // Also for NaN.
             _ => Self::Bad,
         }
     }
@@ -77,7 +77,7 @@ impl Verdict {
     }
 }
 
-/// How a trial ended before its end.
+/// The early end of a trial.
 #[derive(Debug, Serialize)]
 struct Ended {
     step: &'static str,
@@ -111,10 +111,10 @@ impl Report {
         self.steps.push(Step { name, findings });
     }
 
-    /// Notes what was found in this step, and says it.
+    /// Records a finding of this step, and prints it.
     ///
     /// # Errors
-    /// What is bad ends the trial.
+    /// A bad finding ends the trial.
     pub(super) fn note(
         &mut self,
         check: &'static str,
@@ -127,7 +127,7 @@ impl Report {
             Verdict::Look => WARN,
             Verdict::Bad => BAD,
         };
-        // A part in each line: a terminal has 80 columns.
+        // One part per line, because a terminal has 80 columns.
         let lines = text.replace("; ", &format!(";\n{:20}", ""));
         let said = verdict.text();
         say(&format!(
@@ -148,7 +148,7 @@ impl Report {
         }
     }
 
-    /// Notes how it ended, with the texts of `secrets` taken out.
+    /// Records the end, with the texts of `secrets` removed.
     pub(super) fn end(&mut self, outcome: &anyhow::Result<()>, secrets: &[String]) {
         self.complete = outcome.is_ok();
         self.ended = outcome.as_ref().err().map(|error| {
@@ -162,7 +162,7 @@ impl Report {
         });
     }
 
-    /// How it went, in a line.
+    /// Returns the result in one line.
     pub(super) fn summary(&self) -> String {
         let all = self.steps.iter().flat_map(|step| &step.findings);
         let count = |verdict| all.clone().filter(|it| it.verdict == verdict).count();
@@ -180,7 +180,7 @@ impl Report {
         }
     }
 
-    /// The report as Markdown, with all of it as JSON at the end.
+    /// Returns the report as Markdown, with all data as JSON at the end.
     pub(super) fn markdown(&self) -> serde_json::Result<String> {
         let priority = match self.priority {
             Some(priority) => format!("real-time scheduling, priority {priority}"),
@@ -234,22 +234,22 @@ impl Report {
     }
 }
 
-/// A text in a cell of a table.
+/// Returns a text escaped for a cell of a table.
 fn escaped(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ")
 }
 
-/// The text, with a placeholder for each of these.
+/// Returns the text, with a placeholder for each of these.
 fn without(text: &str, secrets: &[String]) -> String {
     let mut secrets: Vec<_> = secrets.iter().filter(|it| !it.is_empty()).collect();
-    // One may be a part of another.
+    // One text may be a part of another.
     secrets.sort_by_key(|it| std::cmp::Reverse(it.len()));
     secrets.iter().fold(text.to_owned(), |text, secret| {
         text.replace(*secret, "ROBOT")
     })
 }
 
-/// Version of the figures in a report: raised when one goes or changes its meaning.
+/// Version of the figures in a report: increased when a figure is removed or changes its meaning.
 const SCHEMA: u32 = 1;
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ use super::{FORCE, PACE, limits};
 use crate::motion::Moving;
 use crate::output::say;
 
-/// Does all steps. What was found is in the report however it ends.
+/// Performs all steps. The report contains the findings, regardless of the end.
 pub(super) async fn all(moving: &Moving, report: &mut Report) -> anyhow::Result<()> {
     let mut steps = Steps { moving, report };
     let tare = steps.look().await?;
@@ -36,7 +36,7 @@ struct Steps<'a> {
 }
 
 impl Steps<'_> {
-    /// Looks at the arm at rest, under the robot's own controller. Nothing moves.
+    /// Observes the arm at rest, under the robot's own controller. The arm does not move.
     async fn look(&mut self) -> anyhow::Result<Option<WrenchTare>> {
         self.name("at rest");
         let robot = &self.moving.robot;
@@ -56,7 +56,7 @@ impl Steps<'_> {
         Ok(tare)
     }
 
-    /// The reported pose against that of the joint positions.
+    /// Compares the reported pose with the pose of the joint positions.
     fn geometry(&mut self, look: &Look) -> anyhow::Result<()> {
         let sets = look.geometry(&described(&self.moving.robot));
         let [(own, gap), known @ ..] = sets;
@@ -88,7 +88,7 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// The joint limits that the robot serves.
+    /// Checks the robot's joint limits.
     fn limits(&mut self) -> anyhow::Result<()> {
         let model = self.moving.robot.model();
         let (name, difference) = limits::nearest(model.kind(), model.joint_limits());
@@ -108,7 +108,7 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// Fields that some robots leave at zero. None is wrong.
+    /// Lists fields that some robots leave at zero, which is not an error.
     fn zeros(&mut self, look: &Look) -> anyhow::Result<()> {
         let zeros = SPARSE.iter().zip(look.zero);
         let zeros: Vec<_> = zeros
@@ -123,7 +123,7 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// How far the reported pose has drifted from its third second to its last.
+    /// Measures the drift of the reported pose from its third second to its last.
     fn drift(&mut self, look: &Look) -> anyhow::Result<()> {
         let poses = (look.begin.pose(), look.end.pose());
         let (Some(begin), Some(end)) = poses else {
@@ -139,7 +139,7 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// The wrench that the robot shows of the untouched arm.
+    /// Measures the robot's wrench for the untouched arm.
     async fn tare(&mut self) -> anyhow::Result<Option<WrenchTare>> {
         let tare = match self.moving.robot.tare().await {
             Ok(tare) => tare,
@@ -162,7 +162,7 @@ impl Steps<'_> {
         Ok(Some(tare))
     }
 
-    /// Whether the arm can do all that is to come from where it is.
+    /// Checks that all following motions are possible from the current position.
     fn room(&mut self) -> anyhow::Result<()> {
         let robot = &self.moving.robot;
         let up = Pose::translation(0.0, 0.0, 0.05) * robot.pose();
@@ -280,7 +280,7 @@ impl Steps<'_> {
         let arm = self.begin("a stream", &what).await?;
         let (robot, here) = (&self.moving.robot, self.moving.robot.pose());
         let (targets, followed) = watch::channel((here, Twist::zeros()));
-        // By the robot's clock, so that a simulator may be faster than the wall's.
+        // By the robot's clock, because a simulator may run faster than the wall clock.
         let streaming = async move {
             let (mut first, mut sent, mut behind) = (None, 0, Vec::new());
             let read = robot.read(|state| {
@@ -295,7 +295,7 @@ impl Steps<'_> {
                     sent = since;
                     let pose = Pose::translation(0.0, 0.0, WAVE.at(time)) * here;
                     let twist = Twist::new(0.0, 0.0, WAVE.velocity(time), 0.0, 0.0, 0.0);
-                    // A motion that has ended says so itself.
+                    // A motion that has ended returns its own error.
                     let _ = targets.send((pose, twist));
                 }
                 ControlFlow::Continue(())
@@ -331,7 +331,7 @@ impl Steps<'_> {
         self.timing(&report)
     }
 
-    /// What the first tare leaves of the wrench after the motions.
+    /// Measures the remaining wrench after the motions, with the first tare.
     async fn after(&mut self, tare: Option<WrenchTare>) -> anyhow::Result<()> {
         self.name("after the motions");
         let (Some(first), Some(second)) = (tare, self.tare().await?) else {
@@ -346,7 +346,7 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// How punctual states and commands were.
+    /// Checks the punctuality of states and commands.
     fn timing(&mut self, report: &MotionReport) -> anyhow::Result<()> {
         let us = |time: Duration| time.as_micros();
         let text = format!(
@@ -366,13 +366,13 @@ impl Steps<'_> {
         Ok(())
     }
 
-    /// Begins a step that moves nothing.
+    /// Begins a step without motion.
     fn name(&mut self, name: &'static str) {
         say(name);
         self.report.begin(name);
     }
 
-    /// Asks whether a step may be done, and takes the arm for it.
+    /// Asks for permission for a step, and engages the arm.
     async fn begin(&mut self, name: &'static str, what: &str) -> anyhow::Result<Arm> {
         self.report.begin(name);
         let what = format!("{what}\nforce {FORCE:.0} N at the hand at most");
@@ -385,7 +385,7 @@ impl Steps<'_> {
         }
     }
 
-    /// Lets go of the arm.
+    /// Releases the arm.
     async fn end(&self, arm: Arm) -> anyhow::Result<MotionReport> {
         match arm.disengage().await {
             Ok(report) => Ok(report),
@@ -393,7 +393,7 @@ impl Steps<'_> {
         }
     }
 
-    /// The mean of the states of a moment.
+    /// Returns the mean over a moment.
     async fn mean(&self) -> anyhow::Result<Mean> {
         let (mut first, mut mean) = (None, Mean::default());
         let read = self.moving.robot.read(|state| {
@@ -408,7 +408,7 @@ impl Steps<'_> {
         Ok(mean)
     }
 
-    /// Where joint 7 is to turn: towards the middle of its range.
+    /// Returns the target of joint 7, towards the middle of its range.
     fn turned(&self, state: &RobotState) -> [f64; 7] {
         let limits = self.moving.robot.model().joint_limits();
         let middle = 0.5 * (limits.lower[6] + limits.upper[6]);
@@ -418,11 +418,11 @@ impl Steps<'_> {
     }
 }
 
-/// Targets that rise and sink again, and rest at both ends.
+/// Targets that rise and sink again, with rest at both ends.
 struct Wave {
-    /// Half of how far they rise, `[m]`.
+    /// Half of the height, `[m]`.
     height: f64,
-    /// `[s]`.
+    /// Period, `[s]`.
     period: f64,
 }
 
@@ -431,19 +431,19 @@ impl Wave {
         core::f64::consts::TAU * time.min(self.period) / self.period
     }
 
-    /// `[m]` above the begin.
+    /// Returns the height above the start, `[m]`.
     fn at(&self, time: f64) -> f64 {
         self.height * (1.0 - self.phase(time).cos())
     }
 
-    /// `[m/s]`.
+    /// Returns the velocity, `[m/s]`.
     fn velocity(&self, time: f64) -> f64 {
         let pace = core::f64::consts::TAU / self.period;
         self.height * pace * self.phase(time).sin()
     }
 }
 
-/// 16 mm/s at most, well below what the budget allows.
+/// 16 mm/s at most, well below the budget's limit.
 const WAVE: Wave = Wave {
     height: 0.015,
     period: 6.0,
@@ -455,26 +455,28 @@ const EVERY: u64 = 20;
 /// Turn of joint 7, 10 degrees, `[rad]`.
 const TURN: f64 = 0.1745;
 
-/// Speed of any joint of the arm that ends a step, `[m/s]`: more than twice what is asked for.
+/// Speed of any joint of the arm that ends a step, `[m/s]`: more than twice the commanded speed.
 const FASTEST: f64 = 0.2;
 
-/// How long the arm is looked at before it moves: a drift is that of the fourth second from the
-/// third.
+/// Duration of the observation before the arm moves: the drift is measured from the third to the
+/// fourth second.
 const LOOK: Duration = Duration::from_secs(4);
 
-/// How long the arm is held.
+/// Duration of the hold.
 const HOLD: Duration = Duration::from_secs(10);
 
-/// How long a place is averaged, `[ms]`.
+/// Averaging time of a position, `[ms]`.
 const MOMENT: u64 = 200;
 
-/// Distance of reported poses from the model that is of the digits of an `f32`, `[m]`.
+/// Distance of reported poses from the model that comes from the digits of an `f32`, `[m]`.
 const GAP: f64 = 2e-6;
 
-/// Drift while the arm is held, `[m]`: good, and bad. The driver aims at less than the first.
+/// Drift while the arm is held, `[m]`: limits for good and bad. The driver aims at less than the
+/// first.
 const DRIFT: [f64; 2] = [5e-5, 1e-3];
 
-/// Distance from a target, `[mm]`: what the law keeps on arms that stick, and what ends the trial.
+/// Distance from a target, `[mm]`: the error of the law on arms with stiction, and the limit that
+/// ends the trial.
 const ARRIVAL_MM: [f64; 2] = [1.0, 10.0];
 
 /// Distance of a joint from its target, `[mrad]`.
@@ -483,9 +485,9 @@ const ARRIVAL_MRAD: [f64; 2] = [3.0, 30.0];
 /// Distance from the targets of a stream, `[mm]`.
 const BEHIND_MM: [f64; 2] = [4.0, 20.0];
 
-/// Force that a tare leaves after motions, `[N]`: friction sticks differently then.
+/// Force that remains after motions with a tare, `[N]`, because stiction has changed.
 const LEFT: f64 = 3.0;
 
-/// Mean success rates that count as good and as usable, as of `franka test communication`.
+/// Mean success rates that count as good and as usable, as in `franka test communication`.
 const GOOD_RATE: f64 = 0.95;
 const USABLE_RATE: f64 = 0.9;
