@@ -1,5 +1,5 @@
-//! Reads states, ten a second, while nothing moves. The robot sends a thousand; a `watch` always
-//! holds the newest.
+//! Reads states, ten per second, while the arm is at rest. The robot sends a thousand per second; a
+//! `watch` always holds the newest.
 //!
 //! `cargo run --release --example read_state [ADDRESS]`
 
@@ -15,7 +15,7 @@ async fn main() -> anyhow::Result<()> {
     let mut clock = tokio::time::interval(Duration::from_millis(100));
     for _ in 0..30 {
         clock.tick().await;
-        // Waits for a state that came after the last look, so a link that has died is noticed here.
+        // Waits for a state after the last one read, so a lost link is detected here.
         let state = tokio::time::timeout(Duration::from_secs(1), states.changed()).await??;
         println!(
             "{:>8} ms  {}  q {:.4?} rad  tau_ext {:.2?} N m  errors {}",

@@ -1,4 +1,4 @@
-//! A policy at 10 Hz says where the hand is to be; the arm follows at 1 kHz, smoothly.
+//! A policy at 10 Hz sets targets for the hand; the arm follows at 1 kHz, smoothly.
 //!
 //! `cargo run --release --example policy [ADDRESS]`
 
@@ -12,7 +12,7 @@ use tokio::sync::watch;
 async fn main() -> anyhow::Result<()> {
     let address = std::env::args().nth(1);
     let builder = Robot::builder(address.as_deref().unwrap_or("127.0.0.1"));
-    // `Ignore` is for simulators. Without it a real-time kernel is required, as a robot needs it.
+    // `Ignore` is for simulators. Without it a real-time kernel is required, as for a robot.
     let robot = builder.realtime(Realtime::Ignore).connect().await?;
     let start = robot.pose();
     let (sender, targets) = watch::channel(start);
@@ -23,7 +23,7 @@ async fn main() -> anyhow::Result<()> {
         let mut clock = tokio::time::interval(Duration::from_millis(100));
         for step in 0..=40 {
             clock.tick().await;
-            // A policy would look at `robot.state()`. This one walks along a circle of 10 cm.
+            // A real policy would read `robot.state()`. This one moves along a circle of 10 cm.
             let (sin, cos) = (TAU * f64::from(step) / 40.0).sin_cos();
             let way = Pose::translation(0.0, 0.05 * sin, 0.05 - 0.05 * cos);
             if sender.send(way * start).is_err() {

@@ -1,5 +1,5 @@
-//! A web service in which motions are jobs: they outlive the request that began them, tell how far
-//! they are, and can be cancelled.
+//! A web service in which motions are jobs: they outlive their request, report their progress, and
+//! can be cancelled.
 //!
 //! ```text
 //! cargo run --release --features http --example axum_service -- [ADDRESS] [--listen 127.0.0.1:8080]
@@ -36,9 +36,9 @@ struct Service {
 
 #[derive(Deserialize)]
 struct Order {
-    /// By how much to move the hand along the axes of the base, `[m]`.
+    /// Displacement of the hand along the axes of the base, `[m]`.
     by: [f64; 3],
-    /// Times the default speed.
+    /// Speed, as a factor of the default.
     speed: Option<f64>,
 }
 
@@ -71,7 +71,7 @@ async fn main() -> anyhow::Result<()> {
     .await
 }
 
-/// Answers once the robot moves, with the address of the job, or with the reason why it does not.
+/// Answers once the robot moves, with the address of the job, or with the reason for a refusal.
 async fn begin(service: State<Service>, Json(order): Json<Order>) -> Result<Response, Refused> {
     let (id, job) = service.start(&order)?;
     job.begun().await.map_err(refuse)?;
@@ -85,10 +85,11 @@ async fn newest(service: State<Service>, id: Path<u64>) -> Result<Json<Value>, R
 
 async fn cancel(service: State<Service>, id: Path<u64>) -> Result<StatusCode, Refused> {
     service.job(*id)?.cancel();
-    Ok(StatusCode::ACCEPTED) // the events tell when the arm rests
+    Ok(StatusCode::ACCEPTED) // the events report when the arm is at rest
 }
 
-/// Server-sent events. A browser that lost its connection asks again, and says what it has seen.
+/// Sends server-sent events. A browser that lost its connection asks again, and names the last
+/// event it received.
 async fn events(
     service: State<Service>,
     id: Path<u64>,
@@ -99,7 +100,7 @@ async fn events(
     let seen = seen.and_then(|id| id.parse().ok());
     let newest = job.newest();
     if newest.stage.is_last() && seen == Some(newest.number) {
-        return Ok(StatusCode::NO_CONTENT.into_response()); // so it asks no more
+        return Ok(StatusCode::NO_CONTENT.into_response()); // so it stops asking
     }
     let events = job.events(seen).map(|progress| {
         let event = Event::default().id(progress.number.to_string());
@@ -126,7 +127,7 @@ async fn scrape(service: State<Service>) -> impl IntoResponse {
 }
 
 impl Service {
-    /// Begins a job, unless another one has the arm: on its own, a newer motion would supersede the
+    /// Starts a job, unless another one uses the arm: otherwise a newer motion would supersede the
     /// older one.
     fn start(&self, order: &Order) -> Result<(u64, Job), Refused> {
         let mut jobs = self.jobs.lock().expect("no panic while it is held");
@@ -161,14 +162,14 @@ fn refuse(error: MotionError) -> Refused {
     let status = match error {
         MotionError::Goal(_) => StatusCode::UNPROCESSABLE_ENTITY,
         MotionError::ConnectionClosed { .. } => StatusCode::SERVICE_UNAVAILABLE,
-        // The link is lost, or a supervised robot is away.
+        // The link is lost, or a supervised robot is unavailable.
         _ if error.party() == Party::Link => StatusCode::SERVICE_UNAVAILABLE,
         MotionError::Violation(_) | MotionError::Protocol { .. } => StatusCode::BAD_GATEWAY,
-        // Something else has the arm, stopped it, or the robot has to be recovered first.
+        // Another user has the arm or stopped it, or the robot must be recovered first.
         _ => StatusCode::CONFLICT,
     };
     (status, error.to_string())
 }
 
-/// Jobs whose end can be asked for.
+/// Number of jobs whose result is kept.
 const JOBS: usize = 100;

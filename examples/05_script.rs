@@ -1,4 +1,4 @@
-//! A script without async: waits for motions, then draws a circle by a goal every 20 ms.
+//! A script without async: waits for motions, then draws a circle with a goal every 20 ms.
 //!
 //! `cargo run --release --example script [ADDRESS]`
 
@@ -11,7 +11,7 @@ use franka_async::prelude::*;
 fn main() -> anyhow::Result<()> {
     let address = std::env::args().nth(1);
     let builder = Robot::builder(address.as_deref().unwrap_or("127.0.0.1"));
-    // `Ignore` is for simulators. Without it a real-time kernel is required, as a robot needs it.
+    // `Ignore` is for simulators. Without it a real-time kernel is required, as for a robot.
     let robot = builder.realtime(Realtime::Ignore).connect().wait()?;
     robot.move_to(READY).speed(0.5).wait()?;
 

@@ -1,4 +1,4 @@
-//! Picks a block up and puts it back, with arm and hand. Each is awaited; they can move at the same
+//! Picks up a block and puts it back, with arm and hand. Each is awaited; they can move at the same
 //! time.
 //!
 //! `cargo run --release --example pick [ADDRESS]`; on a robot, with the block between the fingers.
@@ -21,7 +21,7 @@ async fn main() -> anyhow::Result<()> {
     let table = robot.pose();
     let above = Pose::translation(0.0, 0.0, 0.08) * table;
 
-    // Homing measures how far the fingers open; the arm may move meanwhile.
+    // Homing measures the largest opening of the fingers; the arm may move meanwhile.
     let (homed, moved) = tokio::join!(gripper.homing(), robot.move_to(above));
     moved?;
     ensure!(homed?, "homing failed: the fingers did not find their ends");

@@ -11,7 +11,7 @@ use franka_examples::{Connection, Summary};
 struct Arguments {
     #[command(flatten)]
     connection: Connection,
-    /// How fast: 1 is the usual speed of a motion, some 50 degrees a second.
+    /// Speed: 1 is the usual speed of a motion, about 50 degrees per second.
     #[arg(long, default_value_t = 0.5)]
     speed: f64,
 }

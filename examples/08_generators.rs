@@ -1,4 +1,4 @@
-//! The robot's four motion generators, each under a control function: a small motion there and
+//! Uses the robot's four motion generators, each under a control function: a small motion there and
 //! back, at rest at both ends.
 //!
 //! `cargo run --release --example generators -- joint-positions [ADDRESS]`, likewise

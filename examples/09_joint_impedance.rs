@@ -1,5 +1,5 @@
-//! A custom joint impedance law: the robot's generator turns a circle of the hand into joint
-//! references, and a second control function turns these into torques, instead of the robot's own
+//! A custom joint impedance law. The robot's generator converts a circle of the hand to joint
+//! references, and a second control function converts these to torques, instead of the robot's own
 //! controller.
 //!
 //! `cargo run --release --example joint_impedance -- [ADDRESS]`
@@ -16,8 +16,8 @@ const RADIUS: f64 = 0.05;
 /// Duration of one turn, `[s]`.
 const DURATION: f64 = 5.0;
 
-/// Stiffness of the joints, `[N m/rad]`: enough for errors of some millimetres at the hand, and
-/// soft enough to push the arm aside.
+/// Stiffness of the joints, `[N m/rad]`: stiff enough for errors of some millimetres at the hand,
+/// and soft enough to push the arm aside.
 const STIFFNESS: [f64; 7] = [400.0, 400.0, 400.0, 400.0, 150.0, 100.0, 40.0];
 /// Damping of the joints, `[N m s/rad]`: about critical for each joint's own inertia.
 const DAMPING: [f64; 7] = [40.0, 40.0, 40.0, 35.0, 12.0, 8.0, 4.0];

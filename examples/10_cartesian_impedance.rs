@@ -1,4 +1,4 @@
-//! A custom Cartesian impedance law: springs hold the hand where it is, and it can be pushed aside.
+//! A custom Cartesian impedance law: springs hold the hand in place, and it can be pushed aside.
 //! The same law runs as a control function, or on a thread of this program that reads states and
 //! writes commands itself.
 //!
@@ -22,7 +22,7 @@ struct Arguments {
     way: Way,
     #[command(flatten)]
     connection: Connection,
-    /// How long to hold the hand, `[s]`.
+    /// Duration of the hold, `[s]`.
     #[arg(long, default_value_t = 10.0)]
     seconds: f64,
 }
@@ -76,12 +76,12 @@ const STIFFNESS: [f64; 6] = [300.0, 300.0, 300.0, 20.0, 20.0, 20.0];
 /// Damping of the hand, `[N s/m]` and `[N m s/rad]`: close to critical for its effective mass of 3
 /// to 8 kg.
 const DAMPING: [f64; 6] = [60.0, 60.0, 80.0, 3.0, 3.0, 3.0];
-/// Damping of the joints, `[N m s/rad]`, which brings the elbow to rest, too: no spring holds it.
+/// Damping of the joints, `[N m s/rad]`, which also stops the elbow, because no spring holds it.
 const JOINT_DAMPING: f64 = 1.0;
 
 impl Springs {
-    /// The torques for a state: `J' (K e - D J dq)`, a damper at each joint, and the Coriolis
-    /// torques.
+    /// Returns the torques for a state: `J' (K e - D J dq)`, a damper at each joint, and the
+    /// Coriolis torques.
     fn torques(&self, state: &RobotState) -> Torques {
         let dynamics = self.model.dynamics(state);
         let pose = pose::from_matrix(&dynamics.pose).unwrap_or(self.place);
@@ -98,7 +98,7 @@ impl Springs {
     }
 }
 
-/// The law as a control function: it moves to the real-time thread, and its end is a future.
+/// Runs the law as a control function: it moves to the real-time thread, and its end is a future.
 async fn callback(
     robot: &Robot,
     springs: Springs,
@@ -114,9 +114,9 @@ async fn callback(
     holding.limit_rate(true).await
 }
 
-/// The law on a thread of this program, which reads each state, answers it, and is the control
-/// cycle meanwhile. This program also decides how the thread is scheduled. Commands pass no filter
-/// and no limiter.
+/// Runs the law on a thread of this program, which reads and answers each state and therefore is
+/// the control cycle. This program also chooses the scheduling of the thread. Commands pass no
+/// filter and no limiter.
 async fn active(
     robot: &Robot,
     springs: Springs,

@@ -1,6 +1,5 @@
-//! Draws figures of eight with the hand, upright and across the arm. The size grows from nothing
-//! and shrinks to nothing, so that the motion begins and ends at rest although the figure itself
-//! never stands still.
+//! Draws figures of eight with the hand, upright and across the arm. The size grows from zero and
+//! shrinks to zero. So the motion begins and ends at rest, although the figure itself never stops.
 //!
 //! `cargo run --release --example figure_eight -- [ADDRESS] [--laps 3]`
 
@@ -15,7 +14,7 @@ use franka_examples::{Connection, Ease, Summary};
 struct Arguments {
     #[command(flatten)]
     connection: Connection,
-    /// Figures, the first and the last of which are the ramps: 2 or more.
+    /// Number of figures; the first and the last are the ramps: 2 or more.
     #[arg(long, default_value_t = 3)]
     laps: u32,
 }

@@ -1,5 +1,5 @@
 //! The hand can be guided freely above a virtual floor: a spring and a damper that only push
-//! upwards. Springs in the nullspace, which the hand does not feel, pull the elbow back to its
+//! upwards. Springs in the nullspace, which do not affect the hand, pull the elbow back to its
 //! posture.
 //!
 //! `cargo run --release --example virtual_floor -- [ADDRESS] [--below 0.05] [--seconds 20]`
@@ -15,10 +15,10 @@ use franka_examples::{Connection, Summary, push_simulated, report_hand};
 struct Arguments {
     #[command(flatten)]
     connection: Connection,
-    /// How far below the ready pose the floor is, `[m]`.
+    /// Distance of the floor below the ready pose, `[m]`.
     #[arg(long, default_value_t = 0.05)]
     below: f64,
-    /// How long the hand can be guided, `[s]`.
+    /// Duration of the guiding, `[s]`.
     #[arg(long, default_value_t = 20.0)]
     seconds: f64,
 }
@@ -80,16 +80,16 @@ impl Law {
     }
 }
 
-/// Force of the floor on a hand `depth` below it that moves upwards at `velocity`, `[N]`. Never
-/// downwards, so that the floor does not hold a hand that leaves it.
+/// Returns the force of the floor on a hand `depth` below it that moves upwards at `velocity`,
+/// `[N]`. Never downwards, so that the floor does not hold a hand that leaves it.
 fn push_of_the_floor(depth: f64, velocity: f64) -> f64 {
     STIFFNESS * depth.max(0.0) * (1.0 - DAMPING * velocity).max(0.0)
 }
 
-/// The part of `torques` that does not accelerate the hand: `(1 - J' L J M^-1) torques` with `L =
-/// (J M^-1 J')^-1`, the effective inertia of the hand (Khatib, A unified approach for motion and
-/// force control of robot manipulators, 1987). Zero where the hand cannot move in every direction,
-/// since no such part is defined there.
+/// Returns the part of `torques` that does not accelerate the hand: `(1 - J' L J M^-1) torques`
+/// with `L = (J M^-1 J')^-1`, the effective inertia of the hand (Khatib, A unified approach for
+/// motion and force control of robot manipulators, 1987). Zero if the hand cannot move in every
+/// direction, because the part is then undefined.
 fn unfelt(dynamics: &Dynamics, torques: &JointVector) -> JointVector {
     let Some(hand) = dynamics.operational_space() else {
         return JointVector::zeros();

@@ -1,14 +1,14 @@
-//! Tests the network and this computer for control at 1 kHz, of one robot or of two at the same
-//! time. It commands zero torques for some seconds, under which an arm stays where it is, since the
-//! robot compensates gravity. It counts losses and measures times.
+//! Tests the network and this computer for control at 1 kHz, with one robot or two at the same
+//! time. It commands zero torques for some seconds; the arm stays in place, because the robot
+//! compensates gravity. It counts losses and measures times.
 //!
 //! ```text
 //! cargo run --release --example link_test -- \
 //!     [ADDRESS [OTHER]] [--two] [--seconds 10] [--good 0.95] [--usable 0.9]
 //! ```
 //! Exit code 0: the average success rate is at least `--good`; 3: it is lower, but at least
-//! `--usable`; 4: it is below `--usable`; 1: the test did not run to its end; 2: an error on the
-//! command line. Of two robots the worse one counts.
+//! `--usable`; 4: it is below `--usable`; 1: the test was not completed; 2: an error on the command
+//! line. With two robots the worse result counts.
 
 use std::process::ExitCode;
 
@@ -26,13 +26,13 @@ use tokio::sync::broadcast::error::RecvError;
 struct Arguments {
     #[command(flatten)]
     connection: Connection,
-    /// Address of the other robot, which is connected to with the same options.
+    /// Address of the other robot, which uses the same options.
     #[arg(requires = "address")]
     other: Option<String>,
     /// Two simulated robots instead of one.
     #[arg(long, conflicts_with = "address")]
     two: bool,
-    /// How long to test, `[s]`.
+    /// Duration of the test, `[s]`.
     #[arg(long, default_value_t = 10.0)]
     seconds: f64,
     /// Average success rate that counts as good, in [0, 1].
@@ -43,11 +43,11 @@ struct Arguments {
     usable: f64,
 }
 
-/// What one robot's test has shown.
+/// The result of one robot's test.
 struct Measured {
     robot: Robot,
     report: MotionReport,
-    /// The highest success rate that the robot has reported.
+    /// The highest success rate reported by the robot.
     best: f64,
 }
 
@@ -111,7 +111,7 @@ async fn measure(robot: &Robot, seconds: f64) -> anyhow::Result<Measured> {
         Torques([0.0; 7]).finish_if(time >= seconds)
     });
     let report = nothing.await?;
-    robot.shutdown().await; // which also ends the records
+    robot.shutdown().await; // this also ends the records
     Ok(Measured {
         robot: robot.clone(),
         report,
@@ -119,7 +119,7 @@ async fn measure(robot: &Robot, seconds: f64) -> anyhow::Result<Measured> {
     })
 }
 
-/// Prints losses when they occur; returns the highest success rate that the robot has reported.
+/// Prints losses when they occur; returns the highest success rate reported by the robot.
 async fn watch(robot: String, mut records: broadcast::Receiver<Record>) -> f64 {
     let mut best: f64 = 0.0;
     loop {
@@ -140,7 +140,7 @@ async fn watch(robot: String, mut records: broadcast::Receiver<Record>) -> f64 {
     }
 }
 
-/// Prints a figure of each robot, side by side.
+/// Prints a value of each robot, side by side.
 fn print(measured: &[Measured], name: &str, of: impl Fn(&Measured) -> String) {
     let figures: String = measured
         .iter()
@@ -163,7 +163,7 @@ const QUANTILES: [(&str, f64); 4] = [
 
 type Figure = fn(&Measured) -> String;
 
-/// Figures of one robot's test, by their names.
+/// Values of one robot's test, by their names.
 const FIGURES: [(&str, Figure); 6] = [
     ("robot", |of| of.robot.address().to_string()),
     ("success rate, min", |of| {

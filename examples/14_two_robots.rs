@@ -1,5 +1,5 @@
-//! Two arms at once from one program: both go to their ready pose, then swing in mirror image. When
-//! the motion of one fails, the other stops.
+//! Two arms at once from one program: both move to their ready pose, then swing in mirror image.
+//! When the motion of one fails, the other stops.
 //!
 //! `cargo run --release --example two_robots -- [ADDRESS OTHER]`
 
@@ -13,7 +13,7 @@ use franka_examples::{Connection, Ease, Summary, make_ready};
 struct Arguments {
     #[command(flatten)]
     connection: Connection,
-    /// Address of the other robot, which is connected to with the same options; without it, it is
+    /// Address of the other robot, which uses the same options; without it, the other robot is
     /// simulated too.
     #[arg(requires = "address")]
     other: Option<String>,

@@ -1,8 +1,8 @@
-//! Says why a robot has stopped itself, and leads it out of that.
+//! Explains why a robot has stopped itself, and recovers it.
 //!
 //! `cargo run --release --example recover -- [ADDRESS] [--yes] [--provoke] [--log FILE.csv]`
 //!
-//! Exit code 0: the robot is ready for a motion; 3: it needs a person, at the user stop or at its
+//! Exit code 0: the robot is ready for a motion; 3: it needs a person, at the user stop or in its
 //! web interface; 1: the recovery failed; 2: an error on the command line.
 
 use std::path::PathBuf;
@@ -24,11 +24,11 @@ use franka_examples::{Connection, Ease, Summary, make_ready};
 struct Arguments {
     #[command(flatten)]
     connection: Connection,
-    /// First causes a reflex, and moves once more after the recovery; a simulator without an
-    /// address has nothing else to be recovered from.
+    /// Causes a reflex first, and moves once more after the recovery. Without an address, the
+    /// simulator has no other reflex to recover from.
     #[arg(long)]
     provoke: bool,
-    /// Where to write the last cycles before a reflex that was provoked, as a table.
+    /// File for the last cycles before a provoked reflex, as a table.
     #[arg(long, requires = "provoke")]
     log: Option<PathBuf>,
 }
@@ -70,7 +70,8 @@ async fn main() -> anyhow::Result<ExitCode> {
         }
     }
     if !provoke {
-        // The log went to the program whose motion it was. The errors tell what they can.
+        // The program that controlled the motion received the log. Here only the errors are
+        // available.
         let case = Case {
             commander: Commander::Goals,
             errors: state.reflex_reason,

@@ -1,4 +1,4 @@
-//! One session, many goals: poses, joints, a stream, the chunks of a policy, a guiding hand,
+//! One session with many goals: poses, joints, a stream, the chunks of a policy, and hand guiding,
 //! without a stop in between.
 //!
 //! `cargo run --release --example engage [ADDRESS]`
@@ -30,8 +30,8 @@ async fn main() -> anyhow::Result<()> {
 }
 
 async fn run(robot: &Robot) -> Result<(), MotionError> {
-    // The holder of the token has to keep it alive. Here a task does so; a remote front end would
-    // with every message.
+    // The holder of the token must keep it alive. Here a task does so; a remote front end would do
+    // so with every message.
     let (token, monitor) = Deadman::new(Duration::from_millis(500));
     let alive = tokio::spawn(async move {
         let mut clock = tokio::time::interval(Duration::from_millis(50));
@@ -46,11 +46,11 @@ async fn run(robot: &Robot) -> Result<(), MotionError> {
 
     arm.move_to(Pose::translation(0.0, 0.0, 0.05) * start)
         .await?;
-    // The next goal may come in mid-motion and be of another kind.
+    // The next goal may arrive in mid-motion and be of another kind.
     arm.set(Pose::translation(0.0, 0.1, 0.05) * start).await?;
     tokio::time::sleep(Duration::from_millis(300)).await;
     arm.move_joints(ready).await?;
-    // Along two sides of a square without a stop at the corner.
+    // Moves along two sides of a square without a stop at the corner.
     let corner = Waypoint::new(Pose::translation(0.0, 0.05, 0.0) * start).blend(0.02);
     let end = Pose::translation(0.0, 0.05, 0.05) * start;
     arm.move_through([corner, end.into()]).await?;
@@ -63,7 +63,7 @@ async fn run(robot: &Robot) -> Result<(), MotionError> {
     };
     arm.tune(tuning).await?;
 
-    // When a stream times out, the error says so, and the arm is held.
+    // When a stream times out, the error reports it, and the arm is held.
     let (sender, targets) = watch::channel(start);
     let silence = Duration::from_millis(200);
     let follow = arm.follow(targets).watchdog(silence, OnTimeout::Hold);
@@ -94,7 +94,7 @@ async fn run(robot: &Robot) -> Result<(), MotionError> {
     Ok(())
 }
 
-/// What a policy would predict from an observation: here, a second of motion of the first joint
+/// Returns a policy's prediction from an observation: here, a second of motion of the first joint
 /// towards the ready pose.
 fn predict(observation: &RobotState, ready: &[f64; 7]) -> Chunk {
     let points = (1..=10_u32).map(|step| {

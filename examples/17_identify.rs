@@ -1,5 +1,6 @@
-//! What an arm takes beside its model: says what it will do, measures friction, bias and load by a
-//! minute of small motions, and begins the next connection with that.
+//! Measures the parameters that an arm needs in addition to its model: describes the motion,
+//! measures friction, bias and load with a minute of small motions, and starts the next connection
+//! with them.
 //!
 //! `cargo run --release --features json --example identify -- [ADDRESS] [--save FILE]`
 
@@ -14,7 +15,7 @@ use franka_examples::{Connection, Summary};
 struct Arguments {
     #[command(flatten)]
     connection: Connection,
-    /// Where to write what was found, as JSON.
+    /// File for the results, as JSON.
     #[arg(long)]
     save: Option<PathBuf>,
 }

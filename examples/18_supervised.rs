@@ -1,6 +1,6 @@
-//! Moves its hand up and down, whatever happens: a connection that is lost is made again, the robot
-//! is recovered from reflexes, three times a minute at most, and the next motion waits for it.
-//! Prints what happened. A simulator of its own stops itself twice on the way.
+//! Moves the hand up and down under supervision. A lost connection is restored, the robot is
+//! recovered from reflexes (at most three times per minute), and the next motion waits for it.
+//! Prints the events. Its own simulator stops itself twice during the motions.
 //!
 //! `cargo run --release --example supervised -- [ADDRESS] [--rounds 5] [--seconds 30]`
 
@@ -20,10 +20,10 @@ use tokio::time::sleep;
 struct Arguments {
     #[command(flatten)]
     connection: Connection,
-    /// How often to go up and down.
+    /// Number of motions up and down.
     #[arg(long, default_value_t = 5)]
     rounds: u32,
-    /// How long a motion waits for the robot.
+    /// Time for which a motion waits for the robot.
     #[arg(long, default_value_t = 30)]
     seconds: u64,
 }
@@ -54,7 +54,8 @@ async fn main() -> anyhow::Result<()> {
         };
         let (first, tripped) = tokio::join!(robot.move_to(up).into_future(), collision);
         tripped?;
-        // Whatever ended the first one: the next waits until the robot takes motions.
+        // The next motion waits until the robot accepts motions, regardless of how the first one
+        // ended.
         for outcome in [first, robot.move_to(home).await] {
             match outcome {
                 Ok(_) => arrived += 1,
@@ -75,7 +76,7 @@ async fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Prints what happens, until there is no connection any more.
+/// Prints the events, until the connection has ended.
 fn print_events(robot: &Robot) -> JoinHandle<()> {
     let mut events = robot.events();
     tokio::spawn(async move {

@@ -1,12 +1,12 @@
-//! Grasps what is between the fingers and says what it holds.
+//! Grasps an object between the fingers and reports its width.
 //!
 //! ```text
 //! cargo run --release --example grasp -- WIDTH [ADDRESS] [--force 30] [--speed 0.05] \
 //!     [--tolerance 0.005] [--no-homing]
 //! ```
-//! Exit code 0: an object of about WIDTH is held; 3: there is none, and the fingers stopped at the
-//! width that is printed; 1: the Hand was not reached or failed; 2: an error on the command line.
-//! What is grasped stays grasped when the program ends. No connection to the arm is needed.
+//! Exit code 0: an object of about WIDTH is held; 3: no object is held, and the fingers stopped at
+//! the printed width; 1: the Hand was not reached or failed; 2: an error on the command line. The
+//! object stays grasped when the program ends. No connection to the arm is needed.
 
 use std::process::ExitCode;
 
@@ -21,17 +21,17 @@ struct Arguments {
     width: f64,
     #[command(flatten)]
     connection: Connection,
-    /// With how much force, `[N]`.
+    /// Force of the grasp, `[N]`.
     #[arg(long, default_value_t = 30.0)]
     force: f64,
-    /// How fast the fingers close, `[m/s]`.
+    /// Speed of the fingers, `[m/s]`.
     #[arg(long, default_value_t = 0.05)]
     speed: f64,
-    /// How much wider or narrower the object may be, `[m]`.
+    /// Tolerance of the object's width, `[m]`.
     #[arg(long, default_value_t = 0.005)]
     tolerance: f64,
-    /// Without homing, which moves the fingers through their range. The Hand has to have been homed
-    /// since it was switched on.
+    /// Skip homing, which moves the fingers through their range. The Hand must have been homed
+    /// since power-on.
     #[arg(long)]
     no_homing: bool,
 }

@@ -1,4 +1,4 @@
-//! A service that takes jobs at any time and does one after the other.
+//! A service that accepts jobs at any time and runs one after the other.
 //!
 //! `cargo run --release --features http --example job_queue [ADDRESS]`, then, with the port that it
 //! prints: 5 cm up by `curl 127.0.0.1:PORT/jobs --json '[0, 0, 0.05]'`; the outcomes by
@@ -18,7 +18,7 @@ use tokio::sync::{mpsc, watch};
 async fn main() -> anyhow::Result<()> {
     let address = std::env::args().nth(1);
     let builder = Robot::builder(address.as_deref().unwrap_or("127.0.0.1"));
-    // `Ignore` is for simulators. Without it a real-time kernel is required, as a robot needs it.
+    // `Ignore` is for simulators. Without it a real-time kernel is required, as for a robot.
     let robot = builder.realtime(Realtime::Ignore).connect().await?;
 
     let (queue, mut jobs) = mpsc::channel::<[f64; 3]>(16);
@@ -43,7 +43,8 @@ async fn main() -> anyhow::Result<()> {
     };
     let jobs = Router::new().route("/jobs", post(take).get(list));
     let jobs = jobs.route("/recover", post(recover));
-    // Other computers, and pages of other sites in a browser here, are refused.
+    // Requests from other computers, and from pages of other sites in a browser on this computer,
+    // are refused.
     let peer = |of: &Extensions| of.get::<ConnectInfo<SocketAddr>>().map(|peer| peer.0);
     let refuse = |refused: Refused| (refused.status(), refused.to_string()).into_response();
     let jobs = jobs.layer(Admission::default().layer(peer, refuse));
@@ -57,6 +58,6 @@ async fn main() -> anyhow::Result<()> {
         _ = ctrl_c() => {}
         _ = terminated.recv() => {}
     }
-    robot.shutdown().await; // brakes if a job is under way
+    robot.shutdown().await; // brakes if a job is running
     Ok(())
 }

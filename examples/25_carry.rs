@@ -1,10 +1,10 @@
-//! Two arms that face each other carry one bar, then put it back. When one of them has to stop, the
-//! other one does, too.
+//! Two arms that face each other carry one bar, then put it back. When one of them must stop, the
+//! other stops too.
 //!
 //! `cargo run --release --features mujoco --example carry`
 //!
-//! Both arms are simulated, in one world of MuJoCo. On real robots the grasp would come first, and
-//! the bases would have been measured.
+//! Both arms are simulated, in one MuJoCo world. Real robots would first grasp the bar, and the
+//! positions of their bases would have been measured.
 
 use std::time::Duration;
 
@@ -21,10 +21,10 @@ use nalgebra::{Translation3, UnitQuaternion};
 
 #[derive(Parser)]
 struct Arguments {
-    /// How fast, as a share of the default limits.
+    /// Speed, as a share of the default limits.
     #[arg(long, default_value_t = 0.7)]
     speed: f64,
-    /// With how much force each arm may press or pull, `[N]`.
+    /// Largest force with which each arm presses or pulls, `[N]`.
     #[arg(long, default_value_t = 20.0)]
     force_cap: f64,
 }
@@ -32,7 +32,7 @@ struct Arguments {
 /// Distance of the bases, `[m]`.
 const APART: f64 = 1.2;
 
-/// How long a simulator and the team wait on a machine that is busy.
+/// Time for which a simulator and the team wait on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 #[tokio::main]
@@ -48,24 +48,24 @@ async fn main() -> anyhow::Result<()> {
     let hand =
         pose::from_matrix(&Model::fr3().pose(Frame::EndEffector, &READY, &EndEffector::default()));
     let hand = hand.expect("the model's poses are rigid");
-    // In the middle between the hands.
+    // Halfway between the hands.
     let bar = Pose::translation(APART / 2.0, 0.0, hand.translation.z);
 
-    // A simulator of its own for each arm. Their world takes them to be in step.
+    // A separate simulator for each arm. Their world keeps them in step.
     let arms = shared_world(scene(&bases, &hand, &bar), mounts(&bases))?;
     let sims = arms.map(|arm| Sim::fr3().plant(arm).wait_for_commands(PATIENCE));
     let [left, right] = Sim::in_step(sims);
     let (one, other) = tokio::try_join!(left.start(), right.start())?;
     let (left, right) = tokio::try_join!(connected(&one), connected(&other))?;
     let members = [(&left, Engage::default()), (&right, Engage::default())];
-    // Real robots: `Team::engage`, for which 20 ms without a state are a fault.
+    // For real robots use `Team::engage`, for which 20 ms without a state are a fault.
     let team = Team::engage_tolerating(PATIENCE, members).await?;
     let grasp = team.grasp(bases, bar)?;
     let turned = UnitQuaternion::from_euler_angles(0.0, 0.1, 0.2);
     let up = Pose::from_parts(Translation3::new(APART / 2.0, 0.05, 0.7), turned);
     for (what, to) in [("up", up), ("back", bar)] {
         let carrying = grasp.move_with(to, |motion| motion.speed(speed).force_cap(force_cap));
-        // One outcome for each arm: where one failed, the other says which it was.
+        // One outcome for each arm: if one failed, the other names it.
         let [one, other] = carrying.await;
         println!("{what}, one arm:   {}", Summary(&one?));
         println!("{what}, the other: {}", Summary(&other?));
@@ -95,7 +95,7 @@ fn mounts([left, right]: &[Pose; 2]) -> [Mount; 2] {
     })
 }
 
-/// A bar whose ends are held by the flanges.
+/// Returns a bar whose ends are held by the flanges.
 fn scene(bases: &[Pose; 2], hand: &Pose, bar: &Pose) -> Scene {
     let half = APART / 2.0 - hand.translation.x;
     let [left, right] = [(bases[0], -half), (bases[1], half)].map(|(base, end)| {

@@ -1,4 +1,4 @@
-//! Records what happens to a robot in a file, with a black box for incidents, and reads the file.
+//! Records a robot to a file, with a black box for incidents, and reads the file.
 //!
 //! `cargo run --release --features record --example record -- [ADDRESS] [--to FILE.mcap]`
 
@@ -14,7 +14,7 @@ use franka_examples::Connection;
 struct Arguments {
     #[command(flatten)]
     connection: Connection,
-    /// The new file. Foxglove and Rerun open it, too.
+    /// The new file. Foxglove and Rerun can open it too.
     #[arg(long, default_value = "run.mcap")]
     to: PathBuf,
 }
@@ -26,7 +26,7 @@ async fn main() -> anyhow::Result<()> {
     connection.ask("moves its hand by 10 cm, there and back")?;
 
     let options = RecordOptions {
-        // Written only if something ends a motion: a reflex, a lost link, a guard.
+        // Written only if an incident ends a motion: a reflex, a lost link, or a guard.
         black_box: Some(BlackBox::new("incidents")),
         ..RecordOptions::default()
     };
@@ -46,7 +46,7 @@ async fn main() -> anyhow::Result<()> {
     read(&to)
 }
 
-/// Prints what was asked of the robot, and the largest external force.
+/// Prints the requests to the robot, and the largest external force.
 fn read(file: &Path) -> anyhow::Result<()> {
     let recording = Recording::open(file)?;
     let robot = recording.robot("")?;

@@ -1,8 +1,9 @@
-//! Something runs into the forearm of a moving arm: why the robot stopped, and where it was hit.
+//! An obstacle hits the forearm of a moving arm: the example explains why the robot stopped, and
+//! where it was hit.
 //!
 //! `cargo run --release --features record --example explain -- [--figure FILE.svg]`
 //!
-//! The robot is a simulated one, so that what is found can be held against what was done.
+//! The robot is simulated, so that the explanation can be compared with the true disturbance.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -17,12 +18,12 @@ use nalgebra::Vector3;
 
 #[derive(Parser)]
 struct Arguments {
-    /// Where to write the figure.
+    /// File for the figure.
     #[arg(long)]
     figure: Option<PathBuf>,
 }
 
-/// On the forearm, and against it, in the frame of link 5: `[m]`, `[N]`.
+/// Point on the forearm, and force on it, in the frame of link 5: `[m]`, `[N]`.
 const PLACE: Vector3<f64> = Vector3::new(0.03, 0.083, -0.118);
 const FORCE: Vector3<f64> = Vector3::new(-70.0, 0.0, 0.0);
 
@@ -64,5 +65,5 @@ async fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// How long the simulator waits for the commands of a busy machine.
+/// Time for which the simulator waits for the commands of a busy machine.
 const PATIENCE: Duration = Duration::from_secs(1);

@@ -20,10 +20,10 @@ use franka_examples::Connection;
 struct Arguments {
     #[command(flatten)]
     connection: Connection,
-    /// Where the recording and the exports go: a new folder.
+    /// New folder for the recording and the exports.
     #[arg(long, default_value = "replay")]
     to: PathBuf,
-    /// How fast, as a share of the recorded speed.
+    /// Speed, as a share of the recorded speed.
     #[arg(long, default_value_t = 0.5)]
     speed: f64,
 }

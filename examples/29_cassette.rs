@@ -7,9 +7,9 @@
 //! cargo run --release --features pcap --example cassette -- demo
 //! ```
 //!
-//! `tap` stands between clients and the robot until Enter is pressed: connect them to 127.0.0.1
-//! instead of the robot, with any client in any language. `play` is then the robot at 127.0.0.1,
-//! and ends when the session does. `demo` does both with a simulator and this driver.
+//! `tap` runs between clients and the robot until Enter is pressed: connect the clients, in any
+//! language, to 127.0.0.1 instead of the robot. `play` then serves as the robot at 127.0.0.1, and
+//! ends with the session. `demo` does both with a simulator and this driver.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
@@ -31,27 +31,27 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Record what passes between clients and a robot
+    /// Record the traffic between clients and a robot
     Tap {
         /// The new file
         file: PathBuf,
         /// The robot
         robot: IpAddr,
-        /// Where clients connect to
+        /// Address for clients
         #[arg(long, default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
         listen: IpAddr,
     },
-    /// Be the recorded robot
+    /// Serve as the recorded robot
     Play {
         /// The file
         file: PathBuf,
-        /// Where clients connect to
+        /// Address for clients
         #[arg(long, default_value_t = IpAddr::V4(Ipv4Addr::LOCALHOST))]
         listen: IpAddr,
-        /// Accept nothing but the recorded bytes
+        /// Accept only the recorded bytes
         #[arg(long)]
         strict: bool,
-        /// How long clients may take altogether, in seconds
+        /// Time limit for the whole session, in seconds
         #[arg(long, default_value_t = 600)]
         patience: u64,
     },
@@ -159,7 +159,7 @@ async fn demo() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Turns the last joint by 0.1 rad, and returns where it ends.
+/// Turns the last joint by 0.1 rad, and returns its final position.
 async fn turn(robot: SocketAddr) -> anyhow::Result<f64> {
     let robot = Robot::builder(robot).realtime(Realtime::Ignore);
     let robot = robot.connect().await?;

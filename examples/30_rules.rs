@@ -1,5 +1,5 @@
-//! The seven rules that the book has for control at 1 kHz, each of them broken on a simulated robot
-//! of its own: what the driver says then. Takes no address: a robot would stop itself six times.
+//! The book's seven rules for control at 1 kHz, each violated on a separate simulated robot, with
+//! the driver's messages. Accepts no address: a robot would stop itself six times.
 //!
 //! `cargo run --release --example rules`
 
@@ -22,7 +22,7 @@ async fn main() -> anyhow::Result<()> {
     let late = robot.control_joint_velocities(move |_, _| {
         cycle += 1;
         if cycle == 100 {
-            std::thread::sleep(Duration::from_secs(1)); // a disk, a lock, a page of memory
+            std::thread::sleep(Duration::from_secs(1)); // a disk, a lock, or a page of memory
         }
         JointVelocities([0.0; 7]).finish_if(cycle > 500)
     });
@@ -97,8 +97,8 @@ async fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A simulated Franka Research 3 with a Hand. It counts the cycles of its client: what this machine
-/// does meanwhile has no part in the outcome.
+/// Returns a simulated Franka Research 3 with a Hand. It counts the cycles of its client, so that
+/// the load of this machine does not affect the outcome.
 fn fr3() -> Sim {
     let sim = Sim::fr3().tool(Tool::hand());
     sim.virtual_time(Duration::from_millis(10))
@@ -111,7 +111,7 @@ async fn connected(sim: Sim) -> anyhow::Result<(Robot, Running)> {
     Ok((builder.connect().await?, sim))
 }
 
-/// Prints why a motion ended, and the diagnosis of a stop.
+/// Prints why a motion ended, with the diagnosis of a stop.
 fn explain<T>(outcome: Result<T, MotionError>) -> anyhow::Result<()> {
     let Err(error) = outcome else {
         bail!("nothing happened");

@@ -1,5 +1,5 @@
-//! Teleoperation over WebSockets. Every socket sees the states; one at a time has the lease on the
-//! arm, for as long as its messages come.
+//! Teleoperation over WebSockets. Every socket receives the states. One at a time has the lease on
+//! the arm, as long as its messages arrive.
 //!
 //! `cargo run --release --features http --example axum_teleoperation -- [ADDRESS] [--silence 0.3]`,
 //! then connect to `ws://localhost:8080/teleoperation` and send
@@ -37,8 +37,7 @@ use session::Session;
 struct Arguments {
     #[command(flatten)]
     serving: Serving,
-    /// Silence of the socket that has the lease after which the arm brakes and the lease ends,
-    /// `[s]`.
+    /// Silence of the leading socket after which the arm brakes and the lease ends, `[s]`.
     #[arg(long, default_value = "0.3", value_parser = seconds, allow_negative_numbers = true)]
     silence: Duration,
 }
@@ -81,7 +80,7 @@ async fn connect(
 }
 
 impl Service {
-    /// Attends to a socket until it ends. Its session is dropped then, which brakes the arm.
+    /// Serves a socket until it ends. Its session is then dropped, which brakes the arm.
     async fn attend(self, mut socket: WebSocket, peer: SocketAddr) {
         let mut session = None;
         let mut clock = interval(Duration::from_millis(20));
@@ -90,12 +89,12 @@ impl Service {
             let reply = tokio::select! {
                 message = socket.recv() => match message {
                     Some(Ok(Message::Text(text))) => self.answer(&text, &mut session, peer).await,
-                    // Libraries answer pings, whatever became of the program that uses them: only
-                    // messages of the program itself keep the lease.
+                    // Libraries answer pings even if their program has failed: only messages of the
+                    // program itself keep the lease.
                     Some(Ok(Message::Ping(_) | Message::Pong(_) | Message::Binary(_))) => None,
                     Some(Ok(Message::Close(_))) => {
                         drop(session);
-                        // Reading on answers the farewell.
+                        // A further read answers the close message.
                         let _ = socket.recv().await;
                         return;
                     }
@@ -107,7 +106,7 @@ impl Service {
             };
             let Some(reply) = reply else { continue };
             let text = serde_json::to_string(&reply).expect("replies are plain data");
-            // A client that does not read keeps the lease no longer than one that does not write.
+            // A client that does not read loses the lease as fast as a client that does not write.
             let sent = timeout(self.silence, socket.send(text.into())).await;
             if !matches!(sent, Ok(Ok(()))) {
                 return;
@@ -169,7 +168,7 @@ impl Service {
         Session::begin(&self.robot, holder).await.map_err(refused)
     }
 
-    /// Recovers the robot for a client that holds the lease meanwhile.
+    /// Recovers the robot for a client, which holds the lease meanwhile.
     async fn recover(&self, peer: SocketAddr) -> Result<Reply, Reply> {
         let lease = self.robot.lease();
         let holder = lease.take(peer.to_string(), Duration::MAX, Instant::now());

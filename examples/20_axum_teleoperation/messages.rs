@@ -1,14 +1,14 @@
-//! What goes over a socket, as JSON.
+//! The messages of a socket, as JSON.
 
 use franka_async::{Pose, Robot, pose};
 use serde::{Deserialize, Serialize};
 
-/// From a client.
+/// A message from a client.
 #[derive(Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Request {
     Take {
-        /// Other clients are told who holds the lease: this, or the address of the socket.
+        /// Name of the lease holder for other clients; the default is the address of the socket.
         name: Option<String>,
     },
     Target(Placement),
@@ -18,12 +18,12 @@ pub(crate) enum Request {
     Stop,
 }
 
-/// To a client.
+/// A message to a client.
 #[derive(Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Reply {
     Taken,
-    /// Nothing has changed.
+    /// The request was refused and had no effect.
     Refused {
         why: String,
     },
@@ -33,7 +33,7 @@ pub(crate) enum Reply {
     },
     Released,
     Recovered,
-    /// The arm rests.
+    /// The arm is at rest.
     Stopped,
     State {
         time: u64,
@@ -58,7 +58,7 @@ pub(crate) fn refused(why: impl ToString) -> Reply {
 }
 
 impl Reply {
-    /// The newest state.
+    /// Returns the newest state.
     pub(crate) fn state(robot: &Robot) -> Self {
         let state = robot.state();
         let (position, quaternion) = pose::to_xyzw(&robot.pose());
@@ -75,7 +75,7 @@ impl Reply {
 }
 
 impl Placement {
-    /// `None` if the quaternion is no rotation.
+    /// Returns the pose; `None` if the quaternion is not a rotation.
     pub(crate) fn pose(&self) -> Option<Pose> {
         pose::from_xyzw(self.position, self.quaternion)
     }

@@ -12,7 +12,7 @@ use tokio::sync::watch;
 
 use crate::messages::{Reply, refused};
 
-/// A session that leads the arm. Dropping it brakes the arm, releases it and frees the lease, in
+/// A session that controls the arm. Dropping it brakes the arm, releases it and frees the lease, in
 /// this order.
 pub(crate) struct Session {
     following: Following,
@@ -21,22 +21,22 @@ pub(crate) struct Session {
     holder: Holder,
 }
 
-/// Greatest speed of any joint and of the hand, `[m/s]`: a person may be near.
+/// Largest speed of any joint and of the hand, `[m/s]`: a person may be near.
 const SPEED_CAP: f64 = 0.25;
 
 type Following = Pin<Box<dyn Future<Output = Result<MotionReport, MotionError>> + Send>>;
 
 impl Session {
-    /// Engages the arm for the holder of the lease. The control thread itself watches for the
-    /// silence: it brakes the arm even if this program is stuck.
+    /// Engages the arm for the holder of the lease. The control thread itself monitors the silence:
+    /// it brakes the arm even if this program is blocked.
     pub(crate) async fn begin(robot: &Robot, holder: Holder) -> Result<Self, MotionError> {
         let engage = Engage::default().speed_cap(SPEED_CAP);
-        // After a session that has just ended, this waits until the arm rests.
+        // After a session that has just ended, this waits until the arm is at rest.
         let mut engaging = pin!(robot.engage(engage.deadman(holder.deadman())));
         let arm = loop {
             tokio::select! {
                 arm = &mut engaging => break arm?,
-                // The client waits for its answer meanwhile, and sends nothing.
+                // The client waits for its answer, and sends nothing meanwhile.
                 () = tokio::time::sleep(Duration::from_millis(5)) => {
                     let _ = holder.keep_alive(Instant::now()); // a lost lease holds the arm
                 }
@@ -59,8 +59,8 @@ impl Session {
         self.targets.send_replace(target);
     }
 
-    /// Resolves when the arm has stopped following, with the reply for the client. A target that
-    /// was refused has braked the arm, which follows the next one. Anything else ends the session:
+    /// Resolves when the arm has stopped following, with the reply for the client. After a refused
+    /// target, the arm brakes and then follows the next one. Every other reason ends the session:
     /// the client was silent, or the robot stopped itself.
     pub(crate) async fn trouble(session: &mut Option<Self>) -> Reply {
         let Some(held) = session else { pending().await };
@@ -79,7 +79,7 @@ impl Session {
     }
 }
 
-/// Follows targets, beginning with where the hand is.
+/// Follows targets, starting with the current pose of the hand.
 fn follow(arm: &Arm) -> (watch::Sender<Pose>, Following) {
     let (targets, followed) = watch::channel(arm.robot().pose());
     (targets, arm.follow(followed).lead(LEAD).into_future())
@@ -92,7 +92,7 @@ fn explain(error: MotionError) -> String {
     }
 }
 
-/// How far ahead of the arm a target counts: a wild one does not send the arm far.
+/// Largest distance of a target ahead of the arm: a wild target does not move the arm far.
 const LEAD: Lead = Lead {
     translation: 0.1,
     rotation: 0.3,

@@ -1,5 +1,5 @@
-//! A gRPC service: `proto/arm.proto` says what each call does. A motion belongs to its call: one
-//! that is cancelled, or whose caller goes away, brakes the arm.
+//! A gRPC service: `proto/arm.proto` documents each call. A motion belongs to its call: if the call
+//! is cancelled, or its caller disconnects, the arm brakes.
 //!
 //! `cargo run --release --features grpc --example tonic_service`, then `-- ADDRESS` for the robot
 //! there, and `--listen 127.0.0.1:8080` for another port
@@ -36,7 +36,8 @@ struct Service {
 
 type Answers<T> = Pin<Box<dyn Stream<Item = Result<T, Status>> + Send>>;
 
-/// How far ahead of the arm a target counts, and how long one is followed without another.
+/// Largest distance of a target ahead of the arm, and the time for which a target is followed
+/// without another.
 const LEAD: Lead = Lead {
     translation: 0.1,
     rotation: 0.3,
@@ -57,7 +58,8 @@ async fn main() -> anyhow::Result<()> {
     let listener = TcpListenerStream::new(listener);
     let peer = |of: &http::Extensions| of.get::<TcpConnectInfo>()?.remote_addr();
     serve_until_told(&robot, closing, arguments.deadline, |quit| {
-        // A client whose computer has gone says nothing: this notices, and ends its calls.
+        // A client whose computer has failed does not close its connection: the keepalive detects
+        // this, and ends its calls.
         let server = Server::builder().http2_keepalive_interval(Some(Duration::from_secs(1)));
         let server = server.http2_keepalive_timeout(Some(Duration::from_secs(2)));
         let mut server = server.layer(admission.layer(peer, refuse));
@@ -69,7 +71,7 @@ async fn main() -> anyhow::Result<()> {
     .await
 }
 
-/// Answers a request that is not admitted.
+/// Answers a refused request.
 fn refuse(refused: Refused) -> http::Response<tonic::body::Body> {
     let text = refused.to_string();
     let status = match refused {
@@ -111,7 +113,7 @@ impl Arm for Service {
         let target = target.ok_or_else(|| Status::invalid_argument("no target"))?;
         let target = target.to_isometry(&self.robot.pose())?;
         let speed = if speed == 0.0 { 1.0 } else { speed };
-        // Dropped if the call is cancelled, which brakes the arm. The lease is free then.
+        // Dropped if the call is cancelled, which brakes the arm. The lease is then free.
         let moving = self.robot.move_to(target).speed(speed);
         let report = moving.await.map_err(status)?;
         Ok(Response::new(Arrival {
@@ -129,10 +131,10 @@ impl Arm for Service {
         tokio::spawn(async move {
             let end = tokio::select! {
                 end = follow(&robot, holder, request.into_inner(), &states) => end,
-                () = states.closed() => return, // the caller has gone: the arm brakes
+                () = states.closed() => return, // the caller has disconnected: the arm brakes
             };
             if let Err(status) = end {
-                let _ = states.send(Err(status)).await; // or it goes now
+                let _ = states.send(Err(status)).await; // or the caller disconnects now
             }
         });
         Ok(Response::new(Box::pin(ReceiverStream::new(answers))))
@@ -150,7 +152,7 @@ impl Arm for Service {
 }
 
 impl Service {
-    /// Takes the lease for a call: it ends with the call, and there is no silence to watch for.
+    /// Takes the lease for a call. It ends with the call, so silence need not be monitored.
     fn lease(&self, peer: Option<SocketAddr>) -> Result<Holder, Status> {
         if self.closing.is_cancelled() {
             return Err(Status::unavailable("the service is ending"));
@@ -161,8 +163,8 @@ impl Service {
     }
 }
 
-/// Follows the caller's targets to their end, and answers with states at 50 Hz. The motion is
-/// dropped, and the arm braked, with this future; then the lease is free.
+/// Follows the caller's targets to their end, and answers with states at 50 Hz. Dropping this
+/// future drops the motion, and so brakes the arm; then the lease is free.
 async fn follow(
     robot: &Robot,
     _holder: Holder,
@@ -183,9 +185,9 @@ async fn follow(
             outcome = &mut following => return outcome.map(drop).map_err(status),
             target = targets.message(), if newest.is_some() => match (target?, &newest) {
                 (Some(target), Some(newest)) => drop(newest.send_replace(target.to_isometry(&start)?)),
-                _ => newest = None, // the caller has closed its side: on to the last target
+                _ => newest = None, // the caller has closed its side: move to the last target
             },
-            // A caller that does not read misses states, and holds nothing up.
+            // A caller that does not read misses states, but delays nothing.
             _ = clock.tick() => drop(states.try_send(Ok(state(robot, &robot.state())))),
         }
     }

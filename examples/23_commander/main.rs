@@ -1,5 +1,5 @@
-//! Reads targets from standard input and has the hand follow the newest one; with `--raw`, without
-//! the generator that makes a motion of them, for contrast.
+//! Reads targets from standard input and moves the hand to the newest one; with `--raw`, without
+//! the generator that converts them to a motion, for comparison.
 //!
 //! ```text
 //! cargo run --release --example commander -- [ADDRESS] [--speed 0.5] [--csv FILE] [--raw]
@@ -7,9 +7,9 @@
 //! by 0 0 -0.05      from the target before
 //! wait 0.5          seconds, for input from a file
 //! ```
-//! At the end of the input the arm comes to rest at the last target. With an address the first line
-//! confirms, unless `--yes` is given. Exit code 3: the robot stopped itself, as it soon does under
-//! `--raw`.
+//! At the end of the input the arm stops at the last target. With an address the first line
+//! confirms, unless `--yes` is given. Exit code 3: the robot stopped itself, which happens soon
+//! with `--raw`.
 
 mod raw;
 mod run;
@@ -30,14 +30,14 @@ use tokio::sync::watch;
 struct Arguments {
     #[command(flatten)]
     connection: Connection,
-    /// Times the default speed.
+    /// Speed, as a factor of the default.
     #[arg(long, default_value_t = 1.0)]
     speed: f64,
-    /// Passes targets on as they come, in a control function that keeps their speed below
-    /// 0.25 m/s and does nothing else.
+    /// Forward targets as they arrive, in a control function that only limits their speed to 0.25
+    /// m/s.
     #[arg(long)]
     raw: bool,
-    /// Where to write the run: of each millisecond target, command and measurement.
+    /// File for the run: target, command and measurement of each millisecond.
     #[arg(long)]
     csv: Option<PathBuf>,
 }
@@ -58,7 +58,7 @@ async fn main() -> anyhow::Result<ExitCode> {
         false => robot.follow(targets).speed(speed).await,
         true => raw::follow(&robot, targets).await,
     };
-    robot.shutdown().await; // which also ends the recording
+    robot.shutdown().await; // this also ends the recording
     let mut rows = recording.await?;
     if let Some(error) = outcome.as_ref().err().and_then(MotionError::control)
         && raw
@@ -84,7 +84,7 @@ async fn main() -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The newest target; closed at the end of the input. Reading blocks, so it has a thread.
+/// Returns the newest target; closed at the end of the input. Reading blocks, so it has a thread.
 fn read_targets(start: Pose) -> watch::Receiver<Pose> {
     let (sender, targets) = watch::channel(start);
     std::thread::spawn(move || {

@@ -1,4 +1,4 @@
-//! A stream of targets without a generator, as programs do it that know no better.
+//! Follows a stream of targets without a generator, as naive programs do.
 
 use franka_async::control::slot::Read;
 use franka_async::control::{CartesianPose, Finish, slot};
@@ -11,8 +11,8 @@ pub(crate) async fn follow(
     robot: &Robot,
     mut targets: watch::Receiver<Pose>,
 ) -> Result<MotionReport, MotionError> {
-    // The control thread must not take the lock of a watch: targets reach it through a slot, with
-    // whether there will be more.
+    // The control thread must not take the lock of a watch. Targets reach it through a slot, with a
+    // flag for more targets.
     let (mut writer, mut reader) = slot::slot::<[f64; 4]>();
     let passing_on = tokio::spawn(async move {
         loop {
@@ -44,5 +44,5 @@ pub(crate) async fn follow(
     outcome
 }
 
-/// The clamp of `--raw`, `[m/s]`.
+/// The speed limit of `--raw`, `[m/s]`.
 const VELOCITY: f64 = 0.25;

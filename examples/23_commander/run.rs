@@ -1,4 +1,4 @@
-//! What happened in each millisecond.
+//! The record of each millisecond.
 
 use std::fmt::Write as _;
 
@@ -16,8 +16,8 @@ pub(crate) struct Row {
     measured: Vector3<f64>,
 }
 
-/// Every millisecond of the motion. The command is the reference of the generator, or what the
-/// robot was sent.
+/// Returns every millisecond of the motion. The command is the reference of the generator, or the
+/// robot's command.
 pub(crate) async fn record(robot: Robot, raw: bool, targets: watch::Receiver<Pose>) -> Vec<Row> {
     let (mut records, mut states) = (robot.records(), robot.state_stream());
     let hand = |q| robot.pose_at(q).translation.vector;
@@ -55,12 +55,13 @@ pub(crate) async fn record(robot: Robot, raw: bool, targets: watch::Receiver<Pos
     }
 }
 
-/// Replaces the end by the log of an error, which has the command that the robot did not accept.
+/// Replaces the end with the log of an error, which contains the command that the robot did not
+/// accept.
 pub(crate) fn end_with(rows: &mut Vec<Row>, log: &ControlLog) {
     let target = rows.last().map(|row| row.target).unwrap_or_default();
     let first = log.iter().next().map(|entry| entry.state.message_id);
     rows.retain(|row| first.is_none_or(|first| row.time < first));
-    // A state that was not answered has a command of zeros, which is no pose.
+    // An unanswered state has a command of zeros, which is not a pose.
     let answered = log.iter().filter(|entry| entry.command.O_T_EE_c[15] == 1.0);
     rows.extend(answered.map(|LogEntry { state, command, .. }| Row {
         time: state.message_id,
@@ -74,7 +75,7 @@ fn position(pose: &[f64; 16]) -> Vector3<f64> {
     Vector3::from_column_slice(&pose[12..15])
 }
 
-/// The largest velocity, acceleration and jerk of the commands, which begin at rest.
+/// Returns the largest velocity, acceleration and jerk of the commands, which begin at rest.
 pub(crate) fn derivatives(rows: &[Row]) -> [f64; 3] {
     let at_rest = rows.first().into_iter().cycle().take(3);
     let mut values: Vec<_> = at_rest.chain(rows).map(|row| row.command).collect();
@@ -87,7 +88,7 @@ pub(crate) fn derivatives(rows: &[Row]) -> [f64; 3] {
     })
 }
 
-/// The run as comma-separated values.
+/// Returns the run as comma-separated values.
 pub(crate) fn table(rows: &[Row]) -> String {
     let mut table =
         "time,target_x,target_y,target_z,command_x,command_y,command_z,x,y,z\n".to_owned();

@@ -4,7 +4,7 @@
 ///
 /// The transition is the polynomial of fifth degree whose velocity and acceleration vanish at both
 /// ends (the minimum-jerk trajectory of Flash and Hogan, 1985). Commands to a motion generator must
-/// be that smooth from the first one on, since the robot accepts no steps in acceleration.
+/// be this smooth from the first one, because the robot accepts no steps in acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ease {
     /// The value, from 0 to 1.
@@ -14,8 +14,8 @@ pub struct Ease {
 }
 
 impl Ease {
-    /// The transition within `duration` seconds, at `time` seconds after its beginning; constant
-    /// before and after.
+    /// Returns the transition within `duration` seconds, at `time` seconds after its beginning;
+    /// constant before and after.
     pub fn over(duration: f64, time: f64) -> Self {
         let s = (time / duration).clamp(0.0, 1.0);
         Self {
@@ -24,7 +24,7 @@ impl Ease {
         }
     }
 
-    /// From 0 to 1 in the first half of `duration`, and back in the second.
+    /// Returns a transition from 0 to 1 in the first half of `duration`, and back in the second.
     pub fn there_and_back(duration: f64, time: f64) -> Self {
         let half = 0.5 * duration;
         if time < half {

@@ -1,4 +1,4 @@
-//! Motions as jobs: they belong to a task of their own, and not to the request that began them.
+//! Motions as jobs: they belong to a separate task, and not to the request that started them.
 
 use std::time::Duration;
 
@@ -9,8 +9,8 @@ use tokio::sync::watch;
 use tokio_stream::wrappers::WatchStream;
 use tokio_stream::{Stream, StreamExt};
 
-/// A motion that runs until it ends or is cancelled, whoever goes away meanwhile. Dropping a `Job`
-/// does not end it.
+/// A motion that runs until it ends or is cancelled, even if its client disconnects. Dropping a
+/// `Job` does not end it.
 #[derive(Clone, Debug)]
 pub struct Job {
     progress: watch::Receiver<Progress>,
@@ -20,35 +20,36 @@ pub struct Job {
 /// The newest event of a job.
 #[derive(Clone, Debug)]
 pub struct Progress {
-    /// Counts the events of this job. A client that comes back says which one it has seen.
+    /// Number of the event within this job. A reconnecting client sends the last number it
+    /// received.
     pub number: u64,
-    /// What has become of the job.
+    /// The stage of the job.
     pub stage: Stage,
 }
 
-/// How far a job has come.
+/// The stage of a job.
 #[derive(Clone, Debug)]
 pub enum Stage {
     /// The robot has not begun the motion.
     Queued,
     /// The robot moves.
     Moving {
-        /// The share of its time that has passed, from 0 to 1.
+        /// Share of the motion's time that has passed, from 0 to 1.
         fraction: f64,
-        /// Until the arm is at the target, where it then settles.
+        /// Time until the arm reaches the target, where it then settles.
         remaining: Duration,
     },
-    /// The arm rests at the target.
+    /// The arm is at rest at the target.
     Arrived {
-        /// How long the motion took.
+        /// Duration of the motion.
         duration: Duration,
     },
-    /// The motion ended short of its target: it was refused or cancelled, or failed.
+    /// The motion ended before its target: it was refused or cancelled, or failed.
     Failed(MotionError),
 }
 
 impl Job {
-    /// Begins `motion`.
+    /// Starts `motion`.
     pub fn start(motion: Motion) -> Self {
         let queued = Progress {
             number: 0,
@@ -56,7 +57,7 @@ impl Job {
         };
         let (sender, progress) = watch::channel(queued);
         let handle = motion.handle();
-        // The task owns the motion: nobody else can drop it, and so brake the arm.
+        // The task owns the motion: no other code can drop it, and so brake the arm.
         tokio::spawn(run(motion, sender));
         Self {
             progress,
@@ -64,12 +65,12 @@ impl Job {
         }
     }
 
-    /// Brakes the arm. The job fails as stopped when it rests.
+    /// Brakes the arm. The job fails as stopped when the arm is at rest.
     pub fn cancel(&self) {
         self.motion.cancel();
     }
 
-    /// The newest event.
+    /// Returns the newest event.
     pub fn newest(&self) -> Progress {
         self.progress.borrow().clone()
     }
@@ -77,10 +78,10 @@ impl Job {
     /// Resolves when the robot has begun the motion.
     ///
     /// # Errors
-    /// Why it was refused.
+    /// The reason for a refusal.
     ///
     /// # Cancel safety
-    /// The job goes on if the future is dropped.
+    /// The job continues if the future is dropped.
     pub async fn begun(&self) -> Result<(), MotionError> {
         let mut progress = self.progress.clone();
         let begun = |progress: &Progress| !matches!(progress.stage, Stage::Queued);
@@ -93,8 +94,8 @@ impl Job {
         }
     }
 
-    /// The events from now on, beginning with the newest one unless it is `seen`; ends with the
-    /// job.
+    /// Returns the events from now on, beginning with the newest one unless it is `seen`; ends with
+    /// the job.
     pub fn events(&self, seen: Option<u64>) -> impl Stream<Item = Progress> + Send + use<> {
         let events = WatchStream::new(self.progress.clone());
         events.filter(move |progress| Some(progress.number) > seen)
@@ -102,12 +103,12 @@ impl Job {
 }
 
 impl Stage {
-    /// True if nothing comes after it.
+    /// True if it is the last event.
     pub fn is_last(&self) -> bool {
         matches!(self, Self::Arrived { .. } | Self::Failed(_))
     }
 
-    /// Its name.
+    /// Returns its name.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Queued => "queued",
@@ -117,7 +118,7 @@ impl Stage {
         }
     }
 
-    /// All of it, for a client.
+    /// Returns all its data for a client.
     pub fn to_json(&self) -> Value {
         let mut json = match self {
             Self::Queued => json!({}),

@@ -1,5 +1,5 @@
-//! What the examples share: a robot at the address given, or a simulated one in this process;
-//! smooth references; motions as jobs; the end of a service.
+//! The shared parts of the examples: a robot at the given address, or a simulated one in this
+//! process; smooth references; motions as jobs; the shutdown of a service.
 #![doc = include_str!("../README.md")]
 
 mod ease;
@@ -38,11 +38,10 @@ pub struct Connection {
     /// Address of a robot or simulator, `host` or `host:port`; without it a simulator starts in
     /// this process.
     pub address: Option<String>,
-    /// Which robot to simulate. A real robot reports its own kind.
+    /// The robot to simulate. A real robot reports its own kind.
     #[arg(long, value_enum, default_value_t = Simulated::Fr3, conflicts_with = "address")]
     pub sim: Simulated,
-    /// Whether the control thread may go without real-time scheduling; for a simulator in this
-    /// process it always may.
+    /// Real-time scheduling of the control thread; always optional for a simulator in this process.
     #[arg(long, value_enum, default_value_t = Realtime::Enforce)]
     pub realtime: Realtime,
     /// Move at once, without asking for confirmation.
@@ -50,12 +49,12 @@ pub struct Connection {
     pub yes: bool,
 }
 
-/// What to do if the host does not grant real-time scheduling, see [`franka_async::Realtime`].
+/// Action if the host does not grant real-time scheduling, see [`franka_async::Realtime`].
 #[derive(ValueEnum, Clone, Copy, Debug)]
 pub enum Realtime {
     /// Do not connect
     Enforce,
-    /// Connect all the same: enough for a simulator
+    /// Connect anyway: sufficient for a simulator
     Ignore,
 }
 
@@ -77,19 +76,19 @@ pub enum Simulated {
     Fer,
 }
 
-/// Command line of the examples without options of their own.
+/// Command line of the examples without their own options.
 #[derive(Debug, Parser)]
 pub struct Arguments {
-    /// Which robot.
+    /// The robot.
     #[command(flatten)]
     pub connection: Connection,
 }
 
 impl Connection {
-    /// Connects. Keep what comes with the robot: dropping it ends the simulator, if there is one.
+    /// Connects. Keep the second value: dropping it ends the simulator, if there is one.
     ///
     /// # Errors
-    /// If nothing answers at the address, or the simulator cannot start.
+    /// If no robot answers at the address, or the simulator cannot start.
     pub async fn open(&self) -> anyhow::Result<(Robot, Option<Running>)> {
         self.open_with(|builder| builder).await
     }
@@ -97,7 +96,7 @@ impl Connection {
     /// Connects like [`Self::open`], with further options.
     ///
     /// # Errors
-    /// Those of [`Self::open`].
+    /// The errors of [`Self::open`].
     pub async fn open_with(
         &self,
         options: impl FnOnce(Builder) -> Builder,
@@ -119,7 +118,7 @@ impl Connection {
         Ok((robot, Some(sim)))
     }
 
-    /// Connects to the Hand alone. Keep what comes with it, as with [`Self::open`].
+    /// Connects to the Hand alone. Keep the second value, as with [`Self::open`].
     ///
     /// # Errors
     /// If no Hand answers at the address, or the simulator cannot start.
@@ -149,7 +148,7 @@ impl Connection {
         sim.context("starting the simulator")
     }
 
-    /// The scheduling of a thread that controls the robot of [`Self::open`].
+    /// Returns the scheduling of a thread that controls the robot of [`Self::open`].
     pub fn scheduling(&self) -> Scheduling {
         Scheduling {
             realtime: match self.address {
@@ -160,11 +159,11 @@ impl Connection {
         }
     }
 
-    /// Connects like [`Self::open`], asks whether the arm may do `what`, and moves it to the ready
-    /// pose.
+    /// Connects like [`Self::open`], asks for permission to do `what`, and moves the arm to the
+    /// ready pose.
     ///
     /// # Errors
-    /// Those of [`Self::open`], of [`Self::ask`] and of [`make_ready`].
+    /// The errors of [`Self::open`], of [`Self::ask`] and of [`make_ready`].
     pub async fn open_ready(&self, what: &str) -> anyhow::Result<(Robot, Option<Running>)> {
         let (robot, sim) = self.open().await?;
         self.ask(&format!("goes to its ready pose, then {what}"))?;
@@ -172,8 +171,8 @@ impl Connection {
         Ok((robot, sim))
     }
 
-    /// Prints what the arm is about to do and waits for the enter key, unless the arm is simulated
-    /// in this process or `--yes` was given.
+    /// Prints the arm's next motion and waits for the enter key, unless the arm is simulated in
+    /// this process or `--yes` was given.
     ///
     /// # Errors
     /// If the input ends first.
@@ -192,10 +191,10 @@ impl Connection {
         Ok(())
     }
 
-    /// Connects to the hand beside the robot that [`Self::open`] connected to.
+    /// Connects to the Hand of the robot that [`Self::open`] connected to.
     ///
     /// # Errors
-    /// If no hand answers there.
+    /// If no Hand answers at its address.
     pub async fn open_gripper(
         &self,
         robot: &Robot,
@@ -213,7 +212,7 @@ impl Connection {
 /// and 20 N are a contact, 60 N m and 60 N a collision that stops the arm.
 ///
 /// # Errors
-/// Those of the motion.
+/// The errors of the motion.
 pub async fn make_ready(robot: &Robot) -> anyhow::Result<()> {
     robot
         .set_collision_behavior(CollisionBehavior::compliant())
@@ -223,8 +222,8 @@ pub async fn make_ready(robot: &Robot) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Prints twice a second how far the hand is from where it is now, until the task is aborted or the
-/// connection ends.
+/// Prints the displacement of the hand from its current position twice a second, until the task is
+/// aborted or the connection ends.
 pub fn report_hand(robot: &Robot) -> JoinHandle<()> {
     let (mut states, robot) = (robot.states(), robot.clone());
     let start = robot.pose().translation.vector;

@@ -1,4 +1,4 @@
-//! What services have in common: their options, and how one that has a robot ends.
+//! The shared parts of services: their options, and the shutdown of a service with a robot.
 
 #[cfg(feature = "http")]
 use std::net::SocketAddr;
@@ -31,10 +31,10 @@ use crate::Connection;
 #[derive(Debug, Parser)]
 #[command(about = None)]
 pub struct Serving {
-    /// Which robot.
+    /// The robot.
     #[command(flatten)]
     pub connection: Connection,
-    /// Where to listen. Addresses that other computers reach need a token.
+    /// Address to listen on. Addresses that other computers can reach need a token.
     #[arg(long, default_value = "127.0.0.1:8080")]
     listen: String,
     /// Require the token in this file from each client; without it, the token in the variable
@@ -44,16 +44,16 @@ pub struct Serving {
     /// Require a new random token from each client, and print it.
     #[arg(long)]
     new_token: bool,
-    /// Time to end in, `[s]`.
+    /// Time limit for the shutdown, `[s]`.
     #[arg(long, default_value = "5", value_parser = seconds, allow_negative_numbers = true)]
     pub deadline: Duration,
 }
 
 impl Serving {
-    /// Listens, prints where, and returns the rules for the requests.
+    /// Listens, prints the address, and returns the rules for the requests.
     ///
     /// # Errors
-    /// If the address is not available, or other computers reach it and there is no token.
+    /// If the address is not available, or other computers can reach it and there is no token.
     pub async fn listen(&self) -> anyhow::Result<(TcpListener, Admission)> {
         let token = match self.new_token {
             true => Some(Token::generate()?),
@@ -76,10 +76,10 @@ impl Serving {
     }
 }
 
-/// Reads a duration from an argument, `[s]`.
+/// Parses a duration from an argument, `[s]`.
 ///
 /// # Errors
-/// If it is no number, negative, not finite, or too large.
+/// If it is not a number, negative, not finite, or too large.
 pub fn seconds(text: &str) -> Result<Duration, String> {
     let seconds: f64 = text
         .parse()
@@ -90,10 +90,10 @@ pub fn seconds(text: &str) -> Result<Duration, String> {
     }
 }
 
-/// A day: longer times are mistakes, and the sum of a time and a very long one panics.
+/// A day: longer times are mistakes, and adding a very long time to another one panics.
 const SECONDS_MAX: f64 = 86_400.0;
 
-/// Checks all requests to a web service before it sees them.
+/// Checks all requests to a web service before it receives them.
 #[cfg(feature = "http")]
 pub fn admit(
     app: Router,
@@ -108,17 +108,17 @@ pub fn admit(
 /// Serves until SIGTERM, Ctrl-C or the end of the connection to the robot, and then ends within
 /// `deadline`:
 ///
-/// 1. `closing` is cancelled: the service has to refuse motions from then on.
-/// 2. The arm is braked and let go, and the connection closed, while clients are still answered:
-///    those that wait for a motion are told that it was stopped.
-/// 3. The signal that `serve` got is given: the server takes no more connections and finishes the
-///    requests that it has.
-/// 4. At the deadline, whatever is still open is cut. An arm that rests needs a second at most, so
-///    that the rest of the time is left to the clients.
+/// 1. `closing` is cancelled: the service must refuse motions from then on.
+/// 2. The arm is braked and released, and the connection closed, while clients still receive
+///    answers: clients that wait for a motion are notified that it was stopped.
+/// 3. The signal passed to `serve` is sent: the server accepts no more connections and completes
+///    its current requests.
+/// 4. At the deadline, all open connections are cut. The arm stops within a second, so the
+///    remaining time is for the clients.
 ///
 /// # Errors
-/// What made the server end, and why the connection to the robot ended, so that whatever started
-/// the service can start it again; that the arm was not seen to rest.
+/// The error of the server; the reason for the end of the robot's connection, so that the service
+/// can be restarted; or that the arm was not seen to be at rest.
 pub async fn serve_until_told<S, E>(
     robot: &Robot,
     closing: CancellationToken,
@@ -140,7 +140,7 @@ where
     closing.cancel();
     let end = Instant::now() + deadline;
     let resting = async {
-        // `shutdown` alone brakes, too. `stop` says whether the arm was seen to rest.
+        // `shutdown` alone brakes too. `stop` reports whether the arm was seen to be at rest.
         let rested = timeout_at(end, robot.stop()).await;
         let closed = timeout_at(end, robot.shutdown()).await;
         at_rest.cancel();
@@ -158,7 +158,7 @@ where
     }
 }
 
-/// Resolves when the process is asked to end.
+/// Resolves when the process receives a signal to end.
 async fn termination() -> std::io::Result<()> {
     let mut terminate = signal(SignalKind::terminate())?;
     tokio::select! {

@@ -10,7 +10,8 @@ use franka_async::state::RobotState;
 use franka_lockstep::{Callback, Lockstep};
 use franka_sim::Sim;
 
-/// What is tested: springs and dampers lead joint 4 along a wave around `start`, for five seconds.
+/// The program under test: springs and dampers move joint 4 along a wave around `start`, for five
+/// seconds.
 fn wave(
     model: StateModel,
     start: [f64; 7],
@@ -28,14 +29,14 @@ fn wave(
     }
 }
 
-/// Where the joints are to be after `time`, `[s]`: it begins and ends there at rest.
+/// Returns the target of the joints after `time`, `[s]`: it begins and ends at `start` at rest.
 fn wanted(start: [f64; 7], time: f64) -> [f64; 7] {
     let mut q = start;
     q[3] += 0.1 * (1.0 - (std::f64::consts::TAU * time / 5.0).cos());
     q
 }
 
-/// On an arm that sticks as real ones do, over the wire, in virtual time.
+/// An arm with realistic stiction, over the wire, in virtual time.
 #[tokio::test]
 async fn the_arm_follows_the_wave_and_no_torque_leaps() -> anyhow::Result<()> {
     for sim in [Sim::fr3(), Sim::fer()] {
@@ -44,7 +45,7 @@ async fn the_arm_follows_the_wave_and_no_torque_leaps() -> anyhow::Result<()> {
         let robot = Robot::builder(sim.addr()).realtime(Realtime::Ignore);
         let robot = robot.link_timeout(patience).connect().await?;
         let start = robot.state().q_d;
-        let mut cycles = robot.cycles(8192)?; // all that the test takes: 5 s are 5000
+        let mut cycles = robot.cycles(8192)?; // sufficient for the test: 5 s are 5000
         let law = wave(robot.state_model(), start);
         let report = robot.control_torques(law).limit_rate(false).await?;
         assert_eq!(report.lost_states, 0, "{report:?}");
@@ -72,7 +73,7 @@ async fn the_arm_follows_the_wave_and_no_torque_leaps() -> anyhow::Result<()> {
             );
         }
 
-        // Of this machine, and asserted nowhere: what 999 of 1000 answers took at most.
+        // A figure of this machine, which is not asserted: the bound on 999 of 1000 answers.
         let mut turnarounds: Vec<_> = running.iter().map(|record| record.turnaround).collect();
         turnarounds.sort_unstable();
         println!(
@@ -85,7 +86,8 @@ async fn the_arm_follows_the_wave_and_no_torque_leaps() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The same bits in every run: driver and robot in one thread, without sockets or a clock.
+/// The result is bit-identical in every run: driver and robot in one thread, without sockets or a
+/// clock.
 #[test]
 fn the_wave_is_the_same_in_each_run() {
     let run = || {

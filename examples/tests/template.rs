@@ -6,21 +6,21 @@ use franka_async::MotionError;
 use franka_async::prelude::*;
 use franka_sim::{Network, Running, Sim};
 
-/// What is tested: the hand goes down by `depth`, in metres, and back.
+/// The program under test: the hand moves down by `depth`, in metres, and back.
 async fn nod(robot: &Robot, depth: f64) -> Result<(), MotionError> {
     robot.move_by(Offset::base([0.0, 0.0, -depth])).await?;
     robot.move_by(Offset::base([0.0, 0.0, depth])).await?;
     Ok(())
 }
 
-/// A robot of its own for each test, in virtual time: as fast as this machine, and never too fast
-/// for it. Keep what comes with the connection; dropping it ends the robot.
+/// Starts a separate robot for each test, in virtual time: as fast as this machine, and never too
+/// fast for it. Keep the second value; dropping it ends the robot.
 async fn simulated() -> (Robot, Running) {
     disturbed(|_| ()).await
 }
 
-/// One on which `job` is run before each of its milliseconds. What is to happen in mid-motion
-/// belongs there: a task that watches the robot may come too late, or never see it move.
+/// Starts a robot that runs `job` before each of its milliseconds. Events in mid-motion belong
+/// there: a task that watches the robot may be too late, or never see it move.
 async fn disturbed(job: impl FnMut(&mut franka_sim::Robot) + Send + 'static) -> (Robot, Running) {
     let sim = Sim::fr3().virtual_time(PATIENCE / 2).every_millisecond(job);
     let sim = sim.start().await.expect("a free port");
@@ -29,10 +29,10 @@ async fn disturbed(job: impl FnMut(&mut franka_sim::Robot) + Send + 'static) -> 
     (robot.expect("it answers"), sim)
 }
 
-/// For how long robot and driver wait for each other on a machine that is busy.
+/// Time for which robot and driver wait for each other on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// True if the arm is on its way. At rest the noise of a joint stays below 0.01 rad/s.
+/// True if the arm moves. At rest the noise of a joint stays below 0.01 rad/s.
 fn moves(robot: &franka_sim::Robot) -> bool {
     robot.dq().amax() > 0.05
 }
@@ -70,8 +70,8 @@ async fn a_collision_is_not_hidden_and_can_be_recovered_from() {
     nod(&robot, 0.04).await.expect("it arrives");
 }
 
-/// The robot's computer stands still from then on: neither states nor answers come. That it does is
-/// known after the link timeout, and not before.
+/// The robot's computer stops from then on: neither states nor answers arrive. The driver detects
+/// this after the link timeout, and not before.
 #[tokio::test]
 async fn a_lost_link_ends_the_nod() {
     let (release, held) = std::sync::mpsc::channel::<()>();
@@ -86,8 +86,8 @@ async fn a_lost_link_ends_the_nod() {
     drop(release);
 }
 
-/// The network is cut for 100 ms of the robot's time, both ways. Only a task can cut it: the robot
-/// stands still in its first moving millisecond until one has asked for that.
+/// The network is cut for 100 ms of the robot's time, in both directions. Only a task can cut it:
+/// the robot stops in its first moving millisecond until a task has requested the cut.
 #[tokio::test]
 async fn a_cut_network_ends_the_nod() {
     let (tell, moving) = tokio::sync::oneshot::channel();
@@ -109,7 +109,7 @@ async fn a_cut_network_ends_the_nod() {
             network.to_client.cut(now..now + Duration::from_millis(100));
             network.to_robot.cut(now..now + Duration::from_millis(100));
         });
-        // In this order: asked for, and then the robot goes on.
+        // In this order: the cut is requested, and then the robot continues.
         let (cut, ()) = tokio::join!(biased; cut, async { drop(go_on) });
         cut.expect("the robot runs");
     };
@@ -121,7 +121,7 @@ async fn a_cut_network_ends_the_nod() {
     );
 }
 
-/// The simulation ends in mid-motion, sockets included, as at a robot whose power fails.
+/// The simulation ends in mid-motion, with its sockets, as in a power failure of the robot.
 #[tokio::test]
 async fn a_robot_that_is_gone_ends_the_nod() {
     let (robot, sim) = disturbed(|robot| {

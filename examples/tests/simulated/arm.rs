@@ -12,13 +12,14 @@ use franka_async::state::{RobotError, RobotMode, RobotState};
 use franka_sim::{Robot, Running, Sim, Tool, Touch};
 use tokio::runtime::{self, Runtime};
 
-/// How long a cycle waits for its command: less than the silence after which a client gives up.
+/// Time for which a cycle waits for its command: less than the silence after which a client
+/// considers the robot lost.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// What has not happened within this time never will, on a machine that is busy as well.
+/// Time limit for events, also on a busy machine.
 pub(crate) const SOON: Duration = Duration::from_secs(100);
 
-/// From one recorded state to the next, `[ms]`.
+/// Interval between recorded states, `[ms]`.
 pub(crate) const SAMPLE: u64 = 5;
 
 /// The initial state of a robot, and the events while a program moves it.
@@ -28,13 +29,13 @@ pub(crate) struct Scene {
     pub(crate) q: JointVector,
     /// The events while it moves, in order.
     pub(crate) events: Vec<(When, Event)>,
-    /// True if the robot keeps the clock on the wall, and waits for late commands. In virtual time
-    /// otherwise, so that no command is late.
+    /// True if the robot keeps the wall clock, and waits for late commands. Otherwise it runs in
+    /// virtual time, so that no command is late.
     pub(crate) on_the_wall: bool,
-    /// True if the arm sticks, flexes and lags as real ones do; an ideal one otherwise.
+    /// True for an arm with realistic stiction, elasticity and lag; an ideal arm otherwise.
     pub(crate) realistic: bool,
-    /// How long each of the robot's milliseconds takes at least: a program that has a rate of its
-    /// own is then punctual for the robot, however busy the machine is.
+    /// Smallest duration of each of the robot's milliseconds: a program with its own rate is then
+    /// punctual for the robot, even on a busy machine.
     pub(crate) slow: Duration,
 }
 
@@ -43,19 +44,19 @@ pub(crate) type When = fn(&RobotState, u64) -> bool;
 
 #[derive(Clone, Copy)]
 pub(crate) enum Event {
-    /// The hand is pushed with this force, `[N]`, for so many milliseconds.
+    /// The hand is pushed with this force, `[N]`, for this number of milliseconds.
     PushHand([f64; 3], u64),
-    /// The elbow is swung, which hardly moves the hand: joint 3 gets this torque, `[N m]`, for so
-    /// many milliseconds.
+    /// The elbow is swung, which hardly moves the hand: joint 3 receives this torque, `[N m]`, for
+    /// this number of milliseconds.
     SwingElbow(f64, u64),
-    /// A table is so far below the hand, `[m]`.
+    /// A table is placed at this distance below the hand, `[m]`.
     LayTable(f64),
     /// The robot stops itself.
     Trip(RobotError),
 }
 
 impl Default for Scene {
-    /// In the ready pose, without disturbances, in virtual time.
+    /// Returns a scene in the ready pose, without disturbances, in virtual time.
     fn default() -> Self {
         Self {
             q: READY,
@@ -79,7 +80,7 @@ pub(crate) struct Arm {
 #[derive(Default)]
 pub(crate) struct MeasuredPath(Vec<RobotState>);
 
-/// A robot of this name in this scene, and what it records.
+/// Returns a robot with this name in this scene, and its record.
 fn simulator(robot: &str, scene: Scene) -> (Sim, Arc<Mutex<Watch>>) {
     let sim = match robot {
         "fr3" => Sim::fr3(),
@@ -108,13 +109,13 @@ fn simulator(robot: &str, scene: Scene) -> (Sim, Arc<Mutex<Watch>>) {
 }
 
 impl Arm {
-    /// Starts the robot of this name.
+    /// Starts the robot with this name.
     pub(crate) fn start(robot: &str, scene: Scene) -> Self {
         let (sim, watch) = simulator(robot, scene);
         Self::serve(sim, watch)
     }
 
-    /// Starts a robot of each kind, whose milliseconds are the same.
+    /// Starts a robot of each kind, with synchronised milliseconds.
     pub(crate) fn in_step([one, other]: [Scene; 2]) -> [Self; 2] {
         let (one, watch) = simulator("fr3", one);
         let (other, other_watch) = simulator("fer", other);
@@ -135,7 +136,7 @@ impl Arm {
         }
     }
 
-    /// A robot of this name in its ready pose, which keeps the clock on the wall.
+    /// Starts a robot with this name in its ready pose, which keeps the wall clock.
     pub(crate) fn by_the_clock(robot: &str) -> Self {
         let scene = Scene {
             on_the_wall: true,
@@ -144,13 +145,13 @@ impl Arm {
         Self::start(robot, scene)
     }
 
-    /// The state of the robot, which its clients need not have seen yet.
+    /// Returns the state of the robot, which its clients may not have received yet.
     pub(crate) fn state(&self) -> RobotState {
         let state = self.runtime.block_on(self.sim.state());
         state.expect("the simulator runs")
     }
 
-    /// Waits for a state of which `holds` is true.
+    /// Waits for a state for which `holds` is true.
     pub(crate) fn wait_for(&self, what: &str, holds: impl Fn(&RobotState) -> bool) -> RobotState {
         let end = Instant::now() + SOON;
         loop {
@@ -170,7 +171,7 @@ impl Arm {
         });
     }
 
-    /// Waits until the arm is let go, and checks that it rests, without an error.
+    /// Waits until the arm is released, and checks that it is at rest, without an error.
     pub(crate) fn rests(&self) -> RobotState {
         let state = self.wait_for("idle", |state| state.robot_mode != RobotMode::Move);
         assert_eq!(
@@ -191,18 +192,18 @@ impl Arm {
         state
     }
 
-    /// The robot stops itself.
+    /// Makes the robot stop itself.
     pub(crate) fn trip(&self, error: RobotError) {
         self.with(move |robot| robot.trip(error));
     }
 
-    /// Does something to the robot.
+    /// Runs a function with the robot.
     pub(crate) fn with(&self, what: impl FnOnce(&mut Robot) + Send + 'static) {
         let done = self.sim.with(what);
         self.runtime.block_on(done).expect("the simulator runs");
     }
 
-    /// Ends the simulation and returns what the arm has done.
+    /// Ends the simulation and returns the motion of the arm.
     pub(crate) fn stop(self) -> MeasuredPath {
         let last = self.runtime.block_on(self.sim.state());
         self.runtime.block_on(self.sim.stop());
@@ -218,15 +219,15 @@ impl Arm {
 
 /// The observer of a robot.
 struct Watch {
-    /// Those that are not yet due.
+    /// Events that are not due yet.
     events: VecDeque<(When, Event)>,
-    /// The beginning of the present motion, in the robot's time.
+    /// The beginning of the current motion, in the robot's time.
     moving: Option<u64>,
     path: MeasuredPath,
 }
 
 impl Watch {
-    /// Records the state, and disturbs the robot if that is due.
+    /// Records the state, and disturbs the robot if an event is due.
     fn see(&mut self, robot: &mut Robot) {
         let state = robot.state();
         let now = state.message_id;
@@ -268,7 +269,8 @@ impl Event {
     }
 }
 
-/// The direction in which the joints at `q` can move without the hand, joint 3 forwards; of length
+/// Returns the direction in which the joints at `q` can move without the hand, joint 3 forwards,
+/// with length
 /// 1. Both robots have the same kinematics.
 fn self_motion(q: &JointVector) -> JointVector {
     let jacobian = Model::fr3().zero_jacobian(Frame::EndEffector, q, &EndEffector::default());
@@ -280,12 +282,12 @@ fn self_motion(q: &JointVector) -> JointVector {
 }
 
 impl MeasuredPath {
-    /// The state at the end.
+    /// Returns the state at the end.
     pub(crate) fn last(&self) -> &RobotState {
         self.0.last().expect("there is one at least")
     }
 
-    /// The smallest and the greatest value of a quantity.
+    /// Returns the smallest and the largest value of a quantity.
     pub(crate) fn extent(&self, of: impl Fn(&RobotState) -> f64) -> (f64, f64) {
         let values = self.0.iter().map(of);
         values.fold(
@@ -294,23 +296,23 @@ impl MeasuredPath {
         )
     }
 
-    /// The displacement of the hand from its start along an axis of the base, `[m]`: smallest,
-    /// greatest, and last.
+    /// Returns the displacement of the hand from its start along an axis of the base, `[m]`:
+    /// smallest, largest, and last.
     pub(crate) fn hand(&self, axis: usize) -> (f64, f64, f64) {
         let of = |state: &RobotState| state.O_T_EE[12 + axis] - self.0[0].O_T_EE[12 + axis];
         let (least, most) = self.extent(of);
         (least, most, of(self.last()))
     }
 
-    /// The displacement of a joint from its start, `[rad]`: smallest, greatest, and last.
+    /// Returns the displacement of a joint from its start, `[rad]`: smallest, largest, and last.
     pub(crate) fn joint(&self, joint: usize) -> (f64, f64, f64) {
         let of = |state: &RobotState| state.q[joint] - self.0[0].q[joint];
         let (least, most) = self.extent(of);
         (least, most, of(self.last()))
     }
 
-    /// The displacement of the joints from the ready pose along their [`self_motion`], `[rad]`:
-    /// smallest, greatest, and last.
+    /// Returns the displacement of the joints from the ready pose along their [`self_motion`],
+    /// `[rad]`: smallest, largest, and last.
     pub(crate) fn elbow(&self) -> (f64, f64, f64) {
         let of = |state: &RobotState| {
             let q = JointVector::from(state.q);
@@ -320,7 +322,7 @@ impl MeasuredPath {
         (least, most, of(self.last()))
     }
 
-    /// The first millisecond of the robot, as recorded, in which a condition held.
+    /// Returns the first recorded millisecond of the robot in which a condition was true.
     pub(crate) fn first(&self, so: impl Fn(&RobotState) -> bool) -> Option<u64> {
         let state = self.0.iter().find(|state| so(state));
         state.map(|state| state.message_id)

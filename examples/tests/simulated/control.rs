@@ -8,7 +8,7 @@ use franka_async::state::{RobotError, RobotMode};
 use crate::arm::{Arm, Event, MeasuredPath, SAMPLE, Scene};
 use crate::program::{ROBOTS, Said, on_both, run};
 
-/// Asserts that a program has succeeded, and that the robot has not stopped itself meanwhile.
+/// Asserts that a program has succeeded, and that the robot did not stop itself.
 pub(crate) fn succeeded(robot: &str, said: &Said, path: &MeasuredPath) {
     assert_eq!(said.code, Some(0), "{robot}: {said:?}");
     let erred = path.first(|state| !state.errors.is_empty());
@@ -16,7 +16,7 @@ pub(crate) fn succeeded(robot: &str, said: &Said, path: &MeasuredPath) {
     assert_eq!(path.last().robot_mode, RobotMode::Idle, "{robot}");
 }
 
-/// Asserts that smallest, greatest and last value are as expected.
+/// Asserts that smallest, largest and last value are as expected.
 fn is_about(what: &str, got: (f64, f64, f64), expected: (f64, f64, f64), tolerance: f64) {
     let off = [got.0 - expected.0, got.1 - expected.1, got.2 - expected.2];
     assert!(
@@ -59,7 +59,7 @@ fn identify_goes_as_far_as_it_says_and_saves_what_it_found() {
         let moved = arm.stop();
         succeeded(robot, &said, &moved);
         assert!(said.stdout.contains("\nload   "), "{robot}: {said:?}");
-        // As the plan's unit tests have it, and as far as an arm swings beyond.
+        // As in the plan's unit tests, plus the overshoot of an arm.
         for joint in 0..7 {
             let (least, most, last) = moved.joint(joint);
             assert!(least > -0.37 && most < 0.37, "{robot}: {least} {most}");
@@ -188,7 +188,7 @@ fn virtual_floor_stops_the_hand_releases_it_and_keeps_the_elbow() {
     on_both("virtual_floor", &arguments, &scene, |robot, said, path| {
         succeeded(robot, said, path);
         let (lowest, highest, _) = path.hand(2);
-        // 10 N press the spring of 2000 N/m in by 5 mm, and at first the hand comes with some
+        // 10 N compress the spring of 2000 N/m by 5 mm, and at first the hand arrives with some
         // speed.
         assert!((-0.07..-0.054).contains(&lowest), "{robot}: {lowest}");
         assert!(
@@ -271,7 +271,7 @@ fn two_robots_swing_at_the_same_time() {
 
 #[test]
 fn neither_of_two_robots_continues_without_the_other() {
-    // The other robot must not be far ahead when the program has seen the reflex.
+    // The other robot must not be far ahead when the program receives the reflex.
     let patient = Scene {
         on_the_wall: true,
         ..Scene::default()
@@ -287,7 +287,7 @@ fn neither_of_two_robots_continues_without_the_other() {
     assert_eq!(said.code, Some(1), "{said:?}");
     assert!(said.stderr.contains("cartesian_reflex"), "{said:?}");
     assert_eq!(one.last().robot_mode, RobotMode::Reflex);
-    // Halfway there when the other robot tripped, and a second from where it turns.
+    // Halfway when the other robot tripped, and a second before its turning point.
     assert_eq!(other.last().robot_mode, RobotMode::Idle);
     let (farthest, _, left) = other.joint(0);
     assert!((-0.301..-0.12).contains(&left), "stopped at {left}");

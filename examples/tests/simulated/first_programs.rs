@@ -1,4 +1,4 @@
-//! The programs of the book's first chapter, with arms like real ones.
+//! The programs of the book's first chapter, with realistic arms.
 
 use std::io::Write;
 use std::time::{Duration, Instant};
@@ -81,7 +81,7 @@ fn job_queue_does_jobs_in_order_and_goes_on_after_a_recovery() {
         add([0.0, 0.0, -0.04]);
         assert_eq!(outcomes(4)[3], "arrived", "{robot}");
 
-        // A client that never ends its request holds up nothing.
+        // A client that never completes its request delays no other.
         let mut half =
             std::net::TcpStream::connect(url.trim_start_matches("http://")).expect("it listens");
         half.write_all(b"POST /jobs HTTP/1.1\r\n")
@@ -105,7 +105,7 @@ fn policy_leads_the_hand_around_and_back() {
     on_both("policy", &[], &scene, |robot, said, path| {
         succeeded(robot, said, path);
         assert!(said.stdout.contains("followed for "), "{robot}: {said:?}");
-        // The policy keeps to this computer's clock: on a busy one the robot has too little time
+        // The policy uses this computer's clock: on a busy machine the robot has too little time
         // for the whole circle.
         let (_, highest, last) = path.hand(2);
         assert!(highest > 0.01, "{robot}: {highest} m up");
@@ -118,7 +118,7 @@ fn policy_leads_the_hand_around_and_back() {
 
 #[test]
 fn guarded_move_stops_at_the_table_and_leaves_it() {
-    // The way to the ready pose, where it is already, is the first motion.
+    // The motion to the ready pose, where the arm already is, is the first motion.
     let table = Scene {
         events: vec![(|_, time| time > 0, Event::LayTable(0.06))],
         ..realistic()

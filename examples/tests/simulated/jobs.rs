@@ -11,18 +11,18 @@ use ureq::{Body, BodyReader};
 use crate::arm::Arm;
 use crate::program::Beside;
 
-/// A client's view of the service.
+/// A client of the service.
 struct Client {
     address: String,
     agent: ureq::Agent,
 }
 
-/// The events of a job as they come: name, number and content.
+/// The events of a job as they arrive: name, number and content.
 struct Events(Lines<BufReader<BodyReader<'static>>>);
 
 impl Client {
     fn new(address: String) -> Self {
-        // Answers of any status are answers.
+        // Answers with any status are valid.
         let config = ureq::Agent::config_builder().http_status_as_error(false);
         let agent = config.build().into();
         Self { address, agent }
@@ -44,14 +44,14 @@ impl Client {
         answer.status().as_u16()
     }
 
-    /// Begins a job, slowly, this much upwards.
+    /// Starts a slow job, this distance upwards.
     fn begin(&self, upwards: f64) {
         let order = json!({ "by": [0.0, 0.0, upwards], "speed": 0.2 });
         let begun = self.post("/jobs", order).expect("an answer");
         assert_eq!(begun.status(), 202, "{:?}", text(begun));
     }
 
-    /// The events of a job after the one that was `seen`.
+    /// Returns the events of a job after the `seen` one.
     fn events(&self, id: u64, seen: Option<u64>) -> Result<Events, u16> {
         let url = format!("http://{}/jobs/{id}/events", self.address);
         let mut request = self.agent.get(url);
@@ -97,7 +97,7 @@ fn text(answer: Response<Body>) -> String {
     answer.into_body().read_to_string().expect("text")
 }
 
-/// How far the hand of a state is above that of another, `[m]`.
+/// Returns the height of a state's hand above another's, `[m]`.
 fn above(state: &franka_async::state::RobotState, start: &franka_async::state::RobotState) -> f64 {
     state.O_T_EE[14] - start.O_T_EE[14]
 }
@@ -115,7 +115,7 @@ fn a_job_goes_on_when_its_client_is_killed() {
     let events: Vec<_> = client.events(1, None).expect("events").collect();
     let (last, way) = events.split_last().expect("events");
     assert_eq!(last.0, "arrived", "{last:?}");
-    // Each event once, in order, and further and further.
+    // Each event once, in order, with increasing progress.
     assert!(way.iter().all(|(name, _, _)| name == "moving"), "{way:?}");
     assert!(
         events.is_sorted_by_key(|(_, number, _)| *number),
@@ -132,7 +132,7 @@ fn a_job_goes_on_when_its_client_is_killed() {
     );
     let risen = above(&arm.rests(), &start);
     assert!((risen - 0.1).abs() < 2e-3, "{risen}");
-    // A client that comes late gets the newest event, and none if it has seen that.
+    // A late client gets the newest event, or none if it has already received it.
     let late: Vec<_> = client.events(1, None).expect("events").collect();
     assert_eq!(late, std::slice::from_ref(last));
     assert_eq!(client.events(1, Some(last.1)).map(|_| ()), Err(204));
@@ -159,7 +159,7 @@ fn a_cancelled_job_brakes_and_the_next_one_is_taken() {
     assert_eq!(content["text"], "stopped on request");
     assert_eq!(content["party"], "Caller");
     let risen = above(&arm.rests(), &start);
-    // Perhaps before it has risen at all.
+    // Possibly before it has risen at all.
     assert!((-1e-3..0.09).contains(&risen), "{risen}");
     client.begin(0.01);
     assert_eq!(
@@ -239,7 +239,7 @@ fn a_service_that_is_told_to_end_rests_the_arm_and_tells_its_clients() {
     let events = client.events(1, None).expect("events");
     service.signal(Signal::SIGTERM);
     service.said("ending");
-    // Until it ends it refuses what is new.
+    // Until it ends, it refuses new requests.
     while let Ok(answer) = client.post("/jobs", json!({ "by": [0.0, 0.0, 0.01] })) {
         assert_eq!(answer.status(), 503, "{}", text(answer));
     }

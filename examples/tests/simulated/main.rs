@@ -1,5 +1,5 @@
-//! The examples as programs: with a simulator of each kind in their own process, and, to check what
-//! the arm does, with a simulator in the process of the test.
+//! The examples as programs: with a simulator of each kind in their own process, and, to check the
+//! arm's motion, with a simulator in the test process.
 
 mod arm;
 mod control;
@@ -50,7 +50,7 @@ fn carry_takes_the_bar_there_and_back() {
             let line = format!("{way}, {arm} ");
             assert!(said.stdout.contains(&line), "no {line:?}: {said:?}");
         }
-        // Either arm has it there, by less than 2 mm.
+        // Either arm has carried it there, with an error below 2 mm.
         let line = format!("{way}: the bar is off by ");
         let off = said
             .stdout

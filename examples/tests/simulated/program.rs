@@ -9,10 +9,10 @@ use nix::unistd::Pid;
 
 use crate::arm::{Arm, MeasuredPath, Scene};
 
-/// Both robots, by their names in the option of the examples.
+/// Both robots, by their names in the examples' option.
 pub(crate) const ROBOTS: [&str; 2] = ["fr3", "fer"];
 
-/// Returns the command for an example. Cargo builds examples with the tests, beside them.
+/// Returns the command for an example. Cargo builds examples next to the tests.
 pub(crate) fn example(name: &str) -> Command {
     let mut path: PathBuf = std::env::current_exe().expect("a test has a path");
     path.pop();
@@ -28,7 +28,7 @@ pub(crate) fn example(name: &str) -> Command {
 /// The output of a program, and its exit code.
 #[derive(Debug)]
 pub(crate) struct Said {
-    /// `None` if it was killed.
+    /// Exit code; `None` if it was killed.
     pub(crate) code: Option<i32>,
     pub(crate) stdout: String,
     pub(crate) stderr: String,
@@ -56,7 +56,7 @@ pub(crate) fn run(name: &str, arguments: &[&str], input: &str) -> Said {
     }
 }
 
-/// An example that runs beside the test, and is killed at the end of it, also when that fails.
+/// An example that runs during the test, and is killed at its end, even if the test fails.
 pub(crate) struct Beside {
     child: Child,
     lines: Lines<BufReader<ChildStdout>>,
@@ -76,7 +76,7 @@ impl Beside {
         Self { child, lines }
     }
 
-    /// Starts a service for the robot at `robot`; returns its address, too.
+    /// Starts a service for the robot at `robot`; also returns the service's address.
     pub(crate) fn serve(name: &str, robot: &str, options: &[&str]) -> (Self, String) {
         let mut arguments = options.to_vec();
         arguments.extend(["--listen", "127.0.0.1:0", "--realtime", "ignore", robot]);
@@ -85,7 +85,7 @@ impl Beside {
         (service, address)
     }
 
-    /// Waits for a line that begins so, and returns the rest of it.
+    /// Waits for a line with this beginning, and returns the rest of it.
     pub(crate) fn said(&mut self, beginning: &str) -> String {
         let said = self.lines.by_ref().find_map(|line| {
             let line = line.expect("it prints text");
@@ -94,7 +94,7 @@ impl Beside {
         said.unwrap_or_else(|| panic!("it ended, and never said {beginning:?}"))
     }
 
-    /// Kills it, without a chance to say goodbye to anyone.
+    /// Kills it, so that it cannot close its connections.
     pub(crate) fn kill(mut self) {
         self.child.kill().expect("it runs");
         self.child.wait().expect("it is ours");
@@ -114,7 +114,7 @@ impl Beside {
 
 impl Drop for Beside {
     fn drop(&mut self) {
-        // Fails only if it has ended by itself.
+        // Fails only if it has already ended.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -1,4 +1,4 @@
-//! The programs for the shell: what they say, what they leave behind, their exit codes.
+//! The command-line programs: their output, their files, their exit codes.
 
 use franka_async::state::{RobotError, RobotMode};
 
@@ -75,13 +75,13 @@ fn recover_says_when_there_is_nothing_to_do_and_when_a_person_is_needed() {
     arm.stop();
 }
 
-/// The columns of a row of the commander's table.
+/// Returns the columns of a row of the commander's table.
 fn columns(row: &str) -> Vec<f64> {
     let columns = row.split(',').map(str::parse);
     columns.collect::<Result<_, _>>().expect("numbers")
 }
 
-/// The largest jerk of the commands, as the commander printed it, `[m/s^3]`.
+/// Returns the largest jerk of the commands, as printed by the commander, `[m/s^3]`.
 fn jerk(said: &str) -> f64 {
     let line = said.lines().find(|line| line.starts_with("command: "));
     let jerk = line.and_then(|line| line.rsplit_once(", ")?.1.strip_suffix(" m/s^3"));
@@ -147,7 +147,7 @@ fn record_keeps_both_motions_in_a_file_that_is_read_back() {
             "{said:?}"
         );
         assert_eq!(said.stdout.matches("arrived").count(), 2, "{said:?}");
-        // A name that is taken is not overwritten.
+        // An existing file is not overwritten.
         let said = run("record", &["--sim", robot, "--to", &file], "");
         assert_eq!(said.code, Some(1), "{said:?}");
         assert!(said.stderr.contains("exists"), "{said:?}");
@@ -204,7 +204,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // Left behind if a file in it is still open, which is no fault of the program's.
+        // Left behind if a file in it is still open, which is not an error of the program.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }
@@ -278,7 +278,7 @@ fn rules_says_what_the_book_quotes() {
     assert_eq!(count, 17);
 }
 
-/// The text with each number replaced by one sign.
+/// Returns the text with each number replaced by one character.
 fn without_numbers(text: &str) -> String {
     let mut masked = String::new();
     for part in text.chars() {

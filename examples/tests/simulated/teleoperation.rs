@@ -1,4 +1,4 @@
-//! Teleoperation over WebSockets: the lease, and what becomes of it with its client.
+//! Teleoperation over WebSockets: the lease, and its end with its client.
 
 use std::net::TcpStream;
 use std::time::Instant;
@@ -27,7 +27,7 @@ impl Client {
             .expect("the service reads");
     }
 
-    /// The next message of any type.
+    /// Returns the next message of any type.
     fn receive(&mut self) -> Value {
         loop {
             let message = self.0.read().expect("the service goes on");
@@ -37,7 +37,7 @@ impl Client {
         }
     }
 
-    /// The next message that is not a state.
+    /// Returns the next message that is not a state.
     fn answer(&mut self) -> Value {
         loop {
             let message = self.receive();
@@ -47,7 +47,7 @@ impl Client {
         }
     }
 
-    /// Takes the lease as soon as nobody has it.
+    /// Takes the lease as soon as it is free.
     fn take(&mut self) {
         let end = Instant::now() + SOON;
         while Instant::now() < end {
@@ -62,7 +62,7 @@ impl Client {
         panic!("the lease was never free");
     }
 
-    /// The newest state, with `z` metres added to its position, as a target.
+    /// Returns the newest state, with `z` metres added to its position, as a target.
     fn target_above(&mut self, z: f64) -> Value {
         let mut target = loop {
             let message = self.receive();
@@ -76,7 +76,7 @@ impl Client {
     }
 }
 
-/// Starts a service whose leases bear this silence, `[s]`.
+/// Starts a service whose leases allow this silence, `[s]`.
 fn serve(arm: &Arm, silence: &str) -> (Beside, String) {
     Beside::serve("axum_teleoperation", &arm.address, &["--silence", silence])
 }
@@ -101,7 +101,7 @@ fn one_socket_has_the_lease_until_it_is_killed() {
         let why = answer["why"].as_str().expect("a reason");
         assert!(why.starts_with(refused), "{request}: {answer}");
     }
-    // It is not the silence that ends the lease: that would last a minute.
+    // The lease does not end because of silence, which would take a minute.
     leader.kill();
     other.take();
     other.send(json!({ "type": "release" }));
@@ -130,7 +130,7 @@ fn a_silent_socket_is_told_that_its_lease_is_lost() {
     client.take();
     let target = client.target_above(0.05);
     client.send(target);
-    // What its library does by itself keeps nothing alive.
+    // The automatic answers of its library keep nothing alive.
     client
         .0
         .send(Message::Ping("".into()))
