@@ -1,4 +1,4 @@
-//! Datagrams to meaning and back, FCI version 10.
+//! Decoding and encoding of datagrams, FCI version 10.
 
 use std::hint::black_box;
 
@@ -7,7 +7,7 @@ use rand::{Rng, SeedableRng, rngs::SmallRng};
 
 use super::{Benchmark, Inputs, Statistic, timed};
 
-/// A state read and a command written.
+/// Benchmarks of decoding a state and encoding a command.
 pub fn all() -> Vec<Benchmark> {
     vec![decode(), encode()]
 }

@@ -8,7 +8,7 @@ use rand::{Rng, SeedableRng, rngs::SmallRng};
 
 use super::{Benchmark, Inputs, Statistic, timed};
 
-/// From joint positions to all distances and gradients.
+/// Benchmarks from joint positions to all distances and gradients.
 pub fn all() -> Vec<Benchmark> {
     let limits = Model::fr3().joint_limits();
     let mut random = SmallRng::seed_from_u64(SEED);

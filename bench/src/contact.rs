@@ -1,4 +1,4 @@
-//! Where on the arm a contact is: a force on each body in turn, in random postures.
+//! The place of a contact on the arm: a force on each body in turn, in random postures.
 
 use std::hint::black_box;
 
@@ -9,7 +9,7 @@ use franka_model::{JointVector, RobotKind};
 use super::{Benchmark, Inputs, Statistic, timed};
 use franka_tests::contacts::pushes;
 
-/// From joint positions and external torques to the contact.
+/// Benchmarks from joint positions and external torques to the contact.
 pub fn all() -> Vec<Benchmark> {
     let kind = RobotKind::Fr3;
     let pushes = pushes(kind, PUSHES, SEED).into_iter();

@@ -1,5 +1,5 @@
-//! The whole cycle of target control without the sockets, and what a control function costs around
-//! its own work.
+//! The whole cycle of target control without the sockets, and the cost of a control function in
+//! addition to its own computation.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -14,9 +14,8 @@ use super::timed;
 use super::{Benchmark, Statistic};
 use franka_lockstep::{Part, Wander};
 
-/// Benchmarks: a state decoded, answered by target control and the answer encoded; the driver's
-/// work after that, and for the next state; and the first under a control function that does
-/// nothing.
+/// Benchmarks of the cycle: a state decoded, answered by target control and the answer encoded; the
+/// driver's work afterwards, and for the next state; and the first under an empty control function.
 pub fn all() -> Vec<Benchmark> {
     vec![
         target(
@@ -35,7 +34,7 @@ pub fn all() -> Vec<Benchmark> {
     ]
 }
 
-/// One part of the cycle of an arm that moves to random targets.
+/// Measures one part of the cycle of an arm that moves to random targets.
 fn target(key: &'static str, part: Part, statistics: &'static [Statistic]) -> Benchmark {
     let mut wander = Wander::new(1);
     Benchmark {
@@ -57,8 +56,8 @@ fn target(key: &'static str, part: Part, statistics: &'static [Statistic]) -> Be
     }
 }
 
-/// A function that returns constant torques, which pass the limiter: this is the driver's work for
-/// any function.
+/// Measures a function that returns constant torques, which pass the limiter: this is the driver's
+/// work for any function.
 fn callback() -> Benchmark {
     let mut motion = Running::new();
     Benchmark {
@@ -72,8 +71,8 @@ fn callback() -> Benchmark {
     }
 }
 
-/// What one reader of every cycle costs the thread: a record and a state into its ring, which the
-/// reader empties beside it, untimed.
+/// Measures the cost of one reader of every cycle for the thread: a record and a state into its
+/// ring, which the reader empties in between, untimed.
 fn push() -> Benchmark {
     let mut wander = Wander::new(1);
     let (feed, mut publisher) = cycle_feed(VERSION);
@@ -102,7 +101,7 @@ fn push() -> Benchmark {
     }
 }
 
-/// A driver whose motion runs, and the datagrams on both sides of it.
+/// A driver with a running motion, and the datagrams on both sides of it.
 struct Running {
     driver: Driver,
     state: Vec<u8>,
@@ -158,7 +157,7 @@ impl Running {
 
 const VERSION: Version = Version::V10;
 
-/// Cycles in a round: ten seconds of an arm that moves to random targets.
+/// Number of cycles in a round: ten seconds of an arm that moves to random targets.
 const CYCLES: usize = 10_000;
 const SAMPLES: usize = 400;
 const BATCH: u32 = 32;

@@ -1,6 +1,6 @@
-//! Figures of what was measured: quantiles, and what torques have above 30 Hz.
+//! Statistics of measured values: quantiles, and the part of torques above 30 Hz.
 
-/// The value that this share of all is not above; infinite without values.
+/// Returns the value that this share of the values does not exceed; infinite without values.
 pub fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -11,8 +11,8 @@ pub fn quantile(values: &[f64], share: f64) -> f64 {
         .unwrap_or(f64::INFINITY)
 }
 
-/// What torques have above 30 Hz, the noise and the ringing of a law: two first-order high-passes
-/// in a row, for each joint at 1 kHz.
+/// The part of torques above 30 Hz, which is the noise and the ringing of a law: two first-order
+/// high-passes in a row, for each joint at 1 kHz.
 #[derive(Debug, Default)]
 pub struct HighPass {
     last: Option<[f64; 7]>,
@@ -22,7 +22,7 @@ pub struct HighPass {
 }
 
 impl HighPass {
-    /// Takes in the torques of one cycle, `[N·m]`.
+    /// Adds the torques of one cycle, `[N·m]`.
     pub fn add(&mut self, torques: &[f64; 7]) {
         let keep = 1.0 / (1.0 + core::f64::consts::TAU * 30.0 * 1e-3);
         let last = self.last.replace(*torques).unwrap_or(*torques);
@@ -35,7 +35,7 @@ impl HighPass {
         self.count += 1.0;
     }
 
-    /// The root mean square of the joint that has most, `[N·m]`.
+    /// Returns the root mean square of the worst joint, `[N·m]`.
     pub fn rms(&self) -> f64 {
         let most = self.squares.iter().copied().fold(0.0, f64::max);
         (most / self.count.max(1.0)).sqrt()

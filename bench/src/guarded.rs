@@ -56,15 +56,16 @@ pub fn all() -> Vec<Benchmark> {
     benchmarks
 }
 
-/// For counting instructions: the mix, one millisecond of each kind of goal in turn, of which only
-/// the answer counts; and the whole cycle of each back end, with what is done before its state.
+/// Subjects for counting instructions: the mix, one millisecond of each kind of goal in turn, of
+/// which only the answer counts; and the whole cycle of each back end, including the work before
+/// its state.
 pub fn subjects() -> Vec<Subject> {
     let backends = BACKENDS.iter().map(|&(key, backend)| whole(key, backend));
     [mix()].into_iter().chain(backends).collect()
 }
 
-/// Everything between a state and its command, on the way to joint positions and poses: the step
-/// that was prepared for the state, and the answer.
+/// The whole work between a state and its command, on the way to joint positions and poses: the
+/// prepared step for the state, and the answer.
 fn whole(key: &'static str, backend: Backend) -> Subject {
     let mut arm: Option<Guarded> = None;
     Subject {
@@ -101,7 +102,7 @@ fn mix() -> Subject {
     }
 }
 
-/// Samples of a part of the cycle, from one episode of each of these kinds per round.
+/// Returns samples of a part of the cycle, from one episode of each of these kinds per round.
 fn sampled(
     key: &'static str,
     part: Part,
@@ -152,14 +153,14 @@ fn run(episode: Episode, cycles: usize, timed: Part, mut each: impl FnMut(usize,
 /// The longest of 10⁶ cycles.
 #[derive(Debug, Default)]
 struct Survey {
-    /// The times as first measured.
+    /// The first measured times.
     longest: u64,
     /// The shortest time so far of each suspect, by episode and cycle number.
     suspects: BTreeMap<Episode, BTreeMap<usize, u64>>,
 }
 
 impl Survey {
-    /// The longest time of any cycle, each measured once.
+    /// Returns the longest time of any cycle, each measured once.
     fn longest(&mut self) -> u64 {
         self.survey();
         self.longest
@@ -233,11 +234,11 @@ const BACKENDS: [(&str, Backend); 9] = {
 
 const SEED: u64 = 100;
 
-/// Cycles of an episode: ten seconds. Tests run a short round of each benchmark and ignore its
-/// figures.
+/// Number of cycles of an episode: ten seconds. Tests run a short round of each benchmark and
+/// ignore its values.
 const EPISODE: usize = if cfg!(debug_assertions) { 200 } else { 10_000 };
 
-/// Episodes of each kind of goal, which come to 10⁶ cycles.
+/// Number of episodes of each kind of goal, 10⁶ cycles in total.
 const SEEDS: u64 = if cfg!(debug_assertions) { 1 } else { 20 };
 
 const SWEEPS: usize = 3;

@@ -14,8 +14,8 @@ use rand::{Rng, SeedableRng, rngs::SmallRng};
 
 use super::{Benchmark, Inputs, Statistic, Subject};
 
-/// Benchmarks: all postures for a pose and a redundancy parameter of each kind, and the velocity
-/// problem with joints at their bounds.
+/// Benchmarks of all postures for a pose and a redundancy parameter of each kind, and of the
+/// velocity problem with joints at their bounds.
 pub fn all() -> Vec<Benchmark> {
     let mut benchmarks: Vec<_> = subjects().into_iter().map(Subject::p50).collect();
     benchmarks.push(worst_pinned());
@@ -50,7 +50,8 @@ pub fn subjects() -> Vec<Subject> {
 }
 
 /// Measures each state alone, without knowledge of the active bounds, so that the worst state
-/// shows. Takes the shortest of several repetitions of each, since a repetition may be interrupted.
+/// shows. Takes the shortest of several repetitions of each, because a repetition may be
+/// interrupted.
 fn worst_pinned() -> Benchmark {
     let states = pinned();
     let time = |state: &Pinned| {
@@ -119,7 +120,7 @@ fn pinned() -> Vec<Pinned> {
     all.filter(bound).take(STATES).collect()
 }
 
-/// Poses of postures inside the limits, with their redundancy parameter.
+/// Returns poses of postures inside the limits, with their redundancy parameter.
 fn poses(parameter: fn(&JointVector) -> Redundancy) -> Inputs<(Isometry3<f64>, Redundancy)> {
     let mut random = SmallRng::seed_from_u64(SEED);
     Inputs::new((0..POSTURES).map(move |_| {
@@ -135,7 +136,7 @@ fn posture(random: &mut SmallRng) -> JointVector {
     JointVector::from_fn(|i, _| random.random_range(limits.lower[i]..limits.upper[i]))
 }
 
-/// No bound known to be active.
+/// No bound is known to be active.
 const COLD: [Side; 7] = [Side::Free; 7];
 const SEED: u64 = 4;
 const POSTURES: usize = 256;

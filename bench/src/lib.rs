@@ -1,4 +1,4 @@
-//! Measures what the work of one control cycle costs.
+//! Measures the cost of one control cycle.
 //!
 //! ```text
 //! round 1: decode, encode, cycle, ...   -> percentiles of each
@@ -10,13 +10,13 @@
 //! Inputs are seeded and vary from call to call, so that the branch predictor cannot learn one
 //! input.
 //!
-//! | module | measures |
+//! | module | subject |
 //! |---|---|
-//! | [`codec`] | a state read, a command written |
+//! | [`codec`] | decoding a state, encoding a command |
 //! | [`collision`] | distances of the arm to itself, with gradients |
 //! | [`contact`] | the place of a contact, from external torques |
 //! | [`cycle`] | target control, datagram in to datagram out |
-//! | [`figures`] | nothing: figures of what the programs measure |
+//! | [`figures`] | no benchmark: statistics for the programs |
 //! | [`guarded`] | the same with every guard on, for each kind of goal |
 //! | [`inverse`] | all postures of a pose, joint velocities in a box |
 //! | [`model`] | the five quantities of a law, one by one and in one pass |
@@ -24,7 +24,7 @@
 //! | [`record`] | bytes and processor time of a recording, in virtual time |
 //! | [`shape`] | filter, limiter and check of torques and of a pose |
 //! | [`sim`] | the simulator under target control, in virtual time |
-//! | [`supervisor`] | how soon a supervised robot takes motions again, over sockets |
+//! | [`supervisor`] | the time until a supervised robot accepts motions again, over sockets |
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -46,14 +46,14 @@ pub mod supervisor;
 
 pub use subject::Subject;
 
-/// One thing to measure.
+/// A benchmark.
 pub struct Benchmark {
-    /// First part of its keys, unit included; a statistic follows: `otg.replan_7_ns` gives
+    /// First part of its keys, including the unit; a statistic follows: `otg.replan_7_ns` gives
     /// `otg.replan_7_ns_p50`. [`Statistic::RealTime`] adds nothing.
     pub key: &'static str,
-    /// What to report of a round.
+    /// The reported statistics of a round.
     pub statistics: &'static [Statistic],
-    /// Runs one round and returns what each call took, in the unit of the key; never empty.
+    /// Runs one round and returns the time of each call, in the unit of the key; never empty.
     pub round: Box<dyn FnMut() -> Vec<u64>>,
 }
 
@@ -62,16 +62,16 @@ pub struct Benchmark {
 pub enum Statistic {
     /// Median.
     P50,
-    /// What 99 of 100 samples do not exceed.
+    /// The value that 99 of 100 samples do not exceed.
     P99,
     /// The largest sample.
     Max,
-    /// How often the median time to simulate a millisecond fits into a millisecond.
+    /// The speed relative to real time: a millisecond divided by the median time to simulate it.
     RealTime,
 }
 
 impl Statistic {
-    /// Last part of a key.
+    /// Returns the last part of a key.
     pub fn suffix(self) -> &'static str {
         match self {
             Self::P50 => "_p50",
@@ -81,7 +81,7 @@ impl Statistic {
         }
     }
 
-    /// The statistic of samples in ascending order, of which there is at least one.
+    /// Returns the statistic of samples in ascending order; at least one sample is required.
     fn of(self, sorted: &[u64]) -> u64 {
         let last = sorted.len() - 1;
         match self {
@@ -93,7 +93,7 @@ impl Statistic {
     }
 }
 
-/// All benchmarks of the project.
+/// Returns all benchmarks of the project.
 pub fn all() -> Vec<Benchmark> {
     [
         codec::all(),
@@ -113,7 +113,8 @@ pub fn all() -> Vec<Benchmark> {
     .collect()
 }
 
-/// The calls whose instructions can be counted: those of the model, and the guarded cycle.
+/// Returns the calls whose instructions can be counted: the calls of the model, and the guarded
+/// cycle.
 pub fn subjects() -> Vec<Subject> {
     let mut subjects = model::subjects();
     subjects.extend(inverse::subjects());

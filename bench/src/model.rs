@@ -1,4 +1,4 @@
-//! Pose, Jacobian, mass, Coriolis and gravity of the FR3 under a load: one by one, as five calls,
+//! Pose, Jacobian, mass, Coriolis and gravity of the FR3 with a load: one by one, as five calls,
 //! and in one pass.
 
 use franka_model::{
@@ -9,12 +9,12 @@ use rand::{Rng, SeedableRng, rngs::SmallRng};
 
 use super::{Benchmark, Inputs, Subject};
 
-/// The same five quantities in every way.
+/// Benchmarks of the same five quantities in every way.
 pub fn all() -> Vec<Benchmark> {
     subjects().into_iter().map(Subject::p50).collect()
 }
 
-/// What is measured, with postures inside the limits and moderate velocities.
+/// Returns the calls to measure, with postures inside the limits and moderate velocities.
 pub fn subjects() -> Vec<Subject> {
     let (model, ee, load, earth) = (Model::fr3(), EndEffector::default(), load(), GRAVITY_EARTH);
     let frame = Frame::EndEffector;
@@ -55,7 +55,7 @@ pub fn subjects() -> Vec<Subject> {
     ]
 }
 
-/// Positions inside the limits and moderate velocities.
+/// Returns positions inside the limits and moderate velocities.
 fn postures() -> Inputs<(JointVector, JointVector)> {
     let limits = Model::fr3().joint_limits();
     let mut random = SmallRng::seed_from_u64(SEED);
@@ -67,7 +67,7 @@ fn postures() -> Inputs<(JointVector, JointVector)> {
     Inputs::new((0..POSTURES).map(posture))
 }
 
-/// A load of 1 kg some way off the flange.
+/// Returns a load of 1 kg at some distance from the flange.
 fn load() -> Load {
     Load {
         mass: 1.0,

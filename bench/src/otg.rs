@@ -1,7 +1,7 @@
 //! A new target for moving axes, and the first step towards it: the most expensive cycle of the
-//! generator. The states are those of the generator's own benchmark.
+//! generator. The states are the same as in the generator's own benchmark.
 
-// By path: a benchmark is not part of the library.
+// By path, because a benchmark is not part of the library.
 #[path = "../../franka-otg/benches/replan/cases.rs"]
 mod cases;
 
@@ -26,7 +26,7 @@ pub fn all() -> Vec<Benchmark> {
         acceleration: joints.acceleration[axis],
         jerk: joints.jerk[axis],
     };
-    // Equal shares: then no direction exceeds the budget.
+    // Equal shares, so that no direction exceeds the budget.
     let (budget, share) = (Budget::of(joints).translation, 1.0 / 3_f64.sqrt());
     let translation = AxisLimits {
         velocity: budget.velocity * share,
@@ -63,7 +63,8 @@ fn replan<const N: usize>(
     }
 }
 
-/// The first round measures all states. Every round then measures the slowest of them again, alone.
+/// The first round measures all states. Every later round measures the slowest of them again,
+/// alone.
 fn worst(
     key: &'static str,
     limits: impl Fn(usize, &mut SmallRng) -> AxisLimits + 'static,
@@ -94,7 +95,7 @@ fn worst(
 
 const STATES: usize = 2000;
 const SWEEPS: usize = 5;
-/// Tests run a short round of each benchmark and ignore its figures.
+/// Tests run a short round of each benchmark and ignore its values.
 const MANY_STATES: usize = if cfg!(debug_assertions) {
     10_000
 } else {

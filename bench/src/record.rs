@@ -1,4 +1,4 @@
-//! What recording costs: bytes per cycle, and processor time of the recorder's threads.
+//! The cost of recording: bytes per cycle, and processor time of the recorder's threads.
 
 use std::fs;
 use std::path::Path;
@@ -13,24 +13,24 @@ use franka_sim::{Arm, Config, Robot, Tool};
 
 use franka_lockstep::{Lockstep, Wander};
 
-/// What a recording of some length came to.
+/// The totals of a recording.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Cost {
-    /// Cycles taken.
+    /// Number of recorded cycles.
     pub cycles: u64,
-    /// Cycles for which there was no room.
+    /// Number of cycles without space.
     pub dropped: u64,
     /// Bytes of the file, per cycle of the robot.
     pub bytes_per_cycle: f64,
     /// Size of an hour, `[GB]`.
     pub gigabytes_per_hour: f64,
-    /// Processor time of the recorder's threads at 1 kHz, in percent of one core; `None` where the
-    /// system does not tell the time of a thread.
+    /// Processor time of the recorder's threads at 1 kHz, in percent of one core; `None` if the
+    /// system does not provide the time of a thread.
     pub cpu_percent: Option<f64>,
 }
 
-/// Records `minutes` of a realistic arm that is moved at random, as fast as it goes, in
-/// `directory`. The cycles of its first 20 s are used again and again.
+/// Records `minutes` of a realistic arm with random motions, as fast as possible, in `directory`.
+/// The cycles of its first 20 s are repeated.
 ///
 /// # Panics
 /// If the file cannot be written.
@@ -53,7 +53,7 @@ pub fn record(minutes: f64, thinned: bool, directory: &Path) -> Cost {
     let total = (minutes * 60_000.0) as u64;
     let mut taken = 0;
     for ms in 0..total {
-        // Less than the ring holds is on its way.
+        // Less than the capacity of the ring is unread.
         while ms >= taken + RING / 2 {
             std::thread::sleep(Duration::from_millis(1));
             taken = recorder.status().cycles;
@@ -77,7 +77,7 @@ pub fn record(minutes: f64, thinned: bool, directory: &Path) -> Cost {
     }
 }
 
-/// The cycles of 20 s of a realistic arm.
+/// Returns the cycles of 20 s of a realistic arm.
 fn cycles() -> Vec<(Record, RobotState)> {
     let config = Config {
         tool: Tool::hand(),
@@ -94,7 +94,7 @@ fn cycles() -> Vec<(Record, RobotState)> {
         .collect()
 }
 
-/// Feeds a cycle as the control thread does.
+/// Feeds a cycle like the control thread.
 fn push(publisher: &mut CyclePublisher, seen: &[(Record, RobotState)], ms: u64, began: Instant) {
     let (mut record, mut state) = seen[ms as usize % seen.len()];
     record.time = ms;
@@ -106,14 +106,15 @@ fn push(publisher: &mut CyclePublisher, seen: &[(Record, RobotState)], ms: u64, 
     publisher.push(record, &bytes[..length], began + Duration::from_millis(ms));
 }
 
-/// The processor time of the recorder's threads so far; `None` where the system does not tell it.
+/// Returns the processor time of the recorder's threads so far; `None` if the system does not
+/// provide it.
 pub fn processor_time() -> Option<Duration> {
     let mut total = Duration::ZERO;
     for task in fs::read_dir("/proc/self/task").ok()? {
         let path = task.ok()?.path();
         let name = fs::read_to_string(path.join("comm")).ok()?;
         if matches!(name.trim(), "franka-record" | "franka-disk") {
-            // Nanoseconds on a processor come first.
+            // The first value is the time on a processor in nanoseconds.
             let stat = fs::read_to_string(path.join("schedstat")).ok()?;
             let nanos = stat.split_whitespace().next()?.parse().ok()?;
             total += Duration::from_nanos(nanos);

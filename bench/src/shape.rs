@@ -19,7 +19,7 @@ fn torques() -> Benchmark {
     let mut random = SmallRng::seed_from_u64(SEED);
     let mut cases = Inputs::new((0..CASES).map(|_| {
         let last: [f64; 7] = std::array::from_fn(|_| as_f32(random.random_range(-40.0..40.0)));
-        // From within the rate limit to several times beyond.
+        // From within the rate limit to several times above it.
         let command = last.map(|last| last + random.random_range(-5.0..5.0));
         (Torques(command), last)
     }));
@@ -45,7 +45,7 @@ fn pose() -> Benchmark {
     let mut cases = Inputs::new((0..CASES).map(|_| {
         let mut vector = |scale: f64| Vector3::from_fn(|_, _| random.random_range(-scale..scale));
         let last = Isometry3::new(vector(0.5), vector(1.5));
-        // A few times the change that the limits allow in a cycle.
+        // A few times the allowed change per cycle.
         let step = Isometry3::new(vector(0.01), vector(0.01));
         let command = CartesianPose {
             O_T_EE: transform::array(&(step * last)),
@@ -82,7 +82,7 @@ fn pose() -> Benchmark {
     }
 }
 
-/// As in a state of protocol 10.
+/// Rounds as in a state of protocol 10.
 fn as_f32(x: f64) -> f64 {
     f64::from(x as f32)
 }

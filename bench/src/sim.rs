@@ -1,5 +1,6 @@
-//! The simulated robot under target control in virtual time: how much faster than a robot. Measured
-//! in processor time: a second of robot time takes long enough for other programs to run meanwhile.
+//! The speed of the simulated robot under target control in virtual time, relative to a robot.
+//! Measured in processor time, because a second of robot time takes long enough for other programs
+//! to run meanwhile.
 
 use std::time::Duration;
 
@@ -13,7 +14,8 @@ use franka_lockstep::{Lockstep, Wander};
 const MILLISECONDS: u32 = 250;
 const SAMPLES: usize = 4;
 
-/// The simulator with each of its plants, and the driver's target control, in one thread.
+/// Benchmarks of the simulator with each of its plants, and the driver's target control, in one
+/// thread.
 pub fn all() -> Vec<Benchmark> {
     vec![
         lockstep("sim.lockstep_x_rigid", Robot::new(config())),
@@ -22,7 +24,7 @@ pub fn all() -> Vec<Benchmark> {
     ]
 }
 
-/// An arm with a Hand's load in the ready pose.
+/// Returns an arm with a Hand's load in the ready pose.
 fn config() -> Config {
     Config {
         tool: Tool::hand(),
@@ -30,7 +32,7 @@ fn config() -> Config {
     }
 }
 
-/// The same arm in MuJoCo, on a table that it does not touch.
+/// Returns the same arm in MuJoCo, above a table that it does not touch.
 #[cfg(feature = "mujoco")]
 fn mujoco() -> Robot {
     use franka_sim::plant::{MujocoArm, Scene};
@@ -56,7 +58,7 @@ fn lockstep(key: &'static str, robot: Robot) -> Benchmark {
     }
 }
 
-/// The processor time of this thread.
+/// Returns the processor time of this thread.
 fn processor_time() -> Duration {
     let clock = ClockId::CLOCK_THREAD_CPUTIME_ID;
     Duration::from(clock_gettime(clock).expect("every thread has this clock"))

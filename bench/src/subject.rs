@@ -1,4 +1,4 @@
-//! One call to measure, whether in time or in instructions.
+//! One call to measure, in time or in instructions.
 
 use std::hint::black_box;
 
@@ -8,8 +8,8 @@ use super::{Benchmark, Inputs, Statistic, timed};
 pub struct Subject {
     /// The key, as in [`Benchmark`].
     pub key: &'static str,
-    /// The functions whose instructions count, as patterns of callgrind; without any, all
-    /// instructions count. None of them calls another one.
+    /// The functions whose instructions count, as patterns of callgrind; if empty, all instructions
+    /// count. None of them may call another one.
     pub within: &'static [&'static str],
     /// Makes one call.
     pub call: Box<dyn FnMut()>,
@@ -31,7 +31,7 @@ impl Subject {
         }
     }
 
-    /// The median time of a call.
+    /// Converts to a benchmark of the median time of a call.
     pub(super) fn p50(mut self) -> Benchmark {
         Benchmark {
             key: self.key,

@@ -1,8 +1,8 @@
-//! How soon a supervised robot takes motions again, over real sockets: after a reflex, and after
-//! its simulator was killed and started again at once.
+//! The time until a supervised robot accepts motions again, over real sockets: after a reflex, and
+//! after its simulator was killed and restarted at once.
 //!
-//! The values are what the supervisor itself reports. A simulated recovery takes 100 ms, by the
-//! simulator's choice.
+//! The supervisor itself reports the values. A simulated recovery takes 100 ms, chosen by the
+//! simulator.
 
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -14,10 +14,10 @@ use franka_sim::{Running, Sim};
 
 use super::{Benchmark, Statistic};
 
-/// Reflexes in a round.
+/// Number of reflexes in a round.
 const REFLEXES: usize = 3;
 
-/// All benchmarks of supervision. Their samples are milliseconds.
+/// Returns all benchmarks of supervision. Their samples are milliseconds.
 pub fn all() -> Vec<Benchmark> {
     vec![
         Benchmark {
@@ -71,7 +71,7 @@ async fn recoveries() -> Vec<u64> {
 async fn reconnects() -> Vec<u64> {
     let (robot, sim) = supervised().await;
     let mut events = robot.events();
-    // After a connection that does not last a second, the next one is not made at once.
+    // After a connection of less than a second, the next one is delayed.
     tokio::time::sleep(Duration::from_millis(1100)).await;
     let address = sim.addr();
     sim.stop().await;
@@ -89,13 +89,13 @@ async fn restart(address: SocketAddr) -> Running {
     loop {
         match Sim::fr3().bind(address).start().await {
             Ok(sim) => return sim,
-            // The port is not free at once.
+            // The port is not free immediately.
             Err(_) => tokio::time::sleep(Duration::from_millis(1)).await,
         }
     }
 }
 
-/// Waits for the event of which `is` finds the time that it tells, and returns that, `[ms]`.
+/// Waits for the event for which `is` returns a duration, and returns it, `[ms]`.
 async fn told(events: &mut Events, is: impl Fn(&EventKind) -> Option<Duration>) -> u64 {
     loop {
         let notification = events.next().await.expect("the robot is supervised");

@@ -48,11 +48,11 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Key of the lag behind a target that moves, `[ms]`: the same in every round.
+/// Key of the lag behind a moving target, `[ms]`: the same in every round.
 const FOLLOW: &str = "follow.lag_ms_constant_velocity";
 
 /// First part of the keys of a recording of one minute: bytes, and percent of one core at 1 kHz.
 const RECORD: &str = "record.";
 
-/// Enough for a median that two disturbed rounds do not change.
+/// Number of rounds, sufficient for a median that two disturbed rounds do not change.
 const ROUNDS: usize = 15;

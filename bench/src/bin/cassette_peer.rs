@@ -1,8 +1,8 @@
 //! The vendor's client records a cassette of itself, and completes its motion against it:
-//! `cassette_peer INTERPRETER SCRIPT SIMULATOR TAP PLAYER`, the last three being addresses of this
-//! machine.
+//! `cassette_peer INTERPRETER SCRIPT SIMULATOR TAP PLAYER`, where the last three are addresses of
+//! this machine.
 //!
-//! Prints a line per step, as the scripts of `tests/peers` do.
+//! Prints a line per step, like the scripts of `tests/peers`.
 
 use std::net::{IpAddr, SocketAddr};
 use std::process::Command;
@@ -14,7 +14,7 @@ use franka_record::cassette::{
 };
 use franka_sim::Sim;
 
-/// What takes longer hangs.
+/// Time limit; a longer operation hangs.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 #[tokio::main]
@@ -92,7 +92,7 @@ async fn play(
     Ok(())
 }
 
-/// What a client prints, if it succeeds.
+/// Returns the output of a client, if it succeeds.
 async fn output(mut client: Command) -> anyhow::Result<String> {
     let output = tokio::task::spawn_blocking(move || client.output()).await?;
     let output = output.context("cannot start the client")?;

@@ -1,9 +1,9 @@
-//! Counts instructions: `instructions` prints how many machine instructions every call of the model
-//! that the benchmarks time takes, the guarded cycle, and the whole cycle of each back end. Time on
-//! a shared machine is noisy; this is not.
+//! Counts instructions: `instructions` prints the number of machine instructions of every call of
+//! the model that the benchmarks time, of the guarded cycle, and of the whole cycle of each back
+//! end. Time on a shared machine is noisy, but this count is not.
 //!
-//! Needs `valgrind`. Every call is made a few and many times under its callgrind tool; the
-//! difference is that of the calls, without what starting and preparing the inputs takes.
+//! Needs `valgrind`. Every call is made a few and many times under its callgrind tool. The
+//! difference contains only the calls, without the start and the preparation of the inputs.
 
 use std::env;
 use std::process::{Command, ExitCode};
@@ -55,8 +55,8 @@ fn table() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Instructions of a process that makes `calls` calls; those in the functions `within` alone if
-/// there are any. Callgrind takes the pattern of one function: each has a run of its own.
+/// Returns the instructions of a process that makes `calls` calls, or only those in the functions
+/// `within`, if any. Callgrind accepts the pattern of one function: each has a separate run.
 fn count(key: &str, within: &[&str], calls: u64) -> Option<u64> {
     if within.is_empty() {
         return collected(key, None, calls);
@@ -79,6 +79,7 @@ fn collected(key: &str, within: Option<&str>, calls: u64) -> Option<u64> {
     line.rsplit(':').next()?.trim().parse().ok()
 }
 
-/// Their difference is a multiple of the number of inputs, so that all inputs weigh the same.
+/// The difference of the two counts is a multiple of the number of inputs, so that all inputs have
+/// the same weight.
 const FEW: u64 = 1_000;
 const MANY: u64 = 9_000;

@@ -1,5 +1,5 @@
-//! Records a realistic arm for `MINUTES` of virtual time, whole and thinned, and prints what it
-//! came to: `record_hour [MINUTES [DIRECTORY]]`, 60 minutes in the directory for temporary files.
+//! Records a realistic arm for `MINUTES` of virtual time, complete and thinned, and prints the
+//! totals: `record_hour [MINUTES [DIRECTORY]]`, 60 minutes in the directory for temporary files.
 
 use std::env;
 use std::path::PathBuf;

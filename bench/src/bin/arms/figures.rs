@@ -1,4 +1,4 @@
-//! What one arm did, and the figures of all of them.
+//! The measured values of one arm, and the figures of all arms.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,17 +9,17 @@ use franka_bench::figures::quantile;
 #[derive(Debug, Default)]
 pub(crate) struct ArmFigures {
     pub(crate) seed: u64,
-    /// What ended the programme early.
+    /// The reason if the programme ended early.
     pub(crate) reflex: Option<String>,
-    /// Goals that were to arrive.
+    /// Number of goals with a target.
     pub(crate) goals: usize,
-    /// Those of them that did not, each with its number and what was told. Nothing holds the arm
+    /// The goals that did not arrive, each with its number and its result. The arm is not held
     /// while they are counted.
     pub(crate) short: Vec<String>,
     /// Distances from the target at rest, `[mm]` and `[mrad]`.
     pub(crate) errors_mm: Vec<f64>,
     pub(crate) errors_mrad: Vec<f64>,
-    /// Times from a step of 5 cm until the arm is within 1 mm for good, `[s]`.
+    /// Times from a step of 5 cm until the arm stays within 1 mm, `[s]`.
     pub(crate) arrive_s: Vec<f64>,
     /// Times until a goal was reported as arrived, `[s]`.
     pub(crate) told_s: Vec<f64>,
@@ -27,25 +27,25 @@ pub(crate) struct ArmFigures {
     pub(crate) lags_mm: Vec<f64>,
     /// The same on the circle, `[mm]`.
     pub(crate) circle_lags_mm: Vec<f64>,
-    /// The robot's estimate of the external force at rest, with nothing there, `[N]`.
+    /// The robot's estimate of the external force at rest, without a contact, `[N]`.
     pub(crate) estimates_n: Vec<f64>,
-    /// Peak to peak of the end effector in a hold, `[mm]`.
+    /// Peak-to-peak motion of the end effector during a hold, `[mm]`.
     pub(crate) hold_move_mm: f64,
     /// Torque command above 30 Hz, rms of the worst joint, `[N m]`.
     pub(crate) hold_torque_hf_nm: f64,
     pub(crate) moving_torque_hf_nm: f64,
-    /// How much further from the target an arm is once the robot's own controller has it, after a
-    /// motion that has ended, `[mm]`.
+    /// Additional distance of an arm from the target after the robot's own controller has taken
+    /// over at the end of a motion, `[mm]`.
     pub(crate) handover_mm: f64,
-    /// The part of it until the torques have ended, `[mm]`.
+    /// The part of it until the end of the torques, `[mm]`.
     pub(crate) released_mm: f64,
-    /// Force of a pushing hand without the inertia's share, `[N]`.
+    /// Force of a pushing hand without the contribution of the inertia, `[N]`.
     pub(crate) push_force_n: f64,
-    /// How far the robot's own controller gives way to a push of 30 N, `[mm]`.
+    /// Displacement of the robot's own controller under a push of 30 N, `[mm]`.
     pub(crate) push_yield_mm: f64,
     /// Force of a hand that guides the arm at up to 0.16 m/s, `[N]`.
     pub(crate) guide_force_n: f64,
-    /// How far an arm that is let go swings beyond its target, `[mm]`.
+    /// Overshoot of a released arm beyond its target, `[mm]`.
     pub(crate) release_overshoot_mm: f64,
 }
 

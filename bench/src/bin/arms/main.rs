@@ -1,11 +1,11 @@
-//! Measures target control on simulated arms like real ones: `arms [--family F] [--arms N]
-//! [--seed S] [--robot R] OUTPUT`.
+//! Measures target control on realistic simulated arms: `arms [--family F] [--arms N] [--seed S]
+//! [--robot R] OUTPUT`.
 //!
 //! ```text
 //! Family, seed -> Arm -> Programme (lockstep) -> ArmFigures -> Summary -> JSON
 //! ```
 //!
-//! Each arm has a seed of its own, which its line names: `--arms 1 --seed SEED` runs it alone.
+//! Each arm has its own seed, which its line contains: `--arms 1 --seed SEED` runs this arm alone.
 
 mod figures;
 mod programme;
@@ -26,13 +26,13 @@ use figures::Summary;
 
 #[derive(Debug, Parser)]
 struct Arguments {
-    /// ideal, nominal, realistic, bad, or a file.
+    /// Family of the arms: ideal, nominal, realistic, bad, or a file.
     #[arg(long, default_value = "realistic")]
     family: String,
     /// Number of arms.
     #[arg(long, default_value_t = 20)]
     arms: u64,
-    /// Seed of the first arm; the others count on.
+    /// Seed of the first arm; the others count up from it.
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// The model of the arms.
@@ -41,22 +41,22 @@ struct Arguments {
     /// Factor on gains of the law, to find the margin to the first oscillation.
     #[arg(long, default_value_t = 1.0)]
     gain: f64,
-    /// The gains that it is on.
+    /// The gains that the factor applies to.
     #[arg(long, value_enum, default_value_t = Scaled::All)]
     scaled: Scaled,
     /// The law.
     #[arg(long, value_enum, default_value_t = LawChoice::Default)]
     law: LawChoice,
-    /// What the robot's own controllers get.
+    /// The setpoints of the robot's own controllers.
     #[arg(long, value_enum, default_value_t = SetpointChoice::JointPositions)]
     setpoints: SetpointChoice,
-    /// Threads.
+    /// Number of threads.
     #[arg(long, default_value_t = 2)]
     threads: u64,
-    /// A line for every arm, not only for those that fell short.
+    /// Print a line for every arm, not only for arms with failures.
     #[arg(long)]
     all: bool,
-    /// The file to write.
+    /// The output file.
     output: PathBuf,
 }
 
@@ -108,12 +108,12 @@ pub(crate) struct LawUnderTest {
 }
 
 impl LawUnderTest {
-    /// What turns setpoints into torques.
+    /// Returns the backend, which converts setpoints to torques.
     pub(crate) fn backend(self) -> Backend {
         self.choice.backend(self.setpoints.into())
     }
 
-    /// The gains of a goal: its own where it is not for a pose.
+    /// Returns the gains of a goal: its own unless it is a pose.
     pub(crate) fn gains(self, goal: &Goal) -> Gains {
         let gains = match goal.target {
             Target::Pose(_) => self.choice.gains(),
@@ -128,17 +128,17 @@ impl LawUnderTest {
 /// Laws to compare.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum LawChoice {
-    /// That of a goal for a pose.
+    /// The law of a goal for a pose.
     Default,
-    /// Its springs and dampers alone.
+    /// The same law, with springs and dampers only.
     Springs,
     /// 1500 N/m and 60 N m/rad.
     Stiff,
-    /// These alone.
+    /// The same gains, with springs and dampers only.
     StiffSprings,
-    /// That of a goal for joint positions.
+    /// The law of a goal for joint positions.
     Joint,
-    /// Its springs and dampers alone.
+    /// The same law, with springs and dampers only.
     JointSprings,
     /// The robot's own joint impedance controller, with `--setpoints`.
     JointImpedance,

@@ -1,4 +1,4 @@
-//! The programme that every arm goes through, in virtual time.
+//! The programme of every arm, in virtual time.
 
 use franka_bench::figures::HighPass;
 use franka_lockstep::{Link, Lockstep};
@@ -16,7 +16,7 @@ use rand::{Rng, SeedableRng};
 use crate::LawUnderTest;
 use crate::figures::ArmFigures;
 
-/// Takes one arm through the programme, under this law.
+/// Runs the programme with one arm, under this law.
 pub(crate) fn run(kind: RobotKind, arm: Arm, seed: u64, law: LawUnderTest) -> ArmFigures {
     let stalls = arm.stalls;
     let mut lockstep = Lockstep::new(Config {
@@ -27,7 +27,7 @@ pub(crate) fn run(kind: RobotKind, arm: Arm, seed: u64, law: LawUnderTest) -> Ar
     if let Some(stalls) = stalls {
         lockstep.link = Link::over(Network::stalling(seed, stalls));
     }
-    // A hand that pushes must not trigger a reflex.
+    // A pushing hand must not trigger a reflex.
     let tolerant = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
     lockstep.request(&Request::SetCollisionBehavior(tolerant));
     lockstep.run(5);
@@ -57,18 +57,19 @@ pub(crate) fn run(kind: RobotKind, arm: Arm, seed: u64, law: LawUnderTest) -> Ar
 
 struct Programme {
     law: LawUnderTest,
-    /// Absent where each goal is a motion of its own.
+    /// The session's goal; `None` if each goal is a separate motion.
     engaged: Option<GoalId>,
     home: Isometry3<f64>,
     lockstep: Lockstep,
     figures: ArmFigures,
 }
 
-/// What ended the session.
+/// The reason for the end of the session.
 type Ended = String;
 
 impl Programme {
-    /// Steps that are motions of their own, under our law: the first know nothing of the arm.
+    /// Runs steps that are separate motions, under our law: the first ones have no knowledge of the
+    /// arm.
     fn alone(&mut self) -> Result<(), Ended> {
         if self.law.backend() != Backend::Torques {
             return Ok(());
@@ -85,7 +86,7 @@ impl Programme {
         let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
         for axis in axes {
             for (length, signs) in [(0.05, [1.0, -1.0]), (0.01, [1.0, 1.0]), (0.2, [-1.0, -1.0])] {
-                // The table is nearer than 20 cm.
+                // The table is closer than 20 cm.
                 let length = if axis == Vector3::z() {
                     f64::min(length, 0.15)
                 } else {
@@ -100,7 +101,7 @@ impl Programme {
                 }
             }
             for degrees in [5.0, -20.0, 40.0, -60.0] {
-                // Further the wrist does not turn about x and y.
+                // The wrist cannot turn further about x and y.
                 let most = if axis == Vector3::z() { 60.0 } else { 40.0 };
                 let angle = f64::clamp(degrees, -most, most).to_radians();
                 let turn = UnitQuaternion::from_scaled_axis(axis * angle);
@@ -115,7 +116,7 @@ impl Programme {
         self.hold()?;
         self.stream()?;
         self.circle()?;
-        // Guiding takes torques, and so does an arm that goes with a hand that pushes on: the
+        // Guiding requires torques. So does an arm that yields to a continuing push, because the
         // robot's controllers resist until a torque sensor is out of its range.
         if self.law.backend() == Backend::Torques {
             self.push()?;
@@ -151,13 +152,13 @@ impl Programme {
         submitted.expect("near the ready pose everything is within reach")
     }
 
-    /// Goes to a pose: see [`Self::go`].
+    /// Moves to a pose: see [`Self::go`].
     fn step(&mut self, target: Isometry3<f64>, timed: bool) -> Result<(), Ended> {
         self.go(target.into(), target, timed)
     }
 
-    /// Goes to `target`, at which the end effector has the pose `there`, waits until the driver
-    /// says how it ended and a little more.
+    /// Moves to `target`, where the end effector has the pose `there`; waits for the driver's
+    /// result and slightly longer.
     fn go(&mut self, target: Target, there: Isometry3<f64>, timed: bool) -> Result<(), Ended> {
         let on_arrival = match self.engaged {
             Some(_) => OnArrival::ReportAndHold,
@@ -181,7 +182,7 @@ impl Programme {
             && self.engaged.is_none()
             && let Some(reported) = report.final_error
         {
-            // The robot's own controller has the arm by now.
+            // By now the robot's own controller has taken over.
             let left = (error.translation - reported.translation) * 1e3;
             self.figures.handover_mm = self.figures.handover_mm.max(left);
             error = reported;
@@ -216,13 +217,14 @@ impl Programme {
         Ok(())
     }
 
-    /// Goes to joint positions on either side of those at home, and back.
+    /// Moves to joint positions on either side of home, and back.
     fn joints(&mut self) -> Result<(), Ended> {
         let home = *self.lockstep.robot.q();
         let limits = *Model::of(self.lockstep.robot.config().kind).joint_limits();
         for by in [0.1, -0.1, 0.4, -0.4] {
             let q = JointVector::from_fn(|i, _| {
-                // Neighbours turn opposite ways, so that the arm stays above the table.
+                // Neighbouring joints turn in opposite directions, so that the arm stays above the
+                // table.
                 let turned = home[i] + if i % 2 == 0 { by } else { -by / 2.0 };
                 turned.clamp(limits.lower[i] + 0.1, limits.upper[i] - 0.1)
             });
@@ -250,11 +252,10 @@ impl Programme {
         self.step(self.home, false)
     }
 
-    /// Is guided 10 cm to the side and back by a hand that holds it until it is let go of, and goes
-    /// home.
+    /// Lets a hand guide the arm 10 cm to the side and back and then release it, and moves home.
     fn guide(&mut self) -> Result<(), Ended> {
         let from = self.lockstep.arm_pose().translation.vector;
-        // The springs have let go of the arm by then.
+        // The springs have released the arm by then.
         let turned = |t: f64| ((t - 0.4) / 2.0).clamp(0.0, 1.0) * core::f64::consts::TAU;
         let path = move |t: f64| from + Vector3::y() * (0.05 * (1.0 - turned(t).cos()));
         let leading = self.lockstep.robot.touch(Touch::carry(path, STIFFNESS));
@@ -270,7 +271,7 @@ impl Programme {
         self.step(self.home, false)
     }
 
-    /// Grips a load that is not declared, goes on with it, and drops it.
+    /// Grips an undeclared load, continues with it, and drops it.
     fn carry(&mut self) -> Result<(), Ended> {
         let gripped = Load {
             mass: GRIPPED,
@@ -333,8 +334,8 @@ impl Programme {
         self.step(self.home, false)
     }
 
-    /// Pushes the held arm along three axes with [`BORNE`], for an arm that gives way no further
-    /// than its springs do, and lets it go.
+    /// Pushes the held arm along three axes with [`BORNE`], for an arm that yields only by its
+    /// springs, and releases it.
     fn lean(&mut self) -> Result<(), Ended> {
         for way in [Vector3::x(), Vector3::y(), -Vector3::z()] {
             self.step(self.home, false)?;
@@ -351,7 +352,7 @@ impl Programme {
         self.step(self.home, false)
     }
 
-    /// Pushes the held arm along three axes, however far it gives way, and lets it go.
+    /// Pushes the held arm along three axes, regardless of its displacement, and releases it.
     fn push(&mut self) -> Result<(), Ended> {
         for way in [Vector3::x(), Vector3::y(), -Vector3::z()] {
             self.head_for(self.home.into(), OnArrival::Hold);
@@ -385,8 +386,8 @@ impl Programme {
     }
 }
 
-/// Force of a push that every controller bears, `[N]`.
+/// Force of a push that every controller tolerates, `[N]`.
 const BORNE: f64 = 30.0;
 
-/// Mass of the load that is gripped and not declared, `[kg]`.
+/// Mass of the gripped, undeclared load, `[kg]`.
 const GRIPPED: f64 = 0.3;

@@ -1,5 +1,5 @@
-//! The families of arms against two real ones: franka-rs on sampled arms, as its authors had it on
-//! two FERs (their book, "The impedance backend", 2026-09-10).
+//! Compares the families of arms with two real arms: franka-rs on sampled arms, and its authors'
+//! results on two FERs (their book, "The impedance backend", 2026-09-10).
 
 use std::fmt;
 use std::time::Instant;
@@ -16,25 +16,24 @@ use crate::hand::Hand;
 use crate::peer::Peer;
 use crate::{Arguments, simulated, told};
 
-/// How many arms of each family.
+/// Number of arms of each family.
 const ARMS: u64 = 6;
 
-/// How long a session stands still at its start, `[s]`.
+/// Duration of the standstill at the start of a session, `[s]`.
 const START: f64 = 5.0;
 
-/// Steps of the target, along random axes.
+/// Number of steps of the target, along random axes.
 const STEPS: u32 = 12;
 
-/// Length of a step, and the way from the start along an axis that they stay within: down, less.
-/// `[m]`
+/// Length of a step, and the largest distance from the start along an axis; less downwards. `[m]`
 const STEP: f64 = 0.05;
 const ROOM: f64 = 0.12;
 const ROOM_BELOW: f64 = 0.06;
 
-/// The time from the start of a step to the reading, `[s]`.
+/// Time from the start of a step to the reading, `[s]`.
 const HOLD: f64 = 1.2;
 
-/// Above this the reference is moving, `[m/s]`.
+/// Velocity above which the reference is moving, `[m/s]`.
 const MOVING: f64 = 1e-3;
 
 /// Share by which a published figure may lie outside the figures of the sampled arms. Only two real
@@ -48,11 +47,11 @@ const DRIFT_WIDER: f64 = 0.5;
 
 /// What was published of two arms, by increasing figures, `[mm]`.
 mod published {
-    /// How far they moved in the first five seconds.
+    /// Drift in the first five seconds.
     pub(super) const DRIFT: [f64; 2] = [0.13, 0.23];
-    /// Distances from the target in the holds; of which statistic is not said.
+    /// Distances from the target during the holds; the statistic is not published.
     pub(super) const HOLD: [f64; 2] = [2.8, 4.6];
-    /// Distances from the moving reference, 95 % of the cycles.
+    /// Distances from the moving reference, not exceeded by 95 % of the cycles.
     pub(super) const MOVING: [f64; 2] = [8.7, 9.6];
 }
 
@@ -65,7 +64,7 @@ struct Figures {
     moving: Vec<f64>,
 }
 
-/// True if the figures of a family are as they have to be.
+/// True if the figures of a family are as expected.
 type Verdict = fn(&Figures) -> bool;
 
 /// Prints a line for each family, and returns how many failed.
@@ -118,7 +117,7 @@ impl Figures {
         let (hand, sim) = Hand::beside(simulated(sim));
         let sim = sim.start().await?;
         let witness = hand.witness();
-        // Their default when they measured.
+        // Their default at the time of their measurement.
         let mut peer = Peer::hold(arguments.franka_rs(sim.addr()).arg("feedforward"))?;
 
         let standing = witness.lags(&peer.step([0.0; 3], START)?)?;
@@ -147,7 +146,7 @@ impl Figures {
     }
 }
 
-/// A step along an axis that stays within the room, `[m]`.
+/// Returns a step along an axis that stays within the allowed space, `[m]`.
 fn step(random: &mut SmallRng, at: &[f64; 3]) -> [f64; 3] {
     loop {
         let axis = random.random_range(0..3);

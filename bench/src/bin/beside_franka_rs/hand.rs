@@ -1,4 +1,4 @@
-//! A hand that pushes the arm, and what it feels, in the robot's time.
+//! A hand that pushes the arm and measures the force, in the robot's time.
 
 use std::sync::mpsc;
 
@@ -13,45 +13,45 @@ use tokio::time::timeout;
 use crate::PATIENCE;
 use crate::witness::Witness;
 
-/// The time at constant velocity that is left out of the mean force, `[ms]`: contact and arm still
+/// Time at constant velocity that is excluded from the mean force, `[ms]`: contact and arm still
 /// oscillate then.
 const SWING: u64 = 100;
 
-/// The time at the beginning of a push that is left out, `[ms]`.
+/// Time at the beginning of a push that is excluded, `[ms]`.
 const LEFT_OUT: u64 = (START * 1e3) as u64 + SWING;
 
-/// Orders pushes of a robot that is being simulated.
+/// Requests pushes of a simulated robot.
 pub(crate) struct Hand {
     orders: mpsc::Sender<Order>,
     witness: Witness,
 }
 
-/// The direction of a push, and where its result goes.
+/// The direction of a push, and the channel for its result.
 type Order = (Vector3<f64>, oneshot::Sender<Felt>);
 
-/// What a hand feels that pushes an arm.
+/// The result of a push.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Felt {
     /// The mean force at constant velocity, `[N]`: no part of it accelerates the arm.
     Mean(f64),
-    /// The greatest force before the robot stopped itself, `[N]`.
+    /// The largest force before the robot stopped itself, `[N]`.
     Reflex(f64),
 }
 
-/// A push under way.
+/// A running push.
 struct Push {
     touch: TouchId,
     /// `message_id` at the beginning.
     begun: u64,
-    /// The forces felt so far, `[N]`.
+    /// Sum of the forces so far, `[N]`.
     sum: f64,
     most: f64,
     result: oneshot::Sender<Felt>,
 }
 
 impl Hand {
-    /// A hand beside this robot. It moves, feels and sees in every millisecond of the robot,
-    /// however late this program is.
+    /// Attaches a hand to this robot. It acts in every millisecond of the robot, regardless of
+    /// delays of this program.
     pub(crate) fn beside(sim: Sim) -> (Self, Sim) {
         let (orders, ordered) = mpsc::channel::<Order>();
         let witness = Witness::default();
@@ -70,7 +70,7 @@ impl Hand {
         (Self { orders, witness }, sim)
     }
 
-    /// What it sees.
+    /// Returns its record of the robot.
     pub(crate) fn witness(&self) -> &Witness {
         &self.witness
     }
@@ -91,7 +91,8 @@ impl Felt {
         }
     }
 
-    /// The worse one: a reflex is worse than any force, and more force than less.
+    /// Returns the worse result: a reflex is worse than any force, and a larger force is worse than
+    /// a smaller one.
     pub(crate) fn max(self, other: Self) -> Self {
         let rank = |felt: Self| (matches!(felt, Self::Reflex(_)), felt.newtons());
         if rank(other) > rank(self) {
@@ -115,7 +116,7 @@ impl Push {
         }
     }
 
-    /// Takes in the force of the last millisecond. Returns the push unless it is over.
+    /// Processes the force of the last millisecond. Returns the push unless it is complete.
     fn feel(mut self, robot: &mut Robot) -> Option<Self> {
         let state = robot.state();
         let (mode, time) = (state.robot_mode, state.message_id - self.begun);
@@ -131,7 +132,7 @@ impl Push {
             _ => Felt::Mean(self.sum / (PUSH - LEFT_OUT) as f64),
         };
         robot.release(self.touch);
-        // The order may have been given up.
+        // The requester may have given up.
         let _ = self.result.send(felt);
         None
     }

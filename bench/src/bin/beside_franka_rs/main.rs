@@ -1,7 +1,8 @@
-//! Our target control beside other clients, each with its defaults, on the same simulated robots:
-//! `beside_franka_rs FRANKA_RS [--pylibfranka PYTHON SCRIPT ADDRESS]`, programs of `tests/peers`. A
-//! step of 5 cm, and a hand that pushes an arm that holds its pose; a line for each robot and
-//! client. And franka-rs on sampled arms beside what it did on real ones.
+//! Compares our target control with other clients, each with its defaults, on the same simulated
+//! robots: `beside_franka_rs FRANKA_RS [--pylibfranka PYTHON SCRIPT ADDRESS]`, programs of
+//! `tests/peers`. The tests are a step of 5 cm, and a hand that pushes an arm at rest; the output
+//! has a line for each robot and client. It also compares franka-rs on sampled arms with its
+//! results on real ones.
 //!
 //! ```text
 //!                      ┌─ Witness, Hand: what any client makes of the robot
@@ -38,16 +39,16 @@ use witness::Followed;
 struct Arguments {
     /// The program of `tests/peers/franka_rs`.
     franka_rs: PathBuf,
-    /// Also compares joint positions by the vendor's client, whose robot has this address.
+    /// Also compares joint positions with the vendor's client, whose robot has this address.
     #[arg(long, num_args = 3, value_names = ["PYTHON", "SCRIPT", "ADDRESS"])]
     pylibfranka: Option<Vec<String>>,
 }
 
-/// Makes a simulated robot of a kind.
+/// Creates a simulated robot of a kind.
 type Kind = fn() -> Sim;
 
-/// The vendor's client: its interpreter, our script for it, and the address of the robot, since it
-/// knows one port only.
+/// The vendor's client: its interpreter, our script for it, and the address of the robot, because
+/// it uses one fixed port.
 struct Pylibfranka<'a> {
     python: &'a str,
     script: &'a str,
@@ -81,19 +82,19 @@ impl Arguments {
     }
 }
 
-/// How long a step is watched, `[ms]`.
+/// Duration of the observation after a step, `[ms]`.
 const WATCHED: u64 = 2500;
 
-/// The end of that time, in which the arm rests and its torques are noise, `[ms]`.
+/// The end of that time, in which the arm is at rest and its torques are noise, `[ms]`.
 const RESTING: u64 = 1000;
 
-/// How long an arm is left alone before it is pushed, `[ms]`.
+/// Time for which an arm is left alone before a push, `[ms]`.
 const BEFORE_PUSH: u64 = 1500;
 
 /// The step, `[m]`, base frame.
 const STEP: [f64; 3] = [0.0, 0.0, 0.05];
 
-/// The longest time that a client may take for any operation.
+/// Time limit for any operation of a client.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 #[tokio::main]
@@ -109,7 +110,7 @@ async fn main() -> ExitCode {
 
 async fn run(arguments: Arguments) -> anyhow::Result<()> {
     let mut failed = 0;
-    // The vendor's client speaks the protocol of the FR3 only.
+    // The vendor's client only supports the protocol of the FR3.
     let vendor = arguments.pylibfranka()?;
     let vendor = vendor.as_ref();
     let robots: [(&str, Kind, Wanted, _); 4] = [
@@ -126,7 +127,7 @@ async fn run(arguments: Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Prints the result of a step, and returns whether it failed.
+/// Prints the result of a step; returns 1 if it failed.
 fn told(name: &str, start: Instant, outcome: anyhow::Result<impl fmt::Display>) -> u32 {
     match outcome {
         Ok(summary) => {
@@ -141,23 +142,23 @@ fn told(name: &str, start: Instant, outcome: anyhow::Result<impl fmt::Display>) 
     }
 }
 
-/// A robot in virtual time, which advances as its client answers: no command is late on a busy
-/// machine.
+/// Returns a robot in virtual time, which advances with its client's answers: no command is late on
+/// a busy machine.
 fn simulated(sim: Sim) -> Sim {
     sim.tool(Tool::hand()).virtual_time(PATIENCE)
 }
 
-/// The most that this driver may show.
+/// The largest values allowed for this driver.
 struct Wanted {
-    /// `[m]`.
+    /// Distance, `[m]`.
     off: f64,
-    /// `[s]`.
+    /// Time, `[s]`.
     within: f64,
-    /// `[m]`.
+    /// Distance, `[m]`.
     lag: f64,
-    /// `[N]`.
+    /// Force, `[N]`.
     push: f64,
-    /// `[N·m]`.
+    /// Torque, `[N·m]`.
     noise: f64,
 }
 
@@ -170,7 +171,7 @@ impl Wanted {
         noise: 0.01,
     };
 
-    /// Of an arm of which nothing is known yet. Its friction is felt on top of the cap.
+    /// Values for an unknown arm. Its friction adds to the force cap.
     const REALISTIC: Self = Self {
         off: 1e-3,
         within: 2.0,
@@ -180,19 +181,19 @@ impl Wanted {
     };
 }
 
-/// What a client does with an arm.
+/// The measured values of a client.
 #[derive(Clone, Copy)]
 struct Measured {
-    /// The time from which the arm stayed within 1 mm of the target, `[s]` from the first cycle
-    /// with that target.
+    /// Time after which the arm stayed within 1 mm of the target, `[s]` from the first cycle with
+    /// that target.
     within: Option<f64>,
-    /// The distance from the target in the end, `[m]`.
+    /// Final distance from the target, `[m]`.
     off: f64,
-    /// The greatest distance from the commanded position, `[m]`.
+    /// Largest distance from the commanded position, `[m]`.
     lag: f64,
-    /// Of a hand that pushes, in the direction that takes most.
+    /// Result of the pushing hand, in the direction with the largest force.
     push: Felt,
-    /// The commanded torque above 30 Hz at rest, rms of the worst joint, `[N·m]`.
+    /// Commanded torque above 30 Hz at rest, rms of the worst joint, `[N·m]`.
     noise: f64,
 }
 
@@ -207,7 +208,7 @@ impl Wanted {
 }
 
 impl Measured {
-    /// True if it is more accurate, sooner at its target and softer.
+    /// True if it is more accurate, faster at its target and softer.
     fn is_better_than(&self, peer: &Self) -> bool {
         let sooner = match (self.within, peer.within) {
             (Some(own), Some(peer)) => own < peer,
@@ -242,7 +243,7 @@ impl fmt::Display for Measured {
     }
 }
 
-/// Who controls the arm.
+/// The client that controls the arm.
 enum Client<'a> {
     Own,
     FrankaRs,
@@ -250,7 +251,7 @@ enum Client<'a> {
     Pylibfranka(&'a Pylibfranka<'a>, &'a [[f64; 7]]),
 }
 
-/// Prints a line for each client of this robot, and returns how many failed.
+/// Prints a line for each client of this robot, and returns the number of failures.
 async fn compare(
     robot: &str,
     kind: Kind,
@@ -284,7 +285,8 @@ async fn compare(
     failed
 }
 
-/// Has a client do everything. Returns the joint positions of its reference, too, if it is ours.
+/// Runs the whole test with a client. Also returns the joint positions of its reference, if the
+/// client is ours.
 async fn measure(
     sim: Sim,
     client: Client<'_>,
@@ -324,7 +326,7 @@ async fn measure(
     Ok(measured)
 }
 
-/// Measures the step that has been made, and pushes the arm.
+/// Measures the completed step, and pushes the arm.
 async fn look(hand: &Hand, followed: &Followed) -> anyhow::Result<Measured> {
     let witness = hand.witness();
     let end = followed.begin()? + WATCHED;

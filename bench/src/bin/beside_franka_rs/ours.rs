@@ -20,10 +20,10 @@ struct Cycle {
     q_ref: [f64; 7],
 }
 
-/// Cycles that a recording holds: a minute.
+/// Number of cycles in a recording: a minute.
 const CYCLES: usize = 60_000;
 
-/// An engaged arm, which is held.
+/// An engaged arm that is held in place.
 pub(crate) struct Ours {
     robot: Robot,
     arm: Arm,
@@ -31,7 +31,7 @@ pub(crate) struct Ours {
 }
 
 impl Ours {
-    /// Connects to `robot`, and holds the arm where it is.
+    /// Connects to `robot`, and holds the arm in place.
     pub(crate) async fn hold(robot: SocketAddr) -> anyhow::Result<Self> {
         let builder = Robot::builder(robot).realtime(Realtime::Ignore);
         let robot = builder.connect().await?;
@@ -41,7 +41,7 @@ impl Ours {
         robot.set_collision_behavior(behavior).await?;
         let cycles = Arc::new(Mutex::new(Vec::with_capacity(CYCLES)));
         let recorded = cycles.clone();
-        // An observer must not lock; here it may, since the robot's virtual time waits.
+        // An observer must not lock; here it may, because the robot's virtual time waits.
         let engage = Engage::default().observer(move |record, _| {
             let mut cycles = recorded.lock().unwrap_or_else(PoisonError::into_inner);
             if cycles.len() < CYCLES {
@@ -56,8 +56,8 @@ impl Ours {
         Ok(Self { robot, arm, cycles })
     }
 
-    /// Steps the target, `[m]`, and waits for `seconds`. Returns the joint positions of the
-    /// reference, too.
+    /// Steps the target, `[m]`, and waits for `seconds`. Also returns the joint positions of the
+    /// reference.
     pub(crate) async fn step(
         &self,
         by: [f64; 3],

@@ -1,4 +1,5 @@
-//! Another client: a program that reads orders. `tests/peers/franka_rs` has the table of them.
+//! Another client: a program that reads commands. See the table of commands in
+//! `tests/peers/franka_rs`.
 
 use std::io::{BufRead as _, BufReader, Lines, Write as _};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -8,7 +9,7 @@ use nalgebra::Vector3;
 
 use crate::witness::Followed;
 
-/// A client that holds the arm. Killed when this is dropped.
+/// A client that holds the arm. Killed when it is dropped.
 pub(crate) struct Peer {
     program: Child,
     orders: ChildStdin,
@@ -41,8 +42,8 @@ impl Peer {
         self.followed()
     }
 
-    /// Takes the joints along a path that begins where they are, one point per cycle, `[rad]`, and
-    /// waits until `seconds` are over.
+    /// Moves the joints along a path that begins at their position, one point per cycle, `[rad]`,
+    /// and waits until `seconds` have passed.
     pub(crate) fn follow(&mut self, path: &[[f64; 7]], seconds: f64) -> anyhow::Result<Followed> {
         writeln!(self.orders, "follow {} {seconds}", path.len())?;
         for point in path {
@@ -51,7 +52,7 @@ impl Peer {
         self.followed()
     }
 
-    /// Brings the arm to rest and ends the program.
+    /// Stops the arm and ends the program.
     pub(crate) fn end(mut self) -> anyhow::Result<()> {
         writeln!(self.orders, "end")?;
         self.expect("ended")?;

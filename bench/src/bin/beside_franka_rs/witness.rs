@@ -1,4 +1,5 @@
-//! Records a simulated robot, one sample per millisecond, and measures what its client does.
+//! Records a simulated robot, one sample per millisecond, and measures the performance of its
+//! client.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -15,9 +16,9 @@ use crate::PATIENCE;
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     time: u64,
-    /// Of the end effector, as measured, `[m]`.
+    /// Measured position of the end effector, `[m]`.
     position: Vector3<f64>,
-    /// `tau_J_d`: of the client, or of the robot's own controller, `[N·m]`.
+    /// `tau_J_d`, from the client or the robot's own controller, `[N·m]`.
     torque: [f64; 7],
 }
 
@@ -25,17 +26,17 @@ struct Sample {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Witness(Arc<Mutex<Vec<Sample>>>);
 
-/// What a client answered to the order to move the end effector.
+/// The answer of a client to the command to move the end effector.
 #[derive(Clone, Debug)]
 pub(crate) struct Followed {
     pub(crate) target: Vector3<f64>,
-    /// Millisecond of each state since the first with that target, and the position that the client
-    /// commanded on it, `[m]`.
+    /// Millisecond of each state since the first with that target, and the position commanded by
+    /// the client, `[m]`.
     pub(crate) reference: Vec<(u64, Vector3<f64>)>,
 }
 
 impl Followed {
-    /// Millisecond of the first state with the target.
+    /// Returns the millisecond of the first state with the target.
     pub(crate) fn begin(&self) -> anyhow::Result<u64> {
         Ok(self.reference.first().context("no cycle saw the target")?.0)
     }
@@ -52,12 +53,12 @@ impl Witness {
         self.samples(|samples| samples.push(sample));
     }
 
-    /// Time of the last state, `[ms]`.
+    /// Returns the time of the last state, `[ms]`.
     pub(crate) fn now(&self) -> u64 {
         self.samples(|samples| samples.last().map_or(0, |last| last.time))
     }
 
-    /// Waits until the robot has come to this millisecond.
+    /// Waits until the robot has reached this millisecond.
     pub(crate) async fn wait(&self, until: u64) -> anyhow::Result<()> {
         let come = async {
             while self.now() < until {
@@ -69,13 +70,14 @@ impl Witness {
             .context("the robot stands still")
     }
 
-    /// Distance of the end effector from `point` in this millisecond, `[m]`.
+    /// Returns the distance of the end effector from `point` in this millisecond, `[m]`.
     pub(crate) fn distance(&self, time: u64, point: &Vector3<f64>) -> anyhow::Result<f64> {
         let at = self.between(time, time + 1)?;
         Ok((at[0].position - point).norm())
     }
 
-    /// Distances from the reference and its velocities, `[m, m/s]`, as far as it has seen.
+    /// Returns the distances from the reference and its velocities, `[m, m/s]`, for the recorded
+    /// states.
     pub(crate) fn lags(&self, followed: &Followed) -> anyhow::Result<Vec<(f64, f64)>> {
         let mut before = followed.reference.first().copied();
         let lag = |&(time, reference): &(u64, Vector3<f64>)| {
@@ -92,8 +94,8 @@ impl Witness {
         seen.map(lag).collect()
     }
 
-    /// The time from which the end effector stayed within `distance` of the target until `watched`
-    /// milliseconds after `begin`, `[s]`; `None` if it did not.
+    /// Returns the time after which the end effector stayed within `distance` of the target until
+    /// `watched` milliseconds after `begin`, `[s]`; `None` if it did not.
     pub(crate) fn within(
         &self,
         followed: &Followed,
@@ -107,7 +109,7 @@ impl Witness {
         Ok((cycles < samples.len()).then_some(cycles as f64 * 1e-3))
     }
 
-    /// The torque above 30 Hz over these milliseconds, rms of the worst joint, `[N·m]`.
+    /// Returns the torque above 30 Hz over these milliseconds, rms of the worst joint, `[N·m]`.
     pub(crate) fn torque_noise(&self, from: u64, to: u64) -> anyhow::Result<f64> {
         let mut high = HighPass::default();
         for sample in self.between(from, to)? {

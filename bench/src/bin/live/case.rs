@@ -22,7 +22,7 @@ pub(crate) enum ClientKind {
     Torques,
     /// Target control of this project.
     Targets,
-    /// The vendor's control loop, from Python. It always requests `SCHED_FIFO` by itself.
+    /// The vendor's control loop, from Python. It always requests `SCHED_FIFO` on its own.
     Vendor {
         /// The Python interpreter with pylibfranka.
         interpreter: PathBuf,
@@ -52,7 +52,7 @@ pub(crate) struct Case {
 /// The result of a measurement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Measured {
-    /// The summary of what passed the relay.
+    /// Summary of the relay's traffic.
     pub(crate) summary: Summary,
     /// Processor time of the client's process, all threads, in percent of one core.
     pub(crate) cpu_percent: f64,
@@ -81,7 +81,7 @@ impl Case {
         }
     }
 
-    /// Measures the client for `time`, against its own simulator; the project's programs are in
+    /// Measures the client for `time`, with a separate simulator; the project's programs are in
     /// `programs`.
     pub(crate) fn measure(&self, programs: &Path, time: Duration) -> anyhow::Result<Measured> {
         let (_simulator, robot) = simulator(&programs.join("franka-sim"))?;
@@ -139,7 +139,8 @@ impl Case {
     }
 }
 
-/// The vendor's client uses one fixed port, so each relay needs its own address.
+/// Returns an address for a relay: the vendor's client uses one fixed port, so each relay needs its
+/// own address.
 pub(crate) fn loopback_address(process: u32) -> IpAddr {
     // 127.2.x.y: away from 127.0.0.1, where a simulator of the user may listen; y is never 0 or
     // 255.
@@ -150,16 +151,16 @@ pub(crate) fn loopback_address(process: u32) -> IpAddr {
 /// The port of every FCI server.
 pub(crate) const PORT: u16 = 1337;
 
-/// The time that a client controls before and after the measurement.
+/// Time of control before and after the measurement.
 const LEAD: Duration = Duration::from_secs(2);
 
-/// Commands after which a motion has settled: half a second.
+/// Number of commands after which a motion has settled: half a second.
 const SETTLED: u64 = 500;
 
-/// Long enough for the interpreter to load its modules.
+/// Time limit, sufficient for the interpreter to load its modules.
 const START_TIME_MAX: Duration = Duration::from_secs(20);
 
-/// Long enough for target control to bring the arm to rest.
+/// Time limit, sufficient for target control to stop the arm.
 const END_TIME_MAX: Duration = Duration::from_secs(20);
 
 const POLL: Duration = Duration::from_millis(10);

@@ -1,5 +1,5 @@
-//! What a dashboard with viewers costs the control thread: a robot that moves all the time, in
-//! turns without and with viewers that read and one that never does, in one run.
+//! Measures the effect of a dashboard with viewers on the control thread: a robot in continuous
+//! motion, alternately without and with viewers that read and a viewer that never does, in one run.
 
 use std::io::{BufRead as _, BufReader};
 use std::net::SocketAddr;
@@ -17,8 +17,8 @@ use crate::process;
 use crate::turn::{self, BLOCK, Turn, keep_moving};
 use crate::viewers::{READY, VIEWERS};
 
-/// Prints the times of the cycles without and with viewers, `seconds` each, what a viewer takes of
-/// a processor, and how the memory grows.
+/// Prints the times of the cycles without and with viewers, `seconds` each, the processor time per
+/// viewer, and the growth of memory.
 pub(crate) fn print(programs: &Path, seconds: u32) -> anyhow::Result<()> {
     let runtime = Builder::new_multi_thread()
         .worker_threads(2)
@@ -78,11 +78,11 @@ async fn measure(programs: &Path, seconds: u32) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Viewers in a process of their own.
+/// Viewers in a separate process.
 struct Viewers(Child);
 
 impl Viewers {
-    /// Starts them, and returns when all have a frame.
+    /// Starts them, and returns when all have received a frame.
     fn start(programs: &Path, page: SocketAddr) -> anyhow::Result<Self> {
         let mut command = Command::new(programs.join("live"));
         command.arg("viewers").arg(page.to_string());
@@ -100,7 +100,7 @@ impl Viewers {
         Ok(line)
     }
 
-    /// Ends them. Returns how many frames they have read.
+    /// Ends them. Returns the number of frames they have read.
     fn finish(&mut self) -> anyhow::Result<u64> {
         drop(self.0.stdin.take());
         Ok(self.line()?.trim().parse()?)
@@ -109,18 +109,18 @@ impl Viewers {
 
 impl Drop for Viewers {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // The process may have ended already.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// Processor time of this process.
+/// Returns the processor time of this process.
 fn processor_time() -> anyhow::Result<Duration> {
     Ok(clock_gettime(ClockId::CLOCK_PROCESS_CPUTIME_ID)?.into())
 }
 
-/// Resident memory of this process, `[MiB]`.
+/// Returns the resident memory of this process, `[MiB]`.
 fn memory_now() -> anyhow::Result<f64> {
     let status = std::fs::read_to_string("/proc/self/status")?;
     let mut lines = status.lines();

@@ -1,4 +1,4 @@
-//! A minimal client: it connects, records when states arrive, and commands nothing.
+//! A minimal client: it connects, records the arrival times of states, and commands nothing.
 
 use std::io::{self, Read as _, Write as _};
 use std::net::{Ipv4Addr, SocketAddr, TcpStream, UdpSocket};
@@ -11,7 +11,7 @@ use franka_proto::{RobotState, Version};
 
 use crate::stamp::{self, Stamped};
 
-/// A connection to a robot, which sends states until this is dropped.
+/// A connection to a robot, which sends states until this value is dropped.
 #[derive(Debug)]
 pub(crate) struct Listener {
     socket: Stamped,
@@ -50,7 +50,7 @@ impl Listener {
         Ok(listener)
     }
 
-    /// The kernel's arrival times of the states in the next `time`.
+    /// Returns the kernel's arrival times of the states in the next `time`.
     pub(crate) fn listen(&mut self, time: Duration) -> anyhow::Result<Vec<Duration>> {
         let begin = stamp::now();
         let mut arrivals = Vec::new();
@@ -75,5 +75,5 @@ impl Listener {
 /// The protocol version of the FR3.
 const VERSION: Version = Version::V10;
 
-/// The time without data after which the robot is given up.
+/// Time without data after which the robot counts as lost.
 const SILENCE: Duration = Duration::from_secs(2);

@@ -1,5 +1,5 @@
 //! Measures over real sockets: clients against the simulator, the simulator itself, or the control
-//! thread beside a busy program.
+//! thread next to a busy program.
 //!
 //! `live clients OUTPUT.json [--seconds N] [--python INTERPRETER SCRIPT]`:
 //!
@@ -24,22 +24,22 @@
 //!
 //! `live dashboard [--seconds N]`: see [`dashboard`].
 //!
-//! | module | what it is |
+//! | module | content |
 //! |---|---|
-//! | [`relay`] | between client and robot, records what passes and when |
-//! | [`listener`] | a client that records when states arrive |
+//! | [`relay`] | between client and robot, records the traffic and its times |
+//! | [`listener`] | a client that records the arrival times of states |
 //! | [`stamp`] | datagrams with the kernel's arrival time |
-//! | [`trace`] | what passed, and its statistics |
+//! | [`trace`] | the traffic and its statistics |
 //! | [`process`] | the processes of simulator and clients |
 //! | [`case`] | the measurement of one client |
 //! | [`simulator_case`] | the measurement of one simulator |
 //! | [`report`] | the tables, and the JSON |
 //! | [`package_case`] | the measurement of one package for Python |
-//! | [`package_report`] | the table of these |
-//! | [`recorder`] | what a recorder costs the control thread |
-//! | [`dashboard`], [`viewers`] | what a dashboard and its viewers cost it |
-//! | [`turn`] | cycles without and with something beside them |
-//! | [`starvation`] | what blocked runtime workers cost |
+//! | [`package_report`] | the table of the packages |
+//! | [`recorder`] | the effect of a recorder on the control thread |
+//! | [`dashboard`], [`viewers`] | the effect of a dashboard and its viewers on the control thread |
+//! | [`turn`] | cycles without and with another load |
+//! | [`starvation`] | the effect of blocked runtime workers |
 
 mod case;
 mod dashboard;
@@ -88,17 +88,17 @@ enum What {
         #[arg(long, num_args = 2, value_names = ["INTERPRETER", "SCRIPT"])]
         python: Option<Vec<PathBuf>>,
     },
-    /// What one simulated arm costs, and how punctual it is.
+    /// Cost and punctuality of one simulated arm.
     Simulator {
         #[command(flatten)]
         common: Common,
-        /// Measure the MuJoCo plant too; the simulator has to be built with it.
+        /// Measure the MuJoCo plant too; the simulator must be built with it.
         #[arg(long)]
         mujoco: bool,
     },
     /// Packages for Python.
     Packages {
-        /// Where to write the values; what each adapter prints is in a directory beside it.
+        /// File for the values; the output of each adapter is in a directory next to it.
         output: PathBuf,
         /// An interpreter that has the packages.
         #[arg(long)]
@@ -110,39 +110,40 @@ enum What {
         #[arg(long)]
         only: Vec<String>,
     },
-    /// What blocked runtime workers cost the control thread, and a task in the thread's place.
+    /// Effect of blocked runtime workers on the control thread, and on a task in its place.
     Starvation {
-        /// How long to measure each case.
+        /// Duration of each case.
         #[arg(long, default_value_t = 10, value_parser = value_parser!(u32).range(1..))]
         seconds: u32,
     },
-    /// What a recorder costs the control thread, in turns with and without one.
+    /// Effect of a recorder on the control thread, alternately with and without a recorder.
     Recorder {
-        /// Where to write the recordings.
+        /// Directory for the recordings.
         directory: PathBuf,
-        /// How long to measure with a recorder, and as long without.
+        /// Duration with a recorder; the same without.
         #[arg(long, default_value_t = 60, value_parser = value_parser!(u32).range(1..))]
         seconds: u32,
     },
-    /// What a dashboard with viewers costs the control thread, in turns with and without viewers.
+    /// Effect of a dashboard with viewers on the control thread, alternately with and without
+    /// viewers.
     Dashboard {
-        /// How long to measure with viewers, and as long without.
+        /// Duration with viewers; the same without.
         #[arg(long, default_value_t = 60, value_parser = value_parser!(u32).range(1..))]
         seconds: u32,
     },
     /// Viewers of a dashboard, until the standard input ends.
     #[command(hide = true)]
     Viewers {
-        /// Where the page is.
+        /// Address of the page.
         address: SocketAddr,
     },
 }
 
 #[derive(Debug, Args)]
 struct Common {
-    /// Where to write the values.
+    /// File for the values.
     output: PathBuf,
-    /// How long to measure each case.
+    /// Duration of each case.
     #[arg(long, default_value_t = 30)]
     seconds: u32,
 }
@@ -298,5 +299,5 @@ fn measure_packages(places: &Places<'_>, output: &Path, only: &[String]) -> anyh
     )
 }
 
-/// Starts of the simulator.
+/// Number of starts of the simulator.
 const STARTS: u64 = 20;

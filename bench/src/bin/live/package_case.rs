@@ -1,5 +1,5 @@
-//! The measurement of one Python package in one case: what its adapter reports, and what passed
-//! the relay meanwhile.
+//! The measurement of one Python package in one case: the report of its adapter, and the relay's
+//! traffic.
 
 use std::fs::{self, File};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
@@ -15,7 +15,7 @@ use crate::process::{Process, ready};
 use crate::relay::Relay;
 use crate::trace::Trace;
 
-/// A package that is measured.
+/// A measured package.
 #[derive(Debug)]
 pub(crate) struct Package {
     /// Its distribution.
@@ -26,7 +26,7 @@ pub(crate) struct Package {
     adapter: &'static str,
 }
 
-/// Where the programs and adapters are.
+/// The paths of the programs and adapters.
 #[derive(Debug)]
 pub(crate) struct Places<'a> {
     /// Directory of the project's programs.
@@ -35,12 +35,12 @@ pub(crate) struct Places<'a> {
     pub(crate) interpreter: &'a Path,
     /// Directory of the adapters.
     pub(crate) adapters: &'a Path,
-    /// Directory for what the adapters print, one file per case.
+    /// Directory for the output of the adapters, one file per case.
     pub(crate) output: &'a Path,
 }
 
 impl Package {
-    /// The version that is installed and the times to import it, or why it cannot be imported.
+    /// Returns the installed version and the import times, or the reason why it cannot be imported.
     pub(crate) fn import(&self, places: &Places<'_>) -> Result<Value, String> {
         let Self { name, module, .. } = self;
         let program = format!(
@@ -77,10 +77,10 @@ impl Package {
         Ok(json!({ "version": version, "import_ms": took[IMPORTS / 2] * 1e3 }))
     }
 
-    /// Runs a case against a simulator of its own. Returns what is known of each of its steps.
+    /// Runs a case with a separate simulator. Returns the results of each of its steps.
     ///
     /// # Errors
-    /// If the simulator or the adapter cannot be started; what fails in the adapter is in the
+    /// If the simulator or the adapter cannot be started; failures in the adapter are part of the
     /// result.
     pub(crate) fn measure(
         &self,
@@ -112,7 +112,7 @@ impl Package {
     }
 }
 
-/// What the lines of an adapter and the trace say of each step.
+/// Returns the results of each step from the lines of an adapter and the trace.
 fn steps(lines: &str, trace: &Trace) -> anyhow::Result<Map<String, Value>> {
     let mut steps = Map::new();
     for line in lines.lines() {
@@ -132,7 +132,7 @@ fn steps(lines: &str, trace: &Trace) -> anyhow::Result<Map<String, Value>> {
                 content.insert("turnaround".to_owned(), json!(summary.turnaround));
             }
         }
-        // A step that failed after it was measured keeps both.
+        // A step that failed after its measurement keeps both.
         let known = steps.entry(step).or_insert_with(|| json!({}));
         let known = known.as_object_mut().context("only objects are inserted")?;
         known.append(&mut content);
@@ -140,7 +140,7 @@ fn steps(lines: &str, trace: &Trace) -> anyhow::Result<Map<String, Value>> {
     Ok(steps)
 }
 
-/// The address of the simulator, whose gripper has the port behind the robot's.
+/// Returns the address of the simulator, whose gripper has the port after the robot's.
 fn robot_address(process: u32) -> IpAddr {
     // 127.4.x.y, where no relay listens.
     match loopback_address(process) {
@@ -152,7 +152,7 @@ fn robot_address(process: u32) -> IpAddr {
     }
 }
 
-/// Ours, and those that are compared with it.
+/// Our package, and the packages compared with it.
 pub(crate) const PACKAGES: [Package; 5] = [
     Package {
         name: "franka-async",
@@ -181,7 +181,7 @@ pub(crate) const PACKAGES: [Package; 5] = [
     },
 ];
 
-/// The cases of an adapter, each of which has a process of its own.
+/// The cases of an adapter, each with its own process.
 pub(crate) const CASES: [&str; 7] = [
     "hand",
     "robot",
@@ -192,10 +192,10 @@ pub(crate) const CASES: [&str; 7] = [
     "threads",
 ];
 
-/// How often each package is imported; odd, for the median.
+/// Number of imports of each package; odd, for the median.
 const IMPORTS: usize = 5;
 
-/// Longer than any case takes on a busy machine, compilation of a law included.
+/// Time limit, longer than any case on a busy machine, including compilation of a law.
 const CASE_TIME_MAX: Duration = Duration::from_secs(60);
 
 #[cfg(test)]

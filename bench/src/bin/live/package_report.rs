@@ -2,10 +2,11 @@
 
 use serde_json::Value;
 
-/// What a cell says of a step.
+/// Returns the text of a cell for a step.
 type Cell = fn(&Value) -> Option<String>;
 
-/// The table, and below it what a package does not have and what failed, with the reasons.
+/// Returns the table, followed by the missing features and the failures of each package, with the
+/// reasons.
 pub(crate) fn markdown(packages: &[Value]) -> String {
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let mut text = line(
@@ -47,7 +48,7 @@ fn title(package: &Value) -> String {
         .to_owned()
 }
 
-/// A line for each step that is absent or failed, and for the package if it is.
+/// Returns a line for each step that is absent or failed, and for the package if it is.
 fn reasons(package: &Value) -> String {
     let name = package["package"].as_str().unwrap_or_default();
     let mut text = String::new();
@@ -65,7 +66,7 @@ fn reasons(package: &Value) -> String {
     text
 }
 
-/// Wake-ups of the other thread in a second, and the gaps between them.
+/// Returns the wake-ups of the other thread in a second, and the gaps between them.
 fn ticks(step: &Value) -> Option<String> {
     let value = |key: &str| step["values"][key].as_f64();
     let (rate, p99, max) = (
@@ -103,7 +104,7 @@ fn late(step: &Value) -> Option<String> {
     Some(format!("{late} of {states}{end}"))
 }
 
-/// What a row is about, its step, and its cells.
+/// The subject of each row, its step, and its cells.
 const ROWS: [(&str, &str, Cell); 19] = [
     ("wake-ups per s; gap p99 / max, ms: idle", "idle", ticks),
     ("homing the hand", "homing", ticks),

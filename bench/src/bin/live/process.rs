@@ -11,7 +11,7 @@ use anyhow::{Context as _, bail};
 use nix::time::{clock_getcpuclockid, clock_gettime};
 use nix::unistd::Pid;
 
-/// A child process, which is killed at the latest when this is dropped.
+/// A child process, which is killed when this value is dropped.
 #[derive(Debug)]
 pub(crate) struct Process {
     child: Child,
@@ -28,13 +28,13 @@ impl Process {
         Ok(Self { child, name })
     }
 
-    /// The processor time used by all its threads, ended ones included.
+    /// Returns the processor time used by all its threads, including ended ones.
     pub(crate) fn cpu_time(&self) -> anyhow::Result<Duration> {
         let clock = clock_getcpuclockid(self.pid()?)?;
         Ok(clock_gettime(clock)?.into())
     }
 
-    /// The highest `SCHED_FIFO` priority of its threads; `None` if all run under the normal
+    /// Returns the highest `SCHED_FIFO` priority of its threads; `None` if all run under the normal
     /// scheduler.
     pub(crate) fn fifo_priority(&self) -> anyhow::Result<Option<u32>> {
         let mut highest = None;
@@ -47,7 +47,7 @@ impl Process {
         Ok(highest)
     }
 
-    /// The peak memory, `[KiB]`: `VmHWM` of proc_pid_status(5).
+    /// Returns the peak memory, `[KiB]`: `VmHWM` of proc_pid_status(5).
     pub(crate) fn memory_max(&self) -> anyhow::Result<u64> {
         let status = fs::read_to_string(format!("/proc/{}/status", self.child.id()))?;
         memory_max(&status).context("no VmHWM in the status")
@@ -61,7 +61,7 @@ impl Process {
         }
     }
 
-    /// Waits for the end of the process, which has to succeed within `time_max`.
+    /// Waits for the end of the process, which must succeed within `time_max`.
     pub(crate) fn finish(mut self, time_max: Duration) -> anyhow::Result<()> {
         let deadline = Instant::now() + time_max;
         while Instant::now() < deadline {
@@ -82,24 +82,24 @@ impl Process {
 impl Drop for Process {
     fn drop(&mut self) {
         if matches!(self.child.try_wait(), Ok(None)) {
-            // An error means that the process has ended by itself.
+            // An error means that the process has already ended.
             let _ = self.child.kill();
             let _ = self.child.wait();
         }
     }
 }
 
-/// Starts the simulator that clients are measured against, with real-time priority: a robot's
-/// states do not depend on the load of this machine.
+/// Starts the simulator for the measurement of clients, with real-time priority: a robot's states
+/// do not depend on the load of this machine.
 pub(crate) fn simulator(program: &Path) -> anyhow::Result<(Process, SocketAddr)> {
     let mut command = under_fifo(SIMULATOR_PRIORITY, program);
     ready(command.args(["--port", "0", "--no-gripper"]))
 }
 
-/// Starts a simulator, and returns with its robot's address when it serves.
+/// Starts a simulator, and returns it with its robot's address when it serves.
 pub(crate) fn ready(command: &mut Command) -> anyhow::Result<(Process, SocketAddr)> {
     let mut process = Process::start(command.stdout(Stdio::piped()))?;
-    // Stays open: the program may write more.
+    // Stays open, because the program may write more.
     let output = process.child.stdout.as_mut().context("it is piped")?;
     let mut line = String::new();
     BufReader::new(output).read_line(&mut line)?;
@@ -110,15 +110,15 @@ pub(crate) fn ready(command: &mut Command) -> anyhow::Result<(Process, SocketAdd
     Ok((process, address))
 }
 
-/// The command that runs a program under `SCHED_FIFO`.
+/// Returns the command that runs a program under `SCHED_FIFO`.
 pub(crate) fn under_fifo(priority: u32, program: &Path) -> Command {
     let mut command = Command::new("chrt");
     command.args(["--fifo", &priority.to_string()]).arg(program);
     command
 }
 
-/// Real-time priority under policy 1: fields 40 and 41 of proc_pid_stat(5), counted behind the name
-/// in parentheses.
+/// Returns the real-time priority under policy 1: fields 40 and 41 of proc_pid_stat(5), counted
+/// after the name in parentheses.
 fn fifo_priority(stat: &str) -> Option<u32> {
     let (_, rest) = stat.rsplit_once(')')?;
     let mut fields = rest.split_whitespace().skip(40 - 3);

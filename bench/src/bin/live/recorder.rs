@@ -1,5 +1,5 @@
-//! What a recorder costs the control thread: a robot that moves all the time, in turns with and
-//! without a recording of every cycle, in one run.
+//! Measures the effect of a recorder on the control thread: a robot in continuous motion,
+//! alternately with and without a recording of every cycle, in one run.
 
 use std::path::Path;
 use std::time::Duration;
@@ -13,8 +13,8 @@ use tokio::runtime::Builder;
 use crate::process;
 use crate::turn::{self, BLOCK, Turn, keep_moving};
 
-/// Prints the times of the cycles without and with a recorder, `seconds` each, and what the
-/// recordings came to. They are written to `directory`, and removed.
+/// Prints the times of the cycles without and with a recorder, `seconds` each, and the totals of
+/// the recordings. The recordings are written to `directory`, and removed.
 pub(crate) fn print(program: &Path, directory: &Path, seconds: u32) -> anyhow::Result<()> {
     let runtime = Builder::new_multi_thread()
         .worker_threads(2)
@@ -66,12 +66,12 @@ async fn measure(program: &Path, directory: &Path, seconds: u32) -> anyhow::Resu
     Ok(())
 }
 
-/// What recordings came to.
+/// The totals of recordings.
 #[derive(Default)]
 struct Recorded {
     cycles: u64,
     dropped: u64,
     bytes: u64,
-    /// Of the recorder's threads, until the end of each recording is written.
+    /// Processor time of the recorder's threads, until the end of each recording is written.
     processor: Duration,
 }

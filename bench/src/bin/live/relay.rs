@@ -1,12 +1,12 @@
-//! A relay between client and robot: it forwards everything, and records what passes and when.
+//! A relay between client and robot: it forwards everything, and records the traffic and its times.
 //!
 //! A relay measures every client at the same place, in any language, and requires no change of
 //! client or robot. Its extra hop is not part of the measurement: a turnaround begins when the
 //! relay passes a state to the kernel, and ends with the kernel's stamp on the command. The relay's
 //! own scheduling affects neither.
 //!
-//! The UDP port that a client announces in `Connect` is replaced by the relay's own; the rest of
-//! the stream passes as it is.
+//! The UDP port in a client's `Connect` is replaced by the relay's own; the rest of the stream is
+//! forwarded unchanged.
 
 use std::any::Any;
 use std::io::{self, Read as _, Write as _};
@@ -56,13 +56,13 @@ impl Relay {
         })
     }
 
-    /// The number of commands that have passed so far.
+    /// Number of commands forwarded so far.
     pub(crate) fn commands(&self) -> u64 {
         // Relaxed: the number guards no other data.
         self.shared.commands.load(Ordering::Relaxed)
     }
 
-    /// Returns what has passed. To be called after the client has disconnected.
+    /// Returns the recorded traffic. Call it after the client has disconnected.
     pub(crate) fn finish(mut self) -> anyhow::Result<Trace> {
         Ok(self.join()?)
     }
@@ -164,8 +164,8 @@ fn real_time<T: Send + 'static>(
             priority: Some(PRIORITY),
             ..Scheduling::default()
         };
-        // Without the priority, states leave less regularly; turnarounds are measured correctly all
-        // the same.
+        // Without the priority, states leave less regularly, but turnarounds are still measured
+        // correctly.
         let _ = asked.enter();
         run()
     })
@@ -230,12 +230,12 @@ fn pass_commands(
     Ok(answers)
 }
 
-/// The received data; `None` if the wait timed out.
+/// Returns the received data; `None` if the wait timed out.
 fn waited<T>(received: io::Result<T>) -> io::Result<Option<T>> {
     match received {
         Ok(received) => Ok(Some(received)),
         Err(error) => match error.kind() {
-            // The last means that a datagram of ours reached a closed port.
+            // The last means that one of our datagrams reached a closed port.
             io::ErrorKind::WouldBlock
             | io::ErrorKind::TimedOut
             | io::ErrorKind::Interrupted
@@ -278,7 +278,7 @@ fn replace_port(hello: &mut [u8], port: u16) -> io::Result<(Version, u16)> {
     Ok((version, announced))
 }
 
-/// How often the threads check whether to stop.
+/// Interval at which the threads check for a stop.
 const TICK: Duration = Duration::from_millis(20);
 
 /// Below the priority of a client, which is 99 by default.

@@ -1,4 +1,4 @@
-//! The results as a table and as JSON.
+//! Formats the results as a table and as JSON.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -13,7 +13,8 @@ use crate::trace::Quantiles;
 /// A client and the result of its measurement.
 type Row = (Case, anyhow::Result<Measured>);
 
-/// The machine, the table, and a comparison of each client with the echo under the same scheduler.
+/// Returns the machine, the table, and a comparison of each client with the echo under the same
+/// scheduler.
 pub(crate) fn markdown(rows: &[Row], time: Duration) -> String {
     let mut text = format!("{}; {} s each\n\n", machine(), time.as_secs());
     text += "| client | scheduler | success rate, mean / least | lost of states | interval p50 / p99 / p99.9 / max, µs | turnaround p50 / p99 / p99.9 / max, µs | times the echo's p50 / p99 | CPU, % of a core |\n";
@@ -44,7 +45,7 @@ pub(crate) fn markdown(rows: &[Row], time: Duration) -> String {
     text
 }
 
-/// All values of the clients.
+/// Returns all values of the clients.
 pub(crate) fn json(rows: &[Row], time: Duration) -> Value {
     let rows: Vec<_> = rows
         .iter()
@@ -56,7 +57,7 @@ pub(crate) fn json(rows: &[Row], time: Duration) -> Value {
     json!({ "machine": machine(), "seconds": time.as_secs(), "clients": rows })
 }
 
-/// The machine, how long the simulator takes to start, and what it costs.
+/// Returns the machine, the start time of the simulator, and its cost.
 pub(crate) fn simulator_markdown(
     starts: &[(Plant, Starts)],
     cases: &[(SimulatorCase, SimulatorCost)],
@@ -88,7 +89,7 @@ pub(crate) fn simulator_markdown(
     text
 }
 
-/// All values of the simulator.
+/// Returns all values of the simulator.
 pub(crate) fn simulator_json(
     starts: &[(Plant, Starts)],
     cases: &[(SimulatorCase, SimulatorCost)],
@@ -119,7 +120,7 @@ fn scheduler(fifo_priority: Option<u32>) -> String {
     }
 }
 
-/// The result of the echo under the same scheduler.
+/// Returns the result of the echo under the same scheduler.
 fn echo<'a>(rows: &'a [Row], case: &Case) -> Option<&'a Measured> {
     let is_floor = |(other, _): &&Row| {
         matches!(other.client, ClientKind::Echo) && other.scheduler == case.scheduler
@@ -158,7 +159,7 @@ fn micros(quantiles: &Quantiles) -> String {
     micros.join(" / ")
 }
 
-/// Processor, number of them, and kernel.
+/// Returns the processor model, the number of processors, and the kernel.
 pub(crate) fn machine() -> String {
     let read = |path| fs::read_to_string(path).unwrap_or_default();
     let processors = read("/proc/cpuinfo");

@@ -1,4 +1,4 @@
-//! What one simulated arm costs its host, and how punctual it is: a measurement of the simulator.
+//! The cost and the punctuality of one simulated arm: a measurement of the simulator.
 
 use std::path::Path;
 use std::process::Command;
@@ -15,7 +15,7 @@ use crate::trace::Quantiles;
 pub(crate) enum Plant {
     /// Rigid bodies.
     Rigid,
-    /// MuJoCo, the arm on a table that it does not touch.
+    /// MuJoCo, with the arm above a table that it does not touch.
     Mujoco,
 }
 
@@ -26,7 +26,7 @@ pub(crate) enum ConnectedClient {
     None,
     /// A client that receives the states, and commands nothing.
     Listener,
-    /// Target control of this project, in a motion all the time.
+    /// Target control of this project, in continuous motion.
     Targets,
 }
 
@@ -173,7 +173,7 @@ impl SimulatorCase {
     }
 }
 
-/// The intervals between consecutive moments.
+/// Returns the intervals between consecutive moments.
 fn intervals(moments: &[Duration]) -> Vec<Duration> {
     let gap = |pair: &[Duration]| pair[1].saturating_sub(pair[0]);
     moments.windows(2).map(gap).collect()
@@ -182,10 +182,10 @@ fn intervals(moments: &[Duration]) -> Vec<Duration> {
 /// The period of the states.
 const PERIOD: Duration = Duration::from_millis(1);
 
-/// The time that a client controls before and after the measurement.
+/// Time of control before and after the measurement.
 const LEAD: Duration = Duration::from_secs(2);
 
-/// Long enough for target control to bring the arm to rest.
+/// Time limit, sufficient for target control to stop the arm.
 const END_TIME_MAX: Duration = Duration::from_secs(20);
 
 #[cfg(test)]

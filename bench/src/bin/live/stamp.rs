@@ -1,8 +1,7 @@
 //! Datagrams with the kernel's arrival time.
 //!
-//! The kernel stamps a datagram when the network layer receives it. On the loopback device that
-//! happens within the sender's system call, so the stamp does not depend on when the receiver
-//! reads.
+//! The kernel stamps a datagram when the network layer receives it. On the loopback device this
+//! happens within the sender's system call, so the stamp does not depend on the time of the read.
 
 use std::io::{self, IoSliceMut};
 use std::net::UdpSocket;
@@ -42,7 +41,7 @@ impl Stamped {
     }
 }
 
-/// The present time since the epoch, on the clock of the kernel's stamps.
+/// Returns the current time since the epoch, on the clock of the kernel's stamps.
 pub(crate) fn now() -> Duration {
     SystemTime::now()
         .duration_since(UNIX_EPOCH)

@@ -1,4 +1,4 @@
-//! The datagrams that passed the relay, and their statistics.
+//! The datagrams recorded by the relay, and their statistics.
 
 use std::collections::HashMap;
 use std::time::Duration;
@@ -13,11 +13,11 @@ use serde::Serialize;
 pub(crate) struct Departure {
     /// Its `message_id`.
     pub(crate) id: u64,
-    /// When it left, since the epoch.
+    /// Time of its departure, since the epoch.
     pub(crate) left: Duration,
-    /// The success rate that the robot reports.
+    /// The success rate reported by the robot.
     pub(crate) success_rate: f64,
-    /// What it is doing.
+    /// The robot's mode.
     pub(crate) mode: RobotMode,
 }
 
@@ -26,11 +26,11 @@ pub(crate) struct Departure {
 pub(crate) struct CommandArrival {
     /// `message_id` of the state that it answers.
     pub(crate) id: u64,
-    /// When it arrived, since the epoch.
+    /// Time of its arrival, since the epoch.
     pub(crate) arrived: Duration,
 }
 
-/// All datagrams that passed, in order.
+/// All recorded datagrams, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Trace {
     /// States.
@@ -42,15 +42,15 @@ pub(crate) struct Trace {
 /// Statistics of a client over a time window.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Summary {
-    /// The number of states sent to the client.
+    /// Number of states sent to the client.
     pub(crate) states: u64,
-    /// The number of them that it did not answer.
+    /// Number of states that it did not answer.
     pub(crate) lost: u64,
     /// Mean of the success rate in those states.
     pub(crate) success_average: f64,
     /// The smallest success rate.
     pub(crate) success_minimum: f64,
-    /// The intervals between departures of states: how regular robot and relay were.
+    /// The intervals between departures of states: the regularity of robot and relay.
     pub(crate) state_interval: Quantiles,
     /// The intervals between arrivals of commands.
     pub(crate) interval: Quantiles,
@@ -58,12 +58,12 @@ pub(crate) struct Summary {
     pub(crate) turnaround: Quantiles,
 }
 
-/// What became of the states in which the robot expected a command.
+/// The punctuality of the commands in the states for which the robot expected one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub(crate) struct Punctuality {
-    /// The number of states of a motion.
+    /// Number of states of a motion.
     pub(crate) states: u64,
-    /// The number of them whose command had not arrived when the next state left.
+    /// Number of states whose command had not arrived when the next state left.
     pub(crate) late: u64,
     /// True if the robot stopped itself.
     pub(crate) reflex: bool,
@@ -74,16 +74,17 @@ pub(crate) struct Punctuality {
 pub(crate) struct Quantiles {
     /// The median.
     pub(crate) p50: u64,
-    /// 99 %.
+    /// The 99 % quantile.
     pub(crate) p99: u64,
-    /// 99.9 %.
+    /// The 99.9 % quantile.
     pub(crate) p99_9: u64,
     /// The maximum.
     pub(crate) max: u64,
 }
 
 impl Trace {
-    /// Statistics over the states that left from `begin` on and before `end`, both since the epoch.
+    /// Returns statistics over the states that left from `begin` on and before `end`, both since
+    /// the epoch.
     ///
     /// # Errors
     /// If no state was answered.
@@ -109,7 +110,8 @@ impl Trace {
         })
     }
 
-    /// How punctual the commands were for the states that left from `begin` on and before `end`.
+    /// Returns the punctuality of the commands for the states that left from `begin` on and before
+    /// `end`.
     pub(crate) fn punctuality(&self, begin: Duration, end: Duration) -> Punctuality {
         let answered = self.answered();
         let mut punctuality = Punctuality::default();
@@ -128,7 +130,8 @@ impl Trace {
         punctuality
     }
 
-    /// When each state was answered. The first answer counts: a robot ignores a second one.
+    /// Returns the time at which each state was answered. The first answer counts: a robot ignores
+    /// a second one.
     fn answered(&self) -> HashMap<u64, Duration> {
         let mut answered = HashMap::new();
         for answer in &self.answers {
@@ -139,20 +142,20 @@ impl Trace {
 }
 
 impl Quantiles {
-    /// The quantiles of the intervals between these moments.
+    /// Returns the quantiles of the intervals between these moments.
     fn between(moments: impl Iterator<Item = Duration>) -> Self {
         let moments: Vec<Duration> = moments.collect();
         let gap = |pair: &[Duration]| pair[1].saturating_sub(pair[0]);
         Self::of(moments.windows(2).map(gap))
     }
 
-    /// The quantiles of these durations.
+    /// Returns the quantiles of these durations.
     pub(crate) fn of(durations: impl IntoIterator<Item = Duration>) -> Self {
         let mut histogram = Histogram::<u64>::new_with_bounds(1, LONGEST, DIGITS)
             .expect("these bounds and digits are representable");
         for duration in durations {
             let nanos = u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX);
-            // Longer durations count as the longest that can be recorded.
+            // Longer durations count as the longest recordable one.
             histogram.saturating_record(nanos);
         }
         Self {
@@ -178,7 +181,8 @@ mod tests {
         Duration::from_micros(number)
     }
 
-    /// A hundred states, a millisecond apart. State number n is answered after n microseconds.
+    /// Returns a hundred states, one per millisecond. State number n is answered after n
+    /// microseconds.
     fn hundred() -> Trace {
         let numbers = 1..=100;
         Trace {
@@ -238,7 +242,7 @@ mod tests {
         trace.answers[30].arrived += micros(1000);
         trace.departures[50].mode = RobotMode::Idle;
         let all = trace.punctuality(Duration::ZERO, Duration::MAX);
-        // Nothing left after the last state.
+        // No state left after the last.
         assert_eq!((all.states, all.late, all.reflex), (98, 2, false));
         trace.departures[60].mode = RobotMode::Reflex;
         let window = trace.punctuality(micros(25_000), micros(65_000));

@@ -1,4 +1,4 @@
-//! The cycles of a robot that moves all the time, in turns without and with something beside it.
+//! The cycles of a robot in continuous motion, alternately without and with another load.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ pub(crate) async fn keep_moving(robot: Robot) -> Result<(), MotionError> {
     }
 }
 
-/// Prints the times of the cycles without and with it.
+/// Prints the times of the cycles without and with the load.
 pub(crate) fn print(turns: &[Turn; 2]) {
     println!("microseconds        states   lost     p50     p99   p99.9      max");
     for (turn, name) in turns.iter().zip(["without", "with"]) {
@@ -64,7 +64,7 @@ impl Turn {
                 let nanos = u64::try_from(longest.as_nanos()).expect("less than centuries");
                 let seen = before.iter().find(|(time, _)| *time == longest);
                 let new = count - seen.map_or(0, |(_, seen)| *seen);
-                // The maximum counts what was recorded no time, too.
+                // The maximum also counts cycles without a recorded time.
                 if new > 0 {
                     times.record_n(nanos, new).expect("it grows as it needs");
                 }

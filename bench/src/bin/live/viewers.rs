@@ -1,5 +1,5 @@
-//! Viewers of a dashboard: `live viewers ADDRESS`. Ten read and acknowledge all frames, as a page
-//! does; one never reads, and connects again whenever the server gives it up.
+//! Viewers of a dashboard: `live viewers ADDRESS`. Ten read and acknowledge all frames, like a
+//! page. One never reads, and connects again whenever the server disconnects it.
 
 use std::io::Read as _;
 use std::net::{SocketAddr, TcpStream};
@@ -10,14 +10,14 @@ use std::time::Duration;
 use tungstenite::client::IntoClientRequest as _;
 use tungstenite::{Message, WebSocket};
 
-/// Viewers that read.
+/// Number of viewers that read.
 pub(crate) const VIEWERS: usize = 10;
 
-/// What is printed once all viewers have a frame.
+/// Printed once all viewers have received a frame.
 pub(crate) const READY: &str = "ready";
 
-/// Views until the standard input ends, and then prints how many frames were read since all had
-/// one.
+/// Runs until the standard input ends, and then prints the number of frames that were read since
+/// all had one.
 pub(crate) fn run(address: SocketAddr) -> anyhow::Result<()> {
     let counts: [AtomicU64; VIEWERS] = Default::default();
     let end = AtomicBool::new(false);
@@ -70,7 +70,7 @@ fn read_all(address: SocketAddr, count: &AtomicU64, end: &AtomicBool) -> anyhow:
     Ok(())
 }
 
-/// Asks 20 times per second for what is refused, and reads no answer.
+/// Sends refused requests 20 times per second, and reads no answer.
 fn never_read(address: SocketAddr, end: &AtomicBool) {
     while !end.load(Ordering::Relaxed) {
         let Ok(mut socket) = connect(address) else {

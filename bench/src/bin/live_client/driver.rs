@@ -1,4 +1,4 @@
-//! The project's own driver, as programs use it.
+//! The project's own driver, used like in programs.
 
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
@@ -7,7 +7,7 @@ use franka_async::control::{Finish as _, Torques};
 use franka_async::{Pose, Realtime, Robot};
 use tokio::sync::watch;
 
-/// Controls with a function that returns zero torques: a cycle without any work of the user.
+/// Controls with a function that returns zero torques: a cycle without any user computation.
 #[tokio::main]
 pub(crate) async fn torques(address: &str, time: Duration, fifo: bool) -> anyhow::Result<()> {
     let robot = connect(address, fifo).await?;
@@ -57,13 +57,13 @@ async fn connect(address: &str, fifo: bool) -> anyhow::Result<Robot> {
     Ok(builder.connect().await?)
 }
 
-/// `SCHED_FIFO` has no priority 0: asking for it is refused, even to root, and the thread stays
+/// `SCHED_FIFO` has no priority 0: requesting it is refused, even for root, and the thread stays
 /// under the normal scheduler.
 const NO_PRIORITY: i32 = 0;
 
-/// Time between targets.
+/// Interval between targets.
 const STEP: Duration = Duration::from_millis(100);
 
-/// The time for one round, well within the arm's limits at this radius, `[m]`.
+/// Duration of one round, well within the arm's limits at this radius, `[m]`.
 const ROUND: Duration = Duration::from_secs(4);
 const RADIUS: f64 = 0.05;

@@ -1,7 +1,7 @@
-//! The minimum that any client does: one receive and one send per state, on one thread.
+//! The minimum work of any client: one receive and one send per state, on one thread.
 //!
-//! Nothing is decoded, checked or computed. A command differs from the one before in the
-//! `message_id` that it repeats.
+//! The client does not decode, check or compute anything. A command differs from the previous
+//! command only in the `message_id` that it repeats.
 
 use std::io::{Read as _, Write as _};
 use std::net::{Ipv4Addr, TcpStream, UdpSocket};
@@ -38,7 +38,7 @@ pub(crate) fn run(address: &str, time: Duration, fifo: bool) -> anyhow::Result<(
     answer(&socket, FINISHING, &last)
 }
 
-/// Connects and starts a torque motion; returns when the robot says that it runs.
+/// Connects and starts a torque motion; returns when the robot reports that it runs.
 fn begin_motion(address: &str, udp_port: u16) -> anyhow::Result<TcpStream> {
     let mut stream = TcpStream::connect(address).context("connecting")?;
     let mut session = Session::new(VERSION);
@@ -70,7 +70,7 @@ fn begin_motion(address: &str, udp_port: u16) -> anyhow::Result<TcpStream> {
     }
 }
 
-/// Answers that many states with `command`.
+/// Answers `states` states with `command`.
 fn answer(socket: &UdpSocket, states: u64, command: &RobotCommand) -> anyhow::Result<()> {
     let mut bytes = [0; RobotCommand::MAX_SIZE];
     let size = command.encode(VERSION, &mut bytes)?;
@@ -89,8 +89,8 @@ const VERSION: Version = Version::V10;
 /// Both kinds of datagram begin with a `message_id` of this size.
 const MESSAGE_ID: usize = size_of::<u64>();
 
-/// Cycles in which a motion without torques ends.
+/// Number of cycles in which a motion without torques ends.
 const FINISHING: u64 = 50;
 
-/// The time without data after which the robot is given up.
+/// Time without data after which the robot counts as lost.
 const SILENCE: Duration = Duration::from_secs(2);

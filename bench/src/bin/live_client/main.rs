@@ -12,13 +12,13 @@ use clap::{Parser, ValueEnum};
 /// Controls a simulated robot and then ends the motion.
 #[derive(Debug, Parser)]
 struct Arguments {
-    /// What to control with.
+    /// The client to use.
     client: ClientKind,
-    /// Where the robot listens, `host:port`.
+    /// Address of the robot, `host:port`.
     address: String,
-    /// How long to control.
+    /// Duration of the control.
     seconds: u32,
-    /// Have the control thread run under SCHED_FIFO; an error if that is refused.
+    /// Run the control thread under SCHED_FIFO; an error if that is refused.
     #[arg(long)]
     fifo: bool,
 }
@@ -30,7 +30,7 @@ enum ClientKind {
     Echo,
     /// A control function that returns zero torques.
     Torques,
-    /// Targets for the end effector, ten times a second.
+    /// Targets for the end effector, ten per second.
     Targets,
 }
 

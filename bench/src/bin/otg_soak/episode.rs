@@ -1,4 +1,4 @@
-//! One generator and what happens to it.
+//! One generator and its sequence of events.
 
 use franka_otg::{
     AxisLimits, AxisState, CYCLE, Generator, Limits, PlanError, State, Synchronisation,
@@ -10,9 +10,9 @@ use crate::problem::{self, Kind};
 use crate::report::SoakReport;
 use crate::watch::Watch;
 
-/// Makes a plan to targets in motion, with limits of all kinds, from a random state.
+/// Creates a plan to targets in motion, with limits of all kinds, from a random state.
 ///
-/// Single plans meet more kinds of starts than a closed loop leads to.
+/// Single plans cover more kinds of starts than a closed loop.
 pub(crate) fn plan(seed: u64, report: &mut SoakReport) {
     let mut random = SmallRng::seed_from_u64(seed);
     match random.random_range(0..4) {
@@ -74,8 +74,9 @@ fn follow<const N: usize>(
     Some(generator.time_to_target())
 }
 
-/// If the axis cannot take some duration above `least` though it can take a shorter one, finds
-/// where that begins and checks plans of just so long, a little shorter and a little longer.
+/// If a duration above `least` is infeasible although a shorter one is feasible, finds the
+/// beginning of the blocked interval. Then checks plans of exactly this duration, slightly shorter
+/// and slightly longer.
 fn blocked(
     seed: u64,
     random: &mut SmallRng,
@@ -141,14 +142,14 @@ fn episode<const N: usize>(seed: u64, random: &mut SmallRng, report: &mut SoakRe
         let failure = format!("seed {seed}, {N} axes, {synchronisation:?}: {error}");
         report.failures.push(failure);
     }
-    // One defect shows in many cycles.
+    // One defect appears in many cycles.
     report.failures.truncate(failures + 1);
 }
 
 struct Loop<'a, const N: usize> {
     generator: Generator<N>,
     synchronisation: Synchronisation,
-    /// The target in force; without one it comes to rest.
+    /// The current target; without one the generator stops.
     target: Option<State<N>>,
     watch: Watch<N>,
     report: &'a mut SoakReport,
@@ -204,8 +205,8 @@ impl<'a, const N: usize> Loop<'a, N> {
         Ok(())
     }
 
-    /// One target after the other, each planned anew in every cycle by a generator that knows
-    /// nothing but the state.
+    /// A sequence of targets, with a new plan in every cycle by a generator that only knows the
+    /// state.
     fn plans_anew(&mut self, random: &mut SmallRng) -> Result<(), PlanError> {
         for _ in 0..3 {
             let target = self.new_target(random)?;
@@ -219,8 +220,7 @@ impl<'a, const N: usize> Loop<'a, N> {
                 self.generator.set_moving_target(&target)?;
                 self.planned(false);
                 self.report.anew += 1;
-                // On a line that rounding does not see any more the axes go on by themselves, and
-                // earlier.
+                // If rounding hides the line, the axes continue separately, and arrive earlier.
                 let late = (self.generator.time_to_target() - duration) / CYCLE + k as f64;
                 self.report.late.see(late, self.watch.seed());
                 if late > 1.0 {
@@ -244,7 +244,7 @@ impl<'a, const N: usize> Loop<'a, N> {
         Ok(target)
     }
 
-    /// Other limits. A target in motion may be too fast for them; then they are refused.
+    /// Sets other limits. A target in motion may be too fast for them; then they are refused.
     fn change_limits(&mut self, limits: Limits<N>) -> Result<(), PlanError> {
         match self.generator.set_limits(limits) {
             Err(PlanError::TargetMotion { .. }) => return Ok(()),
@@ -255,7 +255,7 @@ impl<'a, const N: usize> Loop<'a, N> {
         Ok(())
     }
 
-    /// The position is moved by something else.
+    /// An external event moves the position.
     fn nudge(&mut self, random: &mut SmallRng) -> Result<(), PlanError> {
         let mut state = *self.generator.state();
         for position in &mut state.position {
@@ -282,7 +282,7 @@ impl<'a, const N: usize> Loop<'a, N> {
             .step(self.generator.limits(), &before, &after, CYCLE, self.report);
     }
 
-    /// Steps until rest, which is when the generator says.
+    /// Steps until rest, which must match the generator's report.
     fn finish(&mut self) {
         let cycles = self.generator.remaining() / CYCLE;
         if cycles > CYCLES_MAX as f64 {
@@ -301,11 +301,11 @@ impl<'a, const N: usize> Loop<'a, N> {
     }
 }
 
-/// Targets and other events of an episode.
+/// Number of targets and other events of an episode.
 const EVENTS: usize = 150;
-/// Relative width to which the beginning of blocked durations is searched.
+/// Relative precision of the search for the beginning of blocked durations.
 const EDGE: f64 = 1e-12;
-/// Instants at which a single plan is checked.
+/// Number of instants at which a single plan is checked.
 const SAMPLES: f64 = 100.0;
-/// Longer motions are checked as plans and not followed to their end.
+/// Number of cycles above which motions are checked as plans and not followed to their end.
 const CYCLES_MAX: usize = 4000;

@@ -1,13 +1,13 @@
-//! Drives the trajectory generator through random closed loops for as long as it is told to:
-//! `otg_soak [PLANS] [SEED]`. `otg_soak moving [PLANS] [SEED]` makes single plans instead, to
-//! targets in motion with limits of all kinds, each from a random state.
+//! Tests the trajectory generator with random closed loops, for a given number of plans: `otg_soak
+//! [PLANS] [SEED]`. `otg_soak moving [PLANS] [SEED]` creates single plans instead, to targets in
+//! motion with limits of all kinds, each from a random state.
 //!
 //! ```text
 //! seed -> Problem: axes, limits, start -> Episode: targets, gaps, new limits, cycles -> Watch: checks -> SoakReport
 //! ```
 //!
-//! Each episode and each single plan has a seed of its own. A failure names it, and
-//! `otg_soak replay SEED` or `otg_soak moving 1 SEED` runs that one alone.
+//! Each episode and each single plan has its own seed. A failure names it, and `otg_soak replay
+//! SEED` or `otg_soak moving 1 SEED` runs this seed alone.
 
 mod episode;
 mod oracle;
@@ -46,7 +46,7 @@ fn main() -> ExitCode {
 
 type Run = fn(u64, &mut SoakReport);
 
-/// Runs one seed after the other until there are so many plans.
+/// Runs one seed after the other until the number of plans is reached.
 fn soak(run: Run, plans: u64, seed: u64) -> ExitCode {
     let (mut report, start) = (SoakReport::default(), Instant::now());
     let mut next = seed;
@@ -81,5 +81,5 @@ fn usage() -> ExitCode {
 const PLANS: u64 = 10_000_000;
 const SEED: u64 = 1;
 const SHOW_EVERY: u64 = 1_000_000;
-/// More of the same say nothing new.
+/// Number of failures after which more are not reported.
 const FAILURES_MAX: usize = 20;

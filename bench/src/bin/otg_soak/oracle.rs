@@ -1,4 +1,4 @@
-//! The least duration to rest by plain bisection: push for a while, then stop. Shares nothing with
+//! The least duration to rest by plain bisection: push for a while, then stop. Shares no code with
 //! the generator.
 
 use franka_otg::AxisLimits;
@@ -6,8 +6,8 @@ use franka_otg::AxisLimits;
 /// Position, velocity and acceleration.
 pub(crate) type AxisMotion = [f64; 3];
 
-/// The least duration from a state that can stay inside the limits to rest `distance` away, and
-/// whether the way there leads past the target first.
+/// Returns the least duration from a state that can stay inside the limits to rest `distance` away,
+/// and true if the motion passes the target first.
 pub(crate) fn least_duration(start: AxisMotion, distance: f64, limits: AxisLimits) -> f64 {
     let side = if distance >= stop_point(start, limits) {
         1.0
@@ -32,12 +32,13 @@ pub(crate) fn least_duration(start: AxisMotion, distance: f64, limits: AxisLimit
     end(high).1
 }
 
-/// Where the least-time stop ends, relative to position zero.
+/// Returns the end of the least-time stop, relative to position zero.
 pub(crate) fn stop_point(start: AxisMotion, limits: AxisLimits) -> f64 {
     end_of_push(start, 0.0, limits.velocity, limits).0
 }
 
-/// Where and when the axis rests if it pushes towards `velocity` for `theta` and then stops.
+/// Returns the position and time of rest of an axis that pushes towards `velocity` for `theta` and
+/// then stops.
 fn end_of_push(start: AxisMotion, theta: f64, velocity: f64, limits: AxisLimits) -> (f64, f64) {
     let (mut state, mut left, mut duration) = (start, theta, theta);
     if theta > 0.0 {
@@ -47,7 +48,7 @@ fn end_of_push(start: AxisMotion, theta: f64, velocity: f64, limits: AxisLimits)
             left -= t;
         }
         if left > 0.0 {
-            // The transfer is complete. What rounding leaves of it would grow over a long cruise.
+            // The transfer is complete. A remaining rounding error would grow over a long cruise.
             state = after([state[0], velocity, 0.0], 0.0, left);
         }
     }
@@ -58,7 +59,7 @@ fn end_of_push(start: AxisMotion, theta: f64, velocity: f64, limits: AxisLimits)
     (state[0], duration)
 }
 
-/// Least-time transfer to a velocity without acceleration.
+/// Returns the least-time transfer to a velocity without acceleration.
 fn transfer([_, v, a]: AxisMotion, to: f64, limits: AxisLimits) -> [(f64, f64); 3] {
     let (jerk, most) = (limits.jerk, limits.acceleration);
     let sign = 1_f64.copysign(to - (v + 0.5 * a * a.abs() / jerk));

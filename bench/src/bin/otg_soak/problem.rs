@@ -1,6 +1,6 @@
 //! Random limits, states and targets.
 
-// By path: the generator's tests are not part of its library.
+// By path, because the generator's tests are not part of its library.
 #[path = "../../../../franka-otg/src/tests/allowed.rs"]
 mod allowed;
 
@@ -13,14 +13,14 @@ use allowed::{inside, target_motion, way_to_speed};
 
 use crate::oracle::stop_point;
 
-/// What the limits of an episode are like.
+/// The kind of an episode's limits.
 #[derive(Clone, Copy)]
 pub(crate) enum Kind {
-    /// As joints and tools of an arm have them, down to a tenth of full speed.
+    /// Limits similar to those of joints and tools of an arm, down to a tenth of full speed.
     Arm,
-    /// Of all kinds: each may reach the others or not.
+    /// Mixed limits: each may or may not reach the others.
     Mixed,
-    /// Up to nine decades apart.
+    /// Limits up to nine decades apart.
     Extreme,
 }
 
@@ -51,7 +51,7 @@ impl Kind {
     }
 }
 
-/// A state inside the limits that can stay there; at rest as often as not.
+/// Returns a state inside the limits that can stay there; at rest in half of the cases.
 pub(crate) fn state<const N: usize>(random: &mut SmallRng, limits: &Limits<N>) -> State<N> {
     let mut state = State::at_rest(std::array::from_fn(|_| random.random_range(-1.0..1.0)));
     if random.random_bool(0.5) {
@@ -64,7 +64,8 @@ pub(crate) fn state<const N: usize>(random: &mut SmallRng, limits: &Limits<N>) -
     state
 }
 
-/// A state that can stay inside the limits, though no motion inside them may lead to it.
+/// Returns a state that can stay inside the limits, although motions inside them may not lead to
+/// it.
 pub(crate) fn departure<const N: usize>(random: &mut SmallRng, limits: &Limits<N>) -> State<N> {
     let mut state = State::at_rest(std::array::from_fn(|_| random.random_range(-1.0..1.0)));
     for i in 0..N {
@@ -76,7 +77,7 @@ pub(crate) fn departure<const N: usize>(random: &mut SmallRng, limits: &Limits<N
     state
 }
 
-/// A part of a limit, all and nothing of it included.
+/// Returns a share of a limit, including zero and all of it.
 fn part(random: &mut SmallRng) -> f64 {
     match random.random_range(0..6) {
         0 => 1.0,
@@ -85,7 +86,7 @@ fn part(random: &mut SmallRng) -> f64 {
     }
 }
 
-/// Velocity and acceleration that can be met inside the limits, and left.
+/// Returns velocity and acceleration that can be met, and left, inside the limits.
 fn motion(random: &mut SmallRng, limits: AxisLimits) -> (f64, f64) {
     let speed = random.random_range(-1.0..=1.0);
     let bend = match random.random_bool(0.5) {
@@ -95,10 +96,10 @@ fn motion(random: &mut SmallRng, limits: AxisLimits) -> (f64, f64) {
     target_motion(limits, speed, bend)
 }
 
-/// A new target, as far away as the axes get in some tenths of a second to some seconds, or very
-/// near.
+/// Returns a new target, as far away as the axes can move in some tenths of a second to some
+/// seconds, or very close.
 ///
-/// Axes at rest keep their place now and then; `moving` targets move along some axes.
+/// Axes at rest sometimes keep their place; `moving` targets move along some axes.
 pub(crate) fn target<const N: usize>(
     random: &mut SmallRng,
     now: &State<N>,
@@ -118,7 +119,7 @@ pub(crate) fn target<const N: usize>(
         } else {
             far
         };
-        // What the axis may move in the time; not more than positions are worth.
+        // The distance that the axis can move in this time, limited by the precision of positions.
         let t = 10_f64.powf(far);
         let reach = (axis.velocity * t)
             .min(axis.acceleration * t * t)
@@ -134,8 +135,8 @@ pub(crate) fn target<const N: usize>(
     target
 }
 
-/// A target for single plans: from far to within a millionth of where a stop would end, at rest, at
-/// its velocity limit, hardly moving or anything between.
+/// Returns a target for single plans: from far away to within a millionth of the stop point; at
+/// rest, at its velocity limit, hardly moving, or anything in between.
 pub(crate) fn arrival<const N: usize>(
     random: &mut SmallRng,
     now: &State<N>,

@@ -1,4 +1,4 @@
-//! What a run has seen.
+//! The results of a run.
 
 use std::fmt;
 use std::process::ExitCode;
@@ -7,27 +7,28 @@ use std::process::ExitCode;
 #[derive(Default)]
 pub(crate) struct SoakReport {
     pub(crate) replans: u64,
-    /// Those by generators that knew nothing but the state.
+    /// Number of plans by generators that only knew the state.
     pub(crate) anew: u64,
     pub(crate) cycles: u64,
     pub(crate) arrivals: u64,
-    /// Plans whose duration was held against the plain search.
+    /// Number of plans whose duration was compared with the plain search.
     pub(crate) optima: u64,
     pub(crate) velocity: Worst,
     pub(crate) acceleration: Worst,
     pub(crate) jerk: Worst,
-    /// Duration over the optimum, relative.
+    /// Excess of the duration over the optimum, relative.
     pub(crate) slower: Worst,
-    /// Cycles behind the arrival that the last plan promised.
+    /// Cycles after the arrival time of the last plan.
     pub(crate) late: Worst,
-    /// Distance from the target where the motion ends, relative to the size of the motion.
+    /// Distance from the target at the end of the motion, relative to the size of the motion.
     pub(crate) landing: Worst,
-    /// Beyond a target that can be reached without overshooting, likewise.
+    /// Overshoot beyond a target that can be reached without it, relative to the size of the
+    /// motion.
     pub(crate) overshoot: Worst,
     pub(crate) failures: Vec<String>,
 }
 
-/// The largest of some values, and the seed that it came from.
+/// The largest of some values, and its seed.
 #[derive(Clone, Copy)]
 pub(crate) struct Worst {
     value: f64,

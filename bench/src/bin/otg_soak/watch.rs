@@ -1,34 +1,36 @@
-//! Holds every plan, every cycle and every arrival against what the generator promises.
+//! Compares every plan, every cycle and every arrival with the generator's guarantees.
 
 use franka_otg::{AxisLimits, AxisState, CYCLE, Generator, Limits, State, Synchronisation};
 
 use crate::oracle::{least_duration, stop_point};
 use crate::report::SoakReport;
 
-/// What holds from one plan to the next.
+/// The checks that span several plans.
 pub(crate) struct Watch<const N: usize> {
     seed: u64,
     synchronisation: Synchronisation,
-    /// The state could stay inside the limits at some cycle since they were set; then it has to.
+    /// True if the state could stay inside the limits at some cycle since they were set; then it
+    /// must.
     inside: bool,
     axes: [Axis; N],
 }
 
 #[derive(Clone, Copy, Default)]
 struct Axis {
-    /// At rest at its target: no bit may change.
+    /// Position at rest at the target: no bit may change.
     still: Option<f64>,
-    /// A target at rest that can be reached without overshooting, and the direction in which it is.
+    /// A target at rest that can be reached without overshooting, and its direction.
     ahead: Option<(f64, f64)>,
     /// Magnitude of the positions of the motion.
     size: f64,
 }
 
-/// Relative excess over a limit that is rounding.
+/// Relative excess over a limit that counts as rounding.
 const EXACT: f64 = 1e-9;
-/// Relative error of a place.
+/// Relative error of a position.
 const PLACE: f64 = 1e-12;
-/// Of durations against the search, whose position is rounded: near a stop point its root counts.
+/// Relative error of durations compared with the search, whose position is rounded: near a stop
+/// point its square root counts.
 const OPTIMUM: f64 = 1e-6;
 
 impl<const N: usize> Watch<N> {
@@ -53,7 +55,7 @@ impl<const N: usize> Watch<N> {
         self.inside = false;
     }
 
-    /// A generator has just planned, towards a target or to rest.
+    /// Checks a new plan of a generator, towards a target or to rest.
     pub(crate) fn planned(
         &mut self,
         generator: &Generator<N>,
@@ -104,7 +106,7 @@ impl<const N: usize> Watch<N> {
             report.optima += 1;
             let slower = duration / optimum - 1.0;
             report.slower.see(slower, self.seed);
-            // A cycle is what an arrival is rounded to anyway.
+            // An arrival is rounded to a cycle anyway.
             if slower > OPTIMUM && duration - optimum > 1e-3 * CYCLE {
                 self.fail(report, format!("{duration} s instead of {optimum} s"));
             }
@@ -115,7 +117,7 @@ impl<const N: usize> Watch<N> {
         }
     }
 
-    /// The motion leads to the target.
+    /// Checks that the motion leads to the target.
     fn landing(&self, generator: &Generator<N>, target: &State<N>, report: &mut SoakReport) {
         let duration = generator.time_to_target();
         if target.is_at_rest() && generator.sample(duration) != *target {
@@ -137,19 +139,20 @@ impl<const N: usize> Watch<N> {
         }
     }
 
-    /// All axes that have a way to go arrive at the same time.
+    /// Checks that all moving axes arrive at the same time.
     fn together(&self, generator: &Generator<N>, target: &State<N>, report: &mut SoakReport) {
         if !target.is_at_rest() {
-            return; // behind a moving target each axis comes to rest in its own time
+            return; // behind a moving target each axis stops separately
         }
         let last = generator.remaining();
-        // Of a duration of years, seconds are a rounding.
+        // In a duration of years, seconds are rounding.
         let earlier = generator.sample(last - CYCLE - PLACE * last);
         for i in 0..N {
             let (now, to) = (generator.state().axis(i), target.axis(i));
             let start = [0.0, now.velocity, now.acceleration];
             let stop = stop_point(start, generator.limits().axis(i));
-            // A target that is where a stop ends is waited at: nothing else stays short of it.
+            // An axis whose stop ends at its target waits there: no other axis stays short of its
+            // target.
             let waits = (to.position - now.position - stop).abs() <= PLACE * self.axes[i].size;
             if last > CYCLE && !waits && earlier.axis(i) == to {
                 self.fail(
@@ -163,7 +166,7 @@ impl<const N: usize> Watch<N> {
         }
     }
 
-    /// From one state to the next, `dt` seconds later.
+    /// Checks the step from one state to the next, `dt` seconds later.
     pub(crate) fn step(
         &mut self,
         limits: &Limits<N>,
@@ -193,8 +196,7 @@ impl<const N: usize> Watch<N> {
                     format!("axis {i} exceeds a limit by {excess:e}: {p:?} {q:?}"),
                 );
             }
-            // Trapezoids differ from the integrals by no more than the bounded next derivative
-            // allows.
+            // Trapezoids differ from the integrals by at most the bound of the next derivative.
             let bend = 0.25 * l.jerk * dt * dt * (1.0 + EXACT);
             let fastest = l.velocity.max(p.velocity.abs());
             let gap =
@@ -238,8 +240,8 @@ impl<const N: usize> Watch<N> {
     }
 }
 
-/// Whether an axis that stops does not turn round first. One that does may be at its target before
-/// it can.
+/// True if an axis that stops does not reverse first. An axis that reverses may be at its target
+/// before it can stop.
 fn goes_on([_, v, a]: [f64; 3], limits: AxisLimits) -> bool {
     v * (v + 0.5 * a * a.abs() / limits.jerk) >= 0.0
 }

@@ -1,4 +1,4 @@
-//! The arm in its ready pose, and the frames that the model has.
+//! The arm in its ready pose, and the model's frames.
 
 use franka_model::{EndEffector, Frame, Model, READY, transform};
 use nalgebra::{Isometry3, Vector3};
@@ -75,7 +75,7 @@ fn triad(view: &View, pose: &Isometry3<f64>, name: &str, label: (f64, f64)) -> G
     group
 }
 
-/// Frames, their names, and where the names are from their origins.
+/// Frames, their names, and the offsets of the names from the origins.
 const FRAMES: [(Frame, &str, (f64, f64)); 8] = [
     (Frame::Joint2, "1, 2", (-52.0, 0.0)),
     (Frame::Joint3, "3", (-30.0, 0.0)),

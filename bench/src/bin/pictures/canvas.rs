@@ -1,21 +1,22 @@
-//! What the pictures share: paper, text, lines and arrows.
+//! The shared parts of the pictures: paper, text, lines and arrows.
 
 use svg::Document;
 use svg::Node as _;
 use svg::node::element::{Group, Line, Path, Rectangle, Text, Title};
 
-/// Text and lines.
+/// Colour of text and lines.
 pub(crate) const INK: &str = "#23303b";
-/// What is less important.
+/// Colour of less important parts.
 pub(crate) const GREY: &str = "#8895a1";
-/// Targets, and what comes from a program.
+/// Colour of targets, and of data from a program.
 pub(crate) const ORANGE: &str = "#d9822b";
-/// What the driver makes.
+/// Colour of the driver's output.
 pub(crate) const BLUE: &str = "#1f5fa8";
-/// What is measured, and the robot.
+/// Colour of measured values, and of the robot.
 pub(crate) const GREEN: &str = "#3b8f5a";
 
-/// An empty picture of this size, white also on a dark page, with a title for those who listen.
+/// Returns an empty picture of this size, white also on a dark page, with a title for screen
+/// readers.
 pub(crate) fn paper(width: f64, height: f64, title: &str) -> Document {
     Document::new()
         .set("viewBox", format!("0 0 {width} {height}"))
@@ -30,7 +31,7 @@ pub(crate) fn paper(width: f64, height: f64, title: &str) -> Document {
         )
 }
 
-/// With at most one digit behind the point.
+/// Rounds to one decimal.
 pub(crate) fn short(value: f64) -> f64 {
     let rounded = (10.0 * value).round() / 10.0;
     // A zero has no sign in a picture.
@@ -41,7 +42,7 @@ pub(crate) fn text(x: f64, y: f64, content: &str) -> Text {
     Text::new(content).set("x", short(x)).set("y", short(y))
 }
 
-/// Text whose middle is at `x`.
+/// Returns text whose middle is at `x`.
 pub(crate) fn centred(x: f64, y: f64, content: &str) -> Text {
     text(x, y, content).set("text-anchor", "middle")
 }
@@ -63,7 +64,7 @@ pub(crate) fn rectangle(x: f64, y: f64, width: f64, height: f64) -> Rectangle {
         .set("height", short(height))
 }
 
-/// A box with text in its middle.
+/// Returns a box with text in its middle.
 pub(crate) fn labelled(
     x: f64,
     y: f64,
@@ -83,7 +84,7 @@ pub(crate) fn labelled(
         .add(centred(x + 0.5 * width, y + 0.5 * height + 4.5, content))
 }
 
-/// A line with a head at its end.
+/// Returns a line with a head at its end.
 pub(crate) fn arrow(from: (f64, f64), to: (f64, f64), colour: &str) -> Group {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let length = dx.hypot(dy).max(1e-6);
@@ -105,7 +106,7 @@ pub(crate) fn arrow(from: (f64, f64), to: (f64, f64), colour: &str) -> Group {
         .add(Path::new().set("d", head).set("fill", colour))
 }
 
-/// A polyline through these points.
+/// Returns a polyline through these points.
 pub(crate) fn curve(points: impl IntoIterator<Item = (f64, f64)>, colour: &str) -> Path {
     let mut data = String::new();
     for (x, y) in points {
@@ -120,7 +121,7 @@ pub(crate) fn curve(points: impl IntoIterator<Item = (f64, f64)>, colour: &str) 
         .set("stroke-linejoin", "round")
 }
 
-/// The picture as a file.
+/// Returns the picture as a file.
 pub(crate) fn file(mut document: Document, parts: impl IntoIterator<Item = Group>) -> String {
     for part in parts {
         document.append(part);

@@ -1,4 +1,5 @@
-//! The journey of a datagram: what robot, control thread and program do within a millisecond.
+//! The journey of a datagram: the actions of robot, control thread and program within a
+//! millisecond.
 
 use svg::Node as _;
 use svg::node::element::Group;
@@ -94,7 +95,7 @@ fn work() -> Group {
     group
 }
 
-/// What crosses to the program and back.
+/// The data exchanged with the program.
 fn program() -> Group {
     let published = at(0.53);
     let goals = at(0.72);
@@ -119,7 +120,7 @@ fn program() -> Group {
         ))
 }
 
-/// What goes beside, over TCP.
+/// The requests in parallel, over TCP.
 fn requests() -> Group {
     let y = TASKS + 62.0;
     Group::new()
@@ -127,7 +128,7 @@ fn requests() -> Group {
         .add(text(at(0.0) + 8.0, y + 4.0, "requests (move, stop, set a load, recover) and their replies; a motion is over when both sides say so").set("fill", GREY))
 }
 
-/// Where a moment is, in milliseconds after the first state.
+/// Returns the position of a moment, in milliseconds after the first state.
 fn at(milliseconds: f64) -> f64 {
     158.0 + 590.0 * milliseconds
 }

@@ -1,11 +1,11 @@
-//! What a goal passes on its way to torques, and which of it other ways of control pass.
+//! The stages from a goal to torques, and the stages of other control modes.
 
 use svg::Node as _;
 use svg::node::element::Group;
 
 use crate::canvas::{BLUE, GREY, INK, ORANGE, arrow, centred, file, labelled, line, paper, text};
 
-/// What is passed, what it is for, and whether it is a guard, which acts only where it binds.
+/// The name of each stage, its purpose, and true for a guard, which acts only at its limit.
 const STAGES: [(&str, &str, bool); 13] = [
     (
         "watchdog, deadman, lead",
@@ -114,7 +114,7 @@ pub(crate) fn draw() -> String {
     file(document, [rows, legend, spans])
 }
 
-/// A bracket beside the stages that a way of control passes, with its name along it.
+/// Returns a bracket next to the stages of a control mode, with its name along it.
 fn span(x: f64, first: usize, end: usize, name: &str) -> Group {
     let (from, to) = (TOP + first as f64 * ROW + 3.0, TOP + end as f64 * ROW - 5.0);
     let name_end = from - 10.0;

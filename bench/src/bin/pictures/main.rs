@@ -1,13 +1,13 @@
-//! Draws the pictures of the book that show no measured robot.
+//! Draws the pictures of the book that do not show a measured robot.
 //!
 //! `cargo run --release -p franka-bench --bin pictures [DIRECTORY]`
 //!
 //! | module | picture |
 //! |---|---|
-//! | [`datagram`] | what happens between a state and the next one |
-//! | [`guards`] | what a goal passes on its way to torques |
+//! | [`datagram`] | the time between a state and the next |
+//! | [`guards`] | the stages from a goal to torques |
 //! | [`arm`] | the arm, and the frames of its links |
-//! | [`step`] | a target that steps, and the command that follows it |
+//! | [`step`] | a target that steps, and the resulting command |
 
 mod arm;
 mod canvas;
@@ -33,7 +33,7 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A picture's file, and what draws it.
+/// A picture's file, and its drawing function.
 type Picture = (&'static str, fn() -> String);
 
 const PICTURES: [Picture; 4] = [
@@ -49,7 +49,7 @@ mod tests {
 
     use super::*;
 
-    /// Diagrams have no number that another machine computes otherwise.
+    /// Diagrams contain no numbers that depend on the machine.
     #[test]
     fn the_diagrams_of_the_book_are_those_of_this_program() {
         let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/src");

@@ -1,4 +1,4 @@
-//! A target that steps, and what the driver makes of it on a simulated arm.
+//! A target that steps, and the driver's response on a simulated arm.
 
 use franka_lockstep::Lockstep;
 use franka_rt::session::{OnArrival, Target};
@@ -8,7 +8,7 @@ use svg::node::element::Group;
 
 use crate::canvas::{BLUE, GREEN, GREY, ORANGE, centred, curve, file, line, paper, text};
 
-/// What a cycle had, along z: target, reference, arm, `[m]`.
+/// The values of a cycle along z: target, reference, arm, `[m]`.
 type Row = [f64; 3];
 
 pub(crate) fn draw() -> String {
@@ -69,7 +69,7 @@ pub(crate) fn draw() -> String {
     file(document, [legend].into_iter().chain(panels).chain([axis]))
 }
 
-/// Runs the motion: up, down, a bit up before it is there, and up again in mid-motion.
+/// Runs the motion: up, down, slightly up before it arrives, and up again in mid-motion.
 fn rows() -> Vec<Row> {
     let mut lockstep = Lockstep::ready();
     let engaged = lockstep.engage();
@@ -94,7 +94,7 @@ fn rows() -> Vec<Row> {
     rows
 }
 
-/// Cycles in which the target steps, and how far above the start it is then, `[m]`.
+/// Cycles in which the target steps, and its height above the start, `[m]`.
 const STEPS: [(usize, f64); 5] = [
     (300, 0.1),
     (1500, 0.0),
@@ -103,7 +103,7 @@ const STEPS: [(usize, f64); 5] = [
     (2500, 0.1),
 ];
 
-/// Differences per cycle of a millisecond.
+/// Returns the differences per cycle of a millisecond.
 fn differences(values: &[f64]) -> Vec<f64> {
     let after = values.windows(2).map(|pair| (pair[1] - pair[0]) * 1000.0);
     std::iter::once(0.0).chain(after).collect()
@@ -123,7 +123,7 @@ fn panel(i: usize, name: &str, low: f64, high: f64, curves: &[(&[f64], &str)]) -
         let points = values.iter().enumerate().step_by(4);
         let points = points.map(|(cycle, value)| (across(cycle, values.len()), y(*value)));
         let path = curve(points, colour);
-        // What is measured lies under the command, which would hide it.
+        // The measured curve is below the command, which would hide it.
         group.append(match *colour {
             GREEN => path.set("stroke-width", 6).set("opacity", 0.35),
             _ => path,

@@ -1,18 +1,18 @@
-//! The arm as it is seen from beside it and a little from above, without perspective.
+//! The view of the arm from the side and slightly from above, without perspective.
 
 use franka_model::JointVector;
 use franka_model::RobotKind;
 use franka_model::collision::Shape;
 use nalgebra::Vector3;
 
-/// Where a point of the base frame, in metres, is in a picture.
+/// Maps a point of the base frame, in metres, to a picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
-    /// Where the origin of the base is.
+    /// Position of the base's origin.
     pub origin: (f64, f64),
     /// Pixels per metre.
     pub scale: f64,
-    /// From the x axis of the base to the picture's plane, `[rad]`.
+    /// Angle from the x axis of the base to the picture's plane, `[rad]`.
     pub azimuth: f64,
 }
 
@@ -20,7 +20,7 @@ impl View {
     pub(crate) fn at(&self, point: &Vector3<f64>) -> (f64, f64) {
         let (sin, cos) = self.azimuth.sin_cos();
         let (up, level) = ELEVATION.sin_cos();
-        // The base's x axis goes right and towards the viewer, y right and away.
+        // The base's x axis points right and towards the viewer, y right and away.
         let right = cos * point.x + sin * point.y;
         let depth = sin * point.x - cos * point.y;
         let height = level * point.z - up * depth;
@@ -30,7 +30,7 @@ impl View {
         )
     }
 
-    /// The capsules of the arm with its Hand.
+    /// Returns the capsules of the arm with its Hand.
     pub(crate) fn capsules(&self, q: &JointVector) -> Vec<Stroke> {
         let shape = Shape::covering(RobotKind::Fr3).with_hand();
         let placed = shape.at(q);
@@ -51,5 +51,5 @@ pub(crate) struct Stroke {
     pub width: f64,
 }
 
-/// From which the arm is seen, `[rad]`.
+/// Elevation of the viewer, `[rad]`.
 const ELEVATION: f64 = 0.3;

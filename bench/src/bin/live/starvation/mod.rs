@@ -1,6 +1,6 @@
-//! What blocked runtime workers cost an exchange of states and commands at 1 kHz, first on the
-//! control thread, then in a task of the program's async runtime. Each runs with the runtime idle,
-//! and with all its workers blocked for 20 of every 100 milliseconds.
+//! Measures the effect of blocked runtime workers on an exchange of states and commands at 1 kHz,
+//! first on the control thread, then in a task of the program's async runtime. Each runs with the
+//! runtime idle, and with all its workers blocked for 20 of every 100 milliseconds.
 //!
 //! The robot here sends a state per millisecond and expects a command for each. A command that has
 //! not arrived when the next state leaves is lost, as on a robot.
@@ -84,8 +84,8 @@ fn block(runtime: &Runtime) {
 /// A typical number on small computers.
 const WORKERS: usize = 2;
 
-/// Time from one block to the next.
+/// Interval between blocks.
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// As long as a database query, parsing JSON or decoding an image may take.
+/// A typical duration of a database query, JSON parsing or image decoding.
 const BLOCKED: Duration = Duration::from_millis(20);

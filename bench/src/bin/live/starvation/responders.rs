@@ -1,5 +1,5 @@
-//! The same exchange on the control thread and in a task: the newest state in, one command out,
-//! nothing computed.
+//! The same exchange on the control thread and in a task: reads the newest state and sends one
+//! command, without computation.
 
 use std::io;
 use std::net::{SocketAddr, UdpSocket};
@@ -13,7 +13,7 @@ use tokio::runtime::Runtime;
 use super::preferred;
 use super::robot::{self, ADDRESS, Outcome, VERSION};
 
-/// What answers the states.
+/// The responder to the states.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Responder {
     /// The driver's control thread.

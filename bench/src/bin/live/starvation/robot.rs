@@ -1,4 +1,4 @@
-//! The robot's end: sends states at 1 kHz, and records when the kernel received the commands.
+//! The robot's side: sends states at 1 kHz, and records when the kernel received the commands.
 
 use std::fmt;
 use std::io;
@@ -21,9 +21,9 @@ pub(crate) const ADDRESS: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 /// Losses and turnarounds of an exchange.
 pub(crate) struct Outcome {
     states: usize,
-    /// States whose command had not arrived when the next one left.
+    /// Number of states whose command had not arrived when the next one left.
     lost: usize,
-    /// From the departure of a state to the arrival of its command.
+    /// Times from the departure of a state to the arrival of its command.
     turnaround: Quantiles,
 }
 
@@ -49,14 +49,14 @@ pub(crate) fn run(port: u16, time: Duration) -> io::Result<Outcome> {
     Ok(Outcome::of(&sent, &arrived))
 }
 
-/// Raises this thread's priority, where the system grants it: a robot is another computer, which
+/// Raises this thread's priority, if the system grants it: a robot is a separate computer, which
 /// the load on this one does not slow down.
 fn prefer() {
     let granted = preferred(Some(PRIORITY)).enter();
     granted.expect("nothing is enforced");
 }
 
-/// Sends a state per millisecond, and returns when each left.
+/// Sends a state per millisecond, and returns the time at which each left.
 fn speak(socket: &UdpSocket, states: usize) -> io::Result<Vec<Duration>> {
     let mut bytes = [0; RobotState::MAX_SIZE];
     let mut sent = Vec::with_capacity(states);
@@ -75,7 +75,7 @@ fn speak(socket: &UdpSocket, states: usize) -> io::Result<Vec<Duration>> {
     Ok(sent)
 }
 
-/// Receives until no command arrives for a while. Returns when the command for each state arrived.
+/// Receives until no command arrives for a while. Returns the arrival time of each state's command.
 fn listen(socket: &mut Stamped, states: usize) -> Vec<Option<Duration>> {
     let mut arrived = vec![None; states];
     let mut bytes = [0; RobotCommand::MAX_SIZE];
