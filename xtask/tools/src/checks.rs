@@ -15,7 +15,7 @@ use xtask::workspace::Workspace;
 use crate::others::OTHERS;
 use crate::ours::Ours;
 use crate::{
-    book, circles, commands, cross, dashboard, mujoco, names, package, peer_pages, playground,
+    book, circles, commands, cross, dashboard, mujoco, names, package, peer_pages, playground, prose,
     recordings, reference_pages, release, schemas, texts, tidy,
 };
 
@@ -30,6 +30,8 @@ pub(crate) enum Check {
     Names,
     /// Spelling, and the workflows.
     Texts,
+    /// Plain English in comments, texts and the book.
+    Prose,
     /// Licences and sources of the dependencies.
     Dependencies,
     /// Crates that can be published, one version everywhere, the form of the change log.
@@ -139,6 +141,7 @@ impl StepOf for Check {
             Self::Circles => ("circles", "imports between the modules of a crate"),
             Self::Names => ("names", "what programs name, and where it is"),
             Self::Texts => ("texts", "names of files, spelling, and the workflows"),
+            Self::Prose => ("prose", "plain English in comments, texts and the book"),
             Self::Dependencies => ("dependencies", "their licences and sources"),
             Self::Release => ("release", "crates, version and change log"),
             Self::Book => ("book", "pages, programs and links of the book"),
@@ -178,6 +181,7 @@ impl StepOf for Check {
                 commands::check(workspace, &crate::tasks(), &steps)?;
             }
             Self::Texts => return texts::check(workspace),
+            Self::Prose => return prose::check(workspace),
             Self::Dependencies => return texts::dependencies(workspace),
             Self::Release => return release::check(workspace, release::Depth::default()),
             Self::Book => return book::check(workspace),

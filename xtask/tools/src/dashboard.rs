@@ -92,13 +92,7 @@ pub(crate) fn bundle(
     format: &str,
 ) -> anyhow::Result<()> {
     let work = work(workspace);
-    for name in ["package.json", "package-lock.json"] {
-        copy(&page(workspace).join(name), &work.join(name))?;
-    }
-    let mut npm = workspace.program("npm");
-    npm.args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]);
-    npm.arg("--prefer-offline");
-    workspace.run(npm.current_dir(&work))?;
+    install_packages(workspace, &page(workspace), &work)?;
     let packages = work.join("node_modules");
     let mut esbuild = workspace.program(packages.join(".bin/esbuild"));
     esbuild.arg(entry).args(["--bundle", "--minify"]);
@@ -106,6 +100,23 @@ pub(crate) fn bundle(
     esbuild.arg(format!("--format={format}"));
     esbuild.arg(format!("--outfile={}", output.display()));
     workspace.run(esbuild.env("NODE_PATH", packages))
+}
+
+/// Installs the packages of the lock file in `from` in `work`, unless they are there.
+pub(crate) fn install_packages(workspace: &Workspace, from: &Path, work: &Path) -> anyhow::Result<()> {
+    let (lock, installed) = (from.join("package-lock.json"), work.join("installed.json"));
+    if fs::read(&installed).is_ok_and(|content| fs::read(&lock).is_ok_and(|it| it == content)) {
+        return Ok(());
+    }
+    for name in ["package.json", "package-lock.json"] {
+        copy(&from.join(name), &work.join(name))?;
+    }
+    let mut npm = workspace.program("npm");
+    npm.args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]);
+    npm.arg("--prefer-offline");
+    workspace.run(npm.current_dir(work))?;
+    // Written last: an installation that broke off is made anew.
+    copy(&lock, &installed)
 }
 
 /// The licences of what [`bundle`] adds, and of the meshes.

@@ -23,6 +23,7 @@
 //! | [`package`] | the step that builds and tests the Python package, and its wheels |
 //! | [`page`] | tables and anchors of pages of the book |
 //! | [`peer_pages`] | the chapters for those who come from other packages |
+//! | [`prose`] | plain English in comments, texts and the book |
 //! | [`reference_pages`] | what the reference chapters have to name |
 //! | [`release`] | what a release takes: crates, version, change log |
 //! | [`schemas`] | the code of recordings, from definitions |
@@ -48,6 +49,7 @@ mod package;
 mod page;
 mod peer_pages;
 mod playground;
+mod prose;
 mod recordings;
 mod reference_pages;
 mod release;
@@ -86,6 +88,14 @@ enum Task {
         /// Run these steps only (may be repeated or separated by commas).
         #[arg(long, value_enum, value_delimiter = ',')]
         only: Vec<Nightly>,
+    },
+    /// List the texts that break the rules of the step `prose`.
+    Prose {
+        /// Files and folders; everything by default.
+        paths: Vec<PathBuf>,
+        /// Lower the numbers in the baseline to the present ones.
+        #[arg(long, conflicts_with = "paths")]
+        lower: bool,
     },
     /// Write the Rust code of the messages of recordings anew.
     Schemas,
@@ -249,6 +259,7 @@ fn run(task: Task) -> anyhow::Result<()> {
     match task {
         Task::Check { only } => checks::run(&workspace, &only),
         Task::Nightly { only } => checks::run(&workspace, &only),
+        Task::Prose { paths, lower } => prose::run(&workspace, &paths, lower),
         Task::Schemas => schemas::write(&workspace),
         Task::Vectors { dir } => {
             // The program runs in the root of the workspace, the argument was written somewhere
