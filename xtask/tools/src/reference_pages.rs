@@ -33,10 +33,10 @@ pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
     let lost = entries.iter().filter(|entry| !anchors.contains(*entry));
     found.extend(lost.map(|entry| format!("errors.md: no place {entry}")));
     found.extend(keys(
-        &page("benchmarks.md")?,
+        &page("dev/benchmarks.md")?,
         &workspace.root().join("bench/src"),
     )?);
-    let measured = [page("benchmarks.md")?, page("sticking.md")?];
+    let measured = [page("dev/benchmarks.md")?, page("dev/sticking.md")?];
     found.extend(copies(&page("compared.md")?, &measured));
     if !found.is_empty() {
         bail!("reference chapters:\n{}", found.join("\n"));
@@ -111,7 +111,7 @@ fn keys(page: &str, sources: &Path) -> anyhow::Result<Vec<String>> {
     let named = tables.iter().filter(|table| table.first() == "key");
     let named = named.flat_map(|table| table.rows.iter().flat_map(|row| row.spans(0)));
     let lost = named.filter(|key| !texts.contains(&format!("\"{key}\"")));
-    let lost = lost.map(|key| format!("benchmarks.md: nothing measures {key}"));
+    let lost = lost.map(|key| format!("dev/benchmarks.md: nothing measures {key}"));
     Ok(lost.collect())
 }
 
