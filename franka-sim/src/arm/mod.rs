@@ -14,7 +14,7 @@
 //! | `state_geometry` | [`StateGeometry`]: what the robot computes its own poses with |
 //! | `family` | [`Family`]: distributions of all of these, read from JSON |
 //!
-//! The sources of the figures are named with the fields and in the book (`docs/src/real-arm.md`).
+//! The documentation of each field names the source of its figures.
 
 mod body;
 mod drive;

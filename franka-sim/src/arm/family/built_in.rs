@@ -1,5 +1,5 @@
-//! The families that come with the simulator. Their sources stand in the book, in its chapter on
-//! real arms.
+//! The families that come with the simulator. The documentation of each field of an arm names the
+//! source of its figures.
 
 use super::{Distribution, Elastic, Family, SystemLimits, Values};
 
