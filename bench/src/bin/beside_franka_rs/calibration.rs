@@ -45,7 +45,7 @@ const WIDER: f64 = 0.2;
 /// program reads its first order, so the five seconds begin at another cycle each time.
 const DRIFT_WIDER: f64 = 0.5;
 
-/// What was published of two arms, by increasing figures, `[mm]`.
+/// The published figures of two arms, in increasing order, `[mm]`.
 mod published {
     /// Drift in the first five seconds.
     pub(super) const DRIFT: [f64; 2] = [0.13, 0.23];
