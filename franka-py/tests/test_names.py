@@ -41,21 +41,43 @@ def test_reasons_name_what_is_there() -> None:
 
 
 BOOK = Path(__file__).parents[2] / "docs" / "src"
+PEERS = Path(__file__).parents[2] / "tests" / "peers" / "names"
 
 
-def rows(page: str) -> Iterator[tuple[list[str], str]]:
-    """Of each row of a table with a column ``Python``: the names in the first cell, and the cell of that column."""
-    header: list[str] | None = None
-    for line in page.splitlines():
-        if not line.startswith("|"):
-            header = None
+def tables(page: str) -> Iterator[list[list[str]]]:
+    """The cells of each table, with the header as its first row."""
+    table: list[list[str]] = []
+    for line in [*page.splitlines(), ""]:
+        if line.startswith("|"):
+            if not line.startswith("|--"):
+                table.append([cell.strip() for cell in line.replace("\\|", "/").strip("|").split("|")])
+        elif table:
+            yield table
+            table = []
+
+
+def rows(page: Path) -> Iterator[tuple[list[str], str]]:
+    """Of each row of a table with a column ``Python``: the names in the first cell, and the cell of that column.
+
+    ``*`` stands for the members of the types in the header that have no row of their own.
+    """
+    peer = PEERS / {"from-franka-rs-python.md": "franka.txt"}.get(
+        page.name, page.stem.removeprefix("from-").replace("-", "_") + ".txt"
+    )
+    known = peer.read_text().split() if peer.exists() else []
+    for header, *body in tables(page.read_text()):
+        if "Python" not in header:
             continue
-        cells = [cell.strip() for cell in line.replace("\\|", "/").strip("|").split("|")]
-        if header is None:
-            header = cells
-        elif "Python" in header and not line.startswith("|--"):
-            column = header.index("Python")
-            yield re.findall("`(.*?)`", cells[0]), cells[column] if column < len(cells) else ""
+        column = header.index("Python")
+        told = {name for cells in body for name in re.findall("`(.*?)`", cells[0])}
+        for cells in body:
+            names = re.findall("`(.*?)`", cells[0])
+            if names == ["*"]:
+                owners = "|".join(map(re.escape, re.findall("`(.*?)`", header[0])))
+                members = (re.fullmatch(rf"(?:{owners})(?:\.|::)(\w+)", name) for name in known)
+                names = [member[1] for member in members if member and member[1] not in told]
+                assert names, cells
+            yield names, cells[column] if column < len(cells) else ""
 
 
 def found(name: str) -> object:
@@ -87,7 +109,7 @@ STUBS = "\n".join(path.read_text() for path in Path(franka_async.__file__).paren
 @pytest.mark.parametrize("page", sorted(path.name for path in BOOK.glob("*.md")))
 def test_what_the_book_names_is_there(page: str) -> None:
     """A cell that begins with ``same: `` names what has attributes of the names of its row."""
-    for names, cell in rows((BOOK / page).read_text()):
+    for names, cell in rows(BOOK / page):
         for ours in re.findall("`(.*?)`", cell):
             item = found(ours)
             if cell.startswith("same: "):

@@ -6,10 +6,11 @@
 //! docs/src/from-x.md ── tables: its name, ours ─────────┴─ the same ── ours: the face's sources
 //! ```
 //!
-//! A table counts if its header has a column `Rust` or `Python`. Where its first header cell is a
-//! name in code, the names below are members of that. A cell that begins with `same: ` names a type
-//! of ours that has members of the same names. Names in the column `Python` are held against the
-//! package by its own tests (`franka-py/tests/test_names.py`).
+//! A table counts if its header has a column `Rust` or `Python`. Where its first header cell has
+//! names in code, the names below are members of each of them. `*`, or `Type.*`, stands for the members
+//! that have no row. A cell that begins with `same: ` names a type of ours that has members of the same
+//! names. Names in the column `Python` are held against the package by its own tests
+//! (`franka-py/tests/test_names.py`).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -81,8 +82,11 @@ pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
         let page =
             fs::read_to_string(&page).with_context(|| format!("cannot read {}", page.display()))?;
         let maps: Vec<Table<'_>> = tables(&page).into_iter().filter(is_map).collect();
-        let faults = differences(&names_of(&list), &maps, peer.separator);
-        let strange = maps.iter().flat_map(|table| strange(table, ours));
+        let names = names_of(&list);
+        let faults = differences(&names, &maps, peer.separator);
+        let strange = maps
+            .iter()
+            .flat_map(|table| strange(table, &maps, &names, peer.separator, ours));
         let faults = faults.into_iter().chain(strange);
         found.extend(faults.map(|fault| format!("{}: {fault}", peer.page)));
         rows += maps.iter().map(|table| table.rows.len()).sum::<usize>();
@@ -181,25 +185,67 @@ fn names_of(list: &str) -> BTreeSet<String> {
     names.map(str::to_owned).collect()
 }
 
+/// The names before the members of a table: one for each type in its header, or an empty one.
+fn prefixes(table: &Table<'_>, separator: &str) -> Vec<String> {
+    let of = table.spans(0);
+    if of.is_empty() {
+        return vec![String::new()];
+    }
+    of.iter().map(|of| format!("{of}{separator}")).collect()
+}
+
+/// The names of a table's rows, with their types; a name that ends with `*` stands for others.
+fn named(table: &Table<'_>, separator: &str) -> Vec<String> {
+    let prefixes = prefixes(table, separator);
+    let spans = table.rows.iter().flat_map(|row| row.spans(0));
+    let names = spans.flat_map(|span| prefixes.iter().map(move |of| format!("{of}{span}")));
+    names.collect()
+}
+
+/// The members of a type that no row of the page spells out; `star` is the type, and `*`.
+fn others<'a>(
+    names: &'a BTreeSet<String>,
+    maps: &[Table<'_>],
+    star: &str,
+    separator: &str,
+) -> Vec<&'a str> {
+    let spelled = maps.iter().flat_map(|table| named(table, separator));
+    let spelled: BTreeSet<String> = spelled.collect();
+    let of = star.strip_suffix(ALL_OTHERS).unwrap_or(star);
+    let is_member = |name: &str| {
+        let member = name.strip_prefix(of).filter(|_| !of.is_empty());
+        member.is_some_and(|member| !member.contains(separator))
+    };
+    let names = names.iter().map(String::as_str);
+    names
+        .filter(|&name| is_member(name) && !spelled.contains(name))
+        .collect()
+}
+
 /// A line for each name without a row, for each row without a name, and for each second row.
 fn differences(names: &BTreeSet<String>, maps: &[Table<'_>], separator: &str) -> Vec<String> {
     let mut rows = BTreeSet::new();
     let mut faults = Vec::new();
     for table in maps {
-        let of = table.spans(0).first().map(|of| format!("{of}{separator}"));
         for row in &table.rows {
-            let spans = row.spans(0);
-            if spans.is_empty() {
+            if row.spans(0).is_empty() {
                 faults.push(format!("a row without a name: {}", row.text()));
             }
-            for span in spans {
-                let name = format!("{}{span}", of.as_deref().unwrap_or_default());
-                if !names.contains(&name) {
-                    faults.push(format!("{name} is not in the list of its names"));
+        }
+        for name in named(table, separator) {
+            if name.ends_with(ALL_OTHERS) {
+                let others = others(names, maps, &name, separator);
+                if others.is_empty() {
+                    faults.push(format!("{name} stands for nothing"));
                 }
-                if !rows.insert(name.clone()) {
-                    faults.push(format!("{name} has two rows"));
-                }
+                rows.extend(others.into_iter().map(str::to_owned));
+                continue;
+            }
+            if !names.contains(&name) {
+                faults.push(format!("{name} is not in the list of its names"));
+            }
+            if !rows.insert(name.clone()) {
+                faults.push(format!("{name} has two rows"));
             }
         }
     }
@@ -210,17 +256,34 @@ fn differences(names: &BTreeSet<String>, maps: &[Table<'_>], separator: &str) ->
 
 /// A line for each name in the column `Rust` that is not ours. Behind `same: ` there is a type that
 /// has members of the names of the row.
-fn strange(table: &Table<'_>, ours: &Ours) -> Vec<String> {
+fn strange(
+    table: &Table<'_>,
+    maps: &[Table<'_>],
+    names: &BTreeSet<String>,
+    separator: &str,
+    ours: &Ours,
+) -> Vec<String> {
     let Some(column) = table.column("Rust") else {
         return Vec::new();
     };
+    let prefixes = prefixes(table, separator);
     let mut strange = Vec::new();
     for row in &table.rows {
         let spans = row.spans(column);
         strange.extend(spans.iter().map(|&span| span.to_owned()));
         if row.cell(column).starts_with(SAME) {
+            let members = row.spans(0).into_iter().flat_map(|name| match name {
+                ALL_OTHERS => {
+                    let stars = prefixes.iter().map(|of| format!("{of}{ALL_OTHERS}"));
+                    let others = stars.flat_map(|star| others(names, maps, &star, separator));
+                    let member = |name: &'_ str| name.rsplit(separator).next().map(str::to_owned);
+                    others.filter_map(member).collect()
+                }
+                name => vec![name.to_owned()],
+            });
+            let members: BTreeSet<String> = members.collect();
             for of in spans {
-                strange.extend(row.spans(0).iter().map(|name| format!("{of}::{name}")));
+                strange.extend(members.iter().map(|member| format!("{of}::{member}")));
             }
         }
     }
@@ -230,6 +293,9 @@ fn strange(table: &Table<'_>, ours: &Ours) -> Vec<String> {
         .map(|name| format!("{name} is not a name of ours"))
         .collect()
 }
+
+/// The name of a row for all members that have no row of their own.
+const ALL_OTHERS: &str = "*";
 
 /// What a cell begins with whose type has members of the names of the row.
 const SAME: &str = "same: ";
@@ -273,6 +339,35 @@ text
         assert_eq!(
             faults("A\nb", &nameless),
             ["a row without a name: c | `A::c` |"]
+        );
+    }
+    #[test]
+    fn a_header_of_two_names_has_the_members_of_both() {
+        let page = PAGE.replace("| `A` | Rust", "| `A`, `b` | Rust");
+        assert_eq!(faults("A\nb\nA::c\nb::c", &page), Vec::<String>::new());
+        assert_eq!(
+            faults("A\nb\nA::c", &page),
+            ["b::c is not in the list of its names"]
+        );
+    }
+
+    #[test]
+    fn a_star_stands_for_the_members_without_a_row() {
+        let page = format!("{PAGE}\n| `A` | Rust |\n|---|---|\n| `*` | `A` |\n");
+        let all = "A\nb\nA::c\nA::d\nA::e";
+        assert_eq!(faults(all, &page), Vec::<String>::new());
+        let typed = PAGE.replace("`A`, `b` |", "`A`, `b`, `A::*` |");
+        assert_eq!(faults(all, &typed), Vec::<String>::new());
+        assert_eq!(
+            faults(&format!("{all}\nA::d::f"), &page),
+            ["A::d::f has no row"]
+        );
+        let none = "A\nb\nA::c";
+        assert_eq!(faults(none, &page), ["A::* stands for nothing"]);
+        let maps: Vec<_> = tables(&page).into_iter().filter(is_map).collect();
+        assert_eq!(
+            others(&names_of(all), &maps, "A::*", "::"),
+            ["A::d", "A::e"]
         );
     }
 }
