@@ -1,5 +1,6 @@
 //! The shared parts of the examples: a robot at the given address, or a simulated one in this
-//! process; smooth references; motions as jobs; the shutdown of a service.
+//! process; smooth references; targets of input devices; motions as jobs; the shutdown of a
+//! service.
 #![doc = include_str!("../README.md")]
 
 mod ease;
@@ -7,6 +8,7 @@ mod ease;
 mod job;
 #[cfg(any(feature = "grpc", feature = "http"))]
 mod service;
+mod teleoperation;
 
 pub use ease::Ease;
 #[cfg(feature = "http")]
@@ -15,6 +17,7 @@ pub use job::{Job, Progress, Stage};
 pub use service::admit;
 #[cfg(any(feature = "grpc", feature = "http"))]
 pub use service::{Serving, seconds, serve_until_told};
+pub use teleoperation::{clutched, moved};
 
 use std::fmt;
 use std::io::{BufRead, Write};

@@ -1,10 +1,11 @@
 //! Tests of a program against simulated robots: a file to copy to the `tests` of your crate.
 
+// ANCHOR: nod
 use std::time::Duration;
 
 use franka_async::MotionError;
 use franka_async::prelude::*;
-use franka_sim::{Network, Running, Sim};
+use franka_sim::{Running, Sim};
 
 /// The program under test: the hand moves down by `depth`, in metres, and back.
 async fn nod(robot: &Robot, depth: f64) -> Result<(), MotionError> {
@@ -45,7 +46,9 @@ async fn a_nod_ends_where_it_began() {
     let off = (robot.pose().translation.vector - before.translation.vector).norm();
     assert!(off < 2e-3, "{off} m");
 }
+// ANCHOR_END: nod
 
+// ANCHOR: failures
 #[tokio::test]
 async fn a_pressed_user_stop_is_reported() {
     let (robot, sim) = simulated().await;
@@ -69,7 +72,9 @@ async fn a_collision_is_not_hidden_and_can_be_recovered_from() {
     robot.recover().await.expect("it recovers");
     nod(&robot, 0.04).await.expect("it arrives");
 }
+// ANCHOR_END: failures
 
+// ANCHOR: links
 /// The robot's computer stops from then on: neither states nor answers arrive. The driver detects
 /// this after the link timeout, and not before.
 #[tokio::test]
@@ -105,7 +110,7 @@ async fn a_cut_network_ends_the_nod() {
     let cut = async {
         moving.await.expect("it moves");
         let cut = sim.with_network(|network, now| {
-            let network = network.get_or_insert_with(Network::perfect);
+            let network = network.get_or_insert_with(franka_sim::Network::perfect);
             network.to_client.cut(now..now + Duration::from_millis(100));
             network.to_robot.cut(now..now + Duration::from_millis(100));
         });
@@ -138,3 +143,4 @@ async fn a_robot_that_is_gone_ends_the_nod() {
     );
     sim.ended().await;
 }
+// ANCHOR_END: links

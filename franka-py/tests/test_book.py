@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import re
 from collections.abc import Awaitable, Callable
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -35,9 +34,11 @@ def chapter() -> dict[str, Any]:
     return run("python.md")
 
 
-def test_the_program_of_the_how_to_runs(capsys: pytest.CaptureFixture[str]) -> None:
-    run("how-to/python.md")
-    assert "arrived after " in capsys.readouterr().out
+def test_the_programs_of_the_tutorial_run(capsys: pytest.CaptureFixture[str]) -> None:
+    run("tutorial/python.md")
+    printed = capsys.readouterr().out
+    for begin in ("arrived after ", "stopped at ", "followed to ", "caller "):
+        assert f"\n{begin}" in printed, printed
 
 
 def test_the_model_gives_the_pose_of_the_flange() -> None:
@@ -72,14 +73,6 @@ def test_the_functions_of_the_page_on_franky_run(live: Sim) -> None:
         chapter["at_velocity"](robot, [0.0, 0.05, 0.0, 0.0, 0.0, 0.3], 1.5)
         assert robot.pose()[1, 3] > start[1, 3] + 0.005
         assert robot.pose()[1, 0] > start[1, 0] + 0.05
-        with ThreadPoolExecutor() as pool:
-            moving = pool.submit(chapter["joints_at_velocity"], robot, [0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], 1.5)
-            fastest = 0.0
-            while not moving.done():
-                fastest = max(fastest, live.state().dq[0])
-            moving.result()
-        # Without the ramp it is 0.53. The page says a tenth.
-        assert fastest < 0.37
         chapter["redirected"](robot, robot.pose() @ chapter["by"](0.02, 0.0, 0.0), start)
         assert abs(robot.pose() - start).max() < 0.01
 

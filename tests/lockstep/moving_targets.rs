@@ -89,7 +89,7 @@ fn without_news_the_arm_stops_on_the_way_of_its_target_and_goes_on_with_the_next
     assert!(error.translation < 3e-4, "{error:?}");
 }
 
-/// The figures of `docs/src/services.md`.
+/// The figures of `docs/src/how-to/teleoperate.md`.
 #[test]
 fn a_target_that_leaps_into_motion_or_out_of_it_is_chased_and_overshot() {
     for (speed, growing, fading, expected, fastest) in [

@@ -52,6 +52,9 @@ mod programs {
     #[doc = include_str!("../../docs/src/how-to/teach.md")]
     struct HowToTeach;
 
+    #[doc = include_str!("../../docs/src/how-to/teleoperate.md")]
+    struct HowToTeleoperate;
+
     #[doc = include_str!("../../docs/src/how-to/tune.md")]
     struct HowToTune;
 
@@ -63,6 +66,15 @@ mod programs {
 
     #[doc = include_str!("../../docs/src/start/three-ways.md")]
     struct ThreeWays;
+
+    #[doc = include_str!("../../docs/src/tutorial/control.md")]
+    struct TutorialControl;
+
+    #[doc = include_str!("../../docs/src/tutorial/policy.md")]
+    struct TutorialPolicy;
+
+    #[doc = include_str!("../../docs/src/tutorial/service.md")]
+    struct TutorialService;
 
     #[doc = include_str!("../../docs/src/control.md")]
     struct Control;
