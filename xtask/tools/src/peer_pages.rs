@@ -297,7 +297,7 @@ fn strange(
 /// The name of a row for all members that have no row of their own.
 const ALL_OTHERS: &str = "*";
 
-/// What a cell begins with whose type has members of the names of the row.
+/// The begin of a cell whose type has members of the names of the row.
 const SAME: &str = "same: ";
 
 #[cfg(test)]
