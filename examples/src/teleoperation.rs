@@ -14,7 +14,8 @@ const SLOWING: f64 = 4.0;
 const AHEAD: (f64, f64) = (0.05, 0.2);
 
 /// Returns the next target and its velocity, after `seconds` (above zero) of `velocity` in base
-/// axes. `hand` is `robot.pose()`. Returns `None` if the device reports numbers that are not finite.
+/// axes. `hand` is `robot.pose()`. Returns `None` if the device reports numbers that are not
+/// finite.
 pub fn moved(target: &Pose, velocity: &Twist, seconds: f64, hand: &Pose) -> Option<(Pose, Twist)> {
     if !velocity.iter().all(|v| v.is_finite()) {
         return None;
@@ -48,8 +49,8 @@ pub fn moved(target: &Pose, velocity: &Twist, seconds: f64, hand: &Pose) -> Opti
 // ANCHOR_END: moved
 
 // ANCHOR: clutched
-/// Returns the target for a tracked controller at `now`, in base axes. `hand` is `robot.pose()`, and
-/// `then` the controller's pose, both from when the clutch was pressed.
+/// Returns the target for a tracked controller at `now`, in base axes. `hand` is `robot.pose()`,
+/// and `then` the controller's pose, both from when the clutch was pressed.
 pub fn clutched(hand: &Pose, then: &Pose, now: &Pose) -> Pose {
     let shift = now.translation.vector - then.translation.vector;
     let turn = now.rotation * then.rotation.inverse();

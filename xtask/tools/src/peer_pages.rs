@@ -7,9 +7,9 @@
 //! ```
 //!
 //! A table counts if its header has a column `Rust` or `Python`. Where its first header cell has
-//! names in code, the names below are members of each of them. `*`, or `Type.*`, stands for the members
-//! that have no row. A cell that begins with `same: ` names a type of ours that has members of the same
-//! names. Names in the column `Python` are held against the package by its own tests
+//! names in code, the names below are members of each of them. `*`, or `Type.*`, stands for the
+//! members that have no row. A cell that begins with `same: ` names a type of ours that has members
+//! of the same names. Names in the column `Python` are held against the package by its own tests
 //! (`franka-py/tests/test_names.py`).
 
 use std::collections::{BTreeMap, BTreeSet};
