@@ -13,6 +13,7 @@ use tokio_util::sync::CancellationToken;
 
 use crate::dial::TCP_TIMEOUT;
 use crate::endpoint::Endpoint;
+use crate::geometry_check::GeometryCheck;
 use crate::robot::Robot;
 use crate::user_value::UserValue;
 
@@ -39,6 +40,8 @@ pub struct Builder {
     pub(crate) link_timeout: Duration,
     pub(crate) nominal_model: bool,
     pub(crate) accept_geometry_error: bool,
+    /// What was found when the robot was connected before.
+    pub(crate) geometry_before: Option<GeometryCheck>,
     pub(crate) log_size: usize,
     pub(crate) known: Option<Box<Identified>>,
     pub(crate) policy: Option<Policy>,
@@ -73,6 +76,7 @@ impl Builder {
             link_timeout: franka_rt::driver::LINK_TIMEOUT,
             nominal_model: false,
             accept_geometry_error: false,
+            geometry_before: None,
             log_size: ControlLog::DEFAULT_CAPACITY,
             known: None,
             policy: None,

@@ -68,7 +68,11 @@ impl fmt::Display for GeometryCheck {
             described, used, ..
         } = self;
         let Some(residual) = self.residual else {
-            return f.write_str("the robot reports no pose: its geometry was not checked");
+            f.write_str("the robot reports no pose: its geometry was not checked")?;
+            if used != described {
+                write!(f, ", and the model keeps {}", Told(used))?;
+            }
+            return Ok(());
         };
         let um = residual * 1e6;
         let most = RESIDUAL_MAX * 1e6;
@@ -85,11 +89,26 @@ impl fmt::Display for GeometryCheck {
         if used != described {
             write!(
                 f,
-                " with an upper arm of {} m and a forearm of {} m, which the model now has: described are {} m and {} m",
-                used.upper_arm, used.forearm, described.upper_arm, described.forearm
+                " with {}, which the model now has: described are {} m and {} m",
+                Told(used),
+                described.upper_arm,
+                described.forearm
             )?;
         }
         Ok(())
+    }
+}
+
+/// Lengths in the sentence of a person.
+struct Told<'a>(&'a Lengths);
+
+impl fmt::Display for Told<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Lengths { upper_arm, forearm } = self.0;
+        write!(
+            f,
+            "an upper arm of {upper_arm} m and a forearm of {forearm} m"
+        )
     }
 }
 
@@ -126,17 +145,26 @@ impl Comparison {
         }
     }
 
-    /// The model with the lengths that the robot computes its poses with, and what was found.
+    /// The model with the lengths that the robot computes its poses with, and what was found. A
+    /// robot that reports no pose has the lengths that were found `before`, if it describes the
+    /// same ones.
     ///
     /// # Errors
     /// [`ConnectError::Geometry`] if no known lengths agree, unless any geometry is `accepted`.
-    pub(crate) fn conclude(self, accepted: bool) -> Result<(Model, GeometryCheck), ConnectError> {
-        let Self { model, best, .. } = self;
-        if let Some(residual) = best.residual
-            && !best.agrees()
-            && !accepted
-        {
-            return Err(ConnectError::Geometry { residual });
+    pub(crate) fn conclude(
+        self,
+        accepted: bool,
+        before: Option<&GeometryCheck>,
+    ) -> Result<(Model, GeometryCheck), ConnectError> {
+        let Self {
+            model, mut best, ..
+        } = self;
+        match (best.residual, before) {
+            (Some(residual), _) if !best.agrees() && !accepted => {
+                return Err(ConnectError::Geometry { residual });
+            }
+            (None, Some(before)) if before.described == best.described => best.used = before.used,
+            _ => {}
         }
         if best.is_as_described() {
             return Ok((model, best));
@@ -181,7 +209,7 @@ mod tests {
                 comparison.look_at(state);
             }
         }
-        comparison.conclude(accepted)
+        comparison.conclude(accepted, None)
     }
 
     #[test]
@@ -234,5 +262,34 @@ mod tests {
         };
         let (_, found) = checked(model, &[none], false).expect("nothing to compare");
         assert_eq!((found.residual, found.is_as_described()), (None, false));
+    }
+
+    #[test]
+    fn a_robot_without_a_pose_has_the_lengths_of_before_if_it_describes_the_same() {
+        let model = Model::fr3();
+        let [described, recorded] = Lengths::KNOWN;
+        let none = RobotState {
+            O_T_EE: [0.0; 16],
+            ..state_of(model, 0.0)
+        };
+        let longer = Lengths {
+            upper_arm: 0.33,
+            ..described
+        };
+        for (described_before, expected) in [(described, recorded), (longer, described)] {
+            let before = GeometryCheck {
+                described: described_before,
+                used: recorded,
+                residual: Some(0.0),
+            };
+            let comparison = Comparison::new(model.clone(), &none);
+            let (model, found) = comparison
+                .conclude(false, Some(&before))
+                .expect("nothing to compare");
+            assert_eq!((model.lengths(), found.used), (&expected, expected));
+            assert_eq!((found.residual, found.is_as_described()), (None, false));
+            let is_told = found.to_string().contains("0.3162 m");
+            assert_eq!(is_told, expected == recorded, "{found}");
+        }
     }
 }

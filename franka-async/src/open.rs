@@ -221,7 +221,8 @@ async fn check_geometry(
         };
         comparison.look_at(&state?);
     }
-    comparison.conclude(builder.accept_geometry_error)
+    let before = builder.geometry_before.as_ref();
+    comparison.conclude(builder.accept_geometry_error, before)
 }
 
 /// Waits for a state that was not read: without a first one there is nothing to control.

@@ -42,6 +42,7 @@ impl Reconnector {
         states: Arc<watch::Sender<RobotState>>,
     ) -> Self {
         builder.versions = VersionPolicy::Exact(robot.version());
+        builder.geometry_before = Some(robot.geometry_check());
         Self {
             robot: robot.downgrade(),
             supervisor: robot.supervisor().clone(),
@@ -259,8 +260,11 @@ fn difference(expected: &Model, got: &Model) -> String {
     if expected.kind() != got.kind() {
         return format!("got {:?}, expected {:?}", got.kind(), expected.kind());
     }
+    if expected.lengths() != got.lengths() {
+        return "its description or its poses have other lengths than before".into();
+    }
     let what = match expected.joint_limits() == got.joint_limits() {
-        true => "masses or lengths",
+        true => "masses",
         false => "limits",
     };
     format!("its description has other {what} than before")

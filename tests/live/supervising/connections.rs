@@ -9,12 +9,16 @@ use franka_async::settings::{CollisionBehavior, Load};
 use franka_async::state::RobotMode;
 use franka_async::supervision::{Condition, EventKind};
 use franka_async::{Engage, MotionError, Pose, Realtime, Robot};
+use franka_model::geometry::Lengths;
 use franka_proto::Command;
-use franka_sim::{Sim, Tool};
+use franka_sim::arm::StateGeometry;
+use franka_sim::{Config, Sim, Tool};
 use franka_tests::PATIENCE;
 use tokio::time::{sleep, timeout};
 
-use super::{condition, connected, policy, restart, small_motion, start, supervised, told};
+use super::{
+    condition, connected, policy, restart, small_motion, start, started_at, supervised, told,
+};
 use crate::{SOON, alone, under_way};
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
@@ -212,15 +216,7 @@ async fn another_robot_in_the_place_of_the_first_is_refused() {
     let address = sim.addr();
     let robot = supervised(&sim, policy()).await;
     sim.stop().await;
-    let other = timeout(SOON, async {
-        loop {
-            match Sim::fer().ideal().bind(address).start().await {
-                Ok(other) => return other,
-                Err(_) => sleep(Duration::from_millis(5)).await,
-            }
-        }
-    });
-    let _other = other.await.expect("the port is free again");
+    let _other = started_at(address, || Sim::fer().ideal()).await;
     let reason = timeout(SOON, robot.closed()).await.expect("it gives up");
     assert!(
         matches!(reason, CloseReason::AnotherRobot { .. }),
@@ -228,6 +224,56 @@ async fn another_robot_in_the_place_of_the_first_is_refused() {
     );
     let error = robot.move_to(robot.pose()).await.unwrap_err();
     assert!(matches!(error, MotionError::ConnectionClosed { .. }));
+}
+
+/// A robot that describes other lengths than those that it computes its poses with.
+fn at_odds(tool: Tool) -> Sim {
+    let as_described = franka_sim::Robot::new(Config::default());
+    let urdf = as_described.description().map(str::to_owned);
+    let sim = Sim::fr3().ideal().virtual_time(PATIENCE).tool(tool);
+    sim.state_geometry(StateGeometry::RECORDED_FR3)
+        .configure(|config| config.urdf = urdf)
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_robot_that_reports_no_pose_when_it_is_back_is_the_same_robot() {
+    let _alone = alone();
+    let sim = at_odds(Tool::hand()).start().await.expect("it starts");
+    let address = sim.addr();
+    let robot = supervised(&sim, policy()).await;
+    let found = robot.geometry_check();
+    assert_eq!(found.described, Lengths::DESCRIBED);
+    assert_eq!(found.used, Lengths::RECORDED_FR3);
+    let mut events = robot.events();
+    sim.stop().await;
+
+    let mut unreported = Tool::hand();
+    unreported.f_t_ne[(0, 0)] = 2.0; // No rotation, and none in what the robot reports.
+    let sim = started_at(address, || at_odds(unreported)).await;
+    told(&mut events, connected).await;
+    let after = robot.geometry_check();
+    assert_eq!(after.residual, None, "{after}");
+    assert_eq!((after.described, after.used), (found.described, found.used));
+    assert!(after.to_string().contains("0.3162 m"), "{after}");
+    assert_eq!(robot.model().lengths(), &found.used);
+    robot.shutdown().await;
+    sim.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_robot_with_poses_of_other_lengths_is_another_one() {
+    let _alone = alone();
+    let sim = start(Sim::fr3()).await;
+    let address = sim.addr();
+    let robot = supervised(&sim, policy()).await;
+    sim.stop().await;
+    let _other = started_at(address, || at_odds(Tool::hand())).await;
+    let reason = timeout(SOON, robot.closed()).await.expect("it gives up");
+    let text = reason.to_string();
+    assert!(
+        matches!(reason, CloseReason::AnotherRobot { .. }) && text.contains("other lengths"),
+        "{text}"
+    );
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]

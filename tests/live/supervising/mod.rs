@@ -42,11 +42,15 @@ pub(crate) async fn start(sim: Sim) -> Running {
 
 /// A simulator in the place of one that was stopped.
 pub(crate) async fn restart(address: SocketAddr) -> Running {
+    let sim = || Sim::fr3().ideal().tool(Tool::hand());
+    started_at(address, || sim().virtual_time(PATIENCE)).await
+}
+
+/// This simulator in the place of one that was stopped.
+pub(crate) async fn started_at(address: SocketAddr, sim: impl Fn() -> Sim) -> Running {
     timeout(SOON, async {
         loop {
-            let sim = Sim::fr3().ideal().tool(Tool::hand());
-            let sim = sim.virtual_time(PATIENCE).bind(address);
-            match sim.start().await {
+            match sim().bind(address).start().await {
                 Ok(sim) => return sim,
                 // The port is not free at once.
                 Err(_) => sleep(Duration::from_millis(5)).await,
