@@ -180,7 +180,8 @@ impl Comparison {
 
 #[cfg(test)]
 mod tests {
-    use franka_model::{EndEffector, Frame, READY, transform};
+    use franka_model::{EndEffector, Frame, JointVector, READY, transform};
+    use franka_proto::Version;
 
     use super::*;
 
@@ -230,6 +231,56 @@ mod tests {
                 let is_told = found.to_string().contains(lengths);
                 assert_eq!(is_told, described != robots && robots == &all[1], "{found}");
             }
+        }
+    }
+
+    /// A state of a Franka Emika Robot with the Hand, of 2017, as the documentation of the Franka
+    /// Control Interface prints it: with six digits.
+    #[test]
+    #[expect(clippy::approx_constant, reason = "four digits are reported")]
+    fn a_printed_state_of_a_real_robot_has_the_described_lengths() {
+        #[rustfmt::skip]
+        let state = RobotState {
+            q: [0.0167305, -0.762614, -0.0207622, -2.34352, -0.0305686, 1.53975, 0.753872],
+            O_T_EE: [
+                0.998578, 0.0328747, -0.0417381, 0.0, 0.0335224, -0.999317, 0.0149157, 0.0,
+                -0.04122, -0.016294, -0.999017, 0.0, 0.305468, -0.00814133, 0.483198, 1.0,
+            ],
+            F_T_EE: [
+                0.7071, -0.7071, 0.0, 0.0, 0.7071, 0.7071, 0.0, 0.0,
+                0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.1034, 1.0,
+            ],
+            ..RobotState::default()
+        };
+        let (model, found) = checked(Model::fer(), &[state], false).expect("its own lengths");
+        assert_eq!(&model, Model::fer());
+        assert!(found.is_as_described(), "{found}");
+        let other = Model::fer().clone().with_lengths(Lengths::RECORDED_FR3);
+        let residual = residual(&other, &state).expect("a pose");
+        assert!(residual > 1e-4, "{residual:e}");
+    }
+
+    /// The least favourable state: in `f32`, with a tool that reaches a metre from the flange.
+    #[test]
+    fn rounding_on_the_wire_is_half_of_what_is_accepted() {
+        let model = Model::fr3();
+        let mut tool = transform::array(&nalgebra::Isometry3::identity());
+        (tool[12], tool[14]) = (0.6, 0.8);
+        for k in 0..500 {
+            let q = READY + JointVector::from_fn(|i, _| (1.7 * f64::from(k) + i as f64).sin());
+            let ee = EndEffector::from_arrays(&tool, &RobotState::default().EE_T_K);
+            let pose = model.pose(Frame::EndEffector, &q, &ee);
+            let exact = RobotState {
+                q: q.into(),
+                F_T_EE: tool,
+                O_T_EE: transform::array(&transform::isometry(&pose).expect("rigid")),
+                ..RobotState::default()
+            };
+            let mut bytes = [0; RobotState::MAX_SIZE];
+            let length = exact.encode(Version::V10, &mut bytes).expect("room for it");
+            let state = RobotState::decode(Version::V10, &bytes[..length]).expect("a state");
+            let residual = residual(model, &state).expect("a pose");
+            assert!(residual < 0.5 * RESIDUAL_MAX, "{residual:e} m");
         }
     }
 
