@@ -196,6 +196,7 @@ impl Recorder {
         let described = recorder::Robot {
             name: track.name.clone(),
             kind: robot.model().kind(),
+            lengths: *robot.model().lengths(),
             urdf: urdf.ok().filter(|text| !text.is_empty()),
             metadata: metadata(robot, &track),
             // What is asked for next may come before the first cycle.

@@ -1,6 +1,6 @@
 //! The messages of a cycle for viewers: poses, joints and the external force.
 
-use franka_model::geometry::{FLANGE, JOINT_ORIGINS};
+use franka_model::geometry::{FLANGE, Lengths};
 use franka_model::transform;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
@@ -16,6 +16,7 @@ use crate::{Cycle, HostTime};
 #[derive(Debug)]
 pub(super) struct Frames {
     prefix: String,
+    lengths: Lengths,
 }
 
 impl Frames {
@@ -25,7 +26,10 @@ impl Frames {
             "" => arm.to_owned(),
             name => format!("{name}_{arm}"),
         };
-        Self { prefix }
+        Self {
+            prefix,
+            lengths: robot.lengths,
+        }
     }
 
     fn link(&self, number: usize) -> String {
@@ -49,7 +53,8 @@ impl Frames {
                 rotation: Some(quaternion(&pose.rotation)),
             });
         };
-        for (joint, (origin, q)) in JOINT_ORIGINS.iter().zip(cycle.state.q).enumerate() {
+        let origins = self.lengths.joint_origins();
+        for (joint, (origin, q)) in origins.iter().zip(cycle.state.q).enumerate() {
             let turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), origin.roll)
                 * UnitQuaternion::from_axis_angle(&Vector3::z_axis(), q);
             let pose = Isometry3::from_parts(Translation3::from(origin.translation), turn);
@@ -201,7 +206,9 @@ mod tests {
 
     #[test]
     fn the_frames_lead_from_the_base_to_the_end_effector_of_the_model() {
-        let robot = Robot::new(RobotKind::Fr3);
+        let mut robot = Robot::new(RobotKind::Fr3);
+        robot.lengths = Lengths::RECORDED_FR3;
+        let model = Model::fr3().clone().with_lengths(robot.lengths);
         let mut cycle = Cycle::default();
         cycle.state.q = [0.1, -0.7, 0.2, -2.3, 0.3, 1.5, 0.7];
         cycle.state.F_T_EE[14] = 0.1034;
@@ -221,7 +228,7 @@ mod tests {
             .fold(Isometry3::identity(), |pose, next| pose * next);
         let ee = EndEffector::from_arrays(&cycle.state.F_T_EE, &cycle.state.EE_T_K);
         let q = cycle.state.q.into();
-        let expected = Model::fr3().pose(Frame::EndEffector, &q, &ee);
+        let expected = model.pose(Frame::EndEffector, &q, &ee);
         let error = (transform::matrix(&tip) - expected).amax();
         assert!(error < 1e-12, "{error}");
     }

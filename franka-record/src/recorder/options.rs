@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use franka_model::RobotKind;
+use franka_model::geometry::Lengths;
 
 use super::error::RecordError;
 
@@ -193,6 +194,8 @@ pub struct Robot {
     pub name: String,
     /// The kind of robot.
     pub kind: RobotKind,
+    /// Lengths of its links, for viewers: those of the vendor's description by default.
+    pub lengths: Lengths,
     /// Its description, if known; attached to the file.
     pub urdf: Option<String>,
     /// Other known facts: address, version, options. For the metadata.
@@ -208,6 +211,7 @@ impl Robot {
         Self {
             name: String::new(),
             kind,
+            lengths: Lengths::DESCRIBED,
             urdf: None,
             metadata: BTreeMap::new(),
             robot_time: 0,
