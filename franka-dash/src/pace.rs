@@ -2,20 +2,22 @@
 
 use franka_async::goal::Budget;
 use franka_async::model::Model;
-use franka_async::model::geometry::{FLANGE, JOINT_ORIGINS};
+use franka_async::model::geometry::{FLANGE, Lengths};
 use franka_async::nalgebra::Vector3;
 use franka_async::state::RobotState;
 
 /// Half the width of a hand, which is more than the radius of any link, `[m]`.
 const BODY: f64 = 0.11;
 
-/// Returns a bound on the distance of any point of the arm from the axis of each joint, `[m]`, at
-/// any posture, with a tool that ends `tool` from the flange: the sum of the lengths in between.
-fn reach(tool: f64) -> [f64; 7] {
+/// Returns a bound on the distance of any point of an arm with these lengths from the axis of each
+/// joint, `[m]`, at any posture, with a tool that ends `tool` from the flange: the sum of the
+/// lengths in between.
+fn reach(lengths: &Lengths, tool: f64) -> [f64; 7] {
+    let origins = lengths.joint_origins();
     let mut rest = FLANGE + tool + BODY;
     let mut reach = [rest; 7];
     for joint in (0..6).rev() {
-        rest += JOINT_ORIGINS[joint + 1].translation.norm();
+        rest += origins[joint + 1].translation.norm();
         reach[joint] = rest;
     }
     reach
@@ -28,7 +30,7 @@ fn tool_length(state: &RobotState) -> f64 {
 /// Returns the budget for a joint motion by `way`, `[rad]`, such that no point of the arm is faster
 /// than `speed`, `[m/s]`. Each joint's share of the speed equals its share of the way.
 pub(crate) fn joints(model: &Model, state: &RobotState, way: [f64; 7], speed: f64) -> Budget {
-    let reach = reach(tool_length(state));
+    let reach = reach(model.lengths(), tool_length(state));
     let way = way.map(|joint| joint.abs().max(SHORTEST));
     let swept: f64 = (0..7).map(|i| way[i] * reach[i]).sum();
     let mut budget = Budget::of(model.joint_limits());
@@ -77,7 +79,7 @@ mod tests {
     #[test]
     fn no_point_of_the_guard_capsules_is_further_from_an_axis_than_the_reach() {
         let model = Model::fr3();
-        let reach = reach(0.1034);
+        let reach = reach(model.lengths(), 0.1034);
         for q in postures(model) {
             let placed = Shape::covering(RobotKind::Fr3).with_hand().at(&q);
             for (joint, reach) in reach.iter().enumerate() {

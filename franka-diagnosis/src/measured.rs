@@ -107,7 +107,7 @@ pub(super) fn power(evidence: &Evidence<'_>) -> Option<Finding> {
 /// by the vendor's capsules.
 pub(super) fn nearest_bodies(evidence: &Evidence<'_>) -> Option<Finding> {
     let state = evidence.last()?;
-    let arm = Shape::vendor();
+    let arm = Shape::vendor().with_lengths(*evidence.model.lengths());
     let shape = if state.m_ee > 0.0 {
         arm.with_hand()
     } else {

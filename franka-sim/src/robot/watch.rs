@@ -37,7 +37,8 @@ pub(super) struct Sight<'a> {
 
 impl Watch {
     pub(super) fn new(config: &Config) -> Self {
-        let arm = Shape::vendor();
+        let lengths = config.chosen_arm().body.state_geometry.lengths;
+        let arm = Shape::vendor().with_lengths(lengths);
         let shape = match config.tool.has_hand_shape {
             true => arm.with_hand(),
             false => arm,
