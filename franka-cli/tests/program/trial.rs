@@ -83,6 +83,16 @@ fn a_trial_ends_in_a_report_and_a_recording() {
             }
         }
         assert_eq!(found(&trial, "at rest", "limits")["verdict"], "good");
+        // The lengths that this robot describes, and reports its poses with.
+        let geometry = found(&trial, "at rest", "geometry");
+        let lengths = match kind {
+            RobotKind::Fr3 => (0.3162, 0.3842),
+            _ => (0.316, 0.384),
+        };
+        let own = &geometry["figures"][0];
+        assert_eq!(geometry["verdict"], "good", "{geometry}");
+        assert_eq!(own["upper_arm"], lengths.0);
+        assert_eq!(own["forearm"], lengths.1);
         assert!(figure(found(&trial, "hold", "drift"), "translation_mm") < 0.5);
         assert!(found(&trial, "at rest", "wrench")["figures"]["wrench"].is_array());
         // The recording is complete, but does not contain the name of this computer.

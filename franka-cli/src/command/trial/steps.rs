@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use anyhow::Context as _;
+use franka_async::connection::GeometryCheck;
 use franka_async::error::TareError;
 use franka_async::model::{JointVector, Twist};
 use franka_async::nalgebra::Vector3;
@@ -65,9 +66,10 @@ impl Steps<'_> {
             "O_T_EE is {um:.2} um off the model with {:.4} and {:.4} m",
             own.upper_arm, own.forearm
         );
-        let fitting = known.iter().find(|(_, gap)| *gap <= GAP);
+        let most = GeometryCheck::RESIDUAL_MAX;
+        let fitting = known.iter().find(|(_, gap)| *gap <= most);
         let (verdict, text) = match fitting {
-            _ if gap <= GAP => (Verdict::Good, of_own),
+            _ if gap <= most => (Verdict::Good, of_own),
             Some((other, gap)) => {
                 let um = gap * 1e6;
                 let (upper, fore) = (other.upper_arm, other.forearm);
@@ -467,9 +469,6 @@ const HOLD: Duration = Duration::from_secs(10);
 
 /// Averaging time of a position, `[ms]`.
 const MOMENT: u64 = 200;
-
-/// Distance of reported poses from the model that comes from the digits of an `f32`, `[m]`.
-const GAP: f64 = 2e-6;
 
 /// Drift while the arm is held, `[m]`: limits for good and bad. The driver aims at less than the
 /// first.
