@@ -66,7 +66,7 @@ pub struct Lockstep {
     pub link: Link,
     /// The driver, without its sockets.
     pub client: DriverStack,
-    /// The client's model of the robot, with the limits that the robot enforces.
+    /// The client's model of the robot, with the lengths and limits that the robot describes.
     model: Model,
     /// Absent once a test's own program has run, which may command anything.
     guard: Option<CommandGuard>,
@@ -90,9 +90,11 @@ impl Lockstep {
     /// # Panics
     /// As [`Self::new`].
     pub fn with_robot(robot: Robot) -> Self {
-        let limits = *robot.model().joint_limits();
+        let robots = robot.model();
+        let (lengths, limits) = (*robots.lengths(), *robots.joint_limits());
         let model = Model::of(robot.config().kind)
             .clone()
+            .with_lengths(lengths)
             .with_joint_limits(limits);
         let version = robot.version();
         let mut this = Self {

@@ -28,11 +28,12 @@ impl Lockstep {
             f_t_ee: transform::matrix(&rigid(&self.robot.state().F_T_EE)),
             ..EndEffector::default()
         };
-        pose_of(q, &ee)
+        let pose = self.robot.model().pose(Frame::EndEffector, q, &ee);
+        transform::isometry(&pose).expect("a rigid end effector")
     }
 }
 
-/// The pose of the end effector at `q`; the kinematics of all kinds of robot are the same.
+/// The pose of the end effector at `q`, with the lengths that both robots are described with.
 pub fn pose_of(q: &JointVector, ee: &EndEffector) -> Isometry3<f64> {
     let pose = Model::fr3().pose(Frame::EndEffector, q, ee);
     transform::isometry(&pose).expect("a rigid end effector")
