@@ -41,10 +41,10 @@ impl Sim {
     /// on the wall. `arm`, `ideal`, `nominal`, `realistic` or `bad`: a good arm for tests that
     /// need exactness, or worse ones; with `arm_seed`, one that is drawn at random from such
     /// arms; `ideal=True` is `arm="ideal"`. `limits`, `5.9` (the default) or `before-5.9`: the
-    /// joint limits of the robot's system, of an FR3. `state_geometry`, `described` (the default),
-    /// `recorded` (upper arm 0.3162 m, forearm 0.3842 m) or `random` (1 mm and 3 mrad off, by
-    /// `seed`): what it computes its own poses with. `seed` of all other randomness. `q`,
-    /// joint positions at the start, 7 numbers, rad, where the joints can be. `tool`, `hand` or a
+    /// joint limits of the robot's system, of an FR3. `state_geometry`, `recorded` (upper arm 0.3162
+    /// m, forearm 0.3842 m; by default, unless `ideal`), `described` (0.316 m, 0.384 m) or `random`
+    /// (1 mm and 3 mrad off, by `seed`): what it computes its own poses with. `seed` of all other
+    /// randomness. `q`, joint positions at the start, 7 numbers, rad, where the joints can be. `tool`, `hand` or a
     /// tuple of its frame on the flange (a pose), its mass, kg, and its centre of mass in the
     /// flange frame, m: what the robot knows of. `load`, a tuple of mass and centre: what it does
     /// not know of. `hand` serves a Franka Hand and mounts it, `vacuum_gripper` a vacuum gripper,

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import connection, outcome, until
 
-from franka_async import ConnectError, ControlError, FrankaError, Gripper, MotionError, Network, Robot, Sim, VacuumGripper, sync
+from franka_async import ConnectError, ControlError, FrankaError, Gripper, Model, MotionError, Network, Robot, Sim, VacuumGripper, sync
 
 
 def test_it_runs_in_both_kinds_of_blocks() -> None:
@@ -68,9 +68,14 @@ def test_the_limits_are_those_of_the_system() -> None:
 
 
 def test_a_robot_may_compute_its_poses_with_other_lengths() -> None:
-    with Sim.fr3(virtual_time=True, ideal=True, state_geometry="recorded") as sim, sync.Robot(sim.address, realtime="ignore") as robot:
+    with Sim.fr3(virtual_time=True) as sim, sync.Robot(sim.address, realtime="ignore") as robot:
         state = robot.state()
         np.testing.assert_allclose(robot.model().pose("ee", state.q, state.F_T_EE), state.O_T_EE, atol=2e-6)
+        assert np.abs(Model.fr3().pose("ee", state.q, state.F_T_EE) - state.O_T_EE).max() > 5e-5
+    described = Sim.fr3(virtual_time=True, state_geometry="described")
+    with described as sim, sync.Robot(sim.address, realtime="ignore") as robot:
+        state = robot.state()
+        np.testing.assert_allclose(Model.fr3().pose("ee", state.q, state.F_T_EE), state.O_T_EE, atol=2e-6)
 
 
 def test_a_robot_with_an_unknown_geometry_is_refused_unless_that_is_accepted() -> None:

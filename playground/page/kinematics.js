@@ -1,4 +1,5 @@
-// Where the links are: `franka-model/src/geometry.rs` has the same lengths, for both robots.
+// Where the links are: `franka-model/src/geometry.rs` has the same lengths. The 0.2 mm by which those of Research 3 are longer are not
+// seen.
 
 import * as THREE from "three";
 

@@ -9,6 +9,7 @@ use franka_async::{MotionError, Realtime, Robot};
 use franka_model::geometry::Lengths;
 use franka_model::limits::JointLimits;
 use franka_model::{Model, READY, RobotKind};
+use franka_rt::session::geometry::residual;
 use franka_sim::arm::{Arm, StateGeometry, SystemLimits};
 use franka_sim::{Config, Sim};
 
@@ -234,6 +235,32 @@ async fn the_geometry_is_that_of_the_poses_that_the_robot_reports() {
     assert_eq!((check.described, check.used), (described, described));
     assert!(!check.agrees(), "{check:?}");
     robot.shutdown().await;
+}
+
+/// As a program meets them: without options.
+#[tokio::test]
+async fn simulated_robots_have_the_lengths_of_the_recorded_ones() {
+    for (sim, expected) in [
+        (Sim::fr3(), Lengths::RECORDED_FR3),
+        (Sim::fer(), Lengths::DESCRIBED),
+        (
+            Sim::fr3().state_geometry(StateGeometry::DESCRIBED),
+            Lengths::DESCRIBED,
+        ),
+    ] {
+        let (robot, _sim) = connected(sim).await;
+        let check = robot.geometry_check();
+        assert_eq!((check.described, check.used), (expected, expected));
+        assert!(check.is_as_described(), "{check}");
+        let state = robot.state();
+        let model = Model::of(robot.model().kind()).clone();
+        let residual = |lengths| residual(&model.clone().with_lengths(lengths), &state);
+        assert!(residual(expected).is_some_and(|off| off < 2e-6));
+        for other in Lengths::KNOWN.into_iter().filter(|it| *it != expected) {
+            assert!(residual(other).is_some_and(|off| off > 5e-5));
+        }
+        robot.shutdown().await;
+    }
 }
 
 #[tokio::test]

@@ -3,6 +3,7 @@
 use franka_async::goal::target_range_of;
 use franka_async::nalgebra::{Matrix4, Vector3};
 use franka_model::differential_ik::{DifferentialIk, JointBox};
+use franka_model::geometry::Lengths;
 use franka_model::limits::JointLimits;
 use franka_model::{CYCLE, EndEffector, Frame, JointVector, Model, Twist, rotation, transform};
 use franka_otg::{Generator, Limits, State, Synchronisation};
@@ -85,8 +86,8 @@ pub(super) enum Control {
 }
 
 impl Control {
-    /// At rest at the desired positions `q`.
-    pub(super) fn new(settings: &Settings, q: &JointVector) -> Self {
+    /// At rest at the desired positions `q`, with an arm of these lengths.
+    pub(super) fn new(settings: &Settings, lengths: Lengths, q: &JointVector) -> Self {
         let model = settings.model();
         match settings.control {
             Kind::JointVelocity => Self::Velocity(Box::new(Velocity {
@@ -100,7 +101,7 @@ impl Control {
                 ddq: JointVector::zeros(),
             })),
             Kind::JointDelta | Kind::CartesianDelta => {
-                Self::Position(Box::new(Position::new(settings, q)))
+                Self::Position(Box::new(Position::new(settings, lengths, q)))
             }
             Kind::Torque => Self::Torque(Torque {
                 limits: model.joint_limits(),
@@ -177,7 +178,7 @@ impl Velocity {
 
 /// Joint targets that actions move, and the way to them.
 pub(super) struct Position {
-    model: &'static Model,
+    model: Model,
     ee: EndEffector,
     is_cartesian: bool,
     /// `[rad]`
@@ -188,8 +189,8 @@ pub(super) struct Position {
 }
 
 impl Position {
-    fn new(settings: &Settings, q: &JointVector) -> Self {
-        let model = settings.model();
+    fn new(settings: &Settings, lengths: Lengths, q: &JointVector) -> Self {
+        let model = settings.model().clone().with_lengths(lengths);
         let limits = model.joint_limits();
         let limits = Limits::from_arrays(
             (limits.velocity * settings.speed).data.0[0],

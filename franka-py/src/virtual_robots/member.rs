@@ -59,7 +59,8 @@ impl Member {
             ..Config::default()
         });
         begin(&mut robot, settings.control)?;
-        let control = Control::new(settings, &JointVector::from(robot.state().q_d));
+        let lengths = *robot.model().lengths();
+        let control = Control::new(settings, lengths, &robot.state().q_d.into());
         let command = [0; RobotCommand::MAX_SIZE];
         Ok(Self {
             robot,

@@ -98,8 +98,8 @@ pub struct Family {
     /// Of each coordinate of the position of a joint's frame, `[m]`.
     pub length_error: Distribution,
     /// Length of upper arm and forearm above the vendor's description, in the states of a Franka
-    /// Research 3 and in the description that it serves, `[m]`, drawn once. A Franka Emika Robot
-    /// has the described lengths.
+    /// Research 3 and in the description that it serves, `[m]`, drawn once; 0.2 mm makes
+    /// [`StateGeometry::RECORDED_FR3`]. A Franka Emika Robot has the described lengths.
     pub state_length_excess: Distribution,
     /// Error of each coordinate of a joint frame's rotation vector in the states, `[rad]`, in the
     /// described frame.

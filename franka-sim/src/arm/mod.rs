@@ -56,7 +56,8 @@ pub struct Arm {
 
 impl Arm {
     /// An arm that is as its model says: rigid joints, a perfect torque loop, perfect sensors, and
-    /// a smooth friction of a twentieth of the published one, which lets it creep to its target.
+    /// a smooth friction of a twentieth of the published one, which lets it creep to its target. Its
+    /// lengths are those of the vendor's description, also as a Franka Research 3.
     ///
     /// For tests that need exactness. No real arm is like this.
     pub fn ideal(kind: RobotKind) -> Self {

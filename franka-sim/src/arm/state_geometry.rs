@@ -19,10 +19,12 @@ pub struct StateGeometry {
 }
 
 impl StateGeometry {
-    /// Geometry of the vendor's description.
+    /// Geometry of the vendor's description: of Franka Emika Robots, and of
+    /// [ideal](super::Arm::ideal) arms.
     pub const DESCRIBED: Self = Self::with(Lengths::DESCRIBED);
 
-    /// Geometry of the Franka Research 3 whose states were recorded: [`Lengths::RECORDED_FR3`].
+    /// Geometry of the Franka Research 3 whose states were recorded, [`Lengths::RECORDED_FR3`]: of
+    /// all arms of this kind in the [families](super::Family) that come with the simulator.
     pub const RECORDED_FR3: Self = Self::with(Lengths::RECORDED_FR3);
 
     /// Joint frames that are off the described ones by 1 mm and 3 mrad altogether (root of the sum

@@ -81,7 +81,8 @@ pub struct Arguments {
     pub limits: Option<LimitsKind>,
 
     /// Geometry of the reported poses and of the robot's inverse kinematics, in place of the arm's
-    /// own. The served description has its lengths. Errors of the links themselves come from --arm.
+    /// own: `recorded` for an FR3, `described` for an FER and for `--arm ideal`. The served
+    /// description has its lengths. Errors of the links themselves come from --arm.
     #[arg(long, value_enum)]
     pub state_geometry: Option<GeometryKind>,
 

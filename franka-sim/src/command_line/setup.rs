@@ -256,10 +256,19 @@ mod tests {
             config.arm.expect("one").body.state_geometry
         };
         let described = StateGeometry::DESCRIBED;
-        assert_eq!(geometry(&[]), described);
+        let recorded = StateGeometry::RECORDED_FR3;
+        for (arguments, expected) in [
+            (&[][..], recorded),
+            (&["--arm-seed", "7"], recorded),
+            (&["--arm", "bad"], recorded),
+            (&["--arm", "ideal"], described),
+            (&["--robot", "fer"], described),
+        ] {
+            assert_eq!(geometry(arguments), expected, "{arguments:?}");
+        }
         for (name, expected) in [
             ("described", described),
-            ("recorded", StateGeometry::RECORDED_FR3),
+            ("recorded", recorded),
             ("random", StateGeometry::random(3)),
         ] {
             let chosen = geometry(&["--state-geometry", name, "--seed", "3"]);
