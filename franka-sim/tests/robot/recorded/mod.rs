@@ -3,6 +3,7 @@
 //! A recording is too large to stand here. `rows` has some of its states, and what was read from
 //! all of them.
 
+mod four_gains;
 mod rows;
 
 use franka_model::{
