@@ -61,8 +61,10 @@ use std::sync::OnceLock;
 use std::time::Duration;
 
 use futures::{Stream, StreamExt};
-use tokio::runtime::{Builder, Runtime};
+use tokio::runtime::Runtime;
 use tokio::sync::watch;
+
+use crate::world;
 
 /// Waits for a future on the calling thread. For everything in this crate that can be awaited.
 pub trait Wait: IntoFuture + Sized {
@@ -83,7 +85,7 @@ pub trait Wait: IntoFuture + Sized {
     fn wait_for(self, timeout: Duration) -> Option<Self::Output> {
         let future = self.into_future();
         // The timer begins within the runtime.
-        background().block_on(async move { tokio::time::timeout(timeout, future).await.ok() })
+        background().block_on(async move { world::timeout(timeout, future).await.ok() })
     }
 }
 
@@ -138,12 +140,5 @@ pub fn targets<T>(first: T) -> (Targets<T>, watch::Receiver<T>) {
 
 fn background() -> &'static Runtime {
     static BACKGROUND: OnceLock<Runtime> = OnceLock::new();
-    BACKGROUND.get_or_init(|| {
-        Builder::new_multi_thread()
-            .worker_threads(1)
-            .thread_name("franka-async")
-            .enable_all()
-            .build()
-            .expect("a thread for the background")
-    })
+    BACKGROUND.get_or_init(|| world::background().expect("a thread for the background"))
 }

@@ -9,8 +9,9 @@ use franka_proto::framing::{self, FrameError, Header, Message};
 use franka_proto::gripper;
 use franka_rt::lifecycle::CloseReason;
 use futures::SinkExt;
-use tokio::net::TcpStream;
 use tokio_util::codec::{Decoder, Encoder, Framed};
+
+use crate::world::{self, Stream};
 
 /// Time in which a request has to leave. Source: `SO_SNDTIMEO` of libfranka's command socket.
 const SEND_TIMEOUT: Duration = Duration::from_secs(1);
@@ -51,10 +52,10 @@ impl Frame {
 
 /// Sends a request. An error says why the connection is of no more use.
 pub(crate) async fn send(
-    stream: &mut Framed<TcpStream, MessageCodec>,
+    stream: &mut Framed<Stream, MessageCodec>,
     request: Outgoing,
 ) -> Result<(), CloseReason> {
-    match tokio::time::timeout(SEND_TIMEOUT, stream.send(request)).await {
+    match world::timeout(SEND_TIMEOUT, stream.send(request)).await {
         Ok(Ok(())) => Ok(()),
         Ok(Err(StreamError::Io(error))) => Err(failed("TCP send bytes", &error)),
         Ok(Err(StreamError::Frame(error))) => Err(StreamError::from(error).into()),

@@ -11,15 +11,13 @@ use std::time::Duration;
 
 use franka_proto::client::{Event, Session};
 use franka_proto::{
-    Command, CommandId, MoveStatus, Refusal, Reply, Request, Violation, VirtualWall,
+    Command, CommandId, MoveStatus, Refusal, Reply, Request, RobotMode, Violation, VirtualWall,
 };
 use franka_rt::driver::MotionId;
 use franka_rt::lifecycle::CloseReason;
 use futures::StreamExt;
-use tokio::net::TcpStream;
 use tokio::sync::{mpsc, oneshot};
 use tokio::task::JoinHandle;
-use tokio::time::Instant;
 use tokio_util::codec::Framed;
 use tokio_util::sync::CancellationToken;
 
@@ -28,7 +26,7 @@ use crate::codec::{self, Frame, MessageCodec};
 use crate::error::CommandError;
 #[cfg(feature = "record")]
 use crate::journal::{Journal, What};
-use crate::newest_state::Newest;
+use crate::world::{self, Instant, Stream};
 
 /// Requests that may wait for the task. A caller beyond that waits for room.
 const CAPACITY: usize = 32;
@@ -115,11 +113,12 @@ enum ReplyTo {
 }
 
 impl Channel {
-    /// Starts the task on a connection whose handshake is done.
+    /// Starts the task on a connection whose handshake is done. Refusals name the mode that `mode`
+    /// returns.
     pub(crate) fn start(
-        stream: Framed<TcpStream, MessageCodec>,
+        stream: Framed<Stream, MessageCodec>,
         session: Session,
-        newest: Newest,
+        mode: impl Fn() -> RobotMode + Send + 'static,
     ) -> (Self, Connection, mpsc::UnboundedReceiver<Report>) {
         let (calls, queue) = mpsc::channel(CAPACITY);
         let (motions, first) = mpsc::unbounded_channel();
@@ -129,12 +128,12 @@ impl Channel {
         let task = CommandTask {
             stream,
             session,
-            newest,
+            mode: Box::new(mode),
             reports,
             pending: HashMap::new(),
         };
         let close = CancellationToken::new();
-        let task = tokio::spawn(task.run((first, queue), closing.clone(), close.clone()));
+        let task = world::spawn(task.run((first, queue), closing.clone(), close.clone()));
         let channel = Self {
             calls,
             motions,
@@ -237,9 +236,9 @@ type Queues = (
 );
 
 struct CommandTask {
-    stream: Framed<TcpStream, MessageCodec>,
+    stream: Framed<Stream, MessageCodec>,
     session: Session,
-    newest: Newest,
+    mode: Box<dyn Fn() -> RobotMode + Send>,
     reports: mpsc::UnboundedSender<Report>,
     pending: HashMap<CommandId, Pending>,
 }
@@ -280,7 +279,7 @@ impl CommandTask {
                 .min();
             let deadline = async {
                 match until {
-                    Some(until) => tokio::time::sleep_until(until).await,
+                    Some(until) => world::sleep_until(until).await,
                     None => std::future::pending().await,
                 }
             };
@@ -309,7 +308,7 @@ impl CommandTask {
                     }
                     None => return CloseReason::ClosedByUs,
                 },
-                () = deadline => self.on_deadline(Instant::now()),
+                () = deadline => self.on_deadline(world::now()),
             }
         }
     }
@@ -343,7 +342,7 @@ impl CommandTask {
             }
             ReplyTo::Motion(_) => self.wait(id, command, reply_to, None),
             ReplyTo::Caller { deadline, .. } => {
-                self.wait(id, command, reply_to, Some(Instant::now() + deadline));
+                self.wait(id, command, reply_to, Some(world::now() + deadline));
             }
         }
         codec::send(&mut self.stream, outgoing).await
@@ -407,7 +406,7 @@ impl CommandTask {
         else {
             return;
         };
-        let mode = self.newest.state().robot_mode;
+        let mode = (self.mode)();
         let outcome = match (Refusal::from_reply(command, reply, mode), reply) {
             (Some(refusal), _) => Err(refusal.into()),
             (None, Reply::Model { text, .. }) => Ok(Response::Model(text.to_vec())),
@@ -451,5 +450,84 @@ impl CommandTask {
                 }));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use franka_proto::{RecoveryStatus, SetterStatus, Version, server};
+    use futures::SinkExt;
+
+    use super::*;
+    use crate::handshake::shake_hands;
+
+    /// No byte leaves the process, and time passes only while everything waits: a deadline of half
+    /// a minute is met to the millisecond, and takes none.
+    #[tokio::test(start_paused = true)]
+    async fn a_robot_in_memory_answers_on_a_clock_that_is_counted() {
+        let (ours, theirs) = tokio::io::duplex(4096);
+        let [mut stream, mut robot] = [ours, theirs].map(|end| {
+            let end: Stream = Box::new(end);
+            Framed::new(end, MessageCodec::ROBOT)
+        });
+        let robot = world::spawn(async move {
+            let mut session = server::Session::new(Version::V10);
+            let mut recoveries = 0;
+            while let Some(Ok(frame)) = robot.next().await {
+                let reply = match session.on_message(frame.message()) {
+                    Ok(server::Event::Connect { reply, .. }) => reply,
+                    Ok(server::Event::Request { id, request }) => {
+                        let reply = match request {
+                            // Once it stays silent.
+                            Request::AutomaticErrorRecovery if recoveries == 0 => {
+                                recoveries += 1;
+                                continue;
+                            }
+                            Request::AutomaticErrorRecovery => {
+                                world::sleep(Duration::from_secs(29)).await;
+                                Reply::Recovery(RecoveryStatus::Success)
+                            }
+                            _ => Reply::Setter(SetterStatus::CommandNotPossibleRejected),
+                        };
+                        session.reply(id, reply).expect("it fits the request")
+                    }
+                    other => panic!("{other:?}"),
+                };
+                robot.send(reply).await.expect("the client is there");
+            }
+        });
+
+        let mut session = Session::new(Version::V10);
+        let shaken = shake_hands(&mut stream, &mut session, 1).await;
+        shaken.expect("both speak version 10");
+        let (channel, connection, _reports) = Channel::start(stream, session, || RobotMode::Reflex);
+        let recovery = async || {
+            let begin = world::now();
+            let limit = Duration::from_secs(30);
+            let answer = channel.call(Request::AutomaticErrorRecovery, limit).await;
+            (answer, (world::now() - begin).as_secs_f64().round())
+        };
+        let (answer, seconds) = recovery().await;
+        assert!(
+            matches!(answer, Err(CommandError::Timeout { .. })) && seconds == 30.0,
+            "{answer:?} after {seconds} s"
+        );
+        let (answer, seconds) = recovery().await;
+        assert!(
+            answer.is_ok() && seconds == 29.0,
+            "{answer:?} after {seconds} s"
+        );
+
+        let guiding = Request::SetGuidingMode {
+            guiding_mode: [true; 6],
+            nullspace: true,
+        };
+        let refused = channel.call(guiding, Duration::from_secs(1)).await;
+        let Err(CommandError::Refused(refusal)) = refused else {
+            panic!("{refused:?}");
+        };
+        assert_eq!(refusal.mode(), RobotMode::Reflex);
+        connection.close().await;
+        robot.await.expect("it saw the end of the stream");
     }
 }

@@ -16,6 +16,7 @@ use crate::open::{Opened, open};
 use crate::reconnect::Reconnector;
 use crate::robot::Robot;
 use crate::supervisor::Supervisor;
+use crate::world;
 
 impl Robot {
     /// Connects with the options that [`Robot::builder`] begins with.
@@ -101,7 +102,7 @@ async fn connect(mut builder: Builder) -> Result<Robot, ConnectError> {
     span.in_scope(|| bridge.start(cancellation));
     if let Some(requests) = requests {
         let reconnector = Reconnector::new(&robot, builder, states);
-        tokio::spawn(reconnector.run(requests, alive).instrument(span));
+        world::spawn(reconnector.run(requests, alive).instrument(span));
     }
     Ok(robot)
 }

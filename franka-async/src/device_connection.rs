@@ -12,12 +12,9 @@ use std::net::{IpAddr, SocketAddr};
 use franka_proto::client::{Event, Session};
 use franka_proto::gripper::{Failure, Reply};
 use franka_proto::{CommandId, DecodeError, Protocol, Violation, gripper, vacuum};
-use franka_rt::exchange;
 use franka_rt::lifecycle::CloseReason;
 use futures::StreamExt;
-use tokio::net::{TcpStream, UdpSocket};
 use tokio::sync::{mpsc, oneshot, watch};
-use tokio::time::timeout;
 use tokio_util::codec::Framed;
 
 use crate::close::Closing;
@@ -29,6 +26,7 @@ use crate::handshake::shake_hands;
 #[cfg(feature = "record")]
 use crate::journal::{ActionEnd, Journal, What};
 use crate::states::States;
+use crate::world::{self, Datagrams, StatePort, Stream, timeout};
 
 /// States read ahead of an answer, at most.
 const DATAGRAMS: usize = 64;
@@ -194,10 +192,8 @@ where
     pub(crate) async fn connect(endpoint: Endpoint) -> Result<Self, ConnectError<D>> {
         let addresses = resolve::<D>(&endpoint, D::TCP_PORT, TCP_TIMEOUT).await?;
         let (tcp, address) = dial::<D>(&addresses, TCP_TIMEOUT).await?;
-        let socket = exchange::bind(address.ip())?;
-        socket.set_nonblocking(true)?;
-        let socket = UdpSocket::from_std(socket)?;
-        let port = socket.local_addr()?.port();
+        let port = StatePort::open(address.ip())?;
+        let (port, socket) = (port.number()?, port.datagrams()?);
         let mut stream = Framed::new(tcp, MessageCodec::END_EFFECTOR);
         let mut session = Session::new(D::default());
         timeout(TCP_TIMEOUT, shake_hands(&mut stream, &mut session, port))
@@ -223,7 +219,7 @@ where
             #[cfg(feature = "record")]
             journal: journal.clone(),
         };
-        tokio::spawn(task.run(queue, closing.clone()));
+        world::spawn(task.run(queue, closing.clone()));
         Ok(Self {
             address,
             calls,
@@ -291,7 +287,7 @@ where
 }
 
 async fn first_state<D: Device>(
-    socket: &UdpSocket,
+    socket: &Datagrams,
     peer: IpAddr,
 ) -> Result<D::State, ConnectError<D>> {
     let mut buffer = [0; DATAGRAM_SIZE];
@@ -306,9 +302,9 @@ async fn first_state<D: Device>(
 }
 
 struct DeviceTask<D: Device> {
-    stream: Framed<TcpStream, MessageCodec>,
+    stream: Framed<Stream, MessageCodec>,
     session: Session<D>,
-    socket: UdpSocket,
+    socket: Datagrams,
     peer: IpAddr,
     states: watch::Sender<D::State>,
     /// The newest action, until it is answered.

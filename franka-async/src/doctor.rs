@@ -21,6 +21,7 @@ use franka_proto::{Errors, RobotError};
 use franka_rt::lifecycle::MotionError;
 
 use crate::diagnosis::{Diagnose, Diagnosis};
+use crate::world;
 
 pub use franka_doctor::{
     Answer, Doctor, DryRun, Ethtool, Evidence, Finding, Fix, Group, Host, Latencies, Needs,
@@ -84,7 +85,7 @@ impl fmt::Display for HostDiagnosis {
 pub async fn diagnose(error: &MotionError, robot: IpAddr) -> Option<HostDiagnosis> {
     let evidence = evidence(error)?;
     let error = error.clone();
-    let looked = tokio::task::spawn_blocking(move || HostDiagnosis {
+    let looked = world::spawn_blocking(move || HostDiagnosis {
         evidence,
         diagnosis: diagnosis(&error),
         causes: causes(&System::default(), robot, evidence),
@@ -109,8 +110,8 @@ pub(crate) fn warn(error: &MotionError, robot: IpAddr) {
         span.in_scope(|| tracing::warn!(causes = %found, "the motion ended for want of packets"));
     };
     // Outside of a runtime there are no threads for it.
-    if let Ok(runtime) = tokio::runtime::Handle::try_current() {
-        runtime.spawn_blocking(look);
+    if world::has_runtime() {
+        world::spawn_blocking(look);
     }
 }
 

@@ -5,16 +5,16 @@ use franka_proto::Protocol;
 use franka_proto::client::{Event, Session};
 use franka_rt::lifecycle::CloseReason;
 use futures::{SinkExt, StreamExt};
-use tokio::net::TcpStream;
 use tokio_util::codec::Framed;
 
 use crate::codec::{MessageCodec, StreamError};
 use crate::error::ConnectError;
+use crate::world::Stream;
 
 /// Asks the peer for its states at `udp_port` and waits for its answer: the connection is open, or
 /// the peer speaks another version.
 pub(crate) async fn shake_hands<P: Protocol>(
-    stream: &mut Framed<TcpStream, MessageCodec>,
+    stream: &mut Framed<Stream, MessageCodec>,
     session: &mut Session<P>,
     udp_port: u16,
 ) -> Result<(), ConnectError<P>> {

@@ -24,6 +24,7 @@ use franka_rt::thread::{AttachError, CycleFeed, CycleReader};
 
 use crate::destination::Destination;
 use crate::input::{Beginning, Input};
+use crate::world;
 
 /// Where entries are written. Clones are the same journal.
 #[derive(Clone, Debug, Default)]
@@ -151,7 +152,7 @@ pub(crate) struct Given {
 impl Entry {
     /// `what`, now.
     pub(crate) fn now(what: What) -> Self {
-        let at = Instant::now();
+        let at = world::now().into_std();
         Self { at, what }
     }
 }

@@ -4,7 +4,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use franka_rt::session::{Deadman, DeadmanMonitor};
-use tokio::time::sleep;
+
+use crate::world;
 
 /// Lease of an arm. A cheap handle: clones share the lease.
 #[derive(Clone, Debug, Default)]
@@ -149,9 +150,9 @@ impl Holder {
     /// # Cancel safety
     /// Nothing happens if the future is dropped.
     pub async fn lost(&self) -> Lost {
-        while let Some(left) = self.left(Instant::now()) {
+        while let Some(left) = self.left(world::now().into_std()) {
             // The silence itself is allowed.
-            sleep(left.saturating_add(Duration::from_millis(1))).await;
+            world::sleep(left.saturating_add(Duration::from_millis(1))).await;
         }
         self.lost_by()
     }

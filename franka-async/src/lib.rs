@@ -369,6 +369,14 @@
 //! It is no safety function. It has not been run against a real arm yet.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
+#![cfg_attr(
+    test,
+    allow(
+        clippy::disallowed_methods,
+        clippy::disallowed_types,
+        reason = "tests have listeners and clocks of their own"
+    )
+)]
 
 mod active_control;
 mod arm;
@@ -450,6 +458,7 @@ mod thresholds;
 mod user_value;
 pub mod vacuum;
 mod vacuum_gripper;
+mod world;
 
 pub use arm::{Arm, Engage};
 pub use destination::Offset;

@@ -2,7 +2,7 @@
 
 use std::net::SocketAddr;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use franka_rt::lifecycle::{CloseReason, MotionError};
 use franka_rt::sched::Granted;
@@ -16,6 +16,7 @@ use crate::newest_state::Newest;
 use crate::progress::Course;
 use crate::publish::Subscriptions;
 use crate::thresholds::Thresholds;
+use crate::world;
 
 /// One connection to a robot. Dropping it brakes the arm, ends the motion and closes the
 /// connection, in the background.
@@ -78,13 +79,13 @@ impl Link {
             match self.silence() {
                 None => since = None,
                 Some(silence) => {
-                    let waited = since.get_or_insert_with(Instant::now).elapsed();
+                    let waited = world::now() - *since.get_or_insert_with(world::now);
                     if waited >= more {
                         return silence + waited;
                     }
                 }
             }
-            tokio::time::sleep(LOOK).await;
+            world::sleep(LOOK).await;
         }
     }
 

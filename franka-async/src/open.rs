@@ -8,17 +8,12 @@ use franka_model::Model;
 use franka_proto::client::Session;
 use franka_proto::{RobotState, Version};
 use franka_rt::driver::{Driver, LinkTimeout, ReferenceReader};
-use franka_rt::event_fd::EventFd;
-use franka_rt::exchange;
 use franka_rt::lifecycle::Lifecycle;
-use franka_rt::thread::{self, Handle, Notice, ThreadConfig};
-use tokio::io::unix::AsyncFd;
-use tokio::net::TcpStream;
+use franka_rt::thread::{Handle, Notice, ThreadConfig};
 use tokio::sync::watch;
-use tokio::time::{Instant, timeout, timeout_at};
 use tokio_util::codec::Framed;
 
-use crate::bridge::{self, Bridge, Prepared};
+use crate::bridge::{Bridge, Prepared};
 use crate::builder::{Builder, VersionPolicy};
 use crate::codec::MessageCodec;
 use crate::command_channel::Channel;
@@ -32,6 +27,7 @@ use crate::newest_state::Newest;
 use crate::progress::Course;
 use crate::supervisor::Supervisor;
 use crate::thresholds::Thresholds;
+use crate::world::{self, StatePort, Stream, Wake, timeout, timeout_at};
 
 /// A connection whose bridge does not run yet.
 pub(crate) struct Opened {
@@ -64,8 +60,9 @@ pub(crate) async fn open(
         states,
         state_wakeups.clone(),
     );
-    let (channel, connection, reports) =
-        Channel::start(session.stream, session.session, newest.clone());
+    let shown = newest.clone();
+    let mode = move || shown.state().robot_mode;
+    let (channel, connection, reports) = Channel::start(session.stream, session.session, mode);
     #[cfg(feature = "record")]
     let channel = channel.with_journal(supervisor.journal());
     let course = Course::new(session.references);
@@ -119,18 +116,18 @@ pub(crate) async fn open(
 
 struct Negotiated {
     version: Version,
-    stream: Framed<TcpStream, MessageCodec>,
+    stream: Framed<Stream, MessageCodec>,
     session: Session,
     handle: Handle,
     references: ReferenceReader,
-    wake: AsyncFd<EventFd>,
+    wake: Wake,
     first: RobotState,
 }
 
 /// Opens a session on a new connection to `address`, with the version that the policy allows and
 /// the robot accepts.
 async fn negotiate(
-    tcp: TcpStream,
+    tcp: Stream,
     address: SocketAddr,
     builder: &Builder,
 ) -> Result<Negotiated, ConnectError> {
@@ -156,17 +153,17 @@ async fn negotiate(
 
 async fn open_with(
     version: Version,
-    tcp: TcpStream,
+    tcp: Stream,
     address: SocketAddr,
     builder: &Builder,
 ) -> Result<Negotiated, ConnectError> {
-    let udp = exchange::bind(address.ip())?;
-    let port = udp.local_addr()?.port();
+    let port = StatePort::open(address.ip())?;
+    let number = port.number()?;
     let mut stream = Framed::new(tcp, MessageCodec::ROBOT);
     let mut session = Session::new(version);
     timeout(
         builder.connect_timeout,
-        shake_hands(&mut stream, &mut session, port),
+        shake_hands(&mut stream, &mut session, number),
     )
     .await
     .unwrap_or(Err(ConnectError::HandshakeTimeout { address }))?;
@@ -178,9 +175,9 @@ async fn open_with(
     let link_timeout = LinkTimeout::new(builder.link_timeout)?;
     let driver = Driver::new(version).with_link_timeout(link_timeout);
     let references = driver.references();
-    let start = move || thread::spawn(config, driver, udp, address.ip(), version);
+    let start = move || port.control_thread(config, driver, version);
     let mut handle = off_worker(start).await??;
-    let wake = bridge::attach(handle.event_fd.clone())?;
+    let wake = Wake::attach(handle.event_fd.clone())?;
     let first = timeout(builder.connect_timeout, newer_state(&mut handle, &wake))
         .await
         .map_err(|_| ConnectError::NoState { address })??;
@@ -200,7 +197,7 @@ async fn open_with(
 async fn off_worker<T: Send + 'static>(
     blocking: impl FnOnce() -> T + Send + 'static,
 ) -> std::io::Result<T> {
-    let done = tokio::task::spawn_blocking(blocking).await;
+    let done = world::spawn_blocking(blocking).await;
     done.map_err(std::io::Error::other)
 }
 
@@ -209,11 +206,11 @@ async fn off_worker<T: Send + 'static>(
 async fn check_geometry(
     model: Model,
     first: &RobotState,
-    (handle, wake): (&mut Handle, &AsyncFd<EventFd>),
+    (handle, wake): (&mut Handle, &Wake),
     builder: &Builder,
 ) -> Result<(Model, GeometryCheck), ConnectError> {
     let mut comparison = Comparison::new(model, first);
-    let deadline = Instant::now() + builder.connect_timeout;
+    let deadline = world::now() + builder.connect_timeout;
     while comparison.needs_more() {
         // The states so far count if no more arrive.
         let Ok(state) = timeout_at(deadline, newer_state(handle, wake)).await else {
@@ -226,12 +223,9 @@ async fn check_geometry(
 }
 
 /// Waits for a state that was not read: without a first one there is nothing to control.
-async fn newer_state(
-    handle: &mut Handle,
-    wake: &AsyncFd<EventFd>,
-) -> Result<RobotState, ConnectError> {
+async fn newer_state(handle: &mut Handle, wake: &Wake) -> Result<RobotState, ConnectError> {
     loop {
-        bridge::woken(wake).await?;
+        wake.woken().await?;
         if let Some(state) = handle.states.newest() {
             return Ok(state);
         }

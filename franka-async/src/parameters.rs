@@ -14,7 +14,6 @@ use franka_proto::{
 use franka_rt::supervision::{Answer, SettingId};
 use nalgebra::Matrix3;
 use tokio::sync::Mutex;
-use tokio::time::timeout;
 
 use crate::command_channel::{Channel, Response};
 use crate::error::CommandError;
@@ -22,6 +21,7 @@ use crate::newest_state::Newest;
 use crate::robot::{Pose, Robot};
 use crate::supervisor::Supervisor;
 use crate::thresholds::Thresholds;
+use crate::world::timeout;
 
 /// Time for an answer that the robot gives at once.
 const ANSWER: Duration = Duration::from_secs(5);

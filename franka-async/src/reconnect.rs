@@ -20,6 +20,7 @@ use crate::open::{Opened, open};
 use crate::parameters;
 use crate::robot::{Robot, WeakRobot};
 use crate::supervisor::{Job, Supervisor};
+use crate::world;
 
 /// What a supervised robot is reconnected with.
 pub(crate) struct Reconnector {
@@ -75,7 +76,7 @@ impl Reconnector {
                 break;
             }
             let deadline = self.supervisor.deadline();
-            let deadline = OptionFuture::from(deadline.map(tokio::time::sleep_until));
+            let deadline = OptionFuture::from(deadline.map(world::sleep_until));
             tokio::select! {
                 () = self.supervisor.worked() => {}
                 Some(()) = deadline => self.supervisor.on_time(),
@@ -211,7 +212,7 @@ impl Reconnector {
         };
         let supervisor = self.supervisor.clone();
         // An answer that comes too late has no effect.
-        tokio::task::spawn_blocking(move || {
+        world::spawn_blocking(move || {
             let agreed = catch_unwind(AssertUnwindSafe(|| (ask.0)(&reflex)));
             let agreed = agreed.unwrap_or_else(|_| {
                 tracing::error!("the function that was asked to agree to a recovery panicked");

@@ -16,9 +16,7 @@ use franka_rt::session::{GoalId, Margin};
 use franka_rt::stats::Stats;
 use franka_rt::supervision::{Condition, Health};
 use franka_rt::thread::{AttachError, CycleReader};
-use tokio::runtime::Handle;
 use tokio::sync::{Mutex, broadcast, mpsc, oneshot};
-use tokio::time::{Instant, timeout_at};
 use tokio_util::sync::DropGuard;
 
 use crate::command_channel::Channel;
@@ -31,6 +29,7 @@ use crate::progress::Reference;
 use crate::state_model::StateModel;
 use crate::states::States;
 use crate::supervisor::{Events, Supervisor};
+use crate::world::{self, Instant, Runtime, timeout_at};
 
 /// Pose of a frame in another, `[m]`. Unless said otherwise: of the end effector in the base frame,
 /// `O_T_EE`.
@@ -67,7 +66,7 @@ struct Shared {
     /// The way into the task that reconnects; `None` if there is none. Closed when it has ended.
     shutdowns: Option<mpsc::UnboundedSender<oneshot::Sender<()>>>,
     /// Where that task runs, and the bridges.
-    runtime: Handle,
+    runtime: Runtime,
     /// Tells that task of the end of the last handle.
     _handles: DropGuard,
     /// How many goals were named so far, whatever the connection.
@@ -99,7 +98,7 @@ impl Robot {
                 supervisor,
                 setting: Arc::default(),
                 shutdowns,
-                runtime: Handle::current(),
+                runtime: Runtime::current(),
                 _handles: handles,
                 goals: AtomicU64::new(0),
                 lease: Lease::default(),
@@ -295,7 +294,7 @@ impl Robot {
         if self.shared.shutdowns.is_none() {
             return outcome;
         }
-        let end = Instant::now() + RECONNECTED_WITHIN;
+        let end = world::now() + RECONNECTED_WITHIN;
         while let Err(MotionError::ConnectionClosed { .. } | MotionError::LinkLost { .. }) = outcome
         {
             // This may be awaited without a runtime.
@@ -460,7 +459,7 @@ impl Robot {
 /// Waits until there is a connection to the robot with states, for a while at first so that what
 /// was just lost is shown as lost. Returns false if there is none before `end`.
 async fn connected(mut health: States<Health>, end: Instant) -> bool {
-    tokio::time::sleep(SHOWN_WITHIN).await;
+    world::sleep(SHOWN_WITHIN).await;
     let away = [Unready::Disconnected, Unready::Silent].map(Condition::Unready);
     let there = health.wait_for(|health| !away.contains(&health.condition));
     match timeout_at(end, there).await {

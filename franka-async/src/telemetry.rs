@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use franka_rt::driver::Ended;
 use franka_rt::stats::{CycleTimes, Stats};
-use tokio::time::Instant;
+
+use crate::world::Instant;
 
 /// Watches the statistics for commands that left too late.
 pub(crate) struct Telemetry {
@@ -125,7 +126,7 @@ mod tests {
 
     #[test]
     fn what_goes_on_is_warned_of_ever_more_rarely_until_it_pauses() {
-        let begin = Instant::now();
+        let begin = crate::world::now();
         let mut backoff = Backoff::default();
         let mut due = |second: u64| backoff.take(begin + Duration::from_secs(second));
         let told: Vec<u64> = (0..130).filter(|second| due(*second)).collect();

@@ -6,10 +6,10 @@ use std::time::Duration;
 use franka_rt::lifecycle::{CloseReason, MotionError};
 use franka_rt::session::GoalId;
 use tokio::sync::{mpsc, oneshot};
-use tokio::time::Instant;
 
-use super::{Bridge, woken};
+use super::Bridge;
 use crate::input::Input;
+use crate::world::{self, Instant};
 
 /// The goal of having the arm rest when the last handle is dropped. No handle uses this id: they
 /// count up from 1.
@@ -31,7 +31,7 @@ impl Bridge {
         self.drop_plans(MotionError::Stopped);
         let now = self.now();
         self.lifecycle.stop(CLOSING, &self.publisher.state(), now);
-        Instant::now() + CLOSING_TIMEOUT
+        world::now() + CLOSING_TIMEOUT
     }
 
     /// Takes note that robot or thread is out of reach. Everything else ends with it, after an arm
@@ -83,7 +83,7 @@ impl Bridge {
             // It goes on without this connection: a thread cannot be ended from outside.
             tracing::error!("the control thread does not end: its function has not returned");
         } else if let Some(thread) = self.thread.take() {
-            match tokio::task::spawn_blocking(move || thread.join()).await {
+            match world::spawn_blocking(move || thread.join()).await {
                 Ok(Ok(_)) => {}
                 Ok(Err(panicked)) => tracing::error!(%panicked, "control thread"),
                 Err(error) => tracing::error!(%error, "control thread"),
@@ -96,9 +96,9 @@ impl Bridge {
         if let Some(thread) = &self.thread {
             thread.stop();
         }
-        let deadline = Instant::now() + ENDING_TIMEOUT;
+        let deadline = world::now() + ENDING_TIMEOUT;
         while !self.thread_has_ended() {
-            let woken = tokio::time::timeout_at(deadline, woken(&self.wake)).await;
+            let woken = world::timeout_at(deadline, self.wake.woken()).await;
             if !matches!(woken, Ok(Ok(()))) {
                 return false;
             }
@@ -108,9 +108,9 @@ impl Bridge {
 
     /// Waits until an arm that is being braked rests, for [`BRAKING_TIMEOUT`] at most.
     async fn rest(&mut self) {
-        let deadline = Instant::now() + BRAKING_TIMEOUT;
+        let deadline = world::now() + BRAKING_TIMEOUT;
         while self.lifecycle.is_braking() && !self.thread_has_ended() {
-            match tokio::time::timeout_at(deadline, woken(&self.wake)).await {
+            match world::timeout_at(deadline, self.wake.woken()).await {
                 Ok(Ok(())) => self.on_wakeup(),
                 Ok(Err(_)) | Err(_) => {
                     tracing::warn!("the arm was not seen to rest; the control thread ends");

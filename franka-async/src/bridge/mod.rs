@@ -15,16 +15,13 @@ use std::time::Duration;
 
 use franka_proto::RobotState;
 use franka_rt::driver::{Driver, Event, Order};
-use franka_rt::event_fd::EventFd;
 use franka_rt::lifecycle::{CloseReason, Lifecycle, MotionError, Outcome, Output};
 use franka_rt::queue::{Receiver, Sender};
 use franka_rt::session::{GoalError, GoalId};
 use franka_rt::stats::Stats;
 use franka_rt::supervision::Seen;
 use franka_rt::thread::{Handle, Notice, Thread};
-use tokio::io::unix::AsyncFd;
 use tokio::sync::{mpsc, watch};
-use tokio::time::Instant;
 use tokio_util::sync::CancellationToken;
 use tracing::{Instrument, Span};
 
@@ -35,14 +32,13 @@ use crate::publish::Publisher;
 use crate::supervisor::Supervisor;
 use crate::telemetry::Telemetry;
 use crate::thresholds::Thresholds;
+use crate::world::{self, Instant, Wake};
 
 use planning::{Planning, planned};
 
-pub(crate) use wakeups::{attach, woken};
-
 pub(crate) struct Bridge {
     lifecycle: Lifecycle,
-    wake: AsyncFd<EventFd>,
+    wake: Wake,
     orders: Sender<Order>,
     notices: Receiver<Notice<Event>>,
     publisher: Publisher,
@@ -97,7 +93,7 @@ impl Prepared {
             inbox,
             reports,
         } = self;
-        tokio::spawn(bridge.run(inbox, reports, cancellation).in_current_span());
+        world::spawn(bridge.run(inbox, reports, cancellation).in_current_span());
     }
 }
 
@@ -106,7 +102,7 @@ impl Bridge {
     pub(crate) fn new(
         lifecycle: Lifecycle,
         handle: Handle,
-        wake: AsyncFd<EventFd>,
+        wake: Wake,
         (channel, connection): (Channel, Connection),
         states: Arc<watch::Sender<RobotState>>,
         (course, thresholds): (Course, Thresholds),
@@ -132,7 +128,7 @@ impl Bridge {
             channel,
             connection: Some(connection),
             replies: HashMap::new(),
-            started: Instant::now(),
+            started: world::now(),
             lost: false,
             stalled: false,
             supervisor,
@@ -182,7 +178,7 @@ impl Bridge {
             ];
             let deadline = deadline.into_iter().flatten().min();
             tokio::select! {
-                woken = woken(&self.wake) => {
+                woken = self.wake.woken() => {
                     if let Err(error) = woken {
                         let text = format!("its eventfd cannot be read: {error}");
                         self.lose(CloseReason::ThreadEnded { text });
@@ -206,7 +202,7 @@ impl Bridge {
                     self.on_planned(path);
                 }
                 () = sleep_until(deadline) => {
-                    if closing.is_some_and(|closing| closing <= Instant::now()) {
+                    if closing.is_some_and(|closing| closing <= world::now()) {
                         tracing::error!("the motion did not end; closing all the same");
                         break;
                     }
@@ -223,7 +219,7 @@ impl Bridge {
     }
 
     fn now(&self) -> Duration {
-        self.started.elapsed()
+        world::now() - self.started
     }
 
     /// Notes since when a deadline is waited for.
@@ -324,7 +320,7 @@ fn log(goal: GoalId, outcome: &Outcome) {
 
 async fn sleep_until(deadline: Option<Instant>) {
     match deadline {
-        Some(deadline) => tokio::time::sleep_until(deadline).await,
+        Some(deadline) => world::sleep_until(deadline).await,
         None => std::future::pending().await,
     }
 }

@@ -13,6 +13,7 @@ use tokio::task::JoinHandle;
 
 use super::Bridge;
 use crate::input::{Beginning, Replies};
+use crate::world;
 
 /// A motion whose path is being planned.
 pub(super) struct Planning {
@@ -98,7 +99,7 @@ impl Bridge {
             replies,
             start,
             plans_left,
-            task: tokio::task::spawn_blocking(plan),
+            task: world::spawn_blocking(plan),
         });
     }
 

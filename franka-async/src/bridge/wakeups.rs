@@ -1,42 +1,13 @@
 //! What the control thread has published since the last wake-up: states, records and events.
 
-use std::io;
-
 use franka_proto::RobotMode;
 use franka_rt::driver::Event;
-use franka_rt::event_fd::EventFd;
 use franka_rt::lifecycle::CloseReason;
 use franka_rt::supervision::Seen;
 use franka_rt::thread::{Notice, Thread};
-use tokio::io::Interest;
-use tokio::io::unix::AsyncFd;
-use tokio::time::Instant;
 
 use super::Bridge;
-use crate::telemetry;
-
-/// Registers the eventfd of the thread with this runtime.
-///
-/// # Errors
-/// If the runtime's poll does not take the descriptor.
-pub(crate) fn attach(wake: EventFd) -> io::Result<AsyncFd<EventFd>> {
-    // SAFETY: an `EventFd` owns its eventfd through an `Arc` that nothing replaces: the descriptor
-    // is open, and the same, for as long as the `EventFd` lives, and the `AsyncFd` owns the
-    // `EventFd`.
-    let attached = unsafe { AsyncFd::register_with_interest(wake, Interest::READABLE) };
-    attached.map_err(Into::into)
-}
-
-/// Waits until the thread has written to its eventfd, and drains it.
-///
-/// # Cancel safety
-/// A wake-up is not lost: the next call returns at once.
-pub(crate) async fn woken(wake: &AsyncFd<EventFd>) -> io::Result<()> {
-    let mut guard = wake.readable().await?;
-    wake.get_ref().drain();
-    guard.clear_ready();
-    Ok(())
-}
+use crate::{telemetry, world};
 
 impl Bridge {
     /// Takes everything that the thread has published.
@@ -44,7 +15,7 @@ impl Bridge {
         self.publisher.publish();
         // Before a motion resolves: what comes next finds a robot that is in a reflex.
         self.observe();
-        self.telemetry.watch(Instant::now());
+        self.telemetry.watch(world::now());
         self.take_notices();
         self.look_for_a_stall();
         if self.thread_has_ended() {

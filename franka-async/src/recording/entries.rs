@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::{self, JoinHandle};
+use std::thread::JoinHandle;
 
 use franka_record::event::Level;
 use franka_record::recorder::{RecordError, RecordHandle};
@@ -10,6 +10,7 @@ use franka_record::{EventKind, GripperState};
 
 use super::{Track, words};
 use crate::journal::{Entry, EntryReceiver, EntrySender, Journal, Reader, What, entry_queue};
+use crate::world;
 
 /// Entries that may wait for the thread.
 const ENTRIES: usize = 4096;
@@ -43,9 +44,7 @@ impl EntryQueue {
         let (entries, queue) = entry_queue(ENTRIES);
         let shared = Arc::<Shared>::default();
         let of_thread = shared.clone();
-        let thread = thread::Builder::new()
-            .name("franka-entries".into())
-            .spawn(move || of_thread.write(&queue))
+        let thread = world::start_thread("franka-entries", move || of_thread.write(&queue))
             .map_err(|source| RecordError::Thread {
                 source: Arc::new(source),
             })?;

@@ -19,7 +19,6 @@ use franka_rt::supervision::{
     RecoveryFailure, Reflex, SettingId, Supervision,
 };
 use tokio::sync::{Notify, broadcast, watch};
-use tokio::time::Instant;
 
 use crate::close::Closing;
 use crate::input::{Beginning, Input, Replies};
@@ -28,6 +27,7 @@ use crate::journal::{Journal, What};
 use crate::link::Link;
 #[cfg(feature = "metrics")]
 use crate::tally::Tally;
+use crate::world::{self, Instant};
 
 pub use events::{Events, Notification};
 
@@ -91,7 +91,7 @@ impl Supervisor {
         let core = Supervision::new(policy);
         let (health, shown) = watch::channel(core.health());
         Self {
-            begun: Instant::now(),
+            begun: world::now(),
             is_supervised: policy.is_some(),
             inner: Mutex::new(Inner {
                 core,
@@ -299,7 +299,7 @@ impl Supervisor {
     /// Does something to a robot as its newest state shows it, and then what follows from it.
     fn with<T>(&self, act: impl FnOnce(&mut Inner, Duration) -> T) -> T {
         let mut inner = self.lock();
-        let now = self.begun.elapsed();
+        let now = world::now() - self.begun;
         inner.observe(now);
         let result = act(&mut inner, now);
         inner.carry_out(&self.closing, now);
