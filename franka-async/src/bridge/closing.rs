@@ -7,9 +7,9 @@ use franka_rt::lifecycle::{CloseReason, MotionError};
 use franka_rt::session::GoalId;
 use tokio::sync::{mpsc, oneshot};
 
-use super::Bridge;
+use super::{Bridge, BridgePhase};
 use crate::input::Input;
-use crate::world::{self, Instant};
+use crate::world;
 
 /// The goal of having the arm rest when the last handle is dropped. No handle uses this id: they
 /// count up from 1.
@@ -26,12 +26,13 @@ const BRAKING_TIMEOUT: Duration = Duration::from_secs(3);
 const ENDING_TIMEOUT: Duration = Duration::from_secs(2);
 
 impl Bridge {
-    /// Brakes what moves. Returns when to give up on it.
-    pub(super) fn begin_closing(&mut self) -> Instant {
+    /// Brakes what moves, and takes no more inputs.
+    pub(super) fn begin_closing(&mut self) {
         self.drop_plans(MotionError::Stopped);
         let now = self.now();
         self.lifecycle.stop(CLOSING, &self.publisher.state(), now);
-        world::now() + CLOSING_TIMEOUT
+        let until = world::now() + CLOSING_TIMEOUT;
+        self.phase = BridgePhase::Closing { until };
     }
 
     /// Takes note that robot or thread is out of reach. Everything else ends with it, after an arm
@@ -43,7 +44,7 @@ impl Bridge {
         self.supervisor.on_lost(reason.clone());
         self.lifecycle.on_connection_closed(reason.clone());
         self.drop_plans(MotionError::ConnectionClosed { reason });
-        self.lost = true;
+        self.phase = BridgePhase::Lost;
     }
 
     /// Resolves what is pending, brakes an arm that moves, closes the connection and ends the

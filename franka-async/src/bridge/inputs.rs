@@ -2,9 +2,10 @@
 
 use franka_rt::lifecycle::{MotionError, NewMotion};
 use franka_rt::session::{Chunk, GoalId};
+use tracing::Span;
 
 use super::planning::PLANS;
-use super::{Bridge, log};
+use super::{Bridge, Caller, log};
 use crate::destination::Now;
 use crate::input::{Beginning, EndReply, Input, Replies};
 
@@ -91,7 +92,9 @@ impl Bridge {
             Input::Cancel { goal, refused } => {
                 if let Some(error) = refused {
                     tracing::info!(goal = goal.0, %error, "a target is refused: the motion stops");
-                    self.refused = Some((goal, error));
+                    if let Some(caller) = self.callers.get_mut(&goal) {
+                        caller.refused = Some(error);
+                    }
                 }
                 self.lifecycle.cancel(goal, now);
             }
@@ -101,8 +104,7 @@ impl Bridge {
                 if stops {
                     let ended = EndReply::One(ended);
                     let span = tracing::info_span!("stop", goal = goal.0);
-                    self.replies
-                        .insert(goal, (Replies { began: None, ended }, span));
+                    self.await_end(goal, Replies { began: None, ended }, span);
                 }
                 // Otherwise the arm rests already, and dropping `ended` says so.
             }
@@ -132,10 +134,19 @@ impl Bridge {
                 self.warn_of_margin(id, gains, &self.publisher.state());
                 self.warn_of_thresholds(id, force_cap);
                 let span = tracing::info_span!("motion", goal = id.0);
-                self.replies.insert(id, (replies, span));
+                self.await_end(id, replies, span);
             }
             Err(error) => self.refuse(id, replies, error),
         }
+    }
+
+    fn await_end(&mut self, id: GoalId, replies: Replies, span: Span) {
+        let caller = Caller {
+            replies,
+            span,
+            refused: None,
+        };
+        self.callers.insert(id, caller);
     }
 
     /// Completes a motion by where the robot is, and begins it.

@@ -49,15 +49,12 @@ pub(crate) struct Bridge {
     thread: Option<Thread<Driver>>,
     channel: Channel,
     connection: Option<Connection>,
-    replies: HashMap<GoalId, (Replies, Span)>,
+    callers: HashMap<GoalId, Caller>,
     started: Instant,
-    /// True if robot or thread is out of reach, for good.
-    lost: bool,
+    phase: BridgePhase,
     /// True if the thread that runs active control reads no states.
     stalled: bool,
     supervisor: Arc<Supervisor>,
-    /// The goal that is taken back for a target that was refused.
-    refused: Option<(GoalId, GoalError)>,
     /// The motions whose paths are being planned, the newest last.
     planning: Vec<Planning>,
     /// What the supervisor was last shown.
@@ -65,6 +62,25 @@ pub(crate) struct Bridge {
     /// `message_id` of the newest state when a silence was noticed, until one comes.
     silent_since: Option<u64>,
     awaited: Option<Awaited>,
+}
+
+/// How far the bridge is on its way to its end.
+#[derive(Clone, Copy)]
+enum BridgePhase {
+    /// It takes inputs.
+    Serving,
+    /// It takes none, and ends when nothing moves any more, or at this time.
+    Closing { until: Instant },
+    /// Robot or thread is out of reach, for good: it ends now.
+    Lost,
+}
+
+/// A caller that awaits the end of a goal or a program.
+struct Caller {
+    replies: Replies,
+    span: Span,
+    /// Why a target was refused for which the goal is taken back.
+    refused: Option<GoalError>,
 }
 
 /// A deadline of the lifecycle.
@@ -127,12 +143,11 @@ impl Bridge {
             thread: Some(handle.thread),
             channel,
             connection: Some(connection),
-            replies: HashMap::new(),
+            callers: HashMap::new(),
             started: world::now(),
-            lost: false,
+            phase: BridgePhase::Serving,
             stalled: false,
             supervisor,
-            refused: None,
             planning: Vec::new(),
             seen: None,
             silent_since: None,
@@ -164,13 +179,15 @@ impl Bridge {
         mut reports: mpsc::UnboundedReceiver<Report>,
         cancellation: CancellationToken,
     ) {
-        let mut closing = None;
         let mut done = Vec::new();
         loop {
             self.carry_out();
-            if self.lost || closing.is_some() && self.lifecycle.is_idle() {
-                break;
-            }
+            let closing = match self.phase {
+                BridgePhase::Serving => None,
+                BridgePhase::Closing { .. } if self.lifecycle.is_idle() => break,
+                BridgePhase::Closing { until } => Some(until),
+                BridgePhase::Lost => break,
+            };
             self.note_deadline();
             let deadline = [
                 self.awaited.as_ref().map(|it| self.started + it.deadline),
@@ -185,16 +202,14 @@ impl Bridge {
                     }
                     self.on_wakeup();
                 }
-                () = cancellation.cancelled(), if closing.is_none() => {
-                    closing = Some(self.begin_closing());
-                }
+                () = cancellation.cancelled(), if closing.is_none() => self.begin_closing(),
                 input = inbox.recv(), if closing.is_none() => match input {
                     Some(Input::Shutdown { ended: reply }) => {
                         done.push(reply);
-                        closing = Some(self.begin_closing());
+                        self.begin_closing();
                     }
                     Some(input) => self.on_input(input),
-                    None => closing = Some(self.begin_closing()),
+                    None => self.begin_closing(),
                 },
                 Some(report) = reports.recv() => self.on_report(report),
                 path = planned(&mut self.planning) => {
@@ -265,17 +280,16 @@ impl Bridge {
                 }
                 Output::Send { motion, request } => self.channel.send(motion, request),
                 Output::Began { id } => {
-                    let replies = self.replies.get_mut(&id);
-                    if let Some(began) = replies.and_then(|(replies, _)| replies.began.take()) {
+                    let caller = self.callers.get_mut(&id);
+                    if let Some(began) = caller.and_then(|caller| caller.replies.began.take()) {
                         // The future that began it may have been dropped.
                         let _ = began.send(());
                     }
                 }
                 Output::Resolve { goal, mut result } => {
-                    let refused = self.refused.take_if(|(id, _)| *id == goal);
-                    if let (Ok(_) | Err(MotionError::Stopped), Some((_, error))) =
-                        (&result, refused)
-                    {
+                    let caller = self.callers.remove(&goal);
+                    let refused = caller.as_ref().and_then(|caller| caller.refused);
+                    if let (Ok(_) | Err(MotionError::Stopped), Some(error)) = (&result, refused) {
                         result = Err(error.into());
                     }
                     if let Err(MotionError::Hung { silence }) = &result {
@@ -283,8 +297,8 @@ impl Bridge {
                         self.publisher.tell_silence(*silence);
                     }
                     self.supervisor.on_ended(goal, &result);
-                    match self.replies.remove(&goal) {
-                        Some((replies, span)) => {
+                    match caller {
+                        Some(Caller { replies, span, .. }) => {
                             span.in_scope(|| log(goal, &result));
                             replies.ended.send(result);
                         }
