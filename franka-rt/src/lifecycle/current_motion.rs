@@ -6,7 +6,7 @@ use std::sync::Arc;
 use franka_model::Model;
 use franka_proto::{Command, ControlFailure, MoveStatus, Refusal, Status};
 
-use super::goal_progress::Goals;
+use super::goal_progress::{Goals, Owner};
 use super::outcome::{Counted, Outcome};
 use super::programs::UserProgram;
 use super::{ControlError, END_TIMEOUT, MotionError, MotionReport, Stage};
@@ -141,7 +141,7 @@ impl CurrentMotion {
         self.is_ending()
             || self.stopped.is_some()
             || match &self.work {
-                Work::Goals(goals) if goals.engaged.is_some() => !goals.goes_on(),
+                Work::Goals(goals) if goals.owner != Owner::Goal => !goals.goes_on(),
                 Work::Goals(goals) => goals.cancelled,
                 Work::Program(_) => false,
             }
@@ -158,7 +158,7 @@ impl CurrentMotion {
     /// that goes on.
     pub(super) fn takes_goals(&self) -> bool {
         match &self.work {
-            Work::Goals(goals) => goals.engaged.is_none() || !goals.goes_on(),
+            Work::Goals(goals) => goals.owner == Owner::Goal || !goals.goes_on(),
             Work::Program(_) => false,
         }
     }

@@ -5,7 +5,7 @@ use core::time::Duration;
 use franka_model::collision::Obstacle;
 use franka_proto::RobotState;
 
-use super::goal_progress::Goals;
+use super::goal_progress::{ChunkStream, Goals, Owner};
 use super::{Lifecycle, LifecyclePhase, MotionError};
 use crate::driver::Observer;
 use crate::law::Gains;
@@ -159,7 +159,7 @@ impl Lifecycle {
         let ending = self.is_ending();
         if let Some(goals) = self.goals_mut().filter(|_| !ending) {
             goals.check_deadman()?;
-            if let Some(error) = goals.chunk_error.take() {
+            if let Some(error) = goals.take_chunk_error() {
                 return Err(error);
             }
         }
@@ -194,9 +194,14 @@ impl Lifecycle {
             return Ok(());
         }
         // One that was taken back is on its way to rest, and belongs to no caller any more.
-        let goes_on = goals.current.id == goals.chunk_goal && !goals.cancelled;
-        let of = if goes_on { goals.chunk_goal } else { goal.id };
-        let before = goals.observed_at.filter(|_| goes_on);
+        let (current, cancelled) = (goals.current.id, goals.cancelled);
+        let goes_on = match goals.stream {
+            ChunkStream::Of { goal, observed_at } if goal == current && !cancelled => {
+                Some((goal, observed_at))
+            }
+            _ => None,
+        };
+        let (of, before) = goes_on.unwrap_or((goal.id, None));
         if let (Some(before), Some(now)) = (before, observed_at)
             && now < before
         {
@@ -204,9 +209,11 @@ impl Lifecycle {
             return Err(GoalError::Outdated { by }.into());
         }
         goals.send(of, chunk).map_err(GoalError::from)?;
-        goals.chunk_goal = of;
-        goals.observed_at = observed_at.or(before);
-        if !goes_on {
+        goals.stream = ChunkStream::Of {
+            goal: of,
+            observed_at: observed_at.or(before),
+        };
+        if goes_on.is_none() {
             self.replace(goal, None, MotionError::Superseded);
         }
         Ok(())
@@ -261,7 +268,7 @@ impl Lifecycle {
     /// may have been told that it takes no more goals.
     pub(super) fn end_of(&self, id: GoalId) -> OnArrival {
         let waits = self.next.as_ref().is_some_and(|next| next.id() == id);
-        let of_session = |goals: &Goals| goals.engaged.is_some() && goals.goes_on();
+        let of_session = |goals: &Goals| goals.owner != Owner::Goal && goals.goes_on();
         if !waits && self.goals().is_some_and(of_session) {
             OnArrival::ReportAndHold
         } else {
@@ -276,7 +283,7 @@ impl Lifecycle {
 
     /// True if a session that goes from goal to goal has the arm.
     pub(super) fn is_engaged(&self) -> bool {
-        self.goals().is_some_and(|goals| goals.engaged.is_some())
+        self.goals().is_some_and(|goals| goals.owner != Owner::Goal)
     }
 
     /// Ends the session of that name. Returns whether it has the arm.
@@ -285,16 +292,11 @@ impl Lifecycle {
         let Some(goals) = self.goals_mut() else {
             return false;
         };
-        let goes_on = goals.goes_on() && !ending;
-        let Some(session) = goals
-            .engaged
-            .as_mut()
-            .filter(|session| session.id == engaged)
-        else {
+        if goals.owner.session() != Some(engaged) {
             return false;
-        };
-        if goes_on {
-            session.disengaged = true;
+        }
+        if goals.goes_on() && !ending {
+            goals.owner = Owner::Disengaged(engaged);
             let goal = Goal {
                 id: engaged,
                 watchdog: None,
@@ -307,9 +309,7 @@ impl Lifecycle {
     }
 
     fn check_engaged(&self, engaged: GoalId) -> Result<(), MotionError> {
-        let of_session = |goals: &Goals| {
-            goals.goes_on() && goals.engaged.is_some_and(|session| session.id == engaged)
-        };
+        let of_session = |goals: &Goals| goals.goes_on() && goals.owner.session() == Some(engaged);
         if self.goals().is_some_and(of_session) {
             return Ok(());
         }

@@ -22,36 +22,71 @@ pub(super) struct Goals {
     pub(super) current: Goal,
     /// True if its owner has taken it back.
     pub(super) cancelled: bool,
-    pub(super) settled: Option<Settled>,
-    pub(super) bad_tool: bool,
-    /// The session that the goals belong to, if it goes on from goal to goal.
-    pub(super) engaged: Option<Engaged>,
+    /// What the motion comes to, by what its session has said.
+    pub(super) verdict: Verdict,
+    pub(super) owner: Owner,
     /// That of the deadman that the session is bound to.
     pub(super) pulse: Option<Arc<Pulse>>,
     /// What turns setpoints into torques.
     pub(super) backend: Backend,
     /// The way of chunks to the session.
     pub(super) chunks: ChunkWriter,
-    /// The goal that its newest chunk belongs to, if that is no path: what comes next goes on with
-    /// a chunk, and supersedes a path.
-    pub(super) chunk_goal: GoalId,
-    /// The observation that the newest chunk of that goal names, `message_id`.
-    pub(super) observed_at: Option<u64>,
-    /// Why a goal of chunks was given up, until the next chunk or goal: chunks have no caller that
-    /// awaits their end.
-    pub(super) chunk_error: Option<MotionError>,
+    pub(super) stream: ChunkStream,
     /// Goals that came for that session after it had ended and before its outcome was known.
     pub(super) after_end: Vec<GoalId>,
 }
 
-/// A session that goes on from goal to goal.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Engaged {
-    /// Names the caller that awaits its end. Between goals it is the name of the goal that the arm
-    /// holds, too.
-    pub(super) id: GoalId,
-    /// True if its end is what was asked for.
-    pub(super) disengaged: bool,
+/// Whom the end of a motion is told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Owner {
+    /// The caller of its goal: the motion ends with it.
+    Goal,
+    /// A session that goes on from goal to goal. The name is of the caller that awaits its end, and
+    /// between goals of the goal that the arm holds.
+    Engaged(GoalId),
+    /// Such a session, whose end was asked for.
+    Disengaged(GoalId),
+}
+
+impl Owner {
+    /// Returns the name of the session that goes, or went, from goal to goal.
+    pub(super) fn session(self) -> Option<GoalId> {
+        match self {
+            Self::Goal => None,
+            Self::Engaged(id) | Self::Disengaged(id) => Some(id),
+        }
+    }
+}
+
+/// What the session of a motion has said of its end.
+#[derive(Clone, Debug)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one per motion, in a box of its own already"
+)]
+pub(super) enum Verdict {
+    Open,
+    /// It cannot begin with the tool that the robot has.
+    BadTool,
+    /// It has settled a goal, the current one or one before it.
+    Settled(Settled),
+}
+
+/// The chunks of a session, which have one goal until another comes.
+#[derive(Clone, Debug)]
+pub(super) enum ChunkStream {
+    /// The next chunk begins with a goal of its own.
+    None,
+    /// The newest chunk belongs to this goal, and the next one goes on with it while that is the
+    /// current goal. The path of a goal is no such chunk: what comes next supersedes it.
+    Of {
+        goal: GoalId,
+        /// The observation that the newest chunk names, `message_id`.
+        observed_at: Option<u64>,
+    },
+    /// Why its goal was given up, which the next chunk is told: chunks have no caller that awaits
+    /// their end.
+    GivenUp(MotionError),
 }
 
 /// What the session said of the goal it settled.
@@ -73,15 +108,12 @@ impl Goals {
             slot,
             current: goal,
             cancelled: false,
-            settled: None,
-            bad_tool: false,
-            engaged: None,
+            verdict: Verdict::Open,
+            owner: Owner::Goal,
             pulse: None,
             backend: Backend::default(),
             chunks,
-            chunk_goal: GoalId::default(),
-            observed_at: None,
-            chunk_error: None,
+            stream: ChunkStream::None,
             after_end: Vec::new(),
         }
     }
@@ -127,18 +159,17 @@ impl Goals {
         reason: MotionError,
     ) -> Option<(GoalId, Outcome)> {
         self.slot.write(&goal);
-        self.chunk_error = None;
+        self.take_chunk_error();
         let previous = core::mem::replace(&mut self.current, goal).id;
         let cancelled = core::mem::take(&mut self.cancelled);
-        let result = match self.settled.take() {
+        let result = match &self.verdict {
             // A goal that has settled was reached, whatever comes after it.
-            Some(settled) if settled.goal == previous => {
+            Verdict::Settled(settled) if settled.goal == previous => {
                 settled.result(&settled.counted, cancelled)
             }
             _ => Err(reason),
         };
-        let is_session = self.engaged.is_some_and(|engaged| engaged.id == previous);
-        (!is_session).then_some((previous, result))
+        (self.owner.session() != Some(previous)).then_some((previous, result))
     }
 
     /// True if goals are still taken.
@@ -180,26 +211,38 @@ impl Goals {
         };
         let cancelled = core::mem::take(&mut self.cancelled);
         let result = settled.result(&settled.counted, cancelled);
-        self.chunk_error = match &result {
+        self.take_chunk_error();
+        match (&result, &self.stream) {
             // A watchdog is for goals that are awaited.
-            Err(MotionError::Held(lapse) | MotionError::Braked(lapse))
-                if goal.id == self.chunk_goal && !matches!(lapse, Lapse::Silent { .. }) =>
-            {
-                result.clone().err()
+            (
+                Err(error @ (MotionError::Held(lapse) | MotionError::Braked(lapse))),
+                ChunkStream::Of { goal: of, .. },
+            ) if goal.id == *of && !matches!(lapse, Lapse::Silent { .. }) => {
+                self.stream = ChunkStream::GivenUp(error.clone());
             }
-            _ => None,
-        };
+            _ => {}
+        }
         Some(result)
+    }
+
+    /// Takes the reason why a goal of chunks was given up, if it was not told.
+    pub(super) fn take_chunk_error(&mut self) -> Option<MotionError> {
+        match core::mem::replace(&mut self.stream, ChunkStream::None) {
+            ChunkStream::GivenUp(error) => Some(error),
+            stream => {
+                self.stream = stream;
+                None
+            }
+        }
     }
 
     /// How the session turned out whose last goal turned out like this.
     pub(super) fn end_of_engagement(&self, result: &Outcome) -> Option<(GoalId, Outcome)> {
-        let engaged = self.engaged?;
-        let result = match result {
-            Ok(_) if !engaged.disengaged => Err(MotionError::Stopped),
-            result => result.clone(),
-        };
-        Some((engaged.id, result))
+        match (self.owner, result) {
+            (Owner::Goal, _) => None,
+            (Owner::Engaged(id), Ok(_)) => Some((id, Err(MotionError::Stopped))),
+            (Owner::Engaged(id) | Owner::Disengaged(id), result) => Some((id, result.clone())),
+        }
     }
 
     /// True if the motion ended well with an older goal than the current one.
@@ -216,10 +259,11 @@ impl Goals {
 
     /// How the current goal turned out in a motion that finished well, if the session said so.
     pub(super) fn outcome(&self, ended: &Ended) -> Option<Outcome> {
-        if self.bad_tool {
-            return Some(Err(GoalError::Tool.into()));
-        }
-        let settled = self.settled.as_ref()?;
+        let settled = match &self.verdict {
+            Verdict::Open => return None,
+            Verdict::BadTool => return Some(Err(GoalError::Tool.into())),
+            Verdict::Settled(settled) => settled,
+        };
         let released = match &ended.program {
             Program::Target(session) => session.released(),
             _ => None,

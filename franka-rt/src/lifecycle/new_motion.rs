@@ -6,7 +6,7 @@ use std::sync::Arc;
 use franka_proto::{MoveRequest, Request, RobotState};
 
 use super::current_motion::{CommandSide, CurrentMotion, ThreadSide, Work};
-use super::goal_progress::{Engaged, Goals};
+use super::goal_progress::{Goals, Owner};
 use super::programs::UserProgram;
 use super::{Engagement, Lifecycle, LifecyclePhase, MotionError, Output, START_TIMEOUT};
 use crate::control::Modes;
@@ -285,10 +285,7 @@ impl Lifecycle {
         }
         let mut observer = None;
         if let Some(engagement) = engagement {
-            goals.engaged = Some(Engaged {
-                id: goal.id,
-                disengaged: false,
-            });
+            goals.owner = Owner::Engaged(goal.id);
             goals.backend = engagement.backend;
             observer = engagement.observer;
             session = session.with_backend(goals.backend).going_on();

@@ -6,7 +6,7 @@ use franka_proto::{MoveStatus, Request, Violation};
 
 use super::current_motion::{CommandSide, NEVER_SHOWN, ThreadSide, Work};
 use super::ending::STILL_SHOWN;
-use super::goal_progress::Settled;
+use super::goal_progress::{Owner, Settled, Verdict};
 use super::outcome::Counted;
 use super::{
     CloseReason, END_TIMEOUT, Lifecycle, LifecyclePhase, MotionError, Output, START_TIMEOUT,
@@ -65,7 +65,7 @@ impl Lifecycle {
                 }
                 let begun = match &current.work {
                     Work::Program(program) => Some(program.id),
-                    Work::Goals(goals) => goals.engaged.map(|engaged| engaged.id),
+                    Work::Goals(goals) => goals.owner.session(),
                 };
                 self.outputs.extend(begun.map(|id| Output::Began { id }));
             }
@@ -126,17 +126,17 @@ impl Lifecycle {
                         times: current.times.clone(),
                     },
                 };
-                match goals.engaged {
-                    Some(engaged) if goals.goes_on() => {
-                        let settled = goals.reach(engaged.id, &settled);
+                match goals.owner {
+                    Owner::Engaged(engaged) | Owner::Disengaged(engaged) if goals.goes_on() => {
+                        let settled = goals.reach(engaged, &settled);
                         if let Some(result) = settled {
                             self.resolve(goal, result);
                         }
                     }
-                    _ => goals.settled = Some(settled),
+                    _ => goals.verdict = Verdict::Settled(settled),
                 }
             }
-            SessionEvent::BadTool => goals.bad_tool = true,
+            SessionEvent::BadTool => goals.verdict = Verdict::BadTool,
         }
     }
 
