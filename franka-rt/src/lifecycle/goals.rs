@@ -8,12 +8,12 @@ use franka_proto::RobotState;
 use super::current_motion::Work;
 use super::goal_progress::Goals;
 use super::{Lifecycle, LifecyclePhase, MotionError, NewMotion};
-use crate::session::{Backend, Chunk, Goal, GoalError, GoalId, Target};
+use crate::session::{Backend, Chunk, Goal, GoalError, GoalId, OnArrival, Target};
 
 impl Lifecycle {
     /// Moves the target of a goal under way, for a goal that follows a stream. Returns whether the
     /// goal is still the one being followed: one that was taken back is not, whatever was still on
-    /// its way for it.
+    /// its way for it, and neither is the brake of a stop or of a session that ends.
     ///
     /// # Errors
     /// [`GoalError`] for a target that is not accepted; the previous one stays.
@@ -23,6 +23,12 @@ impl Lifecycle {
         target: Target,
         state: &RobotState,
     ) -> Result<bool, GoalError> {
+        let brakes = |goal: &Goal| {
+            goal.target == Target::Rest && goal.on_arrival == OnArrival::ReportAndFinish
+        };
+        if self.newest().is_some_and(brakes) {
+            return Ok(false);
+        }
         let along_path = false;
         let change = |goal: &Goal| Goal {
             target,
@@ -93,11 +99,16 @@ impl Lifecycle {
     /// What target control heads for, and the name of that goal: what was taken last, whether or
     /// not the thread has it by now. `None` if target control moves nothing.
     pub fn heading(&self) -> Option<(GoalId, Target)> {
-        let goal = match &self.next {
-            Some(NewMotion::Goal { goal, .. }) => goal,
-            _ => &self.goals()?.current,
-        };
+        let goal = self.newest()?;
         Some((goal.id, goal.hand_target()))
+    }
+
+    /// The goal that was taken last.
+    fn newest(&self) -> Option<&Goal> {
+        match &self.next {
+            Some(NewMotion::Goal { goal, .. }) => Some(goal),
+            _ => self.goals().map(|goals| &goals.current),
+        }
     }
 
     /// The goals of the motion under way, if target control runs it.

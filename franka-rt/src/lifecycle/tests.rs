@@ -1,5 +1,6 @@
 //! The lifecycle beside a driver whose states a test makes up.
 
+mod product;
 mod stops;
 
 use franka_model::READY;
