@@ -31,6 +31,7 @@ mod schedules;
 mod silence;
 mod stalls;
 mod steps;
+mod stops;
 mod straight_lines;
 mod supervised;
 mod switching;

@@ -32,8 +32,8 @@ pub(super) struct CurrentMotion {
     pub(super) finishing: Option<Duration>,
     /// Why its program could not go on.
     pub(super) failure: Option<MotionError>,
-    /// Since when a `StopMove` is out, or about to be, because a stop was asked for or the program
-    /// failed.
+    /// Since when a `StopMove` is out, or about to be, because a stop was asked for, the program
+    /// failed, or the arm does not come to rest.
     pub(super) stopped: Option<Duration>,
     /// Where the thread counts the times of its cycles.
     pub(super) times: Arc<MotionTimes>,
@@ -105,10 +105,13 @@ impl CurrentMotion {
             Some(refusal) if ended.ending == Ending::Disarmed && is_rejection(status) => {
                 return Err(MotionError::Rejected(refusal));
             }
-            // So ends a program's motion on a stop that was asked for, even with its finishing
-            // command on its way,
+            // So ends a motion that the robot was asked to stop, even with its finishing command on
+            // its way,
             Some(_) if status == MoveStatus::Preempted && self.stopped.is_some() => {
-                return Err(MotionError::Stopped);
+                return match &self.work {
+                    Work::Goals(goals) => goals.outcome_of_stop(ended),
+                    Work::Program(_) => Err(MotionError::Stopped),
+                };
             }
             Some(refusal) => {
                 return Err(match (status, self.given_up) {
@@ -130,16 +133,16 @@ impl CurrentMotion {
         }))
     }
 
-    /// True if one of its sides has ended.
+    /// True if one of its sides has ended, or the robot was asked to stop it.
     pub(super) fn is_ending(&self) -> bool {
-        matches!(self.thread, ThreadSide::Ended(_))
+        self.stopped.is_some()
+            || matches!(self.thread, ThreadSide::Ended(_))
             || matches!(self.command, CommandSide::Ended(_) | CommandSide::Cancelled)
     }
 
     /// True if it is coming to its end, and no caller wants it to go on.
     pub(super) fn is_letting_go(&self) -> bool {
         self.is_ending()
-            || self.stopped.is_some()
             || match &self.work {
                 Work::Goals(goals) if goals.owner != Owner::Goal => !goals.goes_on(),
                 Work::Goals(goals) => goals.cancelled,

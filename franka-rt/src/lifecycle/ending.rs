@@ -76,8 +76,9 @@ impl Lifecycle {
             unreachable!("a motion concludes when its thread side has ended")
         };
         let counted = Counted::of(ended);
+        let told = current.stopped.is_some() && current.failure.is_none();
         if let Work::Goals(goals) = &current.work
-            && goals.came_too_late(current.command, ended)
+            && goals.came_too_late(current.command, told, ended)
         {
             // The session had ended before it saw this goal: the goal gets a motion of its own.
             let unseen = goals.current;

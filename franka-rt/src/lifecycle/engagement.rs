@@ -276,7 +276,7 @@ impl Lifecycle {
         }
     }
 
-    /// True if the motion under way has ended on one side.
+    /// True if the motion under way has ended on one side, or the robot was asked to stop it.
     pub(super) fn is_ending(&self) -> bool {
         matches!(&self.phase, LifecyclePhase::UnderWay(current) if current.is_ending())
     }

@@ -245,13 +245,16 @@ impl Goals {
         }
     }
 
-    /// True if the motion ended well with an older goal than the current one.
-    pub(super) fn came_too_late(&self, command: CommandSide, ended: &Ended) -> bool {
+    /// True if the motion ended well, or as the robot was `told` to stop it, with an older goal than
+    /// the current one.
+    pub(super) fn came_too_late(&self, command: CommandSide, told: bool, ended: &Ended) -> bool {
         let Program::Target(session) = &ended.program else {
             return false;
         };
-        ended.ending == Ending::Finished
-            && command == CommandSide::Ended(MoveStatus::Success)
+        let well =
+            ended.ending == Ending::Finished && command == CommandSide::Ended(MoveStatus::Success);
+        let stopped = told && command == CommandSide::Ended(MoveStatus::Preempted);
+        (well || stopped)
             && session
                 .last_goal()
                 .is_some_and(|last| last != self.current.id)
@@ -274,6 +277,20 @@ impl Goals {
                 released_error: released,
                 ..result
             })
+        })
+    }
+
+    /// How the current goal turned out in a motion that the robot was told to stop, since the arm
+    /// did not come to rest: as the session said before; otherwise a brake was all that was asked
+    /// for, or it was stopped.
+    pub(super) fn outcome_of_stop(&self, ended: &Ended) -> Outcome {
+        let brakes = self.current.target == Target::Rest && !self.goes_on() && !self.cancelled;
+        self.outcome(ended).unwrap_or_else(|| {
+            if !brakes {
+                return Err(MotionError::Stopped);
+            }
+            let duration_ms = ended.statistics.duration_ms();
+            Ok(MotionReport::new(&Counted::of(ended), duration_ms, None))
         })
     }
 }

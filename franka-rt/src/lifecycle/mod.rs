@@ -18,7 +18,8 @@
 //! that is given up, because a reply cannot be read or a deadline has passed, resolves at once; the
 //! next one waits until the thread has seen the robot leave it. The phases `Stalled` and `Closed`
 //! can follow on any other. A stop outlives the motion that it brakes: it waits until a state shows
-//! an arm at rest.
+//! an arm at rest. An arm that its own law does not bring to rest, because a hand moves it, is
+//! stopped by the robot: a motion that finished with it would end in a reflex.
 //!
 //! Inputs are [`Lifecycle::begin`], `update`, `close`, `cancel`, `stop`, `chunk`, `tune` and
 //! `disengage` (from users), the `on_*` methods (from the command connection, the thread and the
@@ -70,6 +71,10 @@ pub const START_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Time for the second of the two sides to end after the first has.
 pub const END_TIMEOUT: Duration = Duration::from_secs(2);
+
+/// Time for a stop to bring an arm that target control moves to rest. The robot is told to stop it
+/// after that, and then has [`END_TIMEOUT`] to end the motion, and as long to show an arm at rest.
+pub const BRAKE_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// Something to carry out, in the order given.
 #[derive(Debug)]

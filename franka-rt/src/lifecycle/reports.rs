@@ -73,7 +73,7 @@ impl Lifecycle {
                 motion,
                 event,
                 statistics,
-            } => self.on_session_event(motion, event, statistics),
+            } => self.on_session_event(motion, event, statistics, now),
             Event::Failed { motion, failure } => {
                 if let Some(current) = self.current(motion) {
                     current.failure = Some(failure.into());
@@ -100,6 +100,7 @@ impl Lifecycle {
         motion: MotionId,
         event: SessionEvent,
         statistics: MotionStatistics,
+        now: Duration,
     ) {
         let Some(current) = self.current(motion) else {
             return;
@@ -137,6 +138,7 @@ impl Lifecycle {
                 }
             }
             SessionEvent::BadTool => goals.verdict = Verdict::BadTool,
+            SessionEvent::Restless => self.send_stop(now),
         }
     }
 

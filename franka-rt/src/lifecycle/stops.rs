@@ -8,7 +8,8 @@ use franka_proto::{MotionGeneratorMode, Request, RobotMode, RobotState};
 use super::ending::STILL_SHOWN;
 use super::outcome::Counted;
 use super::{
-    END_TIMEOUT, Lifecycle, LifecyclePhase, MotionError, MotionId, MotionReport, Outcome, Output,
+    BRAKE_TIMEOUT, END_TIMEOUT, Lifecycle, LifecyclePhase, MotionError, MotionId, MotionReport,
+    Outcome, Output,
 };
 use crate::session::{Goal, GoalId, OnArrival, REST_VELOCITY};
 
@@ -21,9 +22,13 @@ pub(super) struct Stop {
 
 #[derive(Debug)]
 enum StopStage {
-    /// The motion under way brakes. The outcome of this goal decides, which several stops may
-    /// share.
-    Braking(GoalId),
+    /// The motion under way brakes.
+    Braking {
+        /// The outcome of this goal decides, which several stops may share.
+        goal: GoalId,
+        /// When the robot is told to stop. `None` once it was.
+        until: Option<Duration>,
+    },
     /// Nothing of this program moves. The states have to show it.
     Showing {
         /// Of the motion that was stopped.
@@ -36,6 +41,16 @@ enum StopStage {
 }
 
 impl StopStage {
+    fn is_braking_by(&self, newest: GoalId) -> bool {
+        matches!(self, Self::Braking { goal, .. } if *goal == newest)
+    }
+
+    fn until(&self) -> Option<Duration> {
+        match self {
+            Self::Braking { until, .. } | Self::Showing { until, .. } => *until,
+        }
+    }
+
     fn showing(report: MotionReport) -> Self {
         Self::Showing {
             report: Box::new(report),
@@ -51,8 +66,9 @@ impl Lifecycle {
     /// a robot without a motion. Returns false, and does nothing, if that is so already, and after
     /// the end of the connection.
     ///
-    /// If a motion was given up and the robot may still run it, `StopMove` is sent again. Stops
-    /// that are asked for at the same time share one brake and its outcome.
+    /// If a motion was given up and the robot may still run it, `StopMove` is sent again. It is also
+    /// sent if the motion under way has not ended after [`BRAKE_TIMEOUT`]. Stops that are asked for
+    /// at the same time share one brake and its outcome.
     pub fn stop(&mut self, id: GoalId, state: &RobotState, now: Duration) -> bool {
         match &self.phase {
             LifecyclePhase::Closed { .. } => return false,
@@ -77,33 +93,34 @@ impl Lifecycle {
         if self.stop_program(id, now) {
             // A session that waits for the program's end.
             self.resolve_next(MotionError::Stopped);
-            return self.await_brake(id, id);
+            return self.await_brake(id, id, now);
         }
         if let Some(goal) = self.brake_of_a_stop() {
             if self.next.as_ref().is_some_and(|next| next.id() != goal) {
                 self.resolve_next(MotionError::Stopped);
             }
-            return self.await_brake(id, goal);
+            return self.await_brake(id, goal, now);
         }
         if let Some(goals) = self.goals() {
             let goal = Goal {
                 id,
                 ..goals.current.at_rest(OnArrival::ReportAndFinish)
             };
-            self.await_brake(id, id);
+            self.await_brake(id, id, now);
             self.replace(goal, None, MotionError::Stopped);
         }
     }
 
-    fn await_brake(&mut self, id: GoalId, goal: GoalId) {
-        let stage = StopStage::Braking(goal);
+    fn await_brake(&mut self, id: GoalId, goal: GoalId, now: Duration) {
+        let until = Some(now + BRAKE_TIMEOUT);
+        let stage = StopStage::Braking { goal, until };
         self.stops.push(Stop { id, stage });
     }
 
     /// The newest goal, if it is the brake of a stop.
     fn brake_of_a_stop(&self) -> Option<GoalId> {
         let (newest, _) = self.heading()?;
-        let brakes = |stop: &Stop| matches!(stop.stage, StopStage::Braking(goal) if goal == newest);
+        let brakes = |stop: &Stop| stop.stage.is_braking_by(newest);
         self.stops.iter().any(brakes).then_some(newest)
     }
 
@@ -141,7 +158,7 @@ impl Lifecycle {
     /// Takes note of the end of a goal, for the stops that brake by it. Returns the outcome if
     /// there are none.
     pub(super) fn share_with_stops(&mut self, goal: GoalId, result: Outcome) -> Option<Outcome> {
-        let brakes = |stop: &Stop| matches!(stop.stage, StopStage::Braking(of) if of == goal);
+        let brakes = |stop: &Stop| stop.stage.is_braking_by(goal);
         if !self.stops.iter().any(brakes) {
             return Some(result);
         }
@@ -158,17 +175,25 @@ impl Lifecycle {
         None
     }
 
-    /// Resolves stops whose time is over: with `unseen` if no state came, otherwise with the reason
-    /// that the newest state gives.
+    /// Sees to stops whose time is over. The robot is told to stop what still brakes. One that waits
+    /// for a state resolves: with `unseen` if none came, otherwise with the reason that the newest
+    /// one gives.
     pub(super) fn give_up_stops(&mut self, now: Duration, unseen: Option<&MotionError>) {
-        for stop in mem::take(&mut self.stops) {
-            match &stop.stage {
-                StopStage::Showing { until, why, .. } if until.is_some_and(|it| it <= now) => {
+        for mut stop in mem::take(&mut self.stops) {
+            let is_over = stop.stage.until().is_some_and(|until| until <= now);
+            match &mut stop.stage {
+                StopStage::Showing { why, .. } if is_over => {
                     let error = unseen.unwrap_or(why).clone();
                     self.tell_of_stop(stop.id, Err(error));
+                    continue;
                 }
-                _ => self.stops.push(stop),
+                StopStage::Braking { until, .. } if is_over => {
+                    *until = None;
+                    self.send_stop(now);
+                }
+                StopStage::Showing { .. } | StopStage::Braking { .. } => {}
             }
+            self.stops.push(stop);
         }
     }
 
@@ -177,24 +202,24 @@ impl Lifecycle {
         for stop in mem::take(&mut self.stops) {
             match stop.stage {
                 StopStage::Showing { .. } => self.tell_of_stop(stop.id, Err(error.clone())),
-                StopStage::Braking(_) => self.stops.push(stop),
+                StopStage::Braking { .. } => self.stops.push(stop),
             }
         }
     }
 
-    /// When the first of the stops is given up.
+    /// When the time of the first of the stops is over.
     pub(super) fn deadline_of_stops(&self) -> Option<Duration> {
-        let until = |stop: &Stop| match stop.stage {
-            StopStage::Showing { until, .. } => until,
-            StopStage::Braking(_) => None,
-        };
-        self.stops.iter().filter_map(until).min()
+        let until = self.stops.iter().map(|stop| stop.stage.until());
+        until.flatten().min()
     }
 
     /// Moves the deadlines of stops that are over by `now`.
     pub(super) fn postpone_stops(&mut self, now: Duration, later: Duration) {
         for stop in &mut self.stops {
-            if let StopStage::Showing {
+            if let StopStage::Braking {
+                until: Some(until), ..
+            }
+            | StopStage::Showing {
                 until: Some(until), ..
             } = &mut stop.stage
                 && *until <= now

@@ -10,7 +10,7 @@ use super::ending::STILL_SHOWN;
 use super::*;
 use crate::control::{Failure, Modes};
 use crate::driver::{Driver, Event};
-use crate::session::{Chunk, Goal, OnArrival, Target, Waypoint};
+use crate::session::{Chunk, Goal, OnArrival, SessionEvent, Target, Waypoint};
 use crate::shaping::InvalidCommand;
 
 const NOW: Duration = Duration::ZERO;

@@ -39,6 +39,10 @@ impl Settling {
 /// Cycles that an arm has to rest that comes to rest without a target.
 const HOLD_AT_REST: u64 = 100;
 
+/// The longest time for that: its reference rests, so an arm that does not is moved from outside. A
+/// goal that is patient about its target makes no patient stop.
+const REST_TIMEOUT: Duration = Duration::from_secs(1);
+
 /// Cycles without progress after which an arm at rest is short of its target for certain.
 const STUCK: u64 = 500;
 
@@ -48,8 +52,9 @@ const PROGRESS: f64 = 0.02;
 /// Cycles over which the spring is let go.
 const RELEASE: u32 = 100;
 
-/// Time after which the motion is finished even if the joints do not rest.
-pub const RELEASE_TIMEOUT: Duration = Duration::from_secs(5);
+/// Time after which the robot is told to stop an arm that was let go and does not rest. A motion
+/// that finished then would end in a reflex.
+pub const RELEASE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Distance of the measured end effector from its target.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -195,13 +200,12 @@ impl Landing {
         let changing = nearer || working || !at_rest || there;
         self.stuck = if changing { 0 } else { self.stuck + 1 };
         let Settling { hold, timeout } = self.settling;
+        let timeout = error.map_or(REST_TIMEOUT, |_| timeout);
         let given_up = self.stuck >= STUCK || u128::from(self.cycles) >= timeout.as_millis();
         let settlement = match error {
             None if self.held >= HOLD_AT_REST => Settlement::AtRest,
             Some(error) if u128::from(self.held) >= hold.as_millis() => Settlement::Arrived(error),
             _ if !given_up => return Verdict::Settling,
-            // An arm that does not rest after all this time is being moved from outside; the
-            // reference rests.
             None => Settlement::AtRest,
             Some(error) => Settlement::TargetNotReached(Shortfall {
                 error,
@@ -252,8 +256,14 @@ impl Release {
         self.target.map(|target| PoseError::between(pose, &target))
     }
 
+    /// True if the spring has been let go and the arm rests.
     pub(super) fn is_over(&self, at_rest: bool) -> bool {
-        self.cycle >= RELEASE && at_rest || u128::from(self.cycle) >= RELEASE_TIMEOUT.as_millis()
+        self.cycle >= RELEASE && at_rest
+    }
+
+    /// True if the arm does not come to rest.
+    pub(super) fn is_in_vain(&self) -> bool {
+        u128::from(self.cycle) >= RELEASE_TIMEOUT.as_millis()
     }
 }
 
@@ -359,5 +369,31 @@ mod tests {
         assert_eq!(release.reference(), arm);
         assert!(release.is_over(true));
         assert!(!release.is_over(false));
+    }
+
+    #[test]
+    fn an_arm_that_never_rests_is_released_in_vain_and_its_motion_does_not_finish() {
+        let mut release = Release::new(None, JointVector::zeros(), &JointVector::zeros());
+        let cycles = RELEASE_TIMEOUT.as_millis() as u32;
+        for _ in 0..cycles {
+            assert!(!release.is_in_vain());
+            release.reference();
+        }
+        assert!(release.is_in_vain());
+        assert!(!release.is_over(false));
+    }
+
+    #[test]
+    fn a_patient_goal_makes_no_patient_brake() {
+        let settling = Settling {
+            timeout: Settling::TIMEOUT_MAX,
+            ..Settling::default()
+        };
+        let mut brake = Landing::new(None, Tolerance::default(), settling);
+        let here = Isometry3::identity();
+        let cycles = REST_TIMEOUT.as_millis() as u64;
+        assert_eq!(judge_for(&mut brake, cycles - 1, &here, MOVES), None);
+        let rests = judge_for(&mut brake, 1, &here, MOVES);
+        assert_eq!(rests, Some(Settlement::AtRest));
     }
 }

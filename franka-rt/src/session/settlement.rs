@@ -32,6 +32,9 @@ pub enum SessionEvent {
     /// The robot's state names an end effector that is not a rigid transformation, or a load that
     /// is not finite; the session ends without a torque.
     BadTool,
+    /// The arm was let go and does not come to rest, so that the motion cannot finish: the robot
+    /// has to be told to stop. The session answers states until it does, and takes no more goals.
+    Restless,
 }
 
 /// How a goal came to its end.
@@ -40,7 +43,7 @@ pub enum SessionEvent {
 pub enum Settlement {
     /// At the target, within the tolerance, at rest and held there.
     Arrived(PoseError),
-    /// At rest where it was braked.
+    /// At rest where it was braked; or its reference is, and the arm is moved from outside.
     AtRest,
     /// The reference reached the target, the arm did not: something holds it, or its load is not
     /// what was declared.

@@ -468,8 +468,9 @@ class Robot:
         rest; that motion raises `MotionError` of the kind `stopped` at once, while the arm still
         brakes. A motion that another task asks for meanwhile takes over: `stop` then raises
         `MotionError` of the kind `superseded`. It raises others if the arm was not seen to rest:
-        `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. Once it has begun, it goes on
-        even if it is cancelled.
+        `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. An arm that hands keep in motion
+        for two seconds is stopped by the robot's own controller; the wait is over after eight. Once
+        it has begun, it goes on even if it is cancelled.
         """
 
     def latch_stop(self) -> None:

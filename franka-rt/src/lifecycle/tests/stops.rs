@@ -162,3 +162,87 @@ fn stops_at_the_same_time_share_one_brake() {
         (Some(Ok(())), Some(Ok(())))
     );
 }
+
+#[test]
+fn stop_of_an_arm_that_does_not_rest_has_the_robot_stop_it() {
+    let (mut pair, motion, _) = LifecycleAndDriver::moving();
+    assert!(pair.stop(10));
+    pair.state.dq[0] = 0.2;
+    for _ in 0..500 {
+        pair.cycle(RobotMode::Move);
+    }
+    assert_eq!(pair.lifecycle.deadline(), Some(NOW + BRAKE_TIMEOUT));
+    assert_eq!(pair.stop_requests(), 0);
+    pair.time_passes(None);
+    assert_eq!(pair.stop_requests(), 1);
+    // What comes now waits, and is not stopped with the motion.
+    let limits = Model::fr3().joint_limits();
+    let goal = Goal::new(GoalId(2), Target::Rest, OnArrival::Hold, limits);
+    let begun = pair.lifecycle.begin(NewMotion::to(goal), &pair.state, NOW);
+    assert_eq!(begun, Ok(()));
+    pair.lifecycle
+        .on_move_reply(motion, MoveStatus::Preempted, NOW);
+    assert_eq!(ended(&pair, 10), None, "the robot shows the motion");
+    pair.comes_to(0.2);
+    assert!(matches!(pair.sent.last(), Some(Request::Move(_))));
+    assert_eq!(ended(&pair, 10), Some(Err(MotionError::Superseded)));
+    assert_eq!(ended(&pair, 2), None);
+}
+
+#[test]
+fn stop_by_the_robot_resolves_when_a_state_shows_the_arm_at_rest() {
+    let (mut pair, motion, _) = LifecycleAndDriver::moving();
+    assert!(pair.stop(10) && pair.stop(11));
+    pair.state.dq[0] = 0.2;
+    pair.cycle(RobotMode::Move);
+    pair.time_passes(None);
+    pair.lifecycle
+        .on_move_reply(motion, MoveStatus::Preempted, NOW);
+    pair.comes_to(0.2);
+    assert_eq!((ended(&pair, 10), ended(&pair, 11)), (None, None));
+    pair.comes_to(0.0);
+    assert_eq!(
+        (ended(&pair, 10), ended(&pair, 11)),
+        (Some(Ok(())), Some(Ok(())))
+    );
+    assert_eq!(pair.stop_requests(), 1);
+}
+
+#[test]
+fn a_goal_that_comes_as_the_robot_is_told_to_stop_gets_a_motion_of_its_own() {
+    let (mut pair, motion, goal) = LifecycleAndDriver::moving();
+    pair.lifecycle.cancel(goal, NOW);
+    pair.settle();
+    pair.state.dq[0] = 0.2;
+    let limits = Model::fr3().joint_limits();
+    let next = Goal::new(GoalId(2), Target::Rest, OnArrival::Hold, limits);
+    let mut events = Vec::new();
+    for _ in 0..5000 {
+        pair.state.message_id += 1;
+        pair.driver.on_state(&pair.state);
+        while let Some(event) = pair.driver.take_event() {
+            events.push(event);
+        }
+    }
+    assert!(matches!(
+        events.last(),
+        Some(Event::Program {
+            event: SessionEvent::Restless,
+            ..
+        })
+    ));
+    let begun = pair.lifecycle.begin(NewMotion::to(next), &pair.state, NOW);
+    assert_eq!(begun, Ok(()));
+    assert_eq!(ended(&pair, 1), None);
+    for event in events {
+        pair.lifecycle.on_event(event, NOW);
+    }
+    pair.settle();
+    assert_eq!(pair.stop_requests(), 1);
+    pair.lifecycle
+        .on_move_reply(motion, MoveStatus::Preempted, NOW);
+    pair.comes_to(0.2);
+    assert!(matches!(pair.sent.last(), Some(Request::Move(_))));
+    assert_eq!(ended(&pair, 1), Some(Err(MotionError::Superseded)));
+    assert_eq!(ended(&pair, 2), None);
+}

@@ -15,7 +15,7 @@ impl RunningSession {
         if let Some(retired) = self.route.retired_chunk.take() {
             retired.end(chunks, now);
         }
-        let gone = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_));
+        let gone = self.stage.lets_go();
         // A goal that was taken back, perhaps before it was seen, follows nothing.
         let follows =
             self.goal.along_path || self.goal.on_arrival == OnArrival::Hold || self.is_given_up();

@@ -11,7 +11,7 @@ impl RunningSession {
     /// Takes a goal that was read from the slot: tunes the present goal, or replaces it and plans
     /// anew.
     pub(super) fn take_up(&mut self, goal: &Goal, now: u64) {
-        if matches!(self.stage, GoalStage::Finished(_)) {
+        if matches!(self.stage, GoalStage::Restless | GoalStage::Finished(_)) {
             return;
         }
         let named = goal.id == self.goal.id;

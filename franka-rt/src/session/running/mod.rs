@@ -436,10 +436,12 @@ impl RunningSession {
         let answer = match &mut self.drive {
             Drive::Torques(effort) => {
                 let limits = model.joint_limits();
-                let resistance = match self.stage {
-                    GoalStage::Releasing(_) | GoalStage::Finished(_) => Resistance::Release,
-                    _ if self.yields => Resistance::Yield,
-                    _ => Resistance::Overcome,
+                let resistance = if self.stage.lets_go() {
+                    Resistance::Release
+                } else if self.yields {
+                    Resistance::Yield
+                } else {
+                    Resistance::Overcome
                 };
                 let reference = &self.reference;
                 let tau = effort.step(
@@ -509,6 +511,7 @@ impl RunningSession {
             GoalStage::Landing(_)
             | GoalStage::Staying
             | GoalStage::Releasing(_)
+            | GoalStage::Restless
             | GoalStage::Finished(_) => Target::Rest,
         };
         aim.target = target;

@@ -25,14 +25,26 @@ pub(super) enum GoalStage {
     Staying,
     /// The spring is being released, so that the torques end at zero.
     Releasing(Release),
+    /// It was released and the arm does not rest: the robot is told to stop.
+    Restless,
     /// The last command is out. How far the arm was from its target when it had been let go, if it
     /// was.
     Finished(Option<PoseError>),
 }
 
+impl GoalStage {
+    /// True if the arm is being let go, or was.
+    pub(super) fn lets_go(&self) -> bool {
+        match self {
+            Self::Releasing(_) | Self::Restless | Self::Finished(_) => true,
+            Self::UnderWay | Self::Landing(_) | Self::Staying => false,
+        }
+    }
+}
+
 impl RunningSession {
     /// Moves through the stages of a goal that is to come to an end. The only place where the stage
-    /// advances. A goal that has come to its end is reported in `event`.
+    /// advances. What there is to report of it is left in `event`.
     pub(super) fn advance_stage(
         &mut self,
         model: &Model,
@@ -119,9 +131,12 @@ impl RunningSession {
                 self.route.rest();
                 if release.is_over(at_rest) {
                     self.stage = GoalStage::Finished(release.error(&self.arm.as_reported()));
+                } else if release.is_in_vain() {
+                    self.stage = GoalStage::Restless;
+                    *event = Some(SessionEvent::Restless);
                 }
             }
-            GoalStage::Staying | GoalStage::Finished(_) => {}
+            GoalStage::Staying | GoalStage::Restless | GoalStage::Finished(_) => {}
         }
     }
 

@@ -55,7 +55,7 @@ impl RunningSession {
 
     /// True if neither an update nor a chunk brings back a goal that was given up or has reacted.
     pub(super) fn is_given_up_for_good(&self) -> bool {
-        let settled = matches!(self.stage, GoalStage::Staying | GoalStage::Releasing(_));
+        let settled = matches!(self.stage, GoalStage::Staying) || self.stage.lets_go();
         match self.standing {
             Standing::GivenUp { cause, .. } => settled || cause.is_final(),
             Standing::Reacted(_) => true,
@@ -117,7 +117,7 @@ impl RunningSession {
         let arm = &self.arm;
         let fastest = || model.fastest_point(&arm.q, &arm.dq, &self.hand);
         let too_fast = self.speed_cap.is_some_and(|cap| fastest() > cap);
-        let over = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_));
+        let over = self.stage.lets_go();
         if too_fast && !over && self.heading() != Target::Rest {
             self.give_up(Lapse::TooFast);
         }
@@ -126,7 +126,7 @@ impl RunningSession {
 
     /// Gives up a goal whose arm ignores its commands. Returns true if it does.
     pub(super) fn watch_response(&mut self) -> bool {
-        let over = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_));
+        let over = self.stage.lets_go();
         if self.ignores && !over && !self.is_given_up() && self.heading() != Target::Rest {
             self.give_up(Lapse::Unresponsive);
             // A reference that follows the setpoint of a robot that refuses others goes nowhere.
@@ -154,7 +154,7 @@ impl RunningSession {
     /// Gives the goal up if the team has just stopped and the arm goes anywhere. One that was given
     /// up before keeps its own cause.
     pub(super) fn stop_with_team(&mut self, stop: Option<TeamStop>) {
-        let over = matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_));
+        let over = self.stage.lets_go();
         if let Some(stop) = stop
             && !over
             && self.heading() != Target::Rest
@@ -191,10 +191,7 @@ impl RunningSession {
         // A goal of coming to rest needs no deadman.
         let comes_to_rest =
             self.heading() == Target::Rest && self.goal.on_arrival != OnArrival::Hold;
-        if braked
-            || comes_to_rest
-            || matches!(self.stage, GoalStage::Releasing(_) | GoalStage::Finished(_))
-        {
+        if braked || comes_to_rest || self.stage.lets_go() {
             return;
         }
         if !alive {

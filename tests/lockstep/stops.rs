@@ -1,0 +1,142 @@
+//! Ends of motions while hands push the arm: it is stopped, and comes to rest, all the same.
+
+use std::time::Duration;
+
+use franka_lockstep::Lockstep;
+use franka_model::{RobotKind, Wrench};
+use franka_proto::{CollisionBehavior, Request, RobotMode};
+use franka_rt::lifecycle::{Engagement, MotionError};
+use franka_rt::session::{Backend, OnArrival, Settling, Target};
+use franka_sim::arm::{Arm, Family};
+use franka_sim::{Config, Touch};
+use franka_tests::thorough;
+use nalgebra::Translation3;
+
+/// The longest time from a stop until it resolves well while hands push, `[ms]`: until the robot is
+/// told to stop, and what it takes for that.
+const BOUND: u64 = 2500;
+
+/// The same of a stop that says that the arm was not seen to rest.
+const UNSEEN: u64 = BOUND + 2000;
+
+fn arms() -> u64 {
+    if thorough() { 20 } else { 1 }
+}
+
+/// An arm of the realistic family that no contact stops.
+fn realistic(kind: RobotKind, seed: u64) -> Lockstep {
+    let mut lockstep = Lockstep::new(Config {
+        arm: Some(Arm::sample(kind, seed, &Family::realistic())),
+        seed,
+        ..Lockstep::config_of(kind)
+    });
+    let tolerant = CollisionBehavior::uniform([100.0; 7], [100.0; 7], [500.0; 6], [500.0; 6]);
+    lockstep.request(&Request::SetCollisionBehavior(tolerant));
+    lockstep.run(5);
+    lockstep
+}
+
+/// Hands that push in turn to either side, with this force and this long each, `[N]` and `[ms]`.
+fn hands((force, each): (f64, u64)) -> Touch {
+    Touch::over_time(move |seconds| {
+        let side = (seconds * 1e3) as u64 / each % 2;
+        let y = if side == 0 { force } else { -force };
+        Wrench::new(0.0, y, 0.0, 0.0, 0.0, 0.0)
+    })
+}
+
+/// How hard hands push, and how long to each side. The second shakes the arm, also under the robot's
+/// own controller.
+const PUSHES: [(f64, u64); 4] = [(15.0, 250), SHAKE, (30.0, 250), (60.0, 2000)];
+
+const SHAKE: (f64, u64) = (15.0, 60);
+
+fn aside(lockstep: &Lockstep) -> Target {
+    (Translation3::new(0.0, 0.3, 0.0) * lockstep.arm_pose()).into()
+}
+
+/// Stops an arm that moves while hands push it, and expects it to come to rest in time.
+fn stop_while_pushed(mut lockstep: Lockstep, push: (f64, u64), what: &str) {
+    lockstep.run(700);
+    lockstep.robot.touch(hands(push));
+    lockstep.run(100);
+    let stop = lockstep.stop().expect("it moves");
+    let took = (0..12_000).find(|_| {
+        lockstep.tick();
+        lockstep.client.outcome(stop).is_some()
+    });
+    let outcome = lockstep.client.outcome(stop);
+    let bound = match outcome {
+        Some(Ok(_)) => BOUND,
+        Some(Err(MotionError::NotAtRest { .. })) if push == SHAKE => UNSEEN,
+        _ => panic!("{what}: {outcome:?}"),
+    };
+    assert!(took.is_some_and(|ms| ms <= bound), "{what}: {took:?} ms");
+    let state = &lockstep.client.state;
+    assert_eq!(state.robot_mode, RobotMode::Idle, "{what}");
+    assert!(state.errors.is_empty(), "{what}: {}", state.errors);
+}
+
+#[test]
+fn a_stop_ends_in_time_while_hands_push_the_arm() {
+    for kind in RobotKind::ALL {
+        for seed in 0..arms() {
+            for push in PUSHES {
+                let mut lockstep = realistic(kind, seed);
+                // A patient goal makes no patient stop.
+                let mut goal = lockstep.goal(aside(&lockstep), OnArrival::ReportAndFinish);
+                goal.settling.timeout = Settling::TIMEOUT_MAX;
+                lockstep.submit(goal).expect("within reach");
+                stop_while_pushed(lockstep, push, &format!("{kind:?} {seed}: {push:?}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_stop_of_a_session_ends_in_time_while_hands_push_the_arm() {
+    for kind in RobotKind::ALL {
+        for backend in [Backend::Torques, Backend::ROBOT_CONTROLLERS[0]] {
+            for push in PUSHES {
+                let mut lockstep = realistic(kind, 0);
+                let engaged = lockstep.engage_with(Engagement {
+                    backend,
+                    ..Engagement::default()
+                });
+                let target = aside(&lockstep);
+                lockstep
+                    .within(engaged, target, OnArrival::Hold)
+                    .expect("within reach");
+                stop_while_pushed(lockstep, push, &format!("{kind:?}, {backend}: {push:?}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn no_motion_ends_in_a_reflex_because_hands_push_the_arm() {
+    for kind in RobotKind::ALL {
+        // A hand that pushes harder than the force cap makes the arm too fast.
+        for push in [PUSHES[0], SHAKE, PUSHES[2]] {
+            for cancelled in [false, true] {
+                let mut lockstep = realistic(kind, 0);
+                let mut goal = lockstep.goal(aside(&lockstep), OnArrival::ReportAndFinish);
+                goal.settling.timeout = Duration::from_secs(1);
+                let id = lockstep.submit(goal).expect("within reach");
+                lockstep.run(700);
+                // Hands that go on pushing may keep the arm from its target for as long.
+                lockstep.robot.touch(hands(push).lasting(10_000));
+                if cancelled {
+                    lockstep.cancel(id);
+                }
+                let outcome = lockstep.until_resolved(id, 20_000);
+                let what = format!("{kind:?}, {push:?}, cancelled {cancelled}: {outcome:?}");
+                let stopped = matches!(outcome, Err(MotionError::Stopped));
+                assert!(!cancelled || stopped, "{what}");
+                assert!(!matches!(outcome, Err(MotionError::Control(_))), "{what}");
+                lockstep.run(300);
+                assert_eq!(lockstep.client.state.robot_mode, RobotMode::Idle, "{what}");
+            }
+        }
+    }
+}
