@@ -134,6 +134,11 @@ impl Drift {
         }
     }
 
+    /// True before its first cycle, in which the joints begin to follow a pose.
+    fn begins(&self) -> bool {
+        self.cycle == 0
+    }
+
     /// The share that remains in the next cycle: from 1 to 0, at either end without a slope.
     fn share(&mut self) -> f64 {
         self.cycle = self.cycle.saturating_add(1);
@@ -196,9 +201,11 @@ pub(super) fn follow(
     let twist = pose.twist + error * FEEDBACK;
 
     let speed = pose.twist.fixed_rows::<3>(0).norm();
+    let takes_over = drift.begins();
     let free = drift.step(posture, &reference.q, speed, &jacobian, budget);
+    let limits = model.joint_limits();
     let open: [OpenVelocities; 7] =
-        core::array::from_fn(|i| OpenVelocities::of(i, model.joint_limits(), reference, budget));
+        core::array::from_fn(|i| OpenVelocities::of(i, limits, reference, budget, takes_over));
     let bounds = JointBox::new(
         &JointVector::from_fn(|i, _| open[i].lower.velocity),
         &JointVector::from_fn(|i, _| open[i].upper.velocity),
@@ -242,6 +249,7 @@ pub(super) fn follow(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::joints::JointGenerator;
     use franka_model::READY;
     use nalgebra::{Isometry3, Translation3, Vector3};
 
@@ -283,6 +291,59 @@ mod tests {
             assert!(!held.any(), "{held:?}");
             // What is left is the fading drift, and the curvature of the way.
             assert!(next.ddq.amax() < 0.3, "{}", next.ddq);
+        }
+    }
+
+    /// The greatest jerk of a joint in units of its limit, from the differences of positions, as the
+    /// robot computes it.
+    fn worst_jerk(passed: &[JointVector], model: &Model) -> f64 {
+        let jerk = |q: &[JointVector]| (q[3] - (q[2] - q[1]) * 3.0 - q[0]) / CYCLE.powi(3);
+        let shares = |q: &[JointVector]| jerk(q).component_div(&model.joint_limits().jerk);
+        let worst = |most: f64, q| most.max(shares(q).amax());
+        passed.windows(4).fold(0.0, worst)
+    }
+
+    #[test]
+    fn a_pose_that_takes_over_from_a_plan_of_the_joints_keeps_the_jerk_that_the_robot_sees() {
+        for model in [Model::fr3(), Model::fer()] {
+            let (ee, limits) = (EndEffector::default(), model.joint_limits());
+            let joints = core::array::from_fn(|i| franka_otg::AxisLimits {
+                velocity: limits.velocity[i],
+                acceleration: limits.acceleration[i],
+                jerk: limits.jerk[i],
+            });
+            let budget = Budget {
+                joints,
+                ..Budget::of(limits)
+            };
+            for (brakes, on) in (0..=4).flat_map(|n| [-1.0, 1.0].map(|on| (n, on))) {
+                let dq = JointVector::from_fn(|i, _| [0.2, -0.2][i % 2]);
+                let mut reference = Reference {
+                    dq,
+                    ..Reference::at_rest(READY)
+                };
+                let mut passed = vec![READY - dq * 2.0 * CYCLE, READY - dq * CYCLE, READY];
+                let mut brake = JointGenerator::new(limits, &reference, None, &budget).unwrap();
+                for _ in 0..brakes {
+                    reference = brake.step();
+                    passed.push(reference.q);
+                }
+                let mut drift = Drift::of(reference.dq);
+                for _ in 0..4 {
+                    // More than the joints can do, the way they go or back.
+                    let hurried = Reference {
+                        dq: dq * (20.0 * on),
+                        ..reference
+                    };
+                    let pose = taken_up(model, &ee, &hurried);
+                    let kept = (&Posture::kept(READY), None);
+                    (reference, _) =
+                        follow(model, &ee, kept, &mut drift, &reference, &pose, &budget);
+                    passed.push(reference.q);
+                }
+                let worst = worst_jerk(&passed, model);
+                assert!(worst < 1.0 + 1e-6, "{brakes} cycles, {on}: {worst}");
+            }
         }
     }
 

@@ -21,6 +21,11 @@ const ACCELERATION_CAP: f64 = 0.9;
 /// Share of each joint's jerk limit that the reference may use.
 const JERK_CAP: f64 = 0.9;
 
+/// The same in the first cycle after a plan of the joints. The acceleration of a plan grows within
+/// a cycle, and steps here between two. The robot differences positions: it sees five sixths of the
+/// jerk of the plan's last two cycles and half of this step at once.
+const TAKE_OVER_JERK_CAP: f64 = 1.0 / 3.0;
+
 /// Distance kept from the ends of each joint's range, `[rad]`.
 const POSITION_MARGIN: f64 = 0.05;
 
@@ -76,14 +81,21 @@ pub(crate) enum Cause {
 }
 
 impl OpenVelocities {
+    /// Of the joint `i`, which so far was moved by a plan of the joints, or at rest, if this
+    /// `takes_over`.
     pub(crate) fn of(
         i: usize,
         limits: &JointLimits,
         reference: &Reference,
         budget: &Budget,
+        takes_over: bool,
     ) -> Self {
         let (q, dq, ddq) = (reference.q[i], reference.dq[i], reference.ddq[i]);
-        let ramp = JERK_CAP * limits.jerk[i] * CYCLE;
+        let jerk_cap = match takes_over {
+            true => TAKE_OVER_JERK_CAP,
+            false => JERK_CAP,
+        };
+        let ramp = jerk_cap * limits.jerk[i] * CYCLE;
         let most = ACCELERATION_CAP * limits.acceleration[i];
         let cap = (VELOCITY_CAP * limits.velocity[i]).min(HASTE * budget.joints[i].velocity);
         let felt = |a: f64| a.clamp(-most, most).clamp(ddq - ramp, ddq + ramp);
@@ -168,7 +180,7 @@ mod tests {
                 ..Reference::at_rest(READY)
             };
             for i in 0..7 {
-                let open = OpenVelocities::of(i, limits, &moving, &Budget::of(limits));
+                let open = OpenVelocities::of(i, limits, &moving, &Budget::of(limits), false);
                 for bound in [open.lower, open.upper] {
                     let ddq = (bound.velocity - moving.dq[i]) / CYCLE;
                     assert!(ddq.abs() <= ACCELERATION_CAP * limits.acceleration[i] + 1e-9);
@@ -183,7 +195,8 @@ mod tests {
         let limits = Model::fr3().joint_limits();
         let mut q = READY;
         q[3] = limits.upper[3] - 0.5 * POSITION_MARGIN;
-        let open = OpenVelocities::of(3, limits, &Reference::at_rest(q), &Budget::of(limits));
+        let rests = Reference::at_rest(q);
+        let open = OpenVelocities::of(3, limits, &rests, &Budget::of(limits), true);
         assert_eq!(open.upper.velocity, 0.0);
         assert_eq!(open.upper.cause, Cause::Position);
         assert!(open.lower.velocity < 0.0);
@@ -194,7 +207,7 @@ mod tests {
         let limits = model.joint_limits();
         let mut passed = Vec::new();
         for _ in 0..1500 {
-            let dq = OpenVelocities::of(i, limits, &reference, budget)
+            let dq = OpenVelocities::of(i, limits, &reference, budget, false)
                 .upper
                 .velocity;
             reference.ddq[i] = (dq - reference.dq[i]) / CYCLE;
