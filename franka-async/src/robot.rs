@@ -242,10 +242,9 @@ impl Robot {
     /// [`MotionError::Superseded`] unless the arm was seen to rest before. [`Self::latch_stop`]
     /// holds.
     ///
-    /// An arm that hands keep in motion is stopped by the robot: it is told to after
-    /// [two seconds](franka_rt::lifecycle::BRAKE_TIMEOUT), and has four to end the motion and two
-    /// more to show an arm at rest. So a stop resolves within eight seconds, mostly within half a
-    /// second, while the link stays up.
+    /// An arm that hands keep in motion is stopped by the robot: it is told to after two seconds,
+    /// and has four to end the motion and two more to show an arm at rest. So a stop resolves within
+    /// eight seconds, mostly within half a second, while the link stays up.
     ///
     /// If the connection to a [supervised](crate::connection::Builder::supervise) robot is lost
     /// meanwhile, the stop waits for the next one, 10 s at most, and stops there as well.

@@ -1,7 +1,7 @@
 //! The Franka Emika Robot: the same programs, over the protocol that negotiation finds.
 
 use franka_async::connection::{Version, VersionPolicy};
-use franka_async::error::{CommandError, ConnectError, GoalError, Party, PoseError};
+use franka_async::error::{CommandError, ConnectError, GoalError, Hindrance, Party, PoseError};
 use franka_async::settings::Filters;
 use franka_async::{Engage, MotionError, Pose, Realtime, Robot};
 use franka_model::RobotKind;
@@ -53,7 +53,7 @@ async fn the_joints_of_an_engaged_arm_go_where_it_has_no_line() {
         matches!(
             refused,
             MotionError::Goal(GoalError::NoLine {
-                near_itself: true,
+                hindrance: Hindrance::Itself,
                 ..
             })
         ),

@@ -7,7 +7,9 @@ use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, JointVector, Model, READY, RobotKind, Wrench};
 use franka_proto::{CollisionBehavior, Request, RobotMode};
 use franka_rt::lifecycle::MotionError;
-use franka_rt::session::{GoalError, Guard, OnArrival, SELF_STOP, STALL_TIMEOUT, Settling, Target};
+use franka_rt::session::{
+    GoalError, Guard, Hindrance, OnArrival, SELF_STOP, STALL_TIMEOUT, Settling, Target,
+};
 use franka_sim::Config;
 use franka_sim::arm::{Arm, SystemLimits};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
@@ -63,7 +65,8 @@ fn is_reached_smoothly(mut lockstep: Lockstep, case: usize, target: Isometry3<f6
     let goal = match lockstep.submit(goal) {
         Ok(goal) => goal,
         Err(MotionError::Goal(GoalError::NoLine {
-            near_itself: true, ..
+            hindrance: Hindrance::Itself,
+            ..
         })) => return false,
         Err(error) => panic!("case {case}: {error}"),
     };

@@ -8,7 +8,7 @@ use franka_proto::{CollisionBehavior, Request};
 use franka_rt::driver::Activity;
 use franka_rt::lifecycle::MotionError;
 use franka_rt::session::condition::elapsed;
-use franka_rt::session::{GoalError, Lapse, OnArrival, PoseError, SELF_STOP, Target};
+use franka_rt::session::{GoalError, Hindrance, Lapse, OnArrival, PoseError, SELF_STOP, Target};
 use franka_sim::{Config, Tool};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use rand::rngs::SmallRng;
@@ -88,8 +88,7 @@ fn a_line_into_the_arm_itself_is_refused_and_the_joints_get_there() {
         let goal = lockstep.goal(Target::Pose(there), OnArrival::ReportAndFinish);
         let refused = lockstep.submit(goal).expect_err("it has no line");
         let MotionError::Goal(GoalError::NoLine {
-            near_itself: true,
-            joint: None,
+            hindrance: Hindrance::Itself,
             posture: Some(posture),
             ..
         }) = refused
@@ -165,11 +164,9 @@ fn random_reachable_poses_are_reached_or_refused() {
                     id
                 }
                 Err(MotionError::Goal(GoalError::NoLine {
-                    posture,
-                    near_itself,
-                    ..
+                    posture, hindrance, ..
                 })) => {
-                    *if near_itself {
+                    *if hindrance == Hindrance::Itself {
                         &mut crowded
                     } else {
                         &mut ended

@@ -36,7 +36,8 @@ pub use franka_rt::lifecycle::{CloseReason, ControlError, Party, Stage, Unready}
 pub use franka_rt::sched::SchedError;
 pub use franka_rt::session::condition::ConditionError;
 pub use franka_rt::session::{
-    ChunkError, GoalError, Lapse, LimitedTorque, PathError, PoseError, Shortfall, TooManyChunks,
+    ChunkError, GoalError, Hindrance, Lapse, LimitedTorque, PathError, PoseError, Shortfall,
+    TooManyChunks,
 };
 pub use franka_rt::shaping::{FilterFault, InvalidCommand, Signal};
 pub use franka_rt::thread::{BorrowError, LinkFault, WriteFault};

@@ -50,9 +50,8 @@ pub enum GoalError {
     /// The arm reaches the pose, but not on a straight line from where it is: joints come to the
     /// ends of their ranges on the way, with every posture that was tried.
     #[error(
-        "the arm cannot go to {} on a straight line{}: {}",
+        "the arm cannot go to {} on a straight line{hindrance}: {}",
         place([*x, *y, *z]),
-        on_the_way(*joint, *near_itself),
         way_on(posture.as_ref())
     )]
     NoLine {
@@ -62,10 +61,8 @@ pub enum GoalError {
         y: f64,
         /// See `x`.
         z: f64,
-        /// The joint, from 1, that comes to the end of its range with the elbow where it is.
-        joint: Option<u8>,
-        /// True if the arm comes too near itself on the way.
-        near_itself: bool,
+        /// What keeps the arm from it with the elbow where it is.
+        hindrance: Hindrance,
         /// Joint positions that reach the pose, `[rad]`, and to which the joints can move; regions
         /// to keep out of are not considered. `None` if none were found.
         posture: Option<[f64; 7]>,
@@ -218,11 +215,29 @@ fn place(position: [f64; 3]) -> String {
     format!("({x:.4}, {y:.4}, {z:.4}) m")
 }
 
-fn on_the_way(joint: Option<u8>, near_itself: bool) -> String {
-    match joint {
-        Some(joint) => format!(", joint {joint} comes to the end of its range on the way"),
-        None if near_itself => ", it comes too near itself on the way".to_owned(),
-        None => String::new(),
+/// Why the arm cannot follow a straight line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Hindrance {
+    /// It leaves the line, with this joint, from 1, at the end of its range, if one is.
+    Range(Option<u8>),
+    /// It comes too near itself.
+    Itself,
+}
+
+/// Empty, or the end of a sentence after a comma.
+impl core::fmt::Display for Hindrance {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Range(Some(joint)) => {
+                write!(
+                    f,
+                    ", joint {joint} comes to the end of its range on the way"
+                )
+            }
+            Self::Range(None) => Ok(()),
+            Self::Itself => write!(f, ", it comes too near itself on the way"),
+        }
     }
 }
 

@@ -70,7 +70,7 @@ pub use chunk::{
     Waypoint, chunk_ring,
 };
 pub use goal::{Free, Goal, GoalId, OnArrival, Target};
-pub use goal_error::{GoalError, TooManyChunks};
+pub use goal_error::{GoalError, Hindrance, TooManyChunks};
 pub use guard::clearance::{KEEP_OUT_MAX, KEEP_OUT_STOP, KeepOut, SELF_STOP, SLOW_ZONE};
 pub use guard::deadman::{Deadman, DeadmanMonitor, Pulse};
 pub use guard::deviation::Deviation;

@@ -21,7 +21,7 @@ use crate::session::guard::clearance::{Clearance, KeepOut};
 use crate::session::guard::joint_bounds;
 use crate::session::kinematics::Posture;
 use crate::session::pose::PoseState;
-use crate::session::{Budget, Goal, GoalError, OnArrival, Target, rigid};
+use crate::session::{Budget, Goal, GoalError, Hindrance, OnArrival, Target, rigid};
 
 impl Goal {
     /// Looks for a way to the pose of a goal that is to arrive there, on a straight line from the
@@ -75,19 +75,16 @@ impl Goal {
                 return Ok(());
             }
         }
-        let (joint, near_itself) = match hindrance {
-            Hindrance::Range(_) if line.ends_there(&own) => return Ok(()),
-            Hindrance::Range(joint) => (joint.map(|joint| joint as u8), false),
-            Hindrance::Itself => (None, true),
-        };
+        if matches!(hindrance, Hindrance::Range(_)) && line.ends_there(&own) {
+            return Ok(());
+        }
         let reached = |to: &&JointVector| line.is_clear_over_joints(to);
         let p = there.translation.vector;
         Err(GoalError::NoLine {
             x: p.x,
             y: p.y,
             z: p.z,
-            joint,
-            near_itself,
+            hindrance,
             posture: postures.iter().find(reached).map(|q| (*q).into()),
         })
     }
@@ -110,14 +107,6 @@ struct Line<'a> {
     model: &'a Model,
     ee: EndEffector,
     clearance: Clearance,
-}
-
-/// Why a line cannot be followed.
-enum Hindrance {
-    /// The arm leaves it, with this joint, from 1, at the end of its range, if one is.
-    Range(Option<usize>),
-    /// The arm comes too near itself.
-    Itself,
 }
 
 impl<'a> Line<'a> {
@@ -160,7 +149,7 @@ impl<'a> Line<'a> {
             let before = core::mem::replace(&mut last, step.q);
             if step.off.size() > 1.0 {
                 let joint = joint_bounds::at_end(self.model.joint_limits(), &step.q);
-                return ControlFlow::Break(Hindrance::Range(joint));
+                return ControlFlow::Break(Hindrance::Range(joint.map(|joint| joint as u8)));
             }
             match self.is_clear(&before, &step.q) {
                 true => ControlFlow::Continue(()),
