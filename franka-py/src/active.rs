@@ -22,12 +22,12 @@ use crate::robot::Robot;
 use crate::state::RobotState;
 
 /// A motion under active control: from the first `read_once()` on, the thread that calls it is the
-/// control cycle. Each state is to be answered within the millisecond; one that neither reads nor
-/// writes leaves the robot without commands, which stops it. Commands pass no filter and no
-/// limiter.
+/// control cycle. Each state must be answered within the millisecond. A thread that neither reads
+/// nor writes leaves the robot without commands, and the robot then stops. Commands pass no filter
+/// and no limiter.
 ///
-/// As a context manager it has the robot stop at the end of the block, unless the last command was
-/// written before. One thread at a time may use it.
+/// As a context manager it stops the robot at the end of the block, unless the last command was
+/// written before. Only one thread at a time may use it.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct ActiveControl {
     kind: CommandKind,
@@ -44,7 +44,7 @@ enum Cycle {
     CartesianVelocities(Active<CartesianVelocities>),
 }
 
-/// What is written: the numbers of the command, and those beside it.
+/// The numbers of the command, and its additional values.
 struct Written {
     motion: Motion,
     torques: Option<Torques>,
@@ -61,16 +61,16 @@ enum Motion {
 #[pymethods]
 impl Robot {
     /// Begins control by torques, `(7,)` N m, without gravity and friction. Returns an
-    /// `ActiveControl`. The first command is due within a few milliseconds: read on the thread that
-    /// controls at once. Raises `MotionError`, of the kind `busy` while anything else controls the
-    /// arm. Cancelling has the robot stop.
+    /// `ActiveControl`. The first command is due within a few milliseconds: read at once on the
+    /// controlling thread. Raises `MotionError`, of the kind `busy` while another motion controls
+    /// the arm. Cancelling stops the robot.
     fn active_torques(&self) -> PyResult<Operation> {
         self.active(CommandKind::Torques, "external_controller")
     }
 
     /// Begins control by joint positions, `(7,)` rad, for one of the robot's own controllers,
-    /// `joint_impedance` or `cartesian_impedance`; with `external_controller` every command needs
-    /// torques beside it. Otherwise like `active_torques`.
+    /// `joint_impedance` or `cartesian_impedance`; with `external_controller` every command also
+    /// needs torques. Otherwise like `active_torques`.
     #[pyo3(signature = (controller = "joint_impedance"))]
     fn active_joint_positions(&self, controller: &str) -> PyResult<Operation> {
         self.active(CommandKind::JointPositions, controller)
@@ -129,11 +129,11 @@ impl Robot {
 #[pymethods]
 impl ActiveControl {
     /// Waits for the next state of the motion, with the interpreter released. Returns it with the
-    /// robot's time since the state read before, in seconds: 0 at first, and more than 0.001 after
-    /// a loss.
+    /// robot's time since the last state read, in seconds: 0 for the first state, and more than
+    /// 0.001 after a loss.
     ///
-    /// Raises `MotionError` with what ended the motion, and `ActiveError` of the kind `ended` when
-    /// read again after that, `finished` after the last command.
+    /// Raises `MotionError` with the reason for the end of the motion. Later calls raise
+    /// `ActiveError` of the kind `ended`, or `finished` after the last command.
     fn read_once(&self, py: Python<'_>) -> PyResult<(RobotState, f64)> {
         let read = py.detach(|| {
             let mut guard = self.take_turn()?;
@@ -150,17 +150,17 @@ impl ActiveControl {
         Ok((RobotState::new(state, self.version), step.as_secs_f64()))
     }
 
-    /// Sends the command that answers the newest state; with `finished` the last one, after which
-    /// it waits, with the interpreter released, until the robot has ended the motion, and returns a
-    /// `MotionReport`.
+    /// Sends the command that answers the newest state. With `finished` it is the last command: the
+    /// call then waits, with the interpreter released, until the robot has ended the motion, and
+    /// returns a `MotionReport`.
     ///
-    /// `torques`, `(7,)` N m, go beside a command to a motion generator under
-    /// `external_controller`. `elbow` goes with poses and twists: position of joint 3 in rad, and
-    /// sign of joint 4.
+    /// `torques`, `(7,)` N m, are required in addition to the command of a motion generator under
+    /// `external_controller`. `elbow` is for poses and twists: position of joint 3 in rad, and sign
+    /// of joint 4.
     ///
-    /// Raises `ValueError` for numbers that are not finite or of the wrong shape, `ActiveError` for
-    /// a command that cannot be sent, after which others may be, and `MotionError` if the robot
-    /// ended the motion otherwise than asked.
+    /// Raises `ValueError` for numbers that are not finite or of the wrong shape. Raises
+    /// `ActiveError` for a command that cannot be sent; others may follow. Raises `MotionError` if
+    /// the robot ended the motion in another way than requested.
     #[pyo3(signature = (command, finished = false, *, torques = None, elbow = None))]
     fn write_once(
         &self,
@@ -186,7 +186,7 @@ impl ActiveControl {
         Ok(report.map(Report))
     }
 
-    /// Has the robot stop, unless the last command was written before. Waits for a call of another
+    /// Stops the robot, unless the last command was written before. Waits for a call of another
     /// thread.
     fn stop(&self, py: Python<'_>) {
         py.detach(|| {
@@ -211,7 +211,7 @@ impl ActiveControl {
 
 impl ActiveControl {
     /// # Errors
-    /// `RuntimeError` while another thread is in a call.
+    /// Locks the cycle; `RuntimeError` while another thread is in a call.
     fn take_turn(&self) -> PyResult<MutexGuard<'_, Option<Cycle>>> {
         match self.cycle.try_lock() {
             Ok(guard) => Ok(guard),

@@ -17,17 +17,17 @@ use crate::options::{Keywords, tuning};
 use crate::runtime::{self, Threaded};
 use crate::told::{Told, leave, telling};
 
-/// A session of target control: the arm is held, and goes from goal to goal without a stop in
-/// between, whatever their kinds. Made by `Robot.engage`.
+/// A session of target control: the arm is held, and moves from goal to goal without a stop in
+/// between, for all kinds of goals. Created by `Robot.engage`.
 ///
-/// When the last reference to it goes, the arm brakes and the session ends, in the background;
-/// `disengage()` does the same and can be awaited. `Robot.stop` ends it from outside, as does the
-/// robot by a reflex: whatever is asked of the session afterwards raises the reason. While it
-/// lasts, motions of the `Robot` itself are refused as `busy`.
+/// When its last reference is dropped, the arm brakes and the session ends, in the background;
+/// `disengage()` does the same and can be awaited. `Robot.stop` or a reflex also ends the session:
+/// later calls then raise the reason. During the session, motions of the `Robot` itself are refused
+/// as `busy`.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Arm {
     arm: Threaded<franka_async::Arm>,
-    /// By which its motions know it.
+    /// Identifies the session to its motions.
     pub(crate) told: Told,
 }
 
@@ -37,7 +37,7 @@ impl Arm {
         Self { arm, told }
     }
 
-    /// The session.
+    /// Returns the session.
     ///
     /// # Errors
     /// `RuntimeError` in a forked child.
@@ -58,12 +58,12 @@ impl Arm {
         Ok(motion)
     }
 
-    /// The session, with what was told of it.
+    /// Returns the session, with its raised errors.
     pub(crate) fn told_session(&self) -> PyResult<(Told, franka_async::Arm)> {
         Ok((self.told.clone(), self.session()?))
     }
 
-    /// The operation `name` of the session.
+    /// Returns the operation `name` of the session.
     fn operation<T, W>(
         &self,
         name: &'static str,
@@ -81,8 +81,8 @@ impl Arm {
 
 #[pymethods]
 impl Arm {
-    /// As `Robot.move_to`; the arm is then held at the target. Cancelling it brakes the arm and
-    /// holds it.
+    /// Like `Robot.move_to`; the arm is then held at the target. Cancelling it brakes and holds the
+    /// arm.
     #[pyo3(signature = (target, **options))]
     fn move_to(
         &self,
@@ -94,7 +94,7 @@ impl Arm {
         self.motion(py, "Arm.move_to", options, self.session()?.move_to(target))
     }
 
-    /// As `Robot.move_joints`; the arm is then held.
+    /// Like `Robot.move_joints`; the arm is then held.
     #[pyo3(signature = (q, **options))]
     fn move_joints(
         &self,
@@ -111,7 +111,7 @@ impl Arm {
         )
     }
 
-    /// As `Robot.move_by`, from the target that the arm is held at; the arm is then held.
+    /// Like `Robot.move_by`, relative to the target at which the arm is held; the arm is then held.
     #[pyo3(signature = (way, frame = "base", from_arm = false, **options))]
     fn move_by(
         &self,
@@ -125,7 +125,7 @@ impl Arm {
         self.motion(py, "Arm.move_by", options, self.session()?.move_by(offset))
     }
 
-    /// As `Robot.move_through`; the arm is then held.
+    /// Like `Robot.move_through`; the arm is then held.
     #[pyo3(signature = (waypoints, blend = 0.0, **options))]
     fn move_through(
         &self,
@@ -139,23 +139,23 @@ impl Arm {
         self.motion(py, "Arm.move_through", options, through)
     }
 
-    /// Brakes, whatever the arm is doing, and is over when it rests; it is then held there.
+    /// Brakes the arm in any motion, and completes when it is at rest; the arm is then held there.
     #[pyo3(signature = (**options))]
     fn hold(&self, py: Python<'_>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Py<Motion>> {
         self.motion(py, "Arm.hold", options, self.session()?.hold())
     }
 
-    /// Heads for `target` from now on, in the place of whatever came before, and holds it; what
-    /// `move_to` takes, and targets with velocities. Over as soon as the goal is taken.
-    /// Cancelling takes nothing back.
+    /// Moves to `target` from now on, replacing any other goal, and holds it. Accepts the targets
+    /// of `move_to`, and targets with velocities. Completes as soon as the goal is accepted.
+    /// Cancelling does not revoke the goal.
     fn set(&self, target: &Bound<'_, PyAny>) -> PyResult<Operation> {
         let target = destination("target", target)?;
         self.operation("Arm.set", |arm| async move { arm.set(target).await })
     }
 
-    /// As `set`, without waiting for an answer: for loops at a rate of their own, on any thread.
-    /// The newest of goals that come faster than they are taken counts. Raises `MotionError`
-    /// for a goal that is not accepted, and for what ended the session.
+    /// Like `set`, without waiting for an answer: for loops with their own rate, on any thread. If
+    /// goals come faster than they are accepted, the newest counts. Raises `MotionError` for a goal
+    /// that is refused, and for the end of the session.
     fn try_set(&self, py: Python<'_>, target: &Bound<'_, PyAny>) -> PyResult<()> {
         use crate::errors::Raise;
         let (arm, target) = (self.session()?, destination("target", target)?);
@@ -167,9 +167,9 @@ impl Arm {
         })
     }
 
-    /// What the arm is held at or heads for: a pose, `(4, 4)`, `Joints`, or a pair with the twist.
-    /// `None` along a chunk, at the beginning, where a goal was given up, and once the session
-    /// has ended.
+    /// The target at which the arm is held or to which it moves: a pose, `(4, 4)`, `Joints`, or a
+    /// pair with the twist. `None` along a chunk, at the beginning, after an aborted goal, and once
+    /// the session has ended.
     fn target<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         match self.session()?.target() {
             Some(target) => target_object(py, target),
@@ -177,17 +177,17 @@ impl Arm {
         }
     }
 
-    /// Where the arm is to be in this millisecond: a `Reference`; `None` once the session has
-    /// ended.
+    /// The commanded position of the arm in this millisecond: a `Reference`; `None` once the
+    /// session has ended.
     fn reference<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let newest = self.session()?.reference();
         newest.map(|newest| reference(py, &newest)).transpose()
     }
 
-    /// Waits until the arm rests at the target that was taken last, or where that has been given
-    /// up; returns whether it does. Without a `timeout` it waits for ever for an arm that is pushed
-    /// or held back, or that follows a stream; `False` says that it did not rest within so many
-    /// seconds. Cancelling has no effect on the arm.
+    /// Waits until the arm is at rest at the last accepted target, or where that target was
+    /// aborted; returns `True` if it is. Without a `timeout` it waits indefinitely for an arm that
+    /// is pushed or blocked, or that follows a stream; `False` means that it was not at rest within
+    /// `timeout` seconds. Cancelling has no effect on the arm.
     #[pyo3(signature = (timeout = None))]
     fn at_rest(&self, timeout: Option<f64>) -> PyResult<Operation> {
         let timeout = timeout.map(|timeout| seconds("timeout", timeout));
@@ -201,20 +201,20 @@ impl Arm {
         })
     }
 
-    /// Follows points with times, as a policy predicts them, from now on; over as soon as they are
-    /// taken. The arm rests at the last one unless another chunk or goal comes.
+    /// Follows points with times, such as a policy's predictions, from now on; completes as soon as
+    /// they are accepted. The arm stops at the last point unless another chunk or goal follows.
     ///
     /// `points` are positions `(N, 3)`, poses `(N, 7)` or `(N, 4, 4)`, or with `joints` joint
-    /// positions `(N, 7)`, rad; or a `Chunk`, whose fields are the other arguments. `dt` is the
-    /// time between two points, s, or `times` that of each. `velocities` are twists `(N, 6)` or
-    /// joint velocities `(N, 7)`. `observed_at` is the `RobotState` that the policy saw: times
-    /// count from it. `blend` is the time to fade over from the chunk before, 0.1 s by default. A
-    /// chunk has 1024 points and 60 s at most: the rest is the next chunk, with the same
-    /// `observed_at`, and waits for its first point.
+    /// positions `(N, 7)`, rad; or a `Chunk`, whose fields replace the other arguments. `dt` is the
+    /// time between two points, s, or `times` the time of each. `velocities` are twists `(N, 6)` or
+    /// joint velocities `(N, 7)`. `observed_at` is the `RobotState` of the policy's observation:
+    /// times count from it. `blend` is the time of the transition from the previous chunk, 0.1 s by
+    /// default. A chunk has at most 1024 points and 60 s: send the rest as the next chunk with the
+    /// same `observed_at`; it waits for its first point.
     ///
-    /// Raises `ValueError` for arrays that are no chunk, and `MotionError` when it is awaited: for
-    /// one that comes too late or ends out of reach, and then the chunk before goes on; and of the
-    /// kind `held` or `braked`, once, if the chunk before was given up, as by a silent `Deadman`.
+    /// Raises `ValueError` for invalid arrays. Awaiting raises `MotionError` for a chunk that is
+    /// too late or ends out of reach; the previous chunk then continues. It raises the kind `held`
+    /// or `braked`, once, if the previous chunk was aborted, for example by a silent `Deadman`.
     #[pyo3(signature = (points, dt = None, times = None, *, velocities = None, joints = false, observed_at = None, blend = None))]
     #[expect(clippy::too_many_arguments, reason = "keywords")]
     fn chunk(
@@ -238,17 +238,17 @@ impl Arm {
         self.operation("Arm.chunk", |arm| async move { arm.chunk(chunk).await })
     }
 
-    /// Lets a hand guide the arm, once it rests, until the next goal; `hold()` ends it. `axes` are
-    /// free: x y z and about x y z of the base frame, six truth values; the others stay where
-    /// they are. Over as soon as it is taken. The load has to be declared, or it pulls the arm
-    /// down.
+    /// Allows hand guiding of the arm, once it is at rest, until the next goal; `hold()` ends it.
+    /// `axes` are the free directions: x y z and about x y z of the base frame, six truth values;
+    /// the others are held. Completes as soon as it is accepted. The load must be declared, or it
+    /// pulls the arm down.
     #[pyo3(signature = (axes = [true; 6], elbow = true))]
     fn guide(&self, axes: [bool; 6], elbow: bool) -> PyResult<Operation> {
         let free = Free { axes, elbow };
         self.operation("Arm.guide", |arm| async move { arm.guide(free).await })
     }
 
-    /// As `Robot.follow`; the arm is then held at the last target.
+    /// Like `Robot.follow`; the arm is then held at the last target.
     #[pyo3(signature = (targets, **options))]
     fn follow(
         this: &Bound<'_, Self>,
@@ -264,8 +264,8 @@ impl Arm {
         Ok(follow)
     }
 
-    /// Changes `gains`, `limits`, `force_cap`, `leash`, `deviation` and `posture`, as far as they
-    /// are given, of the goal under way and of those to come. Gains fade over 0.3 s.
+    /// Changes the given options among `gains`, `limits`, `force_cap`, `leash`, `deviation` and
+    /// `posture`, for the current goal and for later ones. Gains change gradually over 0.3 s.
     #[pyo3(signature = (**options))]
     fn tune(&self, options: Option<&Bound<'_, PyDict>>) -> PyResult<Operation> {
         let arm = self.session()?;
@@ -275,16 +275,16 @@ impl Arm {
         self.operation("Arm.tune", |arm| async move { arm.tune(tuning).await })
     }
 
-    /// Brakes, lets the arm go and ends the session, with a `MotionReport`; a goal under way raises
-    /// `stopped`. Raises how the session ended if it ended otherwise.
+    /// Brakes and releases the arm and ends the session, with a `MotionReport`; a current goal
+    /// raises `stopped`. Raises the reason if the session ended in another way.
     fn disengage(&self) -> PyResult<Operation> {
         self.operation("Arm.disengage", |arm| async move {
             arm.disengage().await.map(Report)
         })
     }
 
-    /// Waits until the session has ended, and returns or raises how. Cancelling has no effect on
-    /// the arm.
+    /// Waits until the session has ended, and returns its report or raises the reason. Cancelling
+    /// has no effect on the arm.
     fn ended(&self) -> PyResult<Operation> {
         self.operation(
             "Arm.ended",

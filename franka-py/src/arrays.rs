@@ -12,18 +12,18 @@ use pyo3::exceptions::{PyException, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
-/// The numbers of an argument, with its shape. Row-major, whatever the order in memory.
+/// The numbers of an argument, with its shape. Row-major, for any order in memory.
 pub(crate) struct Numbers {
     pub(crate) shape: Vec<usize>,
     pub(crate) values: Vec<f64>,
 }
 
 impl Numbers {
-    /// Reads a number, a list (of lists) or an array, of the argument called `name`.
+    /// Reads a number, a list (of lists) or an array from the argument `name`.
     ///
     /// # Errors
-    /// `TypeError` if it is anything else, such as text, truth values and complex numbers; an
-    /// interrupt that comes meanwhile, as it is.
+    /// `TypeError` for any other object, such as text, truth values and complex numbers; an
+    /// interrupt in the meantime is passed on.
     pub(crate) fn read(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Self> {
         let array = match argument.cast::<PyArrayDyn<f64>>() {
             Ok(array) => array.clone(),
@@ -39,7 +39,7 @@ impl Numbers {
     }
 }
 
-/// What numpy makes of the argument called `name`.
+/// Returns numpy's conversion of the argument `name`.
 fn converted<'py>(
     name: &str,
     argument: &Bound<'py, PyAny>,
@@ -50,7 +50,7 @@ fn converted<'py>(
         return Err(got("None"));
     }
     let no_numbers = |cause: PyErr| {
-        // Ctrl-C may come while numpy reads the argument.
+        // Ctrl-C may arrive while numpy reads the argument.
         if !cause.is_instance_of::<PyException>(py) {
             return cause;
         }
@@ -60,7 +60,7 @@ fn converted<'py>(
     let array = numpy.call_method1("asarray", (argument,));
     let array = array.map_err(no_numbers)?;
     match array.cast::<PyUntypedArray>()?.dtype().kind() {
-        // Of whatever size.
+        // Numbers of any size.
         b'f' | b'i' | b'u' => {}
         b'b' => return Err(got("truth values")),
         b'c' => return Err(got("complex numbers")),
@@ -81,7 +81,7 @@ fn converted<'py>(
     Ok(array.map_err(no_numbers)?.cast_into()?)
 }
 
-/// Reads `N` numbers from the argument called `name`.
+/// Reads `N` numbers from the argument `name`.
 ///
 /// # Errors
 /// `ValueError` for another shape or numbers that are not finite; `TypeError`.
@@ -98,7 +98,7 @@ pub(crate) fn vector<const N: usize>(
     Ok(vector)
 }
 
-/// A new array of `length` numbers from the argument called `name`.
+/// Returns a new array of `length` numbers from the argument `name`.
 #[pyfunction]
 pub(crate) fn _row<'py>(
     name: &str,
@@ -113,10 +113,10 @@ pub(crate) fn _row<'py>(
     Ok(array(argument.py(), &values))
 }
 
-/// Reads rows of `N` numbers each from the argument called `name`; one row may stand alone.
+/// Reads rows of `N` numbers each from the argument `name`; a single row needs no outer axis.
 ///
 /// # Errors
-/// As [`vector`].
+/// The errors of [`vector`].
 pub(crate) fn rows<const N: usize>(
     name: &str,
     argument: &Bound<'_, PyAny>,
@@ -150,10 +150,10 @@ pub(crate) fn pose(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Pose> {
     })
 }
 
-/// The pose in these numbers; `None` for another shape.
+/// Returns the pose in these numbers; `None` for another shape.
 ///
 /// # Errors
-/// As [`pose`].
+/// The errors of [`pose`].
 pub(crate) fn pose_of(name: &str, shape: &[usize], values: &[f64]) -> PyResult<Option<Pose>> {
     check_finite(name, values)?;
     match *shape {
@@ -179,7 +179,7 @@ pub(crate) fn pose_of(name: &str, shape: &[usize], values: &[f64]) -> PyResult<O
     }
 }
 
-/// The pose of this position and quaternion `x y z w`, of any length but zero.
+/// Returns the pose of this position and quaternion `x y z w`, of any non-zero length.
 ///
 /// # Errors
 /// `ValueError`.
@@ -190,10 +190,10 @@ pub(crate) fn from_xyzw(name: &str, position: [f64; 3], quaternion: [f64; 4]) ->
     })
 }
 
-/// Reads a pose as [`pose`] does, but takes a `(4, 4)` matrix as it is.
+/// Reads a pose like [`pose`], but accepts any `(4, 4)` matrix unchanged.
 ///
 /// # Errors
-/// As [`pose`], but for a matrix that is not rigid.
+/// The errors of [`pose`], except for a matrix that is not rigid.
 pub(crate) fn pose_matrix(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Matrix4<f64>> {
     let Numbers { shape, values } = Numbers::read(name, argument)?;
     check_finite(name, &values)?;
@@ -203,7 +203,7 @@ pub(crate) fn pose_matrix(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<M
     }
 }
 
-/// The error for an argument of the wrong shape.
+/// Returns the error for an argument of the wrong shape.
 pub(crate) fn unexpected_shape(name: &str, got: &[usize], expected: &str) -> PyErr {
     PyValueError::new_err(format!("{name} has the shape {got:?}, expected {expected}"))
 }
@@ -217,12 +217,12 @@ pub(crate) fn check_finite(name: &str, values: &[f64]) -> PyResult<()> {
     }
 }
 
-/// A new array of these numbers.
+/// Returns a new array of these numbers.
 pub(crate) fn array<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArray1<f64>> {
     PyArray1::from_slice(py, values)
 }
 
-/// A new array of a matrix.
+/// Returns a new array of a matrix.
 pub(crate) fn matrix<'py, const R: usize, const C: usize>(
     py: Python<'py>,
     matrix: &SMatrix<f64, R, C>,
@@ -231,12 +231,12 @@ pub(crate) fn matrix<'py, const R: usize, const C: usize>(
     table(py, matrix.transpose().as_slice(), C)
 }
 
-/// A new `(4, 4)` array of a pose, with the translation in the last column.
+/// Returns a new `(4, 4)` array of a pose, with the translation in the last column.
 pub(crate) fn pose_array<'py>(py: Python<'py>, pose: &Pose) -> Bound<'py, PyArray2<f64>> {
     matrix(py, &pose.to_homogeneous())
 }
 
-/// A new array of a matrix that the robot says column by column.
+/// Returns a new array of a column-major matrix of the robot.
 pub(crate) fn columns<'py, const R: usize, const C: usize>(
     py: Python<'py>,
     values: &[f64],
@@ -244,7 +244,7 @@ pub(crate) fn columns<'py, const R: usize, const C: usize>(
     matrix(py, &SMatrix::<f64, R, C>::from_column_slice(values))
 }
 
-/// A new array with rows of `width` numbers each, from row-major `values`.
+/// Returns a new array with rows of `width` numbers each, from row-major `values`.
 pub(crate) fn table<'py>(
     py: Python<'py>,
     values: &[f64],

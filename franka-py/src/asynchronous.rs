@@ -14,7 +14,7 @@ use crate::operation::Operation;
 use crate::robot::Robot;
 
 /// A motion between sparse joint targets that the robot itself plans. Any thread may set targets.
-/// `stop()`, or dropping it, has the robot stop.
+/// `stop()`, or dropping it, stops the robot.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct AsynchronousControl {
     /// `None` once it was stopped or finished.
@@ -26,9 +26,9 @@ impl Robot {
     /// Begins a motion in which the robot itself moves to sparse joint targets. Returns an
     /// `AsynchronousControl`. Protocol 10 (Franka Research 3) only, and experimental there.
     ///
-    /// `maximum_joint_velocities` are `(7,)` rad/s; within `goal_tolerance`, in rad as Euclidean
-    /// norm, a target counts as reached. Raises `MotionError`: `unsupported` by another protocol,
-    /// `busy` while anything else controls the arm. Cancelling has the robot stop.
+    /// `maximum_joint_velocities` are `(7,)` rad/s. A target counts as reached within
+    /// `goal_tolerance`, in rad as Euclidean norm. Raises `MotionError`: `unsupported` with another
+    /// protocol, `busy` while another motion controls the arm. Cancelling stops the robot.
     #[pyo3(signature = (maximum_joint_velocities = None, goal_tolerance = None))]
     fn asynchronous_joint_positions(
         &self,
@@ -55,16 +55,16 @@ impl Robot {
 
 #[pymethods]
 impl AsynchronousControl {
-    /// Sends the robot to `q`, `(7,)` rad, wherever it was going before. Raises what ended the
-    /// motion, if it has ended.
+    /// Moves the robot to `q`, `(7,)` rad, replacing the previous target. Raises the reason if the
+    /// motion has ended.
     fn set_target(&self, py: Python<'_>, q: &Bound<'_, PyAny>) -> PyResult<()> {
         let q = vector("q", q)?;
         let set = self.control()?.set_target(q);
         set.map_err(|error| error.raise(py))
     }
 
-    /// How far the newest target has been followed: `idle`, `executing`, `target_reached` or
-    /// `aborted`; and why it was aborted, if it was.
+    /// Status of the newest target: `idle`, `executing`, `target_reached` or `aborted`; and the
+    /// reason if it was aborted.
     fn status(&self) -> PyResult<(&'static str, Option<String>)> {
         let status = self.control()?.status();
         let reason = match status {
@@ -74,8 +74,8 @@ impl AsynchronousControl {
         Ok((status.python_name(), reason))
     }
 
-    /// Waits until the newest target is reached. Raises what ended the motion before. Cancelling
-    /// leaves the robot on its way.
+    /// Waits until the newest target is reached. Raises the reason if the motion ends before.
+    /// Cancelling does not stop the robot.
     fn reached(&self) -> PyResult<Operation> {
         let control = self.control()?;
         Ok(Operation::new("AsynchronousControl.reached", async move {
@@ -83,7 +83,7 @@ impl AsynchronousControl {
         }))
     }
 
-    /// Has the robot stop. Without effect once it was stopped.
+    /// Stops the robot. Without effect once it was stopped.
     fn stop(&self, py: Python<'_>) {
         let control = self.take();
         py.detach(|| drop(control));

@@ -1,5 +1,5 @@
-//! Functions of joint vectors over one of them or over many: `(7,)` gives one result, `(n, 7)` an
-//! array with a leading axis of length n.
+//! Functions of one or many joint vectors: `(7,)` gives one result, `(n, 7)` an array with a
+//! leading axis of length n.
 
 use numpy::{PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -7,11 +7,11 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, check_finite, unexpected_shape};
 
-/// Rows of `N` numbers each, of an argument that is one row or many.
+/// Rows of `N` numbers each, from an argument with one row or many.
 pub(crate) struct Batch<const N: usize> {
     name: &'static str,
     rows: Vec<[f64; N]>,
-    /// Whether the argument was one row without a leading axis.
+    /// True if the argument was one row without a leading axis.
     is_single: bool,
 }
 
@@ -38,10 +38,10 @@ impl<const N: usize> Batch<N> {
         ))
     }
 
-    /// [`read`](Self::read), or one row of zeros for an argument that is not there.
+    /// Like [`read`](Self::read), or one row of zeros for a missing argument.
     ///
     /// # Errors
-    /// As [`read`](Self::read).
+    /// The errors of [`read`](Self::read).
     pub(crate) fn or_zeros(
         name: &'static str,
         argument: Option<&Bound<'_, PyAny>>,
@@ -60,7 +60,7 @@ impl<const N: usize> Batch<N> {
         }
     }
 
-    /// Row `index`; the only one counts for every index.
+    /// Returns row `index`; a single row is used for every index.
     pub(crate) fn row(&self, index: usize) -> &[f64; N] {
         &self.rows[if self.is_single { 0 } else { index }]
     }
@@ -70,26 +70,26 @@ impl<const N: usize> Batch<N> {
         (!self.is_single).then_some(self.rows.len())
     }
 
-    /// Its name beside the [`count`](Self::count), for [`common_count`].
+    /// Returns its name and [`count`](Self::count), for [`common_count`].
     pub(crate) fn named_count(&self) -> (&str, Option<usize>) {
         (self.name, self.count())
     }
 
-    /// The number of rows of this argument and another one, of which a single row goes with any
-    /// number.
+    /// Returns the common number of rows of this argument and another one; a single row is used
+    /// with any number.
     ///
     /// # Errors
-    /// `ValueError` if both have a number, not the same.
+    /// `ValueError` if the numbers differ.
     pub(crate) fn count_with<const M: usize>(&self, other: &Batch<M>) -> PyResult<Option<usize>> {
         common_count(self.named_count(), other.named_count())
     }
 }
 
-/// The common number of rows of two arguments, each with its name; one without a leading axis goes
-/// with any number.
+/// Returns the common number of rows of two arguments, each with its name; an argument without a
+/// leading axis matches any number.
 ///
 /// # Errors
-/// `ValueError` if both have a number, not the same.
+/// `ValueError` if the numbers differ.
 pub(crate) fn common_count(
     (name, count): (&str, Option<usize>),
     (other, others): (&str, Option<usize>),
@@ -102,18 +102,18 @@ pub(crate) fn common_count(
     }
 }
 
-/// How long a function takes for one row.
+/// The duration of a function for one row.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Cost {
-    /// Some microseconds at most: one alone keeps the interpreter, as giving it away and waiting
-    /// for it would take longer.
+    /// Some microseconds at most: a single call keeps the interpreter, because releasing and
+    /// reacquiring it would take longer.
     Little,
-    /// More.
+    /// Longer.
     Much,
 }
 
-/// New arrays of the results that `function` writes, of these shapes, behind an axis of length
-/// `count` if there is one. The interpreter is free for others meanwhile, but for one cheap result.
+/// Returns new arrays of the results of `function`, with these shapes, after an axis of length
+/// `count` if given. The interpreter is released meanwhile, except for one cheap result.
 pub(crate) fn outputs<'py, const K: usize>(
     py: Python<'py>,
     count: Option<usize>,
@@ -153,7 +153,7 @@ pub(crate) fn outputs<'py, const K: usize>(
     arrays
 }
 
-/// [`outputs`] with one array.
+/// Like [`outputs`], with one array.
 pub(crate) fn output<'py>(
     py: Python<'py>,
     count: Option<usize>,

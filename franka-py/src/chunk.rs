@@ -13,7 +13,7 @@ use crate::destination::place;
 use crate::operation::seconds;
 use crate::state::RobotState;
 
-/// Reads a `franka_async.goal.Chunk`. Positions keep the orientation that `arm` is to have now.
+/// Reads a `franka_async.goal.Chunk`. Positions keep the arm's current commanded orientation.
 ///
 /// # Errors
 /// `ValueError`, `TypeError`.
@@ -63,7 +63,7 @@ pub(crate) fn chunk(chunk: &Bound<'_, PyAny>, arm: &Arm) -> PyResult<Chunk> {
     Ok(made)
 }
 
-/// The time of each of `count` points.
+/// Returns the time of each of `count` points.
 fn times(chunk: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<Duration>> {
     let (dt, times) = (chunk.getattr("dt")?, chunk.getattr("times")?);
     match (dt.is_none(), times.is_none()) {
@@ -91,7 +91,7 @@ fn times(chunk: &Bound<'_, PyAny>, count: usize) -> PyResult<Vec<Duration>> {
     }
 }
 
-/// `count` rows of `N` numbers.
+/// Returns `count` rows of `N` numbers.
 fn many<const N: usize>(
     name: &str,
     argument: &Bound<'_, PyAny>,
@@ -105,7 +105,7 @@ fn many<const N: usize>(
     Ok(rows)
 }
 
-/// The poses of positions `(N, 3)`, or of poses `(N, 7)` or `(N, 4, 4)`.
+/// Returns the poses of positions `(N, 3)`, or of poses `(N, 7)` or `(N, 4, 4)`.
 fn poses(points: &Numbers, arm: &Arm) -> PyResult<Vec<Pose>> {
     let width = match *points.shape {
         [_, 3] => 3,

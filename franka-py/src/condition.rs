@@ -1,4 +1,4 @@
-//! What a motion goes on until.
+//! Conditions that end a motion.
 
 use franka_async::condition::{self, Axis, Reaction};
 use franka_async::error::ConditionError;
@@ -10,8 +10,8 @@ use crate::destination::target;
 use crate::operation::seconds;
 use crate::tare::PyWrenchTare;
 
-/// What has to be the case: comparisons of quantities, flags of the robot and the time, joined by
-/// `&`, `|` and `~`. See `franka_async.condition`.
+/// A condition: comparisons of quantities, flags of the robot and the time, joined by `&`, `|` and
+/// `~`. See `franka_async.condition`.
 #[pyclass(frozen, from_py_object, module = "franka_async.condition")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct Condition {
@@ -21,7 +21,7 @@ pub(crate) struct Condition {
 
 impl Condition {
     /// # Errors
-    /// `ValueError` for thresholds that cannot be, and for more than there is room for.
+    /// `ValueError` for impossible thresholds, and for conditions that are too long.
     fn new(condition: condition::Condition, text: String) -> PyResult<Self> {
         let text = match condition.check() {
             Ok(()) => return Ok(Self { condition, text }),
@@ -57,8 +57,8 @@ impl Condition {
         ))
     }
 
-    /// Compares the changes since the motion began instead of the values, in every comparison of
-    /// this condition: for loads that the robot does not know of, and for displacements.
+    /// Compares the changes since the beginning of the motion instead of the values, in every
+    /// comparison of this condition: for undeclared loads, and for displacements.
     fn relative(&self) -> PyResult<Self> {
         Self::new(
             self.condition.relative(),
@@ -66,8 +66,8 @@ impl Condition {
         )
     }
 
-    /// Takes a tare off the forces, moments and joint torques of this condition, as
-    /// `await robot.tare()` returns it. The moment is then about the origin of the stiffness frame.
+    /// Subtracts a tare from the forces, moments and joint torques of this condition, as returned
+    /// by `await robot.tare()`. The moment is then about the origin of the stiffness frame.
     #[pyo3(signature = (tare, /))]
     fn tared(&self, tare: &PyWrenchTare) -> PyResult<Self> {
         Self::new(
@@ -76,8 +76,7 @@ impl Condition {
         )
     }
 
-    /// True once this condition has been true for so many seconds without a break, by the robot's
-    /// clock.
+    /// True once this condition has been true for `seconds` without a break, by the robot's clock.
     #[pyo3(signature = (seconds, /))]
     fn held_for(&self, seconds: f64) -> PyResult<Self> {
         let time = self::seconds("seconds", seconds)?;
@@ -85,8 +84,8 @@ impl Condition {
         Self::new(self.condition.held_for(time), text)
     }
 
-    /// Has the motion go on to `target`, a pose or `Joints`, once the condition is true; without,
-    /// it comes to rest. The arm turns there at once, without waiting for the program.
+    /// Moves to `target`, a pose or `Joints`, once the condition is true; without a target the arm
+    /// stops. The arm turns to the target at once, without waiting for the program.
     fn then(&self, target: &Bound<'_, PyAny>) -> PyResult<Then> {
         let reaction = self.condition.then(self::target("target", target)?);
         let text = format!("{}.then({})", self.text, target.repr()?);
@@ -102,7 +101,7 @@ impl Condition {
     }
 }
 
-/// A condition, and where the motion goes once it is true: made by `Condition.then(target)`.
+/// A condition with the target once it is true: created by `Condition.then(target)`.
 #[pyclass(
     frozen,
     from_py_object,
@@ -126,7 +125,7 @@ impl Then {
     }
 }
 
-/// Reads the argument `until`: a condition, or one with a target.
+/// Reads the argument `until`: a condition, or a condition with a target.
 pub(crate) fn reaction(until: &Bound<'_, PyAny>) -> PyResult<Reaction> {
     if let Ok(then) = until.cast::<Then>() {
         return Ok(then.get().reaction);
@@ -140,7 +139,8 @@ pub(crate) fn reaction(until: &Bound<'_, PyAny>) -> PyResult<Reaction> {
     }
 }
 
-/// A number that changes while the arm moves: compare it by `<`, `<=`, `>` or `>=` for a condition.
+/// A number that changes while the arm moves: compare it with `<`, `<=`, `>` or `>=` to create a
+/// condition.
 ///
 /// Forces and torques are the robot's estimates, positive where the arm exerts them. Axes are those
 /// of the base frame.
@@ -164,7 +164,7 @@ impl Quantity {
         Condition::new(self.quantity.below(value), text)
     }
 
-    /// True while its magnitude is at or above `value`, which has to be above zero.
+    /// True while its magnitude is at or above `value`, which must be above zero.
     fn beyond(&self, value: f64) -> PyResult<Condition> {
         let text = format!("{}.beyond({value:?})", self.text);
         Condition::new(self.quantity.beyond(value), text)
@@ -197,24 +197,24 @@ macro_rules! comparisons {
 }
 
 comparisons! {
-    /// True while the external force along x is at or beyond so many newtons, in either direction.
+    /// True while the external force along x is at or beyond `newtons`, in either direction.
     force_x(newtons: f64);
-    /// True while the external force along y is at or beyond so many newtons, in either direction.
+    /// True while the external force along y is at or beyond `newtons`, in either direction.
     force_y(newtons: f64);
-    /// True while the external force along z is at or beyond so many newtons, in either direction.
+    /// True while the external force along z is at or beyond `newtons`, in either direction.
     force_z(newtons: f64);
-    /// True while the external force, whatever its direction, is at or beyond so many newtons.
+    /// True while the external force in any direction is at or beyond `newtons`.
     force(newtons: f64);
-    /// True while the external torque at the end effector, whatever its axis, is at or beyond so
-    /// many N m.
+    /// True while the external torque at the end effector about any axis is at or beyond
+    /// `newton_metres`.
     torque(newton_metres: f64);
-    /// True while the external torque of any joint is at or beyond so many N m.
+    /// True while the external torque of any joint is at or beyond `newton_metres`.
     joint_torques(newton_metres: f64);
     /// True while the robot reports a contact of this joint, 1 to 7.
     joint_contact(joint: u8);
 }
 
-/// True from so many seconds after the beginning of the motion on, by the robot's clock.
+/// True from `seconds` after the beginning of the motion on, by the robot's clock.
 #[pyfunction]
 #[pyo3(signature = (seconds, /))]
 pub(crate) fn elapsed(seconds: f64) -> PyResult<Condition> {
@@ -261,7 +261,7 @@ joint_quantities! {
     joint_velocity: JointVelocity;
 }
 
-/// What Python calls a quantity: `FORCE_Z`, `joint_torque(3)`.
+/// Returns the Python name of a quantity: `FORCE_Z`, `joint_torque(3)`.
 fn name(quantity: condition::Quantity) -> String {
     use condition::Quantity as Q;
     let known = named().find(|(_, known)| *known == quantity);
@@ -274,7 +274,7 @@ fn name(quantity: condition::Quantity) -> String {
     }
 }
 
-/// The quantities that have a name of their own.
+/// Returns the quantities with their own names.
 fn named() -> impl Iterator<Item = (String, condition::Quantity)> {
     use condition::Quantity as Q;
     let axes = [("X", Axis::X), ("Y", Axis::Y), ("Z", Axis::Z)];
@@ -299,7 +299,7 @@ fn named() -> impl Iterator<Item = (String, condition::Quantity)> {
     named.chain(plain.map(|(name, quantity)| (name.to_owned(), quantity)))
 }
 
-/// Adds the quantities that have a name of their own to the module.
+/// Adds the quantities with their own names to the module.
 pub(crate) fn add_quantities(module: &Bound<'_, PyModule>) -> PyResult<()> {
     for (text, quantity) in named() {
         module.add(text.clone().as_str(), Quantity { quantity, text })?;

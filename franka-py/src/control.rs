@@ -1,10 +1,10 @@
-//! Names of what is commanded and of the robot's controllers.
+//! Names of command kinds and of the robot's controllers.
 
 use franka_async::control::MoveControllerMode;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// What a program commands in a cycle.
+/// The kind of command in a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CommandKind {
     Torques,
@@ -44,7 +44,7 @@ impl CommandKind {
     }
 }
 
-/// The robot's controller of this name.
+/// Returns the robot's controller with this name.
 ///
 /// # Errors
 /// `ValueError` with all names.

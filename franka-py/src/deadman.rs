@@ -1,4 +1,4 @@
-//! The token that an arm moves by.
+//! The deadman token of an arm.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -9,10 +9,10 @@ use pyo3::prelude::*;
 
 use crate::operation::seconds;
 
-/// A token that has to be kept alive: while it is silent for longer than `silence` seconds (0.01 or
-/// more), and once it is released or gone, the arm that it was given to by `Robot.engage` brakes
-/// and holds, and every goal raises `held`; so does the first chunk after it. The control thread
-/// watches it, whatever Python is busy with.
+/// A token that must be kept alive. When it is silent for longer than `silence` seconds (0.01 or
+/// more), released or dropped, the arm that `Robot.engage` bound to it brakes and holds. Every goal
+/// then raises `held`; so does the first chunk after it. The control thread monitors it,
+/// independent of Python.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Deadman {
     token: Mutex<Option<Token>>,
@@ -21,7 +21,7 @@ pub(crate) struct Deadman {
 }
 
 impl Deadman {
-    /// The other end of the token, for one session.
+    /// Returns the other end of the token, for one session.
     pub(crate) fn bind(&self) -> PyResult<DeadmanMonitor> {
         let monitor = self
             .monitor
@@ -54,7 +54,7 @@ impl Deadman {
         })
     }
 
-    /// How long it may be silent, s.
+    /// Longest allowed silence, s.
     #[getter]
     fn silence(&self) -> f64 {
         self.silence
@@ -68,7 +68,7 @@ impl Deadman {
         }
     }
 
-    /// Gives the token up: the arm brakes, and holds from then on.
+    /// Releases the token: the arm brakes, and is held from then on.
     fn release(&self) {
         self.token
             .lock()

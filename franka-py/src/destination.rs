@@ -1,4 +1,4 @@
-//! Where a motion is to lead: what Python says it with.
+//! Destinations of motions, from their Python forms.
 
 use franka_async::goal::{Destination, Target, Waypoint};
 use franka_async::nalgebra::{Matrix4, Translation3, UnitQuaternion, Vector3};
@@ -11,8 +11,8 @@ use crate::arrays::{
     Numbers, array, check_finite, from_xyzw, pose_array, pose_of, unexpected_shape, vector,
 };
 
-/// Reads a destination of the end effector or the joints from the argument called `name`: what
-/// `franka_async.goal.Destination` describes.
+/// Reads a destination of the end effector or the joints from the argument `name`, as described by
+/// `franka_async.goal.Destination`.
 ///
 /// # Errors
 /// `ValueError`, `TypeError`.
@@ -41,8 +41,8 @@ pub(crate) fn destination(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<D
     }
 }
 
-/// Reads a target, a whole pose or joint positions, from the argument called `name`: what
-/// `franka_async.goal.Target` describes.
+/// Reads a target, a whole pose or joint positions, from the argument `name`, as described by
+/// `franka_async.goal.Target`.
 ///
 /// # Errors
 /// `ValueError`, `TypeError`.
@@ -59,7 +59,7 @@ pub(crate) fn target(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Target
     }
 }
 
-/// How joint positions are given.
+/// The way to specify joint positions.
 const JOINTS: &str = "are Joints(q), or go to move_joints";
 
 const SHAPES: &str = "a pose (4, 4) or (7,), x y z and a quaternion x y z w";
@@ -70,8 +70,8 @@ fn whole_pose(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Pose> {
         .ok_or_else(|| unexpected_shape(name, &numbers.shape, SHAPES))
 }
 
-/// As [`pose_of`], but of seven numbers the last four have to be about as long as a quaternion:
-/// joint positions given by mistake are no place to go to. For those there is what `joints` says.
+/// Like [`pose_of`], but the last four of seven numbers must have about the length of a quaternion,
+/// which excludes joint positions given by mistake. The error for them contains `joints`.
 pub(crate) fn place(
     name: &str,
     shape: &[usize],
@@ -91,10 +91,10 @@ pub(crate) fn place(
     pose_of(name, shape, values)
 }
 
-/// How far a quaternion's length may be from 1: its numbers may be rounded.
+/// Largest deviation of a quaternion's length from 1: its numbers may be rounded.
 const LENGTH_OFF: f64 = 0.1;
 
-/// A target that is `Joints` or a pair.
+/// Returns a target that is `Joints` or a pair.
 fn composed(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Option<Target>> {
     if is(argument, "Joints")? {
         let q = vector::<7>(name, &argument.getattr("q")?)?;
@@ -129,7 +129,7 @@ fn composed(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Option<Target>>
     }))
 }
 
-/// The pose of this position and quaternion `x y z w`.
+/// Returns the pose of this position and quaternion `x y z w`.
 fn placed(
     name: &str,
     position: &Bound<'_, PyAny>,
@@ -140,7 +140,7 @@ fn placed(
     from_xyzw(name, position, quaternion)
 }
 
-/// The orientation of a quaternion `x y z w` or a rotation matrix.
+/// Returns the orientation of a quaternion `x y z w` or a rotation matrix.
 fn orientation(name: &str, numbers: &Numbers) -> PyResult<UnitQuaternion<f64>> {
     let values = &numbers.values;
     if let Ok(quaternion) = <[f64; 4]>::try_from(&values[..]) {
@@ -157,7 +157,7 @@ fn orientation(name: &str, numbers: &Numbers) -> PyResult<UnitQuaternion<f64>> {
     Ok(pose.rotation)
 }
 
-/// The offset of a way: 3 numbers, 6 with a rotation vector, or a pose.
+/// Reads an offset: 3 numbers, 6 with a rotation vector, or a pose.
 ///
 /// # Errors
 /// `ValueError`, `TypeError`.
@@ -201,8 +201,8 @@ pub(crate) fn offset(
     Ok(if from_arm { offset.from_arm() } else { offset })
 }
 
-/// Reads waypoints: targets, which are rounded within `blend`, and `Waypoint`s, which say that
-/// themselves.
+/// Reads waypoints: targets, which are rounded within `blend`, and `Waypoint`s, which contain their
+/// own blend.
 ///
 /// # Errors
 /// `ValueError`, `TypeError`.
@@ -218,8 +218,8 @@ pub(crate) fn waypoints(argument: &Bound<'_, PyAny>, blend: f64) -> PyResult<Vec
     argument.try_iter()?.enumerate().map(waypoint).collect()
 }
 
-/// What Python gets for a target: a pose `(4, 4)`, `Joints`, or a pair of a pose and its twist.
-/// `None` for rest and hand guiding, which are nowhere.
+/// Returns the Python object for a target: a pose `(4, 4)`, `Joints`, or a pair of a pose and its
+/// twist. `None` for rest and hand guiding, which have no place.
 pub(crate) fn target_object<'py>(
     py: Python<'py>,
     target: Target,
@@ -236,13 +236,13 @@ pub(crate) fn target_object<'py>(
     }))
 }
 
-/// Whether the argument is an instance of this class of `franka_async.goal`.
+/// True if the argument is an instance of this class of `franka_async.goal`.
 pub(crate) fn is(argument: &Bound<'_, PyAny>, class: &str) -> PyResult<bool> {
     let module = argument.py().import("franka_async.goal")?;
     argument.is_instance(&module.getattr(class)?)
 }
 
-/// The two parts of a pair, each of which has parts itself.
+/// Returns the two parts of a pair, each of which has parts itself.
 fn pair<'py>(argument: &Bound<'py, PyAny>) -> Option<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
     let sequence = argument.cast::<PySequence>().ok()?;
     let first = (sequence.len().ok()? == 2).then(|| sequence.get_item(0).ok())??;

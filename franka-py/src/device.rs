@@ -1,4 +1,4 @@
-//! End effectors: each has a connection of its own, and one object of Python for it.
+//! End effectors: each has its own connection and one Python object.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use crate::errors::misuse;
 use crate::runtime::{self, Threaded};
 
-/// An end effector at an address, and the connection to it while there is one.
+/// An end effector at an address, with its connection if there is one.
 pub(crate) struct Device<D> {
     name: &'static str,
     endpoint: Endpoint,
@@ -29,7 +29,7 @@ impl<D: Clone> Device<D> {
         &self.endpoint
     }
 
-    /// The connected device.
+    /// Returns the connected device.
     ///
     /// # Errors
     /// `FrankaError` of the kind `not_connected`; `RuntimeError` in a forked child.
@@ -49,7 +49,7 @@ impl<D: Clone> Device<D> {
     }
 
     pub(crate) fn set(&self, connected: Option<D>) {
-        // The one before is dropped without the lock.
+        // The previous one is dropped without the lock.
         let before = std::mem::replace(&mut *self.connection(), connected);
         drop(before);
     }
@@ -63,20 +63,20 @@ impl<D: Clone> Device<D> {
     }
 
     fn connection(&self) -> MutexGuard<'_, Option<D>> {
-        // Nothing can panic while it is held.
+        // No code panics while the lock is held.
         self.connection
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// The methods that every end effector has, for the class `$class` with the driver's `$device`.
+/// The common methods of end effectors, for the class `$class` with the driver's `$device`.
 macro_rules! device_methods {
     ($class:ty, $device:ty, $connect:literal) => {
         #[pymethods]
         impl $class {
             /// Connects, and returns this object; without effect while it is connected. Raises
-            /// `ConnectError`. Cancelling gives it up.
+            /// `ConnectError`. Cancelling aborts the connection.
             fn connect(this: &Bound<'_, Self>) -> Operation {
                 let this = this.clone().unbind();
                 Operation::new($connect, async move {
@@ -89,19 +89,19 @@ macro_rules! device_methods {
                 })
             }
 
-            /// Closes the connection, without waiting. An action under way is stopped. Without
-            /// effect if there is no connection.
+            /// Closes the connection, without waiting. A running action is stopped. Without effect
+            /// if there is no connection.
             fn disconnect(&self) {
                 self.0.set(None);
             }
 
-            /// Whether there is a connection. One that was lost counts until `disconnect()`.
+            /// True if there is a connection. A lost connection counts until `disconnect()`.
             #[getter]
             fn is_connected(&self) -> bool {
                 self.0.open().is_some()
             }
 
-            /// Where it is: as given, and resolved once it is connected.
+            /// Address: as given, and resolved once it is connected.
             #[getter]
             fn address(&self) -> String {
                 match self.0.open() {
@@ -129,10 +129,10 @@ macro_rules! device_methods {
 
 pub(crate) use device_methods;
 
-/// The address of a device, `what`, which the simulator has with the option `option` only.
+/// Returns the address of a device, `what`, which the simulator only has with the option `option`.
 ///
 /// # Errors
-/// `TypeError` if there is none.
+/// `TypeError` if the address is missing.
 pub(crate) fn given<'a>(address: Option<&'a str>, what: &str, option: &str) -> PyResult<&'a str> {
     address.ok_or_else(|| {
         PyTypeError::new_err(format!(
@@ -142,7 +142,7 @@ pub(crate) fn given<'a>(address: Option<&'a str>, what: &str, option: &str) -> P
     })
 }
 
-/// Checks the argument called `name`, which has a unit.
+/// Checks the argument `name`, which has a unit.
 ///
 /// # Errors
 /// `ValueError` unless it is finite and not negative.

@@ -1,4 +1,4 @@
-//! What people and objects do to a simulated robot.
+//! Disturbances of a simulated robot by people and objects.
 
 use std::sync::{Arc, OnceLock};
 
@@ -17,11 +17,11 @@ use crate::once_moving::JobId;
 use crate::operation::seconds;
 use crate::simulator::Sim;
 
-/// Something that acts on the arm of a simulated robot, made by the methods of `Sim`.
+/// A contact with the arm of a simulated robot, created by the methods of `Sim`.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Touch {
     sim: Py<Sim>,
-    /// What begins it, if it waited for the arm to move.
+    /// The job that begins it, if it waits for the arm to move.
     waits: Option<JobId>,
     /// Set when it begins.
     id: Arc<OnceLock<TouchId>>,
@@ -29,7 +29,7 @@ pub(crate) struct Touch {
 
 #[pymethods]
 impl Touch {
-    /// Ends it, also before it has begun. Returns whether it was still there.
+    /// Ends it, also before it has begun. Returns `True` if it still existed.
     fn release(&self, py: Python<'_>) -> PyResult<bool> {
         let sim = self.sim.get();
         let (once_moving, waits, id) = (sim.once_moving.clone(), self.waits, self.id.clone());
@@ -39,8 +39,8 @@ impl Touch {
         })
     }
 
-    /// The wrench that it exerts on the arm now, base axes, `(6,)` N and N m; `None` if it is over,
-    /// has not begun, or acts on joints.
+    /// The wrench that it currently exerts on the arm, base axes, `(6,)` N and N m; `None` if it is
+    /// over, has not begun, or acts on joints.
     fn felt<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
         let id = self.id.clone();
         let felt = move |robot: &mut franka_sim::Robot| id.get().and_then(|id| robot.felt(*id));
@@ -49,7 +49,7 @@ impl Touch {
     }
 }
 
-/// Lets `touch` act on the arm.
+/// Applies `touch` to the arm.
 fn touch(
     sim: &Bound<'_, Sim>,
     touch: franka_sim::Touch,
@@ -80,10 +80,11 @@ fn touch(
 #[pymethods]
 impl Sim {
     /// Pushes the arm `at` a frame (`ee`, `flange`, `joint4`, ...), `offset` from its origin in its
-    /// axes, m, with a force, base axes, N, and a torque, N m, for `duration` seconds of its
-    /// own clock; until it is released if `None`. It begins now or, `once_moving`, in the
-    /// millisecond in which a joint is faster than 0.05 rad/s: in virtual time, where a motion
-    /// may be over before a program sees it move. Without a motion it never begins: see `waiting`.
+    /// axes, m. The push has a force, base axes, N, and a torque, N m, and lasts for `duration`
+    /// seconds of the robot's clock; until it is released if `None`. It begins now. With
+    /// `once_moving` it begins in the millisecond in which a joint is faster than 0.05 rad/s: in
+    /// virtual time, a motion may be over before a program sees it move. Without a motion it never
+    /// begins: see `waiting`.
     #[pyo3(signature = (force, torque = None, *, duration = None, once_moving = false, at = "ee", offset = None))]
     fn push(
         this: &Bound<'_, Self>,
@@ -112,7 +113,7 @@ impl Sim {
         touch(this, torques, None, (duration, once_moving))
     }
 
-    /// Pulls the arm to the point `to`, base frame, m, by a spring of this stiffness, N/m;
+    /// Pulls the arm to the point `to`, base frame, m, with a spring of this stiffness, N/m;
     /// otherwise like `push`.
     #[pyo3(signature = (to, stiffness, *, duration = None, once_moving = false, at = "ee", offset = None))]
     fn pull(
@@ -129,7 +130,7 @@ impl Sim {
         touch(this, spring, Some((at, offset)), (duration, once_moving))
     }
 
-    /// Grips the arm firmly where it is now; otherwise like `push`.
+    /// Grips the arm firmly in its current place; otherwise like `push`.
     #[pyo3(signature = (*, duration = None, once_moving = false, at = "ee", offset = None))]
     fn hold(
         this: &Bound<'_, Self>,
@@ -146,7 +147,7 @@ impl Sim {
         )
     }
 
-    /// Blocks a joint, 1 to 7, at its angle of now.
+    /// Blocks a joint, 1 to 7, at its current angle.
     #[pyo3(signature = (joint, *, duration = None, once_moving = false))]
     fn block(
         this: &Bound<'_, Self>,
@@ -167,8 +168,8 @@ impl Sim {
         )
     }
 
-    /// Puts a wall in the way of the end effector: through `point`, base frame, m, with a `normal`
-    /// out of it.
+    /// Places a wall for the end effector: through `point`, base frame, m, with an outward
+    /// `normal`.
     #[pyo3(signature = (point, normal, *, duration = None, once_moving = false, at = "ee", offset = None))]
     fn wall(
         this: &Bound<'_, Self>,
@@ -186,7 +187,7 @@ impl Sim {
         touch(this, wall, Some((at, offset)), (duration, once_moving))
     }
 
-    /// Ends every touch, and drops all that was to begin once the arm moves.
+    /// Ends every touch, and cancels all that wait for the arm to move.
     fn let_go(&self, py: Python<'_>) -> PyResult<()> {
         let waiting = self.once_moving.clone();
         self.robot(py, move |robot| {
@@ -195,26 +196,26 @@ impl Sim {
         })
     }
 
-    /// Presses the user stop, or releases it; `once_moving` as of `push`.
+    /// Presses the user stop, or releases it; `once_moving` as in `push`.
     #[pyo3(signature = (pressed = true, *, once_moving = false))]
     fn press_user_stop(&self, py: Python<'_>, pressed: bool, once_moving: bool) -> PyResult<()> {
         let press = move |robot: &mut franka_sim::Robot| robot.press_user_stop(pressed);
         self.disturb(py, once_moving, press).map(drop)
     }
 
-    /// Activates a safety function that forbids motion, as set up in Desk, or deactivates it.
+    /// Activates a safety function that forbids motion, as configured in Desk, or deactivates it.
     #[pyo3(signature = (active = true))]
     fn activate_safety_function(&self, py: Python<'_>, active: bool) -> PyResult<()> {
         self.robot(py, move |robot| robot.activate_safety_function(active))
     }
 
-    /// Presses the guiding buttons, or lets go of them. Returns whether the arm is guided then.
+    /// Presses the guiding buttons, or releases them. Returns `True` if the arm is then guided.
     #[pyo3(signature = (pressed = true))]
     fn guide(&self, py: Python<'_>, pressed: bool) -> PyResult<bool> {
         self.robot(py, move |robot| robot.guide(pressed))
     }
 
-    /// Closes the brakes of the joints, or opens them: as Desk locks and unlocks a robot.
+    /// Closes the brakes of the joints, or opens them, as Desk locks and unlocks a robot.
     #[pyo3(signature = (closed = true))]
     fn lock(&self, py: Python<'_>, closed: bool) -> PyResult<()> {
         self.robot(py, move |robot| match closed {
@@ -223,8 +224,8 @@ impl Sim {
         })
     }
 
-    /// Lets the arm ignore its commands while the robot reports the motion and no error: its
-    /// `"joints"` stand still, or its `"controllers"` take nothing over; `None` lets it obey again.
+    /// Makes the arm ignore its commands while the robot reports the motion and no error: its
+    /// `"joints"` do not move, or its `"controllers"` accept nothing; `None` ends this.
     #[pyo3(signature = (what = Some("joints")), text_signature = "($self, what='joints')")]
     fn freeze(&self, py: Python<'_>, what: Option<&str>) -> PyResult<()> {
         let freeze = match what {
@@ -241,8 +242,8 @@ impl Sim {
         self.robot(py, move |robot| robot.freeze(freeze))
     }
 
-    /// Raises an error of the robot, by the vendor's name, such as `cartesian_reflex`: it stops
-    /// itself. `once_moving` as of `push`.
+    /// Raises an error of the robot, by the vendor's name, such as `cartesian_reflex`: the robot
+    /// stops itself. `once_moving` as in `push`.
     #[pyo3(signature = (error, *, once_moving = false))]
     fn trip(&self, py: Python<'_>, error: &str, once_moving: bool) -> PyResult<()> {
         let found = RobotError::from_name(error).ok_or_else(|| {
@@ -253,21 +254,20 @@ impl Sim {
         self.disturb(py, once_moving, trip).map(drop)
     }
 
-    /// Performs the recovery that takes a person.
+    /// Performs the recovery that needs a person.
     fn recover_manually(&self, py: Python<'_>) -> PyResult<()> {
         self.robot(py, |robot| robot.recover_manually())
     }
 
-    /// Puts the arm to joint positions, 7 numbers, rad, at rest. Raises `ValueError` where a joint
-    /// cannot be.
+    /// Places the arm at joint positions, 7 numbers, rad, at rest. Raises `ValueError` for
+    /// impossible positions.
     fn place(&self, py: Python<'_>, q: &Bound<'_, PyAny>) -> PyResult<()> {
         let q = self.positions(q)?;
         self.robot(py, move |robot| robot.place(&q))
     }
 
-    /// Attaches a body to the flange that the robot does not know of, in the place of the one
-    /// before: mass, kg, centre of mass in the flange frame, m, and inertia about it, `(3, 3)`
-    /// kg m^2.
+    /// Attaches an undeclared body to the flange, replacing the previous one: mass, kg, centre of
+    /// mass in the flange frame, m, and inertia about it, `(3, 3)` kg m^2.
     #[pyo3(signature = (mass, center, inertia = None))]
     fn attach(
         &self,
@@ -280,15 +280,15 @@ impl Sim {
         self.robot(py, move |robot| robot.attach(body))
     }
 
-    /// Where the end effector really is, base frame, `(4, 4)`: the robot's own joint sensors may be
-    /// off.
+    /// True pose of the end effector, base frame, `(4, 4)`: the robot's own joint sensors may
+    /// deviate.
     fn true_pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let pose = self.robot(py, |robot| robot.true_pose())?;
         Ok(pose_array(py, &pose))
     }
 
-    /// Puts an object of this width, m, between the fingers of the Hand. Raises `ValueError` if it
-    /// does not fit, and without a Hand.
+    /// Places an object of this width, m, between the fingers of the Hand. Raises `ValueError` if
+    /// it does not fit, or if there is no Hand.
     fn place_object(&self, py: Python<'_>, width: f64) -> PyResult<()> {
         let place = move |hand: &mut franka_sim::Hand| hand.mechanism_mut().place_object(width);
         let placed = self.with(py, async |sim| match sim.hand() {
@@ -303,7 +303,8 @@ impl Sim {
         Err(PyValueError::new_err(problem))
     }
 
-    /// Puts a part in front of the vacuum gripper. Raises `ValueError` without one.
+    /// Places a part in front of the vacuum gripper. Raises `ValueError` if there is no vacuum
+    /// gripper.
     fn place_part(&self, py: Python<'_>) -> PyResult<()> {
         let place =
             |gripper: &mut franka_sim::VacuumGripper| gripper.mechanism_mut().place_object();

@@ -1,4 +1,4 @@
-//! Sessions that are to begin, and their options.
+//! Sessions that have not begun, and their options.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -19,7 +19,7 @@ use crate::operation::Operation;
 use crate::options::{Keywords, Options, with_options};
 use crate::told::{Told, leave};
 
-/// A session that begins when it is awaited, or entered by `async with`, and is then an `Arm`.
+/// A session that begins when it is awaited, or entered with `async with`, and is then an `Arm`.
 #[pyclass(frozen, extends = Operation, module = "franka_async")]
 pub(crate) struct Engagement {
     entered: Arc<Entered>,
@@ -91,7 +91,7 @@ impl Engagement {
     }
 }
 
-/// Reads a region that the arm keeps out of.
+/// Reads a region that the arm must avoid.
 fn region(region: &Bound<'_, PyAny>) -> PyResult<Obstacle> {
     if is(region, "Plane")? {
         let normal = Vector3::from(vector::<3>("normal", &region.getattr("normal")?)?);

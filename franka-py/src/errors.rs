@@ -15,9 +15,9 @@ use crate::log::ControlLog;
 use crate::names::Named;
 use crate::state::names;
 
-/// Becomes an exception, where the interpreter is at hand.
+/// Conversion to an exception, for code that holds the interpreter.
 pub(crate) trait Raise: Send + 'static {
-    /// The exception.
+    /// Returns the exception.
     fn raise(self, py: Python<'_>) -> PyErr;
 }
 
@@ -55,13 +55,13 @@ impl Raise for Error {
     }
 }
 
-/// A `FrankaError` of this `kind` by the program itself, which this package raises before the
-/// driver is asked.
+/// Returns a `FrankaError` of this `kind` caused by the program itself, raised before the driver is
+/// called.
 pub(crate) fn misuse(py: Python<'_>, kind: &str, message: &str) -> PyErr {
     made(py, "FrankaError", kind, "caller", message)
 }
 
-/// An exception of the class of `errors.py` that is called `class`, for `party` to act on.
+/// Returns an exception of the class `class` of `errors.py`; `party` can act on it.
 pub(crate) fn made(py: Python<'_>, class: &str, kind: &str, party: &str, message: &str) -> PyErr {
     let made = || {
         let class = py.import("franka_async.errors")?.getattr(class)?;
@@ -101,7 +101,7 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     exception.setattr("kind", kind(error))?;
     exception.setattr("party", error.party().python_name())?;
     exception.setattr("entry", error.entry())?;
-    // What a traceback shows below the text, from Python 3.11 on.
+    // Shown in a traceback below the text, from Python 3.11 on.
     if exception.hasattr("add_note")? {
         let note = format!("In the book: errors.md#{}", error.entry());
         exception.call_method1("add_note", (note,))?;
@@ -126,7 +126,7 @@ fn exception(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     Ok(PyErr::from_value(exception))
 }
 
-/// The subclass of `MotionError`, for what programs tell apart.
+/// Returns the subclass of `MotionError`, for errors that programs distinguish.
 fn motion_class(error: &MotionError) -> &'static str {
     match error {
         MotionError::Goal(_) | MotionError::Path(_) => "GoalError",
@@ -159,13 +159,13 @@ fn set_control(exception: &Bound<'_, PyAny>, control: &ControlError) -> PyResult
     exception.setattr("findings", fields.transpose()?)
 }
 
-/// A diagnosis as data.
+/// Returns a diagnosis as data.
 pub(crate) fn findings<'py>(py: Python<'py>, diagnosis: &Diagnosis) -> PyResult<Bound<'py, PyAny>> {
     let json = serde_json::to_string(diagnosis).expect("numbers and names become JSON");
     py.import("json")?.call_method1("loads", (json,))
 }
 
-/// The name of what happened.
+/// Returns the name of the error.
 fn kind(error: &Error) -> &'static str {
     match error {
         Error::Connect(error) => error.python_name(),
@@ -186,7 +186,7 @@ fn kind(error: &Error) -> &'static str {
     }
 }
 
-/// The name of the robot's answer to a motion: `reflex_aborted`.
+/// Returns the name of the robot's answer to a motion: `reflex_aborted`.
 fn status(control: &ControlError) -> &'static str {
     match control.refusal().status() {
         Status::Move(status) => status.python_name(),

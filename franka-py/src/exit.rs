@@ -1,4 +1,4 @@
-//! What becomes of robots when the interpreter exits.
+//! Shutdown of robots when the interpreter exits.
 
 use std::sync::{LazyLock, PoisonError, RwLock};
 use std::time::Duration;
@@ -17,7 +17,7 @@ struct Live {
     exit: CancellationToken,
     /// A task for each connected robot, which ends when the robot has closed.
     robots: TaskTracker,
-    /// Whether threads of this module may take the interpreter. Held while one does.
+    /// True while threads of this module may take the interpreter. The lock is held while one does.
     interpreter: RwLock<bool>,
 }
 
@@ -27,12 +27,12 @@ static LIVE: LazyLock<Live> = LazyLock::new(|| Live {
     interpreter: RwLock::new(true),
 });
 
-/// What every connection is to be given, so that it ends with the interpreter.
+/// Returns the token of every connection, so that it ends with the interpreter.
 pub(crate) fn cancellation() -> CancellationToken {
     LIVE.exit.clone()
 }
 
-/// Has the exit of the interpreter wait for this robot. Called on the runtime.
+/// Makes the exit of the interpreter wait for this robot. Called on the runtime.
 pub(crate) fn wait_for(robot: &Robot) {
     // The task holds no handle, so that a robot without handles closes.
     let mut health = robot.health();
@@ -40,8 +40,8 @@ pub(crate) fn wait_for(robot: &Robot) {
         .spawn(async move { while health.changed().await.is_ok() {} });
 }
 
-/// Does what takes the interpreter on a thread that Python does not know. `None` once it exits:
-/// threads that it takes by surprise would be torn out of the middle of what they do.
+/// Runs a function with the interpreter on a thread that Python does not know. `None` once the
+/// interpreter exits: such threads would otherwise be stopped in mid-operation.
 pub(crate) fn in_python<T>(work: impl FnOnce(Python<'_>) -> T) -> Option<T> {
     let is_open = LIVE
         .interpreter
@@ -50,15 +50,15 @@ pub(crate) fn in_python<T>(work: impl FnOnce(Python<'_>) -> T) -> Option<T> {
     is_open.then(|| Python::attach(work))
 }
 
-/// Has `atexit` call [`shut_down`], before the interpreter is taken apart.
+/// Registers [`shut_down`] with `atexit`, so that it runs before the interpreter is taken apart.
 pub(crate) fn register(py: Python<'_>) -> PyResult<()> {
     let function = wrap_pyfunction!(shut_down, py)?;
     py.import("atexit")?.call_method1("register", (function,))?;
     Ok(())
 }
 
-/// Brakes every robot and closes its connection; waits for that for a bounded time. In a forked
-/// child it does nothing: the robots are the parent's.
+/// Brakes every robot and closes its connection, and waits for a bounded time. Does nothing in a
+/// forked child: the robots belong to the parent.
 #[pyfunction]
 fn shut_down(py: Python<'_>) {
     let Some(runtime) = runtime::started() else {
@@ -84,10 +84,10 @@ fn shut_down(py: Python<'_>) {
     });
 }
 
-/// A motion brakes within a quarter of a second; a robot that does not answer is given up after
-/// two.
+/// Time limit: a motion brakes within a quarter of a second; a robot that does not answer is
+/// abandoned after two.
 const BRAKED: Duration = Duration::from_secs(4);
 
-/// What has the interpreter then delivers a result, or is code of the program that may take any
-/// time.
+/// Time limit for threads with the interpreter: they deliver a result, or run code of the program
+/// that may take any time.
 const GIVEN_BACK: Duration = Duration::from_secs(1);

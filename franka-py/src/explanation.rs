@@ -1,4 +1,4 @@
-//! What happened in a recording or in the log of an error, and why a motion ended.
+//! Explanation of a recording or of the log of an error, with the reason for the end of a motion.
 
 use franka_async::explain::Explanation as Explained;
 use franka_async::model::{Model, RobotKind};
@@ -14,10 +14,10 @@ use crate::names::Named;
 use crate::recording::RecordingFile;
 use crate::state::names;
 
-/// What happened, and why a motion ended: of a `RecordingFile` or a part of one, of a
-/// `ControlError`, or of its log. What ended is the last motion that the robot stopped, a guard
-/// gave up or a lost link ended; if none did, it is the newest cycle. Raises `TypeError`, and
-/// `ValueError` for a recording that does not say which robot it is of.
+/// Explains why a motion ended, from a `RecordingFile` or a part of one, from a `ControlError`, or
+/// from its log. It explains the last motion that the robot stopped, a guard aborted or a lost link
+/// ended; without such an end, it covers the time up to the newest cycle. Raises `TypeError`, and
+/// `ValueError` for a recording that does not name its kind of robot.
 #[pyfunction]
 pub(crate) fn explain(py: Python<'_>, of: &Bound<'_, PyAny>) -> PyResult<Explanation> {
     if let Ok(recording) = of.cast::<RecordingFile>() {
@@ -53,8 +53,8 @@ pub(crate) fn explain(py: Python<'_>, of: &Bound<'_, PyAny>) -> PyResult<Explana
     Ok(Explanation(Box::new(explained)))
 }
 
-/// What happened in a series of cycles, and why a motion ended, as `explain` tells. `print`
-/// shows a report of a page, a notebook the figure as well. Times are the robot's clock, ms.
+/// The explanation of a series of cycles and of the end of a motion, returned by `explain`. `print`
+/// shows a report of one page, a notebook also the figure. Times are the robot's clock, ms.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Explanation(Box<Explained>);
 
@@ -66,7 +66,7 @@ impl Explanation {
         self.0.robot.python_name()
     }
 
-    /// How many cycles there were.
+    /// Number of cycles.
     #[getter]
     fn cycles(&self) -> u64 {
         self.0.cycles
@@ -84,54 +84,55 @@ impl Explanation {
         self.0.last
     }
 
-    /// The cycle that shows the end of the last motion that the robot stopped, a guard gave up or a
-    /// lost link ended, of a guard that in which the arm rested; without one, the last cycle.
+    /// The cycle that shows the end of the last motion that the robot stopped, a guard aborted or a
+    /// lost link ended. For a guard, it is the cycle in which the arm was at rest. Without such an
+    /// end, it is the last cycle.
     #[getter]
     fn end_ms(&self) -> u64 {
         self.0.end
     }
 
-    /// When this host had that cycle, ns since 1970: `recording.between(end=end_host_time - 1)`
-    /// holds what came before. `None` where that is not known.
+    /// Time at which this host received that cycle, ns since 1970:
+    /// `recording.between(end=end_host_time - 1)` contains the part before it. `None` if unknown.
     #[getter]
     fn end_host_time(&self) -> Option<u64> {
         self.0.received.map(HostTime::as_nanos)
     }
 
-    /// How many such ends came before.
+    /// Number of earlier ends of this kind.
     #[getter]
     fn earlier(&self) -> u64 {
         self.0.earlier
     }
 
-    /// The newest goal whose end was not recorded, where nothing has ended a motion.
+    /// The newest goal whose end was not recorded, if no end of a motion was found.
     #[getter]
     fn under_way(&self) -> Option<u64> {
         self.0.under_way
     }
 
-    /// What the last goal that failed of itself said, as after a user stop or at an obstacle;
-    /// `None` if the last one did not fail.
+    /// Text of the last goal if it failed on its own, for example after a user stop or at an
+    /// obstacle; `None` if it did not fail.
     #[getter]
     fn failed(&self) -> Option<&str> {
         self.0.failed.as_deref()
     }
 
-    /// Why that motion ended, in words: which limit was exceeded, what led up to it, what to
-    /// change; `None` without such an end.
+    /// Reason for the end of that motion, as text: the exceeded limit, its causes, and the
+    /// recommended changes; `None` without such an end.
     #[getter]
     fn cause(&self) -> Option<&str> {
         self.0.cause.as_ref().map(|cause| &*cause.text)
     }
 
-    /// The errors that the robot named; none where a guard or a lost link ended the motion.
+    /// The errors named by the robot; none if a guard or a lost link ended the motion.
     #[getter]
     fn errors(&self) -> Vec<String> {
         let cause = self.0.cause.as_ref();
         cause.map_or_else(Vec::new, |cause| names(cause.errors))
     }
 
-    /// The diagnosis as data, as of `ControlError`; `None` where it is not known.
+    /// The diagnosis as data, as in `ControlError`; `None` if unknown.
     #[getter]
     fn findings<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let diagnosis = self.0.cause.as_ref();
@@ -141,7 +142,7 @@ impl Explanation {
             .transpose()
     }
 
-    /// What changed, oldest first: a list of `explanation.Moment`.
+    /// The changes, oldest first: a list of `explanation.Moment`.
     #[getter]
     fn timeline<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let class = class(py, "Moment")?;
@@ -151,7 +152,7 @@ impl Explanation {
             .collect()
     }
 
-    /// The nearest approach to each limit, an `explanation.Approach` by what it is of: `position`,
+    /// The smallest distance from each limit, an `explanation.Approach` by quantity: `position`,
     /// `velocity` and `torque` of joints, `translation` and `rotation` of the end effector.
     #[getter]
     fn margins<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -173,7 +174,7 @@ impl Explanation {
         Ok(all)
     }
 
-    /// The largest values, an `explanation.Peak` by what it is of: `external_torque`, `force`,
+    /// The largest values, an `explanation.Peak` by quantity: `external_torque`, `force`,
     /// `following_error`.
     #[getter]
     fn peaks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -192,8 +193,8 @@ impl Explanation {
         Ok(all)
     }
 
-    /// Where something touched the arm as the motion ended, an `explanation.Contact`; `None` where
-    /// the torques do not tell: `contact_unknown` says why.
+    /// The contact at the end of the motion, an `explanation.Contact`; `None` if the torques do not
+    /// determine it: `contact_unknown` contains the reason.
     #[getter]
     fn contact<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let Some((place, contact)) = self
@@ -217,32 +218,32 @@ impl Explanation {
         class(py, "Contact")?.call1(fields).map(Some)
     }
 
-    /// Why it is not known for sure what was touched, or nothing is known; `None` if it is.
+    /// Reason why the contact is uncertain or unknown; `None` if it is known.
     #[getter]
     fn contact_unknown(&self) -> Option<&str> {
         self.0.contact.as_ref()?.unknown.as_deref()
     }
 
-    /// How many states were lost.
+    /// Number of lost states.
     #[getter]
     fn lost(&self) -> u64 {
         self.0.lost.states
     }
 
-    /// How many commands left after the next state was due.
+    /// Number of commands that left after the next state was due.
     #[getter]
     fn late(&self) -> u64 {
         self.0.late.commands
     }
 
-    /// The last second before the end as an SVG image: what touched the arm, velocities and torques
-    /// against their limits, what happened when, and where on the arm the contact was. It has no
-    /// background, and colours that can be told apart on white and on black.
+    /// The last second before the end as an SVG image: contact torques, velocities and torques
+    /// relative to their limits, the events, and the place of the contact on the arm. It has no
+    /// background, and its colours are distinguishable on white and on black.
     fn svg(&self, py: Python<'_>) -> String {
         py.detach(|| self.0.figure())
     }
 
-    /// What a notebook shows: the figure and the report.
+    /// The content of a notebook cell: the figure and the report.
     fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
         let text = py
             .import("html")?
@@ -269,7 +270,7 @@ impl Explanation {
     }
 }
 
-/// A class of `explanation.py`.
+/// Returns a class of `explanation.py`.
 fn class<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     py.import("franka_async.explanation")?.getattr(name)
 }

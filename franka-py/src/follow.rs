@@ -1,4 +1,4 @@
-//! Following targets that come from Python.
+//! Following of targets from Python.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -19,14 +19,14 @@ use crate::options::{Bounds, Keywords, Options, watchdog, with_options};
 use crate::told::{Telling, Told};
 
 /// The newest target of a program: `set` it from any thread, at any rate, and `follow` it. When it
-/// is closed or its last reference is dropped, the motion ends at the target that was set last.
+/// is closed or its last reference is dropped, the motion ends at the last target.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Latest(Mutex<Option<watch::Sender<Option<Target>>>>);
 
 #[pymethods]
 impl Latest {
     /// Begins with `target`, or without one: a motion that follows it then begins with the first
-    /// one.
+    /// target.
     #[new]
     #[pyo3(signature = (target = None))]
     fn new(target: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
@@ -36,7 +36,7 @@ impl Latest {
         Ok(Self(Mutex::new(Some(watch::Sender::new(first)))))
     }
 
-    /// Replaces the target by a pose, `Joints`, or a pair with velocities. Never waits.
+    /// Replaces the target with a pose, `Joints`, or a pair with velocities. Never waits.
     fn set(&self, target: &Bound<'_, PyAny>) -> PyResult<()> {
         let target = self::target("target", target)?;
         match &*self.0.lock().unwrap_or_else(PoisonError::into_inner) {
@@ -46,8 +46,8 @@ impl Latest {
         Ok(())
     }
 
-    /// Ends the motions that follow it, at the target that was set last. Those of an arm whose
-    /// deadman is silent raise `held`.
+    /// Ends the motions that follow it, at the last target. Motions of an arm whose deadman is
+    /// silent raise `held`.
     fn close(&self) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take();
     }
@@ -62,7 +62,7 @@ impl Latest {
 }
 
 impl Latest {
-    /// The targets from now on, beginning with the one that is there.
+    /// Returns the targets from now on, beginning with the current one.
     fn targets(&self) -> impl Stream<Item = Target> + Send + 'static {
         let receiver = match &*self.0.lock().unwrap_or_else(PoisonError::into_inner) {
             Some(sender) => sender.subscribe(),
@@ -79,7 +79,7 @@ impl Latest {
     }
 }
 
-/// What follows targets.
+/// The source of targets.
 pub(crate) enum Leader {
     Robot(franka_async::Robot),
     Arm((Told, franka_async::Arm)),
@@ -108,7 +108,7 @@ impl Leader {
     }
 }
 
-/// The operation `name` of `owner`: `leader` follows `targets`.
+/// Returns the operation `name` of `owner`: `leader` follows `targets`.
 pub(crate) fn operation(
     owner: &Bound<'_, PyAny>,
     name: &'static str,
@@ -142,7 +142,7 @@ pub(crate) fn operation(
         return Follow::new(py, operation, Some(member));
     }
     if targets.hasattr("__aiter__")? {
-        // It follows a `Latest` that a coroutine sets, in the event loop.
+        // Follows a `Latest` that a coroutine sets, in the event loop.
         let follow = py.import("franka_async.following")?.getattr("follow")?;
         let coroutine = follow.call1((owner.getattr("follow")?, targets, options))?;
         return Follow::new(py, Operation::of_coroutine(name, coroutine.unbind()), None);
@@ -171,8 +171,8 @@ pub(crate) fn operation(
     Follow::new(py, operation, None)
 }
 
-/// The targets of an iterator of Python, each taken on a thread that may wait, once the one before
-/// has been passed on. What it raises goes to `failed`; no target comes after that.
+/// Returns the targets of a Python iterator. Each is fetched on a thread that may wait, once the
+/// previous target has been passed on. An exception goes to `failed` and ends the targets.
 fn stepped(
     iterator: Py<PyAny>,
     failed: oneshot::Sender<PyErr>,
@@ -205,7 +205,7 @@ fn stepped(
     })
 }
 
-/// Why following an iterator ended early.
+/// The reason why following an iterator ended early.
 enum Failure {
     Motion(Telling),
     Iterator(PyErr),

@@ -1,4 +1,4 @@
-//! Gains, to and from `franka_async.goal.Gains`, and the defaults that values of Python begin with.
+//! Conversion of gains from and to `franka_async.goal.Gains`, and the defaults of Python values.
 
 use franka_async::goal::{Deviation, Gains, Law, Leash, Margin, Settling, Tolerance};
 use pyo3::exceptions::PyValueError;
@@ -39,7 +39,7 @@ pub(crate) fn read(gains: &Bound<'_, PyAny>) -> PyResult<Gains> {
     })
 }
 
-/// The arguments of `franka_async.goal.Gains`.
+/// Returns the arguments of `franka_async.goal.Gains`.
 fn fields<'py>(py: Python<'py>, gains: &Gains) -> PyResult<Bound<'py, PyDict>> {
     let fields = PyDict::new(py);
     let law = match gains.law {
@@ -65,7 +65,7 @@ fn fields<'py>(py: Python<'py>, gains: &Gains) -> PyResult<Bound<'py, PyDict>> {
     Ok(fields)
 }
 
-/// The gains of this name, as arguments of `Gains`.
+/// Returns the gains with this name, as arguments of `Gains`.
 #[pyfunction]
 pub(crate) fn _gains<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyDict>> {
     let gains = match name {
@@ -81,7 +81,7 @@ pub(crate) fn _gains<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, Py
     fields(py, &gains)
 }
 
-/// These gains with another stiffness at the end effector, as arguments of `Gains`.
+/// Returns these gains with another stiffness at the end effector, as arguments of `Gains`.
 #[pyfunction]
 pub(crate) fn _softened<'py>(
     py: Python<'py>,
@@ -109,8 +109,8 @@ pub(crate) fn add_defaults(module: &Bound<'_, PyModule>) -> PyResult<()> {
 
 #[pymethods]
 impl Robot {
-    /// How far gains are from the first oscillation of an arm like this where it is: a `Margin`.
-    /// `None` for gains that are out of their bounds.
+    /// Margin of gains to the first oscillation of such an arm in its current posture: a `Margin`.
+    /// `None` for gains that are out of range.
     fn margin<'py>(&self, gains: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let Some(margin) = self.connected()?.margin(&read(gains)?) else {
             return Ok(None);

@@ -10,17 +10,16 @@ use crate::operation::Operation;
 use crate::robot::Robot;
 use crate::stream::stream;
 
-/// A Franka Hand, which has a connection of its own beside the robot's.
+/// A Franka Hand, with its own connection in addition to the robot's.
 ///
 /// `async with Gripper(address) as gripper:` connects, and disconnects at the end; `await
-/// gripper.connect()` does so without a block. On threads without an event loop, `.wait()`
-/// stands in the place of `await`. What is grasped stays grasped when the connection ends.
+/// gripper.connect()` does so without a block. On threads without an event loop, use `.wait()` in
+/// place of `await`. A grasped object stays grasped when the connection ends.
 ///
-/// One action runs at a time. A newer one aborts it, which then raises `ActionError` of the kind
-/// `aborted`, and so does `stop()`, from any task or thread. Cancelling the task that awaits an
-/// action stops the fingers, and so does a timeout around it. An action has no deadline of its own:
-/// a move that an obstacle blocks takes minutes. None holds the interpreter while it is awaited or
-/// waited for.
+/// One action runs at a time. A newer action, or `stop()` from any task or thread, aborts it; it
+/// then raises `ActionError` of the kind `aborted`. Cancelling the task that awaits an action, or a
+/// timeout around it, stops the fingers. An action has no deadline: a move that an obstacle blocks
+/// takes minutes. Waiting for an action releases the interpreter.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Gripper(pub(crate) Device<gripper::Gripper>);
 
@@ -34,10 +33,10 @@ device_methods!(Gripper, gripper::Gripper, "Gripper.connect");
 
 #[pymethods]
 impl Robot {
-    /// The Franka Hand of this robot, at its host and the port after the robot's; it is yet to be
-    /// connected: `async with robot.gripper() as gripper:`. That of a simulator on a free port has
-    /// another one, and nothing or something else listens at this: `Gripper(sim.hand_address)`, of
-    /// a `Sim` with `hand=True`.
+    /// The Franka Hand of this robot, at its host and the port after the robot's, not yet
+    /// connected: `async with robot.gripper() as gripper:`. The Hand of a simulator on a free port
+    /// has another port, and another program may listen at this one: use
+    /// `Gripper(sim.hand_address)` of a `Sim` with `hand=True`.
     fn gripper(&self) -> Gripper {
         Gripper::new(self.beside(1))
     }
@@ -45,29 +44,29 @@ impl Robot {
 
 #[pymethods]
 impl Gripper {
-    /// Describes a connection to the Hand at `address`, `host` or `host:port`; nothing is sent yet.
-    /// The port is 1338 unless given.
+    /// Describes a connection to the Hand at `address`, `host` or `host:port`; it sends nothing
+    /// yet. The port is 1338 unless given.
     #[new]
     #[pyo3(signature = (address))]
     fn python_new(address: Option<&str>) -> PyResult<Self> {
         Ok(Self::new(given(address, "Hand", "hand")?))
     }
 
-    /// The newest state, without waiting.
+    /// Newest state, without waiting.
     fn state(&self) -> PyResult<GripperState> {
         Ok(GripperState(self.0.connected()?.state()))
     }
 
-    /// The newest state as it changes, for `async for`. Ends when the connection does.
+    /// Newest state as it changes, for `async for`. Ends with the connection.
     fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         stream(py, self.0.connected()?.states(), |py, state| {
             GripperState(state).into_py_any(py)
         })
     }
 
-    /// Finds how wide the fingers open, `max_width` of the state; returns whether that succeeded.
-    /// Needed once after power-on and after a change of fingers. Raises `ActionError`; cancelling
-    /// stops the fingers.
+    /// Determines the largest opening of the fingers, `max_width` of the state; returns `True` on
+    /// success. Needed once after power-on and after a change of fingers. Raises `ActionError`;
+    /// cancelling stops the fingers.
     fn homing(&self) -> PyResult<Operation> {
         let gripper = self.0.connected()?;
         Ok(Operation::new("Gripper.homing", async move {
@@ -75,8 +74,9 @@ impl Gripper {
         }))
     }
 
-    /// Moves the fingers to `width`, m, at `speed`, m/s (the Hand's most is 0.1, and more is not
-    /// refused); returns whether they arrived. Raises `ActionError`; cancelling stops the fingers.
+    /// Moves the fingers to `width`, m, at `speed`, m/s (the Hand's largest speed is 0.1, and
+    /// higher values are not refused); returns `True` if they arrived. Raises `ActionError`;
+    /// cancelling stops the fingers.
     #[pyo3(signature = (width, speed = 0.1))]
     fn move_to(&self, width: f64, speed: f64) -> PyResult<Operation> {
         let width = at_least_zero("width", width)?;
@@ -88,9 +88,9 @@ impl Gripper {
     }
 
     /// Closes the fingers on an object of this `width`, m, at `speed`, m/s, and holds it with
-    /// `force`, N. Returns whether they ended at most `epsilon_inner` narrower and `epsilon_outer`
-    /// wider, m; the force stays applied either way, until the next action or `stop()`. Raises
-    /// `ActionError`; cancelling stops the fingers and lets go.
+    /// `force`, N. Returns `True` if they ended at most `epsilon_inner` narrower and
+    /// `epsilon_outer` wider, m. The force stays applied in both cases, until the next action or
+    /// `stop()`. Raises `ActionError`; cancelling stops the fingers and releases the object.
     #[pyo3(signature = (
         width, speed = 0.1, force = 20.0, epsilon_inner = 0.005, epsilon_outer = 0.005,
     ))]
@@ -115,8 +115,8 @@ impl Gripper {
         }))
     }
 
-    /// Stops the fingers and lets go of what they hold; returns whether that succeeded. The action
-    /// that runs raises `ActionError`. Once it has begun, it goes on even if it is cancelled.
+    /// Stops the fingers and releases the object; returns `True` on success. The running action
+    /// raises `ActionError`. Once begun, the stop continues even if it is cancelled.
     fn stop(&self) -> PyResult<Operation> {
         let gripper = self.0.connected()?;
         Ok(Operation::new("Gripper.stop", async move {
@@ -125,7 +125,7 @@ impl Gripper {
     }
 }
 
-/// What a Franka Hand says of itself. It does not change.
+/// The state of a Franka Hand. It is immutable.
 #[pyclass(frozen, eq, module = "franka_async")]
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct GripperState(pub(crate) gripper::State);
@@ -138,13 +138,13 @@ impl GripperState {
         self.0.width
     }
 
-    /// Distance of the open fingers, m, as the last homing found it.
+    /// Largest distance of the fingers, m, from the last homing.
     #[getter]
     fn max_width(&self) -> f64 {
         self.0.max_width
     }
 
-    /// Whether the Hand holds an object of the width that was asked for.
+    /// True if the Hand holds an object of the requested width.
     #[getter]
     fn is_grasped(&self) -> bool {
         self.0.is_grasped

@@ -1,4 +1,5 @@
-//! What an arm takes beside its model, measured by a minute of small motions.
+//! The parameters that an arm needs in addition to its model, measured with a minute of small
+//! motions.
 
 use franka_async::identify::{Estimate, Identified, Identify};
 use franka_async::model::RobotKind;
@@ -14,10 +15,10 @@ use crate::robot::Robot;
 
 #[pymethods]
 impl Robot {
-    /// Plans motions that show friction and bias of the joints and the load at the flange: in each
-    /// of six poses around where the arm is, all joints go 0.2 rad to and fro twice, at 0.2 rad/s,
-    /// about a minute in all. Nothing moves before `run()` of the plan is awaited. The arm has to
-    /// be free to go so far, see `reach`, and to carry what it is to be identified with.
+    /// Plans motions that determine friction and bias of the joints and the load at the flange. In
+    /// each of six poses around the current position, all joints move 0.2 rad back and forth twice,
+    /// at 0.2 rad/s: about a minute in total. The arm does not move before `run()` of the plan is
+    /// awaited. It must have free space, see `reach`, and carry the tool to be identified.
     fn identify(&self) -> PyResult<IdentificationPlan> {
         Ok(IdentificationPlan(self.connected()?.identify()))
     }
@@ -29,42 +30,43 @@ pub(crate) struct IdentificationPlan(Identify);
 
 #[pymethods]
 impl IdentificationPlan {
-    /// The joint positions that the arm goes to, `(n, 7)` rad, one row for each motion; the last
-    /// one is where it is now.
+    /// The joint positions of the motions, `(n, 7)` rad, one row for each; the last one is the
+    /// current position.
     #[getter]
     fn waypoints<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         let targets: Vec<[f64; 7]> = self.0.motions().iter().map(|motion| motion.to).collect();
         table(py, targets.as_flattened(), 7)
     }
 
-    /// About how long it will take, s.
+    /// Approximate duration, s.
     #[getter]
     fn duration(&self) -> f64 {
         self.0.duration().as_secs_f64()
     }
 
-    /// Farthest that each joint goes from where it is, either way, `(7,)` rad.
+    /// Largest displacement of each joint from its current position, in either direction, `(7,)`
+    /// rad.
     #[getter]
     fn reach_of_joints<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, &self.0.reach().joints)
     }
 
-    /// Farthest that the end effector goes from where it is, m.
+    /// Largest displacement of the end effector from its current position, m.
     #[getter]
     fn reach(&self) -> f64 {
         self.0.reach().end_effector
     }
 
-    /// Farthest that the end effector goes down, base frame, m.
+    /// Largest downward displacement of the end effector, base frame, m.
     #[getter]
     fn reach_down(&self) -> f64 {
         self.0.reach().down
     }
 
-    /// Moves the arm, and returns an `Identified`. Nothing is changed at the robot: pass the result
-    /// to `Robot(address, known=...)` of later connections, and declare the load by `set_load` if
-    /// you like. Raises `MotionError`, and `IdentifyError` if the arm is no longer where this was
-    /// planned, or was held or pushed. Cancelling brakes the arm; what was measured is lost.
+    /// Moves the arm, and returns an `Identified`. The robot's settings do not change: pass the
+    /// result to `Robot(address, known=...)` of later connections, and declare the load with
+    /// `set_load` if needed. Raises `MotionError`, and `IdentifyError` if the arm has moved since
+    /// the plan, or was held or pushed. Cancelling brakes the arm and discards the measurement.
     fn run(&self) -> Operation {
         let plan = self.0.clone();
         Operation::new("IdentificationPlan.run", async move {
@@ -87,8 +89,8 @@ impl IdentificationPlan {
     }
 }
 
-/// What is known of one arm: friction and bias of its joints, and the load at its flange. `str()`
-/// is a table to read.
+/// The identified parameters of one arm: friction and bias of its joints, and the load at its
+/// flange. `str()` is a readable table.
 #[pyclass(frozen, eq, name = "Identified", module = "franka_async")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct PyIdentified(pub(crate) Identified);
@@ -101,7 +103,8 @@ impl PyIdentified {
         self.0.kind.python_name()
     }
 
-    /// Friction of each joint at 0.2 rad/s, beyond what the robot compensates itself, `(7,)` N m.
+    /// Friction of each joint at 0.2 rad/s, in addition to the robot's own compensation, `(7,)` N
+    /// m.
     #[getter]
     fn friction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, &self.0.joints.map(|joint| joint.friction.value))
@@ -113,7 +116,7 @@ impl PyIdentified {
         array(py, &self.0.joints.map(|joint| joint.friction.deviation))
     }
 
-    /// Torque that each joint takes in either direction and in every pose, `(7,)` N m.
+    /// Torque that each joint needs in both directions and in every pose, `(7,)` N m.
     #[getter]
     fn bias<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, &self.0.joints.map(|joint| joint.bias.value))
@@ -125,8 +128,8 @@ impl PyIdentified {
         array(py, &self.0.joints.map(|joint| joint.bias.deviation))
     }
 
-    /// Mass of what the flange carries beside the end effector that the robot is configured with,
-    /// kg. A declared load is part of it.
+    /// Mass at the flange in addition to the configured end effector, kg. It includes a declared
+    /// load.
     #[getter]
     fn mass(&self) -> f64 {
         self.0.load.mass.value
@@ -138,21 +141,21 @@ impl PyIdentified {
         self.0.load.mass.deviation
     }
 
-    /// Its centre of mass in the flange frame, `(3,)` m; `None` where the mass is less than three
-    /// of its deviations, and the centre therefore unknown.
+    /// Its centre of mass in the flange frame, `(3,)` m; `None` if the mass is less than three of
+    /// its deviations, and the centre therefore unknown.
     #[getter]
     fn center<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         let center: [Estimate; 3] = self.0.load.center()?;
         Some(array(py, &center.map(|axis| axis.value)))
     }
 
-    /// Everything as text, for `from_json`.
+    /// All values as text, for `from_json`.
     fn to_json(&self) -> PyResult<String> {
         serde_json::to_string_pretty(&self.0)
             .map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
-    /// What `to_json` wrote. Raises `ValueError` for other text and implausible numbers.
+    /// Parses the output of `to_json`. Raises `ValueError` for other text and implausible numbers.
     #[staticmethod]
     fn from_json(text: &str) -> PyResult<Self> {
         let broken = |error: &dyn std::fmt::Display| {

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! No thread that a motion waits for takes the interpreter's lock: tasks run on the runtime, and
-//! results become Python objects where they are awaited.
+//! results become Python objects when they are awaited.
 
 mod active;
 mod arm;

@@ -13,15 +13,15 @@ use pyo3::types::{PyCFunction, PyDict, PyList, PySlice, PyTuple};
 use crate::arrays::{array, columns};
 use crate::state::RobotState;
 
-/// The last cycles of a motion, oldest first: what the robot said, and what it had been sent.
+/// The last cycles of a motion, oldest first: the robot's states, and the commands before them.
 ///
 /// Every field of `RobotState` is here as one array over the cycles: `log.q` is `(N, 7)`,
-/// `log.O_T_EE` is `(N, 4, 4)`, `log.time` is `(N,)`. What was sent before each state is
+/// `log.O_T_EE` is `(N, 4, 4)`, `log.time` is `(N,)`. The command sent before each state is
 /// `log.sent("tau_J_d")`.
 #[pyclass(frozen, sequence, module = "franka_async")]
 pub(crate) struct ControlLog {
     log: Arc<Log>,
-    /// The error whose log it is; `None` of one that was pickled.
+    /// The error of the log; `None` after pickling.
     error: Option<Box<ControlError>>,
     version: Version,
 }
@@ -35,19 +35,19 @@ impl ControlLog {
         }
     }
 
-    /// The error whose log it is; `None` of one that was pickled.
+    /// Returns the error of the log; `None` after pickling.
     pub(crate) fn error(&self) -> Option<&ControlError> {
         self.error.as_deref()
     }
 
-    /// A field of the states, as one array over the cycles.
+    /// Returns a field of the states, as one array over the cycles.
     fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        // One that shows the shape where there are no cycles.
+        // A default state, for the shape if there are no cycles.
         let shape = RobotState::new(Default::default(), self.version);
         let field = |state: RobotState| Bound::new(py, state)?.getattr(name);
         let values: PyResult<Vec<_>> = self.states().into_iter().map(field).collect();
         let (values, shape) = (values?, field(shape)?);
-        // Names of errors: as many as there are.
+        // Names of errors have any number.
         if shape.is_instance_of::<PyList>() {
             return values.into_bound_py_any(py);
         }
@@ -60,14 +60,14 @@ impl ControlLog {
     }
 }
 
-/// Gives `ControlLog` a property for each field of `RobotState`.
+/// Adds a property to `ControlLog` for each field of `RobotState`.
 pub(crate) fn add_fields(py: Python<'_>) -> PyResult<()> {
     let (log, state) = (py.get_type::<ControlLog>(), py.get_type::<RobotState>());
     let property = py.import("builtins")?.getattr("property")?;
     for name in state.dir()? {
         let name: String = name.extract()?;
         let there = state.getattr(&name)?;
-        // Neither methods nor constants.
+        // Skips methods and constants.
         if there.get_type().name()? != "getset_descriptor" || name.starts_with('_') {
             continue;
         }
@@ -102,8 +102,8 @@ impl ControlLog {
             .collect()
     }
 
-    /// What had been sent before each state, `(N, ...)`; zeros before the first. `name` is
-    /// `tau_J_d`, `q_c`, `dq_c`, `O_T_EE_c` or `O_dP_EE_c`.
+    /// Command sent before each state, `(N, ...)`; zeros before the first. `name` is `tau_J_d`,
+    /// `q_c`, `dq_c`, `O_T_EE_c` or `O_dP_EE_c`.
     fn sent<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let commands = self.log.iter().map(|entry| &entry.command);
         let values: Vec<Bound<'py, PyAny>> = match name {
@@ -131,7 +131,7 @@ impl ControlLog {
         py.import("numpy")?.call_method1("array", (values,))
     }
 
-    /// Comma-separated values, a line for each cycle; columns are named as by libfranka.
+    /// Comma-separated values, one line for each cycle, with libfranka's column names.
     fn to_csv(&self) -> String {
         self.log.to_csv()
     }
@@ -154,7 +154,7 @@ impl ControlLog {
     }
 }
 
-/// The log that `pickle` wrote. An entry with numbers that JSON has no words for is left out.
+/// The log written by `pickle`. An entry with numbers that JSON cannot represent is left out.
 #[pyfunction]
 pub(crate) fn _log_of_json(entries: Vec<String>, version: u16) -> PyResult<ControlLog> {
     let version = Version::from_number(version)

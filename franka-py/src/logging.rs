@@ -4,8 +4,8 @@
 //!  any thread: event --> bounded queue --> thread "franka-logging" --> interpreter --> logging
 //! ```
 //!
-//! No thread of the driver waits for the interpreter: where the queue is full, an event is dropped
-//! and counted.
+//! No thread of the driver waits for the interpreter: if the queue is full, an event is dropped and
+//! counted.
 
 use std::fmt;
 use std::sync::OnceLock;
@@ -24,21 +24,21 @@ use tracing_subscriber::registry::LookupSpan;
 
 use crate::exit;
 
-/// Passes what the driver and the simulator report on to Python's `logging` from now on: to loggers
-/// below `franka_async`, such as `franka_async.bridge`, so
-/// `logging.getLogger("franka_async").setLevel(...)` and handlers choose as usual. Off by default:
-/// without this call, nothing is passed on.
+/// Forwards the reports of the driver and the simulator to Python's `logging` from now on, to
+/// loggers below `franka_async`, such as `franka_async.bridge`.
+/// `logging.getLogger("franka_async").setLevel(...)` and handlers filter them as usual. Off by
+/// default: without this call, nothing is forwarded.
 ///
-/// Reports below `level` are not even made: `trace`, `debug`, `info`, `warning` or `error`, in any
-/// case, or a number of `logging`; a later call changes it. What an event and the spans around it
-/// carry is in the message and in the record's `fields`, a `dict`; `record.rust_target` is the
+/// Reports below `level` are not created: `trace`, `debug`, `info`, `warning` or `error`, in any
+/// case, or a number of `logging`; a later call changes it. The message and the record's `fields`,
+/// a `dict`, contain the data of an event and of the spans around it; `record.rust_target` is the
 /// module. `trace` is the number 5.
 ///
-/// A thread of its own hands them on. No motion waits for it: where more than `queue` reports wait,
-/// of the first call, those that come then are dropped; a warning tells their number later.
+/// A separate thread forwards them, so no motion waits for it. If more than `queue` reports wait
+/// (the value of the first call), new ones are dropped; a later warning contains their number.
 ///
-/// Raises `ValueError` for another level, and `RuntimeError` if another library in the process has
-/// taken what Rust reports.
+/// Raises `ValueError` for another level, and `RuntimeError` if another library in the process
+/// already receives Rust's reports.
 #[pyfunction]
 #[pyo3(signature = (level = None, *, queue = 4096))]
 pub(crate) fn enable_logging(level: Option<&Bound<'_, PyAny>>, queue: usize) -> PyResult<()> {
@@ -55,12 +55,12 @@ pub(crate) fn enable_logging(level: Option<&Bound<'_, PyAny>>, queue: usize) -> 
             .map(drop)
             .map_err(|error| error.to_string())
     });
-    // Call sites ask again whether they are wanted.
+    // Makes call sites check their level again.
     tracing::callsite::rebuild_interest_cache();
     enabled.clone().map_err(PyRuntimeError::new_err)
 }
 
-/// The level as a number of `logging`.
+/// Returns the level as a number of `logging`.
 fn number_of(level: &Bound<'_, PyAny>) -> PyResult<u8> {
     if let Ok(number) = level.extract::<u8>() {
         return Ok(number);
@@ -80,7 +80,7 @@ fn number_of(level: &Bound<'_, PyAny>) -> PyResult<u8> {
     }
 }
 
-/// An event on its way.
+/// An event in the queue.
 struct Report {
     time: SystemTime,
     level: u8,
@@ -90,7 +90,7 @@ struct Report {
     dropped: u64,
 }
 
-/// What an event or a span carries, the outermost first.
+/// The data of an event or a span, the outermost first.
 #[derive(Clone, Default)]
 struct Fields {
     message: String,
@@ -144,7 +144,7 @@ struct Bridge(SyncSender<Report>);
 
 impl<S: Subscriber + for<'a> LookupSpan<'a>> Layer<S> for Bridge {
     fn enabled(&self, metadata: &tracing::Metadata<'_>, _: Context<'_, S>) -> bool {
-        // Spans are kept whatever their level: events within name them.
+        // Spans of all levels are kept, because events within them use their names.
         metadata.target().starts_with("franka")
             && (metadata.is_span() || number(*metadata.level()) >= LEAST.load(Ordering::Relaxed))
     }
@@ -193,7 +193,7 @@ impl<S: Subscriber + for<'a> LookupSpan<'a>> Layer<S> for Bridge {
     }
 }
 
-/// Hands events on to `logging` until the interpreter exits.
+/// Forwards events to `logging` until the interpreter exits.
 fn hand_on(reports: &Receiver<Report>) {
     while let Ok(report) = reports.recv() {
         let logged = exit::in_python(|py| {
@@ -246,7 +246,7 @@ fn log(py: Python<'_>, report: &Report) -> PyResult<()> {
     let extra = PyDict::new(py);
     extra.set_item("fields", fields)?;
     extra.set_item("rust_target", report.target)?;
-    // No arguments: a per cent sign of the message stays one.
+    // No arguments, so that a per cent sign of the message is kept.
     let arguments = (
         name.as_str(),
         report.level,
@@ -267,7 +267,7 @@ fn log(py: Python<'_>, report: &Report) -> PyResult<()> {
     Ok(())
 }
 
-/// The number that `logging` has for a level.
+/// Returns the number of a level in `logging`.
 fn number(level: Level) -> u8 {
     match level {
         Level::TRACE => TRACE,
@@ -284,8 +284,8 @@ const INFO: u8 = 20;
 const WARNING: u8 = 30;
 const ERROR: u8 = 40;
 
-/// Number of the least level that is passed on.
+/// Number of the lowest level that is forwarded.
 static LEAST: AtomicU8 = AtomicU8::new(INFO);
 
-/// Reports dropped since the last one that was not.
+/// Number of reports dropped since the last forwarded one.
 static DROPPED: AtomicU64 = AtomicU64::new(0);

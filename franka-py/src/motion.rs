@@ -1,4 +1,4 @@
-//! Motions: awaitables with a handle, and what they report.
+//! Motions: awaitables with a handle, and their reports.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -27,7 +27,7 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
-    /// The awaitable of `motion`, called `name`.
+    /// Creates the awaitable of `motion`, named `name`.
     pub(crate) fn new(
         py: Python<'_>,
         name: &'static str,
@@ -44,7 +44,7 @@ impl Motion {
 /// `MotionReport`, or raises `MotionError`. Cancelling it brakes the arm.
 #[pyclass(frozen, extends = Operation, module = "franka_async")]
 pub(crate) struct Follow {
-    /// `None` where Python has to be asked for the targets.
+    /// `None` if Python provides the targets.
     pub(crate) member: Option<Member>,
 }
 
@@ -59,15 +59,16 @@ impl Follow {
     }
 }
 
-/// What may be a part of a joint motion, until it begins.
+/// A possible part of a joint motion, until it begins.
 pub(crate) struct Member {
     take: Box<dyn Fn() -> Option<MemberMotion> + Send + Sync>,
-    /// The session that it is of, until it begins.
+    /// Its session, until it begins.
     of: Arc<Mutex<Option<(Told, Arm)>>>,
 }
 
 impl Member {
-    /// The operation `name` that awaits `motion`, and what takes that out of it.
+    /// Returns the operation `name` that awaits `motion`, and the handle that can take the motion
+    /// out of it.
     pub(crate) fn new<M>(name: &'static str, motion: M) -> (Operation, Self)
     where
         M: IntoFuture<Output = Outcome, IntoFuture: Send> + Into<MemberMotion> + Send + 'static,
@@ -80,7 +81,7 @@ impl Member {
             let of = take(&session);
             let outcome = match take(&taken) {
                 Some(motion) => motion.await,
-                // An operation that was taken apart never begins.
+                // An operation whose motion was taken never begins.
                 None => Err(MotionError::Stopped),
             };
             if let Some((told, _)) = &of {
@@ -95,7 +96,7 @@ impl Member {
         (operation, member)
     }
 
-    /// Has it know the session that it is of.
+    /// Sets its session.
     pub(crate) fn is_of(&self, session: (Told, Arm)) {
         *self.of.lock().unwrap_or_else(PoisonError::into_inner) = Some(session);
     }
@@ -106,11 +107,11 @@ impl Member {
     }
 
     /// Takes the driver's motions out of a `Motion` or `Follow` of each of `arms`, for a joint
-    /// motion to begin them.
+    /// motion.
     ///
     /// # Errors
-    /// `ValueError` for one of another arm, for one that has begun, and for targets that Python
-    /// has to be asked for.
+    /// `ValueError` for a motion of another arm, for a motion that has begun, and for targets that
+    /// Python provides.
     pub(crate) fn take_all<'a>(
         motions: &[Bound<'_, PyAny>],
         arms: impl Iterator<Item = &'a Told>,
@@ -156,57 +157,56 @@ fn take<T>(waiting: &Mutex<Option<T>>) -> Option<T> {
 
 #[pymethods]
 impl Motion {
-    /// A handle that says from elsewhere how far the motion is, and pauses or brakes it.
+    /// Handle for the progress of the motion, and to pause or brake it from elsewhere.
     fn handle(&self) -> MotionHandle {
         MotionHandle(self.handle.clone())
     }
 
-    /// How far the motion has come: a `Progress`; `None` before it has begun and after its end.
+    /// Progress of the motion: a `Progress`; `None` before it has begun and after its end.
     fn progress<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         progress(py, &self.handle)
     }
 
-    /// Stops the motion on its way, until `resume()`; the arm is held there. Without effect before
-    /// it has begun and after its end.
+    /// Pauses the motion on its path, until `resume()`; the arm is held there. Without effect
+    /// before it has begun and after its end.
     fn pause(&self) {
         self.handle.pause();
     }
 
-    /// Lets the motion go on.
+    /// Resumes the motion.
     fn resume(&self) {
         self.handle.resume();
     }
 
-    /// Brakes the motion for good, from any thread; whoever awaits it gets `MotionError` of the
-    /// kind `stopped`. One that has not begun never begins.
+    /// Brakes and ends the motion, from any thread; awaiting it raises `MotionError` of the kind
+    /// `stopped`. A motion that has not begun never begins.
     fn cancel(&self) {
         self.handle.cancel();
     }
 }
 
-/// A motion from elsewhere: how far it is, and pausing or braking it. It does not keep the motion
-/// going.
+/// A handle of a motion: progress, pausing and braking. It does not keep the motion alive.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct MotionHandle(Handle);
 
 #[pymethods]
 impl MotionHandle {
-    /// As `Motion.progress`.
+    /// Like `Motion.progress`.
     fn progress<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         progress(py, &self.0)
     }
 
-    /// As `Motion.pause`.
+    /// Like `Motion.pause`.
     fn pause(&self) {
         self.0.pause();
     }
 
-    /// As `Motion.resume`.
+    /// Like `Motion.resume`.
     fn resume(&self) {
         self.0.resume();
     }
 
-    /// As `Motion.cancel`.
+    /// Like `Motion.cancel`.
     fn cancel(&self) {
         self.0.cancel();
     }
@@ -237,7 +237,7 @@ fn progress<'py>(py: Python<'py>, handle: &Handle) -> PyResult<Option<Bound<'py,
     Ok(Some(class(py, "Progress")?.call1(times)?))
 }
 
-/// A `franka_async.motion.Reference`.
+/// Returns a `franka_async.motion.Reference`.
 pub(crate) fn reference<'py>(
     py: Python<'py>,
     reference: &Reference,
@@ -254,7 +254,7 @@ pub(crate) fn reference<'py>(
     ))
 }
 
-/// A report, made into a `franka_async.motion.MotionReport`.
+/// A report, converted to a `franka_async.motion.MotionReport`.
 pub(crate) struct Report(pub(crate) MotionReport);
 
 impl<'py> IntoPyObject<'py> for Report {

@@ -1,8 +1,7 @@
-//! Names that Python sees for the variants of Rust's enums: the kinds of errors, modes, events.
+//! Python names of the variants of Rust's enums: the kinds of errors, modes, events.
 //!
-//! They are part of the package's interface, and are listed only here: a variant that gets another
-//! name in Rust keeps its name in Python. A new variant needs a row, and its kind one in
-//! `kinds.py`.
+//! They are part of the package's interface, and are listed only here: a variant renamed in Rust
+//! keeps its name in Python. A new variant needs a row, and its kind one in `kinds.py`.
 
 use franka_async::MotionError;
 use franka_async::control::TargetStatus;
@@ -34,8 +33,8 @@ pub(crate) trait Named {
     fn python_name(&self) -> &'static str;
 }
 
-/// Implements [`Named`]. The last name of an enum that may grow is that of variants which this
-/// package does not know.
+/// Implements [`Named`]. The last name of a non-exhaustive enum is for variants unknown to this
+/// package.
 macro_rules! names {
     (@ $type:ty => { $($variant:ident: $name:literal,)+ $(_: $unknown:literal,)? }) => {
         impl Named for $type {
@@ -140,7 +139,7 @@ names! {
     }
 }
 
-// What states, events and recordings have.
+// Names in states, events and recordings.
 names! {
     RobotMode => {
         Other: "other", Idle: "idle", Move: "move", Guiding: "guiding", Reflex: "reflex",

@@ -1,28 +1,28 @@
-//! What happens to a simulated robot as soon as its arm moves, by the robot's own time.
+//! Jobs on a simulated robot that run as soon as its arm moves, by the robot's own time.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use franka_sim::Robot;
 
-/// What waits for the arm to move, in order. Clones are of the same robot.
+/// Jobs that wait for the arm to move, in order. Clones belong to the same robot.
 #[derive(Clone, Default)]
 pub(crate) struct OnceMoving(Arc<Mutex<Waiting>>);
 
 #[derive(Default)]
 struct Waiting {
     jobs: Vec<(JobId, Job)>,
-    /// How many there were.
+    /// Total number of jobs.
     count: u64,
 }
 
 type Job = Box<dyn FnOnce(&mut Robot) + Send>;
 
-/// Names a job, to take it back.
+/// Identifies a job, to cancel it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct JobId(u64);
 
 impl OnceMoving {
-    /// Has `job` done before the first millisecond at which the arm moves.
+    /// Runs `job` before the first millisecond in which the arm moves.
     pub(crate) fn push(&self, job: impl FnOnce(&mut Robot) + Send + 'static) -> JobId {
         let mut waiting = self.waiting();
         waiting.count += 1;
@@ -31,7 +31,7 @@ impl OnceMoving {
         id
     }
 
-    /// Takes a job back. Returns whether it still waited.
+    /// Cancels a job. Returns true if it still waited.
     pub(crate) fn take_back(&self, id: JobId) -> bool {
         let jobs = &mut self.waiting().jobs;
         let before = jobs.len();
@@ -39,17 +39,17 @@ impl OnceMoving {
         jobs.len() < before
     }
 
-    /// How many jobs wait.
+    /// Number of waiting jobs.
     pub(crate) fn count(&self) -> usize {
         self.waiting().jobs.len()
     }
 
-    /// Takes all jobs back.
+    /// Cancels all jobs.
     pub(crate) fn clear(&self) {
         self.waiting().jobs.clear();
     }
 
-    /// To be called before each millisecond of the robot.
+    /// Runs the due jobs. Call it before each millisecond of the robot.
     pub(crate) fn look_at(&self, robot: &mut Robot) {
         let mut waiting = self.waiting();
         if !waiting.jobs.is_empty() && robot.dq().amax() > MOVING {
@@ -62,5 +62,5 @@ impl OnceMoving {
     }
 }
 
-/// Speed of the fastest joint from which on the arm counts as moving, `[rad/s]`.
+/// Speed of the fastest joint from which the arm counts as moving, `[rad/s]`.
 const MOVING: f64 = 0.05;

@@ -1,4 +1,4 @@
-//! What Python awaits or waits for: a Rust future that begins with the first step.
+//! Operations that Python awaits or waits for: a Rust future that begins with the first step.
 
 use std::any::TypeId;
 use std::convert::Infallible;
@@ -19,19 +19,19 @@ use crate::errors::Raise;
 use crate::exit;
 use crate::runtime::{self, Threaded};
 
-/// A value on its way into Python: made into an object where the interpreter is at hand.
+/// A value for Python, converted to an object when the interpreter is held.
 struct Delivered(Deliver);
 
 type Deliver = Box<dyn FnOnce(Python<'_>) -> PyResult<Py<PyAny>> + Send>;
 
 type Work = Pin<Box<dyn Future<Output = Delivered> + Send>>;
 
-/// Something that takes time: `await` it in a coroutine, or call `wait()` on a thread without an
-/// event loop. It begins then and not before. Where the waiting is cancelled, so is the operation;
-/// a motion brakes.
+/// An operation that takes time: `await` it in a coroutine, or call `wait()` on a thread without an
+/// event loop. It begins then and not before. Cancelling the wait cancels the operation; a motion
+/// brakes.
 ///
 /// It is a coroutine in the sense of `collections.abc`, so `asyncio.create_task`, `TaskGroup`,
-/// `gather`, `wait_for` and `timeout` take it.
+/// `gather`, `wait_for` and `timeout` accept it.
 #[pyclass(frozen, subclass, generic, module = "franka_async")]
 pub(crate) struct Operation {
     name: &'static str,
@@ -40,16 +40,16 @@ pub(crate) struct Operation {
 
 enum Stage {
     Ready(Threaded<Work>),
-    /// A coroutine of Python that does the work, which has not begun.
+    /// A Python coroutine with the work, which has not begun.
     Coroutine(Py<PyAny>),
     Awaited(Awaited),
     Over,
 }
 
-/// What is stepped by whoever awaits.
+/// The state that the awaiting code steps.
 struct Awaited {
     iterator: Py<PyAny>,
-    /// The asyncio future that stands for the work; `None` for a coroutine.
+    /// The asyncio future that represents the work; `None` for a coroutine.
     future: Option<Pending>,
 }
 
@@ -58,16 +58,16 @@ struct Pending {
     task: Threaded<Task>,
 }
 
-/// The task that does the work.
+/// The task of the work.
 struct Task {
-    /// Has the work dropped where this is.
+    /// Dropping this drops the work.
     keep: oneshot::Sender<Infallible>,
     /// Closed once the work is dropped.
     over: mpsc::Receiver<Infallible>,
 }
 
 impl Operation {
-    /// An operation called `name` that does `work`.
+    /// Creates an operation named `name` with `work`.
     pub(crate) fn new<T, E>(
         name: &'static str,
         work: impl Future<Output = Result<T, E>> + Send + 'static,
@@ -77,7 +77,7 @@ impl Operation {
         E: Raise,
     {
         let work = async move {
-            // Tasks do not wait for the interpreter: objects are made by whoever awaits them.
+            // Tasks do not wait for the interpreter: the awaiting code creates the objects.
             let outcome = work.await;
             Delivered(Box::new(move |py| match outcome {
                 Ok(_) if TypeId::of::<T>() == TypeId::of::<()>() => Ok(py.None()),
@@ -89,7 +89,7 @@ impl Operation {
         Self::in_stage(name, stage)
     }
 
-    /// An operation called `name` that a coroutine of Python does.
+    /// Creates an operation named `name` from a Python coroutine.
     pub(crate) fn of_coroutine(name: &'static str, coroutine: Py<PyAny>) -> Self {
         Self::in_stage(name, Stage::Coroutine(coroutine))
     }
@@ -99,7 +99,7 @@ impl Operation {
         Self { name, stage }
     }
 
-    /// An operation called `name` that does `work`, which cannot fail.
+    /// Creates an operation named `name` with `work`, which cannot fail.
     pub(crate) fn infallible<T>(
         name: &'static str,
         work: impl Future<Output = T> + Send + 'static,
@@ -114,7 +114,7 @@ impl Operation {
         self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Drops the work. Returns the iterator that stood for it.
+    /// Drops the work. Returns its iterator.
     fn give_up(&self, py: Python<'_>) -> Option<Py<PyAny>> {
         match self.replace(Stage::Over) {
             Stage::Awaited(Awaited { iterator, future }) => {
@@ -149,7 +149,7 @@ impl Operation {
         )))
     }
 
-    /// The iterator that is being awaited; begins the work if nothing has.
+    /// Returns the awaited iterator; begins the work if necessary.
     fn iterator<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let awaited = match self.replace(Stage::Over) {
             Stage::Awaited(awaited) => awaited,
@@ -183,7 +183,7 @@ impl Operation {
     }
 }
 
-/// Does the work unless it is given up, and completes the future of the event loop.
+/// Runs the work unless it is cancelled, and completes the future of the event loop.
 async fn begun(
     work: Work,
     given_up: oneshot::Receiver<Infallible>,
@@ -204,7 +204,7 @@ async fn begun(
         };
         Delivered(Box::new(move |_| bug()))
     });
-    // The interpreter may be held by a program that computes: that keeps none of the tasks waiting.
+    // A computing program may hold the interpreter: no task waits for it.
     let complete = move |py: Python<'_>| {
         let (method, value) = match (delivered.0)(py) {
             Ok(value) => ("set_result", value),
@@ -217,7 +217,7 @@ async fn begun(
             .call_method1("call_soon_threadsafe", arguments)?;
         PyResult::Ok(())
     };
-    // An event loop that is closed awaits nothing.
+    // A closed event loop awaits nothing.
     tokio::task::spawn_blocking(move || exit::in_python(complete).map(Result::ok));
 }
 
@@ -235,10 +235,10 @@ pub(crate) fn _complete(
 }
 
 impl Pending {
-    /// Has the work dropped, whether the event loop runs on or not, and waits until it is: what
-    /// begins after this finds the arm braking for it.
+    /// Drops the work, even if the event loop has stopped, and waits for this: later code finds the
+    /// arm already braking.
     fn give_up(self, py: Python<'_>) {
-        // Of a loop that is closed it fails, once the future is cancelled.
+        // Fails for a closed loop, after the future is cancelled.
         let _ = self.future.bind(py).call_method0("cancel");
         if runtime::started().is_some() {
             let Task { keep, over } = self.task.into_inner();
@@ -257,7 +257,7 @@ impl Operation {
     fn wait(&self, py: Python<'_>, timeout: Option<f64>) -> PyResult<Py<PyAny>> {
         let timeout = timeout.map(|timeout| seconds("timeout", timeout));
         let timeout = timeout.transpose()?;
-        // What is refused here has not begun, and can still be awaited.
+        // A refused operation has not begun, and can still be awaited.
         let runtime = runtime::may_wait(py)?;
         let delivered = runtime::wait(py, runtime, self.begin()?, timeout)?;
         (delivered.0)(py)
@@ -271,7 +271,7 @@ impl Operation {
         self.send(py, py.None())
     }
 
-    /// Part of being a coroutine: goes on from the last `await`.
+    /// Coroutine protocol: continues from the last `await`.
     fn send(&self, py: Python<'_>, value: Py<PyAny>) -> PyResult<Py<PyAny>> {
         let sent = self.iterator(py)?.call_method1("send", (value,));
         if sent.is_err() {
@@ -281,7 +281,7 @@ impl Operation {
         Ok(sent?.unbind())
     }
 
-    /// Part of being a coroutine: raises inside of it.
+    /// Coroutine protocol: raises an exception inside of it.
     #[pyo3(signature = (kind, value = None, traceback = None))]
     fn throw(
         &self,
@@ -305,7 +305,7 @@ impl Operation {
         Ok(thrown?.unbind())
     }
 
-    /// Part of being a coroutine: gives the operation up. A motion brakes.
+    /// Coroutine protocol: cancels the operation. A motion brakes.
     fn close(&self, py: Python<'_>) -> PyResult<()> {
         match self.give_up(py) {
             Some(iterator) => iterator.bind(py).call_method0("close").map(drop),
@@ -323,7 +323,7 @@ impl Operation {
     }
 }
 
-/// The exception of `throw(kind, value)`.
+/// Returns the exception of `throw(kind, value)`.
 fn raised(py: Python<'_>, kind: &Bound<'_, PyAny>, value: Option<Py<PyAny>>) -> PyResult<PyErr> {
     let is_exception =
         |value: &Bound<'_, PyAny>| value.is_instance_of::<pyo3::exceptions::PyBaseException>();
@@ -343,7 +343,7 @@ impl Drop for Operation {
             return;
         }
         Python::attach(|py| {
-            // An exception that is on its way while this object is freed goes on afterwards.
+            // An exception that is propagating while this object is freed continues afterwards.
             let raised = PyErr::take(py);
             match stage {
                 Stage::Ready(_) => warn_of_unawaited(py, self.name),
@@ -364,13 +364,13 @@ fn warn_of_unawaited(py: Python<'_>, name: &str) {
     let text = format!("{name}() was never awaited, and has done nothing");
     let text = std::ffi::CString::new(text).expect("no zero in it");
     let category = py.get_type::<PyRuntimeWarning>();
-    // A warning that is made an error cannot be raised while an object is freed.
+    // A warning that is turned into an error cannot be raised while an object is freed.
     if let Err(error) = PyErr::warn(py, &category, &text, 1) {
         error.write_unraisable(py, None);
     }
 }
 
-/// A duration of so many seconds, from the argument called `name`.
+/// Returns a duration in seconds, from the argument `name`.
 ///
 /// # Errors
 /// `ValueError` unless it is finite and not negative.

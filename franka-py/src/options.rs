@@ -16,25 +16,25 @@ use crate::condition;
 use crate::gains;
 use crate::operation::seconds;
 
-/// Keyword arguments that a call takes out one after the other.
+/// Keyword arguments that a call takes one after the other.
 pub(crate) struct Keywords<'py> {
     call: &'static str,
     left: Option<Bound<'py, PyDict>>,
 }
 
 impl<'py> Keywords<'py> {
-    /// Those of the function called `call`.
+    /// Creates the keywords of the function `call`.
     pub(crate) fn new(call: &'static str, keywords: Option<&Bound<'py, PyDict>>) -> PyResult<Self> {
         let left = keywords.map(PyDictMethods::copy).transpose()?;
         Ok(Self { call, left })
     }
 
-    /// The argument of this name, if it is given and not `None`.
+    /// Returns the argument with this name, if it is given and not `None`.
     pub(crate) fn take(&mut self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
         Ok(self.given(name)?.filter(|value| !value.is_none()))
     }
 
-    /// The argument of this name, if it is given, `None` included.
+    /// Returns the argument with this name, if it is given, including `None`.
     fn given(&mut self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
         let Some(left) = &self.left else {
             return Ok(None);
@@ -46,7 +46,7 @@ impl<'py> Keywords<'py> {
         Ok(value)
     }
 
-    /// The argument of this name, if it is given and not `None`, as a plain value.
+    /// Returns the argument with this name, if it is given and not `None`, as a plain value.
     pub(crate) fn value<T>(&mut self, name: &str) -> PyResult<Option<T>>
     where
         T: for<'a> FromPyObject<'a, 'py, Error: Into<PyErr>>,
@@ -54,10 +54,10 @@ impl<'py> Keywords<'py> {
         self.read(name, |value| value.extract().map_err(Into::into))
     }
 
-    /// The argument of this name, if it is given and not `None`, as `read` has it.
+    /// Returns the argument with this name, if it is given and not `None`, converted by `read`.
     ///
     /// # Errors
-    /// Those of `read`; of a value of the wrong type with the name of the argument.
+    /// The errors of `read`; for a value of the wrong type with the name of the argument.
     pub(crate) fn read<T>(
         &mut self,
         name: &str,
@@ -67,10 +67,10 @@ impl<'py> Keywords<'py> {
         value.map(|value| named(name, &value, read)).transpose()
     }
 
-    /// Refuses what nobody took.
+    /// Refuses arguments that were not taken.
     ///
     /// # Errors
-    /// `TypeError`, as Python raises it.
+    /// `TypeError`, as raised by Python.
     pub(crate) fn end(self) -> PyResult<()> {
         let left = self.left.as_ref().and_then(|left| left.iter().next());
         match left {
@@ -83,7 +83,7 @@ impl<'py> Keywords<'py> {
     }
 }
 
-/// Reads the argument `name`, which is named by the error if it is of the wrong type.
+/// Reads the argument `name`; an error of the wrong type contains this name.
 fn named<'py, T>(
     name: &str,
     value: &Bound<'py, PyAny>,
@@ -94,7 +94,7 @@ fn named<'py, T>(
         if error.is_instance_of::<PyTypeError>(py) {
             return PyTypeError::new_err(format!("{name} is {value:?}: {}", error.value(py)));
         }
-        // What it lacks says less than what it should be.
+        // The expected class is more helpful than the missing attribute.
         match CLASSES.iter().find(|(argument, _)| *argument == name) {
             Some((_, class)) if error.is_instance_of::<PyAttributeError>(py) => {
                 PyTypeError::new_err(format!("{name} is {value:?}, expected {class}"))
@@ -104,7 +104,7 @@ fn named<'py, T>(
     })
 }
 
-/// Arguments that are objects of `franka_async.goal`, and what they are.
+/// Arguments that are objects of `franka_async.goal`, with their classes.
 const CLASSES: [(&str, &str); 7] = [
     ("gains", "Gains"),
     ("limits", "a Budget"),
@@ -115,7 +115,7 @@ const CLASSES: [(&str, &str); 7] = [
     ("settling", "a Settling"),
 ];
 
-/// What motions, streams and sessions have in common.
+/// The common options of motions, streams and sessions.
 #[derive(Default)]
 pub(crate) struct Options {
     pub(crate) speed: Option<f64>,
@@ -127,7 +127,7 @@ pub(crate) struct Options {
 }
 
 impl Options {
-    /// Takes the options of a session: `speed`, and those of [`Self::tuning`].
+    /// Takes the options of a session: `speed`, and the options of [`Self::tuning`].
     pub(crate) fn of_session(keywords: &mut Keywords<'_>, model: &Model) -> PyResult<Self> {
         Ok(Self {
             speed: keywords.value("speed")?,
@@ -152,7 +152,7 @@ impl Options {
     }
 }
 
-/// Gives the options to a builder of motions, streams or sessions, which have the same methods.
+/// Sets the options on a builder of motions, streams or sessions, which have the same methods.
 macro_rules! with_options {
     ($builder:expr, $options:expr, session) => {{
         let (mut builder, options) = ($builder, $options);
@@ -207,8 +207,8 @@ macro_rules! with_options {
 
 pub(crate) use with_options;
 
-/// Takes what a session keeps and can be tuned: `limits`, `gains`, `force_cap`, `leash`,
-/// `deviation`, `posture`.
+/// Takes the options that a session keeps and that can be tuned: `limits`, `gains`, `force_cap`,
+/// `leash`, `deviation`, `posture`.
 pub(crate) fn tuning(keywords: &mut Keywords<'_>, model: &Model) -> PyResult<Tuning> {
     let posture = keywords.take("posture")?;
     let force_cap = match keywords.given("force_cap")? {
@@ -294,7 +294,7 @@ enum OfJoints {
     All(Limits),
 }
 
-/// Reads a `franka_async.goal.Budget`; what it leaves out is the default of `model`.
+/// Reads a `franka_async.goal.Budget`; missing fields have the default of `model`.
 fn budget(value: &Bound<'_, PyAny>, model: &Model) -> PyResult<Budget> {
     let default = Budget::of(model.joint_limits());
     let part = |name| value.getattr(name)?.extract::<Limits>();
@@ -309,7 +309,7 @@ fn budget(value: &Bound<'_, PyAny>, model: &Model) -> PyResult<Budget> {
     })
 }
 
-/// A `franka_async.goal.Budget`.
+/// Returns a `franka_async.goal.Budget`.
 pub(crate) fn budget_object<'py>(py: Python<'py>, budget: &Budget) -> PyResult<Bound<'py, PyAny>> {
     let module = py.import("franka_async.goal")?;
     let class = module.getattr("Limits")?;

@@ -1,4 +1,4 @@
-//! Poses from positions and quaternions, and back.
+//! Conversion of poses from positions and quaternions, and back.
 
 use franka_async::nalgebra::{UnitQuaternion, Vector3};
 use franka_async::pose;
@@ -9,8 +9,8 @@ use pyo3::types::PyAny;
 
 use crate::arrays::{array, pose as read, pose_array, vector};
 
-/// The pose, `(4, 4)`, of a position, 3 numbers, m, and a quaternion `x y z w` of any length but
-/// zero.
+/// Returns the pose, `(4, 4)`, of a position, 3 numbers, m, and a quaternion `x y z w` of any
+/// non-zero length.
 #[pyfunction]
 pub(crate) fn from_xyzw<'py>(
     py: Python<'py>,
@@ -27,8 +27,8 @@ pub(crate) fn from_xyzw<'py>(
 /// Position and quaternion of a pose.
 type Parts<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
-/// The position, `(3,)` m, and the quaternion, `(4,)` `x y z w` of length 1 with w >= 0, of a pose,
-/// `(4, 4)`.
+/// Returns the position, `(3,)` m, and the quaternion, `(4,)` `x y z w` of length 1 with w >= 0, of
+/// a pose, `(4, 4)`.
 #[pyfunction]
 pub(crate) fn to_xyzw<'py>(py: Python<'py>, pose: &Bound<'_, PyAny>) -> PyResult<Parts<'py>> {
     let (position, mut quaternion) = pose::to_xyzw(&read("pose", pose)?);
@@ -38,8 +38,8 @@ pub(crate) fn to_xyzw<'py>(py: Python<'py>, pose: &Bound<'_, PyAny>) -> PyResult
     Ok((array(py, &position), array(py, &quaternion)))
 }
 
-/// The pose, `(4, 4)`, turned in place by a rotation vector, 3 numbers, rad: about the axes of the
-/// `base`, or of the `tool`, through its position, which stays.
+/// Returns the pose, `(4, 4)`, rotated by a rotation vector, 3 numbers, rad, about the axes of the
+/// `base`, or of the `tool`, through its position, which stays the same.
 #[pyfunction]
 #[pyo3(signature = (pose, rotation_vector, frame = "base"))]
 pub(crate) fn rotated<'py>(

@@ -1,4 +1,4 @@
-//! Recorded motions, which an arm makes again.
+//! Replays of recorded motions by an arm.
 
 use franka_async::Error;
 use franka_async::model::{Model, RobotKind};
@@ -21,8 +21,8 @@ use crate::told::Telling;
 
 #[pymethods]
 impl Robot {
-    /// Moves to where a recorded motion begins, makes it again, and lets the arm go: a session with
-    /// the defaults, and `Arm.replay` in it.
+    /// Moves to the beginning of a recorded motion, repeats it, and releases the arm: a session
+    /// with the defaults, with `Arm.replay` in it.
     #[pyo3(signature = (recording, *, speed = 1.0, source = "reference", targets = "joints"))]
     fn replay(
         &self,
@@ -43,16 +43,17 @@ impl Robot {
 
 #[pymethods]
 impl Arm {
-    /// Moves to where the recorded motion begins, as `move_joints` does, and then follows the
-    /// motion of a `RecordingFile`, or of the part of one that `between` gives, with all guards of
-    /// the session. Returns a `recording.ReplayReport` once the arm rests.
+    /// Moves to the beginning of the recorded motion, like `move_joints`, and then follows the
+    /// motion of a `RecordingFile`, or of a part from `between`, with all guards of the session.
+    /// Returns a `recording.ReplayReport` once the arm is at rest.
     ///
-    /// `speed` is 0.01 to 1, as a share of the recorded one. `source` is `reference`, where the arm
-    /// was to be, or `measured`, where it was: of arms that were moved by hand. `targets` is
-    /// `joints`, or `poses`: the hand moves as recorded, the elbow as it can.
+    /// `speed` is 0.01 to 1, as a share of the recorded speed. `source` is `reference`, the
+    /// commanded positions, or `measured`, the measured positions: for arms that were moved by
+    /// hand. `targets` is `joints`, or `poses`: the hand moves as recorded, but the elbow may
+    /// differ.
     ///
-    /// Raises `ReplayError` for a motion that is not one for this arm, before anything moves, and
-    /// of the kind `off` once the arm is far from where it was in the recording; `MotionError`,
+    /// Raises `ReplayError` for a motion that is invalid for this arm, before the arm moves, and of
+    /// the kind `off` if the arm is far from its recorded position; `MotionError`,
     /// `RecordingError`, `ValueError`. Cancelling brakes the arm.
     #[pyo3(signature = (recording, *, speed = 1.0, source = "reference", targets = "joints"))]
     fn replay(
@@ -79,7 +80,7 @@ impl Arm {
     }
 }
 
-/// A recorded motion that is to be made again.
+/// A recorded motion to be repeated.
 struct Motion {
     recording: RecordingFile,
     kind: RobotKind,
@@ -113,7 +114,7 @@ impl Motion {
                 ));
             }
         };
-        // Which robot it is has to be clear.
+        // The kind of robot must be known.
         recording.get().view(py, |_| ())?;
         let Some(kind) = recording.get().kind() else {
             return refused("the recording does not say which robot it is of".to_owned());
@@ -126,7 +127,7 @@ impl Motion {
         })
     }
 
-    /// Reads it, on a thread that may block, and makes it ready for an arm.
+    /// Reads it, on a thread that may block, and prepares it for an arm.
     async fn plan(self, model: &Model) -> Result<ReplayPlan, Failure> {
         let Self {
             recording,
@@ -143,7 +144,7 @@ impl Motion {
 enum Failure {
     Recording(RecordingError),
     Replay(ReplayFailure),
-    /// Of a session.
+    /// An error of a session.
     Motion(Telling),
 }
 
@@ -179,7 +180,7 @@ impl Raise for Failure {
     }
 }
 
-/// A [`ReplayReport`] on its way into Python.
+/// A [`ReplayReport`] for Python.
 struct Report(ReplayReport);
 
 impl<'py> IntoPyObject<'py> for Report {

@@ -20,25 +20,24 @@ use crate::state::RobotState;
 use crate::supervision::supervise_by;
 
 /// A robot at an address. `async with Robot(address) as robot:` connects, and shuts down at the
-/// end: what moves is braked. Its methods may be called from any thread.
+/// end: motions are braked. Its methods may be called from any thread.
 ///
-/// When the last reference to a connected robot goes, it is braked and closed in the background;
-/// when the interpreter exits, it is waited for.
+/// When the last reference to a connected robot is dropped, it is braked and closed in the
+/// background; the exit of the interpreter waits for this.
 ///
-/// Options: `realtime` is `enforce` or `ignore`: whether a host without real-time scheduling is
-/// refused. `None` is the environment variable `FRANKA_REALTIME`, and `enforce` without one.
+/// Options: `realtime` is `enforce` or `ignore`; `enforce` refuses a host without real-time
+/// scheduling. `None` uses the environment variable `FRANKA_REALTIME`, or else `enforce`.
 /// `priority` (1 to 99) and `cpu` are for the control thread; threads of Python keep theirs.
-/// `version` is the protocol version, 5 or 10; negotiated if `None`. `connect_timeout` is for each
-/// step of connecting, and `link_timeout` the silence of the robot after which a motion fails with
-/// `link_lost`, 0.02 to 10 s, 1 s by default; more than that is for simulated robots on busy hosts.
-/// `log_size` is how many cycles an error carries, 10000 at most. `nominal_model` computes with the
-/// vendor's constants whatever the robot says of itself. `accept_geometry_error` connects to a
-/// robot whose poses have another geometry than its model; `geometry_residual` is by how much.
-/// `known` is an `Identified` of this arm.
-/// `supervise` is a `Policy`, or `True` for the default one: lost connections are made again, and
-/// the robot is recovered as the policy says. `ask_before_recovery` is called with the `Reflex`
-/// before each recovery, on a thread of its own, and has to return whether it may be; it implies
-/// `ask_first`. `ValueError` for options that make no sense.
+/// `version` is the protocol version, 5 or 10; negotiated if `None`. `connect_timeout` applies to
+/// each step of connecting. `link_timeout` is the silence of the robot after which a motion fails
+/// with `link_lost`, 0.02 to 10 s, 1 s by default; longer times are for simulated robots on busy
+/// hosts. `log_size` is the number of cycles in an error, at most 10000. `nominal_model` uses the
+/// vendor's constants instead of the robot's description. `accept_geometry_error` connects to a
+/// robot whose poses have another geometry than its model; `geometry_residual` is the difference.
+/// `known` is an `Identified` of this arm. `supervise` is a `Policy`, or `True` for the default
+/// one: lost connections are restored, and the robot is recovered according to the policy.
+/// `ask_before_recovery` is called with the `Reflex` before each recovery, on a separate thread,
+/// and must return `True` to allow it; it implies `ask_first`. `ValueError` for invalid options.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Robot {
     builder: Builder,
@@ -48,7 +47,7 @@ pub(crate) struct Robot {
 
 #[pymethods]
 impl Robot {
-    /// Describes a connection to `address`, `host` or `host:port`; nothing is sent yet.
+    /// Describes a connection to `address`, `host` or `host:port`; it sends nothing yet.
     #[new]
     #[pyo3(signature = (
         address, *, realtime = None, priority = None, cpu = None, version = None, connect_timeout = None,
@@ -109,7 +108,7 @@ impl Robot {
     }
 
     /// Connects, and returns this robot; without effect while it is connected. Raises
-    /// `ConnectError`. Cancelling gives it up.
+    /// `ConnectError`. Cancelling aborts the connection.
     fn connect(this: &Bound<'_, Self>) -> Operation {
         let (robot, builder) = (this.clone().unbind(), this.get().builder.clone());
         Operation::new("Robot.connect", async move {
@@ -122,8 +121,8 @@ impl Robot {
         })
     }
 
-    /// Brakes whatever moves, ends it and closes the connection; without effect if there is none.
-    /// Once it has begun, it goes on even if it is cancelled.
+    /// Brakes and ends any motion and closes the connection; without effect without a connection.
+    /// Once begun, it continues even if it is cancelled.
     fn shutdown(this: &Bound<'_, Self>) -> Operation {
         let robot = this.clone().unbind();
         Operation::infallible("Robot.shutdown", async move {
@@ -143,7 +142,7 @@ impl Robot {
         Self::shutdown(this)
     }
 
-    /// Where the robot is: as given, and resolved once it is connected.
+    /// Address of the robot: as given, and resolved once it is connected.
     #[getter]
     fn address(&self) -> String {
         match &*self.connection() {
@@ -152,42 +151,40 @@ impl Robot {
         }
     }
 
-    /// Whether there is a connection, or of a supervised robot will be one again.
+    /// True if there is a connection, or a supervised robot will be reconnected.
     #[getter]
     fn is_connected(&self) -> bool {
         self.open().is_some()
     }
 
-    /// The protocol version that the robot speaks: 10 for a Franka Research 3, 5 for a Franka Emika
-    /// Robot.
+    /// Protocol version of the robot: 10 for a Franka Research 3, 5 for a Franka Emika Robot.
     #[getter]
     fn fci_version(&self) -> PyResult<u16> {
         Ok(self.connected()?.version().number())
     }
 
-    /// How far the pose that the robot reported at connect was from that of `model()` at the same
-    /// joint positions, m, or a tenth of a metre times the largest difference of an element of
-    /// their rotation matrices, whichever is greater: at most 2e-6, or an error that was accepted.
-    /// `None` if the robot reported no pose.
+    /// Difference between the reported pose at connect and the pose of `model()` at the same joint
+    /// positions, m; or a tenth of a metre times the largest difference of an element of their
+    /// rotation matrices, if this is larger. It is at most 2e-6, or an accepted error. `None` if
+    /// the robot reported no pose.
     #[getter]
     fn geometry_residual(&self) -> PyResult<Option<f64>> {
         Ok(self.connected()?.geometry_check().residual)
     }
 
-    /// The newest state, without waiting, however old it is: once the link is gone the last one
-    /// stays. `health()` tells.
+    /// Newest state, without waiting, at any age: after the loss of the link, the last state stays.
+    /// `health()` shows the loss.
     fn state(&self) -> PyResult<RobotState> {
         let robot = self.connected()?;
         Ok(RobotState::new(robot.state(), robot.version()))
     }
 
-    /// The measured pose of the end effector in the base frame, `(4, 4)`, of the newest state.
+    /// Measured pose of the end effector in the base frame, `(4, 4)`, from the newest state.
     fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         Ok(pose_array(py, &self.connected()?.pose()))
     }
 
-    /// The pose in the base frame, `(4, 4)`, that the end effector has at joint positions `q`,
-    /// `(7,)` rad.
+    /// Pose of the end effector in the base frame, `(4, 4)`, at joint positions `q`, `(7,)` rad.
     fn pose_at<'py>(
         &self,
         py: Python<'py>,
@@ -197,13 +194,13 @@ impl Robot {
         Ok(pose_array(py, &self.connected()?.pose_at(q)))
     }
 
-    /// Brakes whatever moves, and waits until the motion has ended and a state shows the arm at
-    /// rest; that motion raises `MotionError` of the kind `stopped` at once, while the arm still
-    /// brakes. A motion that another task asks for meanwhile takes over: `stop` then raises
-    /// `MotionError` of the kind `superseded`. It raises others if the arm was not seen to rest:
+    /// Brakes any motion, and waits until it has ended and a state shows the arm at rest. That
+    /// motion raises `MotionError` of the kind `stopped` at once, while the arm still brakes. A
+    /// motion that another task requests meanwhile takes over: `stop` then raises `MotionError` of
+    /// the kind `superseded`. It raises other kinds if the arm was not seen to be at rest:
     /// `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. An arm that hands keep in motion
-    /// for two seconds is stopped by the robot's own controller; the wait is over after eight. Once
-    /// it has begun, it goes on even if it is cancelled.
+    /// for two seconds is stopped by the robot's own controller; the wait ends within eight. Once
+    /// begun, it continues even if it is cancelled.
     fn stop(&self) -> PyResult<Operation> {
         let robot = self.connected()?;
         Ok(Operation::new(
@@ -212,9 +209,9 @@ impl Robot {
         ))
     }
 
-    /// Stops as `stop` does, and latches the stop: until `release_stop` every motion, session and
-    /// goal is refused, as `MotionError` of the kind `not_ready`, whoever asks for it. The latch
-    /// outlives connections, and holds whatever this raises. It is no safety function.
+    /// Stops like `stop`, and latches the stop: until `release_stop`, every motion, session and
+    /// goal of any caller is refused, as `MotionError` of the kind `not_ready`. The latch survives
+    /// reconnects, and stays set even if this raises. It is not a safety function.
     fn latch_stop(&self) -> PyResult<Operation> {
         let robot = self.connected()?;
         Ok(Operation::new("Robot.latch_stop", async move {
@@ -222,20 +219,20 @@ impl Robot {
         }))
     }
 
-    /// Releases a latched stop: motions are admitted again. Nothing moves by it. Returns whether
-    /// one was latched.
+    /// Releases a latched stop: motions are allowed again. It does not move the arm. Returns `True`
+    /// if a stop was latched.
     fn release_stop(&self) -> PyResult<bool> {
         Ok(self.connected()?.release_stop())
     }
 
-    /// Whether a stop is latched.
+    /// True if a stop is latched.
     #[getter]
     fn is_stop_latched(&self) -> PyResult<bool> {
         Ok(self.connected()?.is_stop_latched())
     }
 
-    /// Recovers the robot from a reflex, and waits until it takes motions again; without effect if
-    /// there is nothing to recover from. Moves nothing. Raises `CommandError`.
+    /// Recovers the robot from a reflex, and waits until it accepts motions again; without effect
+    /// if no recovery is needed. It does not command a motion. Raises `CommandError`.
     fn recover(&self) -> PyResult<Operation> {
         let robot = self.connected()?;
         Ok(Operation::new("Robot.recover", async move {
@@ -252,7 +249,7 @@ impl Robot {
 }
 
 impl Robot {
-    /// The connected robot.
+    /// Returns the connected robot.
     ///
     /// # Errors
     /// `FrankaError` of the kind `not_connected`; `RuntimeError` in a forked child.
@@ -267,15 +264,15 @@ impl Robot {
         })
     }
 
-    /// The robot's host, so many ports after the robot's: the usual ones may be those of another
-    /// simulator there.
+    /// Returns the robot's host, with the port `ports` after the robot's: the default ports may
+    /// belong to another simulator.
     pub(crate) fn beside(&self, ports: u16) -> Endpoint {
         let endpoint = Endpoint::from(&self.address);
         let port = endpoint.port().unwrap_or(Version::TCP_PORT);
         endpoint.at_port(port.saturating_add(ports))
     }
 
-    /// The connected robot, unless its connection has ended for good.
+    /// Returns the connected robot, unless its connection has ended permanently.
     fn open(&self) -> Option<franka_async::Robot> {
         let robot = self.connection().clone()?;
         let ended = robot.closed().now_or_never().is_some();
@@ -283,13 +280,13 @@ impl Robot {
     }
 
     fn connection(&self) -> MutexGuard<'_, Option<franka_async::Robot>> {
-        // Nothing can panic while it is held.
+        // No code panics while the lock is held.
         let connection = self.connection.lock();
         connection.unwrap_or_else(PoisonError::into_inner)
     }
 }
 
-/// What `realtime` says, or else the environment.
+/// Returns the choice of `realtime`, or else of the environment.
 ///
 /// # Errors
 /// `ValueError`.

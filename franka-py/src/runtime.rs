@@ -1,4 +1,4 @@
-//! The Tokio runtime of the module, and waiting for its futures on threads of Python.
+//! The Tokio runtime of the module, and waiting for its futures on Python threads.
 
 use std::future::Future;
 use std::ops::Deref;
@@ -10,13 +10,14 @@ use pyo3::prelude::*;
 use tokio::runtime::{Builder, Runtime};
 use tokio::time::Instant;
 
-/// The runtime, and the process whose threads it has.
+/// The runtime, and the process that owns its threads.
 static RUNTIME: OnceLock<(&'static Runtime, u32)> = OnceLock::new();
 
-/// The runtime that all robots of the process share. The first call starts its threads.
+/// Returns the runtime shared by all robots of the process. The first call starts its threads.
 ///
 /// # Errors
-/// `RuntimeError` in a process that was forked after the first call: the threads are not there.
+/// `RuntimeError` in a process that was forked after the first call, because the threads do not
+/// exist there.
 pub(crate) fn runtime() -> PyResult<&'static Runtime> {
     let (runtime, process) = RUNTIME.get_or_init(|| {
         let runtime = Builder::new_multi_thread()
@@ -37,14 +38,14 @@ pub(crate) fn runtime() -> PyResult<&'static Runtime> {
     Ok(runtime)
 }
 
-/// The runtime, if it was started in this process.
+/// Returns the runtime, if it was started in this process.
 pub(crate) fn started() -> Option<&'static Runtime> {
     RUNTIME.get()?;
     runtime().ok()
 }
 
-/// A value with threads behind it. In a forked child, where nothing would answer it, it is not
-/// dropped.
+/// A value with threads behind it. It is not dropped in a forked child, where no thread would
+/// answer it.
 pub(crate) struct Threaded<T>(Option<T>);
 
 impl<T> Threaded<T> {
@@ -85,10 +86,10 @@ pub(crate) fn wait<T: Send + 'static>(
     timeout: Option<Duration>,
 ) -> PyResult<T> {
     py.detach(|| {
-        // A task: what it drives goes on while this thread waits for the interpreter.
+        // A task, so that its work continues while this thread waits for the interpreter.
         let mut task = runtime.spawn(work);
         let outcome = runtime.block_on(async {
-            // A time that no clock can show does not come.
+            // A time beyond the range of the clock never expires.
             let deadline = timeout.and_then(|timeout| Instant::now().checked_add(timeout));
             loop {
                 let next = Instant::now() + SIGNALS_EVERY;
@@ -115,11 +116,11 @@ pub(crate) fn wait<T: Send + 'static>(
     })
 }
 
-/// The runtime, for [`wait`] on this thread.
+/// Returns the runtime, for [`wait`] on this thread.
 ///
 /// # Errors
-/// As [`runtime`], and `RuntimeError` on a thread that runs an event loop: one that waits here
-/// serves nothing else, timeouts and cancellation included.
+/// The errors of [`runtime`], and `RuntimeError` on a thread that runs an event loop: a waiting
+/// thread would block it, timeouts and cancellation included.
 pub(crate) fn may_wait(py: Python<'_>) -> PyResult<&'static Runtime> {
     let runtime = runtime()?;
     let running = py.import("asyncio")?.call_method0("_get_running_loop")?;
@@ -132,10 +133,10 @@ pub(crate) fn may_wait(py: Python<'_>) -> PyResult<&'static Runtime> {
     ))
 }
 
-/// How often a thread that waits looks for signals.
+/// Interval at which a waiting thread checks for signals.
 const SIGNALS_EVERY: Duration = Duration::from_millis(50);
 
-/// Does what takes no time to speak of on the calling thread, with the interpreter released.
+/// Runs a short operation on the calling thread, with the interpreter released.
 pub(crate) fn blocking<T: Send>(
     py: Python<'_>,
     work: impl Future<Output = T> + Send,

@@ -16,17 +16,17 @@ impl Robot {
     /// (upper).
     ///
     /// Either one of the names `careful` (10 N and 10 N m, for the robot's own controllers),
-    /// `compliant` (60, for an arm that a hand pushes) and `insensitive` (100, for work that
-    /// presses); or four arrays: `lower_torque_thresholds`, `upper_torque_thresholds`, `(7,)` N m,
+    /// `compliant` (60, for an arm that is pushed by hand) and `insensitive` (100, for tasks that
+    /// press); or four arrays: `lower_torque_thresholds`, `upper_torque_thresholds`, `(7,)` N m,
     /// `lower_force_thresholds`, `upper_force_thresholds`, `(6,)` N and N m; or eight, each of the
     /// four twice: `..._acceleration` while the arm accelerates, and `..._nominal`, in the order of
-    /// `COLLISION_THRESHOLDS`. Positional or by name. Below about 10 N the friction of an arm that
-    /// touches nothing is enough for a reflex.
+    /// `COLLISION_THRESHOLDS`. Positional or by name. Below about 10 N the friction of an arm
+    /// without contact is enough for a reflex.
     ///
-    /// The vendor documents no range of them. The simulator refuses what is negative.
+    /// The vendor does not document their ranges. The simulator refuses negative values.
     ///
-    /// Raises `ValueError`, `TypeError` and `CommandError`; a robot that moves refuses it. Once it
-    /// has begun, the robot may carry it out even if it is cancelled.
+    /// Raises `ValueError`, `TypeError` and `CommandError`; a moving robot refuses it. Once begun,
+    /// the robot may execute it even if it is cancelled.
     #[pyo3(signature = (*thresholds, **named))]
     fn set_collision_behavior(
         &self,
@@ -41,7 +41,7 @@ impl Robot {
     }
 
     /// Sets the stiffness of the robot's own joint impedance controller, `(7,)` N m/rad, each 0 to
-    /// 14250. Raises and is cancelled as `set_collision_behavior`.
+    /// 14250. Raises and is cancelled like `set_collision_behavior`.
     fn set_joint_impedance(&self, stiffness: &Bound<'_, PyAny>) -> PyResult<Operation> {
         let stiffness = vector("stiffness", stiffness)?;
         let robot = self.connected()?;
@@ -52,7 +52,7 @@ impl Robot {
 
     /// Sets the stiffness of the robot's own Cartesian impedance controller in the stiffness frame,
     /// `(6,)`: x y z, 10 to 3000 N/m, and roll pitch yaw, 1 to 300 N m/rad. Raises and is cancelled
-    /// as `set_collision_behavior`.
+    /// like `set_collision_behavior`.
     fn set_cartesian_impedance(&self, stiffness: &Bound<'_, PyAny>) -> PyResult<Operation> {
         let stiffness = vector("stiffness", stiffness)?;
         let robot = self.connected()?;
@@ -62,8 +62,8 @@ impl Robot {
         ))
     }
 
-    /// Sets which directions are free in hand guiding: six truth values, x y z and roll pitch yaw,
-    /// and whether the `elbow` is. Raises and is cancelled as `set_collision_behavior`.
+    /// Sets the free directions in hand guiding: six truth values, x y z and roll pitch yaw, and
+    /// the `elbow`. Raises and is cancelled like `set_collision_behavior`.
     #[pyo3(signature = (free, elbow = true))]
     fn set_guiding_mode(&self, free: [bool; 6], elbow: bool) -> PyResult<Operation> {
         let robot = self.connected()?;
@@ -72,9 +72,9 @@ impl Robot {
         }))
     }
 
-    /// Sets the stiffness frame in the end effector's, `EE_T_K`: a pose. The vendor documents no
-    /// range; the simulator refuses what is more than 2 m away. Resolves when a state shows it.
-    /// Raises and is cancelled as `set_collision_behavior`.
+    /// Sets the stiffness frame in the end effector's, `EE_T_K`: a pose. The vendor does not
+    /// document a range; the simulator refuses a distance of more than 2 m. Resolves when a state
+    /// shows it. Raises and is cancelled like `set_collision_behavior`.
     #[expect(non_snake_case, reason = "the vendor's name")]
     fn set_k(&self, EE_T_K: &Bound<'_, PyAny>) -> PyResult<Operation> {
         let pose = arrays::pose("EE_T_K", EE_T_K)?;
@@ -84,9 +84,8 @@ impl Robot {
         }))
     }
 
-    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`: a pose. Its range,
-    /// and when it resolves, are as of `set_k`. Raises and is cancelled as
-    /// `set_collision_behavior`.
+    /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`: a pose. Range and
+    /// completion are as for `set_k`. Raises and is cancelled like `set_collision_behavior`.
     #[expect(non_snake_case, reason = "the vendor's name")]
     fn set_ee(&self, NE_T_EE: &Bound<'_, PyAny>) -> PyResult<Operation> {
         let pose = arrays::pose("NE_T_EE", NE_T_EE)?;
@@ -96,12 +95,13 @@ impl Robot {
         }))
     }
 
-    /// Declares the load beyond the end effector: `mass`, kg; `center` of mass in the flange frame,
-    /// `(3,)` m; `inertia` about it, `(3, 3)` or its nine numbers, kg m^2, zero unless given.
+    /// Declares the load in addition to the end effector: `mass`, kg; `center` of mass in the
+    /// flange frame, `(3,)` m; `inertia` about it, `(3, 3)` or its nine numbers, kg m^2, zero
+    /// unless given.
     ///
-    /// The vendor documents no range. The simulator refuses more than 10 kg, a centre more than 1 m
-    /// away, and an inertia that no body has or with a principal moment above 1 kg m^2. Resolves
-    /// when a state shows it. Raises and is cancelled as `set_collision_behavior`.
+    /// The vendor does not document a range. The simulator refuses more than 10 kg, a centre more
+    /// than 1 m away, and an inertia that is not physical or has a principal moment above 1 kg m^2.
+    /// Resolves when a state shows it. Raises and is cancelled like `set_collision_behavior`.
     #[pyo3(signature = (mass, center = None, inertia = None))]
     fn set_load(
         &self,
@@ -121,9 +121,9 @@ impl Robot {
     }
 
     /// Sets the cutoff frequencies of the robot's own low-pass filters, each 1 to 1000 Hz; 1000
-    /// switches a filter off. Franka Emika Robot only, and deprecated by the vendor. Raises and is
-    /// cancelled as `set_collision_behavior`; `CommandError` of the kind `request` from a robot
-    /// that has no such command.
+    /// disables a filter. Franka Emika Robot only, and deprecated by the vendor. Raises and is
+    /// cancelled like `set_collision_behavior`; `CommandError` of the kind `request` if the robot
+    /// has no such command.
     #[pyo3(signature = (
         *, joint_position = 1000.0, joint_velocity = 1000.0, cartesian_position = 1000.0,
         cartesian_velocity = 1000.0, controller = 1000.0,
@@ -155,8 +155,8 @@ impl Robot {
         }))
     }
 
-    /// Reads the virtual wall `id` as it is set up in Desk; returns a `VirtualWall`. Franka Emika
-    /// Robot only. Raises `CommandError`, of the kind `request` from a robot that has no such
+    /// Reads the virtual wall `id` from the configuration in Desk; returns a `VirtualWall`. Franka
+    /// Emika Robot only. Raises `CommandError`, of the kind `request` if the robot has no such
     /// command.
     fn virtual_wall(&self, id: i32) -> PyResult<Operation> {
         let robot = self.connected()?;
@@ -165,8 +165,8 @@ impl Robot {
         }))
     }
 
-    /// Reads the robot's description of itself; returns URDF text. Franka Research 3 only. Raises
-    /// `CommandError`, of the kind `request` from a robot that has no such command.
+    /// Reads the robot's description; returns URDF text. Franka Research 3 only. Raises
+    /// `CommandError`, of the kind `request` if the robot has no such command.
     fn urdf(&self) -> PyResult<Operation> {
         let robot = self.connected()?;
         Ok(Operation::new(
@@ -176,7 +176,7 @@ impl Robot {
     }
 }
 
-/// Made into a `franka_async.settings.VirtualWall`.
+/// Converted to a `franka_async.settings.VirtualWall`.
 struct VirtualWall(franka_async::settings::VirtualWall);
 
 impl<'py> IntoPyObject<'py> for VirtualWall {
@@ -207,7 +207,7 @@ pub(crate) const COLLISION_THRESHOLDS: [&str; 8] = [
     "upper_force_thresholds_nominal",
 ];
 
-/// The same whether or not the arm accelerates.
+/// Thresholds that are the same for an accelerating and a non-accelerating arm.
 const UNIFORM: [&str; 4] = [
     "lower_torque_thresholds",
     "upper_torque_thresholds",
@@ -257,7 +257,7 @@ fn collision_behavior(
     })
 }
 
-/// What says the thresholds.
+/// The accepted forms of thresholds.
 const FORMS: &str = "expected 'careful', 'compliant' or 'insensitive'; four arrays, lower and \
                      upper torques (7,), lower and upper forces (6,); or eight, as \
                      COLLISION_THRESHOLDS names them";
@@ -284,10 +284,10 @@ fn preset(preset: &Bound<'_, PyAny>) -> PyResult<CollisionBehavior> {
     }
 }
 
-/// The arguments of these names, positional first, as of a function with so many parameters.
+/// Returns the arguments with these names, positional first, like a function with these parameters.
 ///
 /// # Errors
-/// `TypeError` for one that is missing, given twice, or not known.
+/// `TypeError` for an argument that is missing, given twice, or unknown.
 fn arguments<'py, const N: usize>(
     names: &[&str; N],
     positional: &Bound<'py, PyTuple>,
@@ -319,7 +319,7 @@ fn arguments<'py, const N: usize>(
     Ok(given.map(|given| given.expect("none is missing")))
 }
 
-/// Reads an inertia, `(3, 3)` or its nine numbers, and returns it column by column.
+/// Reads an inertia, `(3, 3)` or its nine numbers, and returns it column-major.
 ///
 /// # Errors
 /// `ValueError` for another shape, numbers that are not finite, and a matrix that is not symmetric.

@@ -16,9 +16,9 @@ use crate::runtime::{self, Threaded};
 use crate::simulator_options::{configured, positions};
 use crate::state::RobotState;
 
-/// A simulated robot on a free port of this host, from the call on until `stop()` or the end of the
-/// `with` or `async with` block. Its methods release the interpreter, and act between two of its
-/// milliseconds.
+/// A simulated robot on a free port of this host, from the call until `stop()` or the end of the
+/// `with` or `async with` block. Its methods release the interpreter, and act between two
+/// milliseconds of the robot.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Sim {
     /// `None` once it has been stopped.
@@ -32,27 +32,26 @@ pub(crate) struct Sim {
 
 #[pymethods]
 impl Sim {
-    /// Starts a Franka Research 3 in the ready pose, with an arm that sticks, flexes and lags like
-    /// real ones.
+    /// Starts a Franka Research 3 in the ready pose, with realistic stiction, elasticity and lag of
+    /// the arm.
     ///
-    /// Options: `virtual_time`, whether its next millisecond begins with the command, however long
-    /// that takes up to `patience` seconds (0.5): for tests, and for programs that learn.
-    /// `patience` alone waits for commands that come late, but is never faster than the clock
-    /// on the wall. `arm`, `ideal`, `nominal`, `realistic` or `bad`: a good arm for tests that
-    /// need exactness, or worse ones; with `arm_seed`, one that is drawn at random from such
-    /// arms; `ideal=True` is `arm="ideal"`. `limits`, `5.9` (the default) or `before-5.9`: the
-    /// joint limits of the robot's system, of an FR3. `state_geometry`, `recorded` (upper arm 0.3162
-    /// m, forearm 0.3842 m; by default, unless `ideal`), `described` (0.316 m, 0.384 m) or `random`
-    /// (1 mm and 3 mrad off, by `seed`): what it computes its own poses with. `seed` of all other
-    /// randomness. `q`, joint positions at the start, 7 numbers, rad, where the joints can be. `tool`, `hand` or a
-    /// tuple of its frame on the flange (a pose), its mass, kg, and its centre of mass in the
-    /// flange frame, m: what the robot knows of. `load`, a tuple of mass and centre: what it does
-    /// not know of. `hand` serves a Franka Hand and mounts it, `vacuum_gripper` a vacuum gripper,
-    /// each at an address of its own: `Gripper(sim.hand_address)`, since `robot.gripper()` looks at
-    /// the port after the robot's, where the Hand is with `address` only. `network`, a `Network`
-    /// between robot and clients. `address`, where to listen; the grippers then listen on the ports
-    /// that follow, as on a robot. `enforce_limits`, whether commands outside the limits end in a
-    /// reflex.
+    /// Options: `virtual_time`, true if its next millisecond begins with the command, which may
+    /// take up to `patience` seconds (0.5): for tests, and for learning. `patience` alone waits for
+    /// late commands, but is never faster than the wall clock. `arm`, `ideal`, `nominal`,
+    /// `realistic` or `bad`: an exact arm for precise tests, or worse ones; with `arm_seed`, a
+    /// random arm of this kind; `ideal=True` is `arm="ideal"`. `limits`, `5.9` (the default) or
+    /// `before-5.9`: the joint limits of the robot's system, of an FR3. `state_geometry`,
+    /// `recorded` (upper arm 0.3162 m, forearm 0.3842 m; the default unless `ideal`), `described`
+    /// (0.316 m, 0.384 m) or `random` (1 mm and 3 mrad off, by `seed`): the geometry of its own
+    /// poses. `seed` of all other randomness. `q`, joint positions at the start, 7 numbers, rad, within the joint ranges.
+    /// `tool`, `hand` or a tuple of its frame on the flange (a pose), its mass, kg, and its centre
+    /// of mass in the flange frame, m: declared to the robot. `load`, a tuple of mass and centre:
+    /// not declared. `hand` serves a Franka Hand and mounts it, `vacuum_gripper` a vacuum gripper,
+    /// each at a separate address: use `Gripper(sim.hand_address)`, because `robot.gripper()` uses
+    /// the port after the robot's, which is the Hand's with `address` only. `network`, a `Network`
+    /// between robot and clients. `address`, the address to listen on; the grippers then listen on
+    /// the following ports, as on a robot. `enforce_limits`, true if commands outside the limits
+    /// cause a reflex.
     #[staticmethod]
     #[pyo3(signature = (**options))]
     fn fr3(py: Python<'_>, options: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
@@ -67,9 +66,9 @@ impl Sim {
     }
 
     /// Starts two to four robots, each `fr3` or `fer`, that begin every millisecond together, and
-    /// returns them in a list: where one waits for a command, all do. For arms of one program,
-    /// teams above all: `left, right = Sim.in_step("fr3", "fer", virtual_time=True)`. Options as of
-    /// `fr3`, the same for all, but for `address`. One that has stopped is not waited for.
+    /// returns them in a list: if one waits for a command, all do. For several arms of one program,
+    /// especially teams: `left, right = Sim.in_step("fr3", "fer", virtual_time=True)`. Options as
+    /// for `fr3`, the same for all, except `address`. The others do not wait for a stopped robot.
     #[staticmethod]
     #[pyo3(signature = (*kinds, **options))]
     fn in_step(
@@ -110,19 +109,19 @@ impl Sim {
             .collect())
     }
 
-    /// Where to connect to: `host:port`.
+    /// Address of the robot: `host:port`.
     #[getter]
     fn address(&self) -> &str {
         &self.address
     }
 
-    /// Where the Hand is; `None` without one.
+    /// Address of the Hand; `None` without one.
     #[getter]
     fn hand_address(&self) -> Option<&str> {
         self.hand_address.as_deref()
     }
 
-    /// Where the vacuum gripper is; `None` without one.
+    /// Address of the vacuum gripper; `None` without one.
     #[getter]
     fn vacuum_gripper_address(&self) -> Option<&str> {
         self.vacuum_gripper_address.as_deref()
@@ -134,21 +133,21 @@ impl Sim {
         Ok(RobotState::new(state, version))
     }
 
-    /// How many of the calls with `once_moving=True` still wait for a motion, without those that
-    /// `let_go()` or `release()` took back.
+    /// Number of calls with `once_moving=True` that still wait for a motion, without those
+    /// cancelled by `let_go()` or `release()`.
     #[getter]
     fn waiting(&self) -> usize {
         self.once_moving.count()
     }
 
-    /// Stops the simulation: now or, `once_moving`, in mid-motion, as of `push`. Connections to it
-    /// are lost. Without effect if it has stopped.
+    /// Stops the simulation: now or, with `once_moving`, in mid-motion, as in `push`. Connections
+    /// to it are lost. Without effect if it has stopped.
     #[pyo3(signature = (*, once_moving = false))]
     fn stop(&self, py: Python<'_>, once_moving: bool) -> PyResult<()> {
         if once_moving {
             let stop = self.disturb(py, true, |_| {
-                // Ends the thread of the robot, and with it sockets and connections; `panic!` would
-                // print something, too.
+                // Ends the thread of the robot, with its sockets and connections; `panic!` would
+                // also print a message.
                 std::panic::resume_unwind(Box::new("stopped"))
             });
             return match stop {
@@ -226,10 +225,10 @@ impl Sim {
         self.running.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Does something with the simulation, with the interpreter released.
+    /// Runs a function with the simulation, with the interpreter released.
     ///
     /// # Errors
-    /// `OSError` if it has stopped.
+    /// `OSError` if the simulation has stopped.
     pub(crate) fn with<R: Send>(
         &self,
         py: Python<'_>,
@@ -243,10 +242,10 @@ impl Sim {
         .map_err(|Stopped| PyOSError::new_err("the simulation has stopped"))
     }
 
-    /// Does something with the robot between two of its milliseconds.
+    /// Runs a function with the robot between two of its milliseconds.
     ///
     /// # Errors
-    /// As [`Self::with`].
+    /// The errors of [`Self::with`].
     pub(crate) fn robot<R: Send + 'static>(
         &self,
         py: Python<'_>,
@@ -255,11 +254,11 @@ impl Sim {
         self.with(py, async |running| running.with(act).await)
     }
 
-    /// Does something to the robot between two of its milliseconds: now or, `once_moving`, once
-    /// its arm moves. Returns what then waits.
+    /// Runs a function with the robot between two of its milliseconds: now or, with `once_moving`,
+    /// once its arm moves. Returns the waiting job.
     ///
     /// # Errors
-    /// As [`Self::with`].
+    /// The errors of [`Self::with`].
     pub(crate) fn disturb(
         &self,
         py: Python<'_>,
@@ -276,17 +275,17 @@ impl Sim {
         })
     }
 
-    /// Reads joint positions, where the joints of this robot can be.
+    /// Reads joint positions within the ranges of this robot.
     ///
     /// # Errors
-    /// As [`positions`], and `OSError` if it has stopped.
+    /// The errors of [`positions`], and `OSError` if the simulation has stopped.
     pub(crate) fn positions(&self, q: &Bound<'_, PyAny>) -> PyResult<JointVector> {
         let limits = self.robot(q.py(), |robot| *robot.model().joint_limits())?;
         positions(&limits, q)
     }
 }
 
-/// A robot, and what is to happen to it once its arm moves.
+/// Returns a robot, and the jobs that wait for its arm to move.
 fn watched(sim: franka_sim::Sim) -> (franka_sim::Sim, OnceMoving) {
     let once_moving = OnceMoving::default();
     let waiting = once_moving.clone();
@@ -294,7 +293,7 @@ fn watched(sim: franka_sim::Sim) -> (franka_sim::Sim, OnceMoving) {
     (sim, once_moving)
 }
 
-/// The same robots, which begin each of their milliseconds together.
+/// Returns the same robots, which begin each of their milliseconds together.
 ///
 /// # Panics
 /// Unless there are `N`.

@@ -17,7 +17,7 @@ use crate::model::arguments;
 use crate::operation::seconds;
 use crate::options::Keywords;
 
-/// The robot that the keyword arguments describe.
+/// Returns the robot described by the keyword arguments.
 pub(crate) fn configured(
     kind: RobotKind,
     keywords: &mut Keywords<'_>,
@@ -55,7 +55,7 @@ pub(crate) fn configured(
     if let Some(address) = address {
         sim = sim.bind(address);
     }
-    // As on a robot; beside a free one they are free, too.
+    // The ports follow the robot's as on a real one; with a free port they are free too.
     let gripper_port = |place: u16| match address.map_or(0, |address| address.port()) {
         0 => 0,
         port => port.checked_add(place).unwrap_or(0),
@@ -84,10 +84,10 @@ pub(crate) fn configured(
     Ok(sim)
 }
 
-/// Reads joint positions, where the joints of a robot with these limits can be.
+/// Reads joint positions within the ranges of a robot with these limits.
 ///
 /// # Errors
-/// As [`vector`], and `ValueError` outside the ranges of the joints.
+/// The errors of [`vector`], and `ValueError` outside the ranges of the joints.
 pub(crate) fn positions(limits: &JointLimits, q: &Bound<'_, PyAny>) -> PyResult<JointVector> {
     let q = JointVector::from(vector::<7>("q", q)?);
     match limits.outside_hard(&q) {
@@ -102,7 +102,7 @@ pub(crate) fn positions(limits: &JointLimits, q: &Bound<'_, PyAny>) -> PyResult<
     }
 }
 
-/// Reads a seed from the argument called `name`.
+/// Reads a seed from the argument `name`.
 fn seed(name: &str, seed: &Bound<'_, PyAny>) -> PyResult<u64> {
     seed.extract().map_err(|error: PyErr| {
         let text = format!("{name} is {seed}, expected an integer from 0 to 2^64 - 1");
@@ -113,7 +113,7 @@ fn seed(name: &str, seed: &Bound<'_, PyAny>) -> PyResult<u64> {
     })
 }
 
-/// Reads where to listen.
+/// Reads the address to listen on.
 fn address(text: &str) -> PyResult<SocketAddr> {
     text.parse().map_err(|_| {
         let text = format!("address is {text:?}, expected an IP address and a port");
@@ -121,7 +121,7 @@ fn address(text: &str) -> PyResult<SocketAddr> {
     })
 }
 
-/// The arm that `arm`, `arm_seed` and `ideal` choose.
+/// Returns the arm selected by `arm`, `arm_seed` and `ideal`.
 fn arm(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<Arm> {
     let arm: Option<String> = keywords.value("arm")?;
     let seed = keywords.take("arm_seed")?;
@@ -152,7 +152,7 @@ fn arm(kind: RobotKind, keywords: &mut Keywords<'_>) -> PyResult<Arm> {
     })
 }
 
-/// Reads the system whose joint limits the robot has.
+/// Reads the system with the robot's joint limits.
 fn limits(kind: RobotKind, name: &str) -> PyResult<SystemLimits> {
     match (kind, name) {
         (RobotKind::Fr3, "5.9") => Ok(SystemLimits::From5_9),
@@ -210,7 +210,7 @@ fn tool(tool: &Bound<'_, PyAny>) -> PyResult<Tool> {
     })
 }
 
-/// The field `name` of a `franka_async.Network`.
+/// Returns the field `name` of a `franka_async.Network`.
 fn field<'py, T>(network: &Bound<'py, PyAny>, name: &str, expected: &str) -> PyResult<T>
 where
     T: for<'a> FromPyObject<'a, 'py>,
@@ -264,5 +264,5 @@ fn network(network: &Bound<'_, PyAny>) -> PyResult<Network> {
     Ok(network)
 }
 
-/// How long a simulated robot in virtual time waits for a command.
+/// Time for which a simulated robot in virtual time waits for a command.
 const PATIENCE: Duration = Duration::from_millis(500);

@@ -8,11 +8,11 @@ use pyo3::prelude::*;
 
 use crate::operation::seconds;
 
-/// Tickets of a common start, a list of one for each of `members` motions:
-/// `left.move_to(a, start_with=tickets[0])` and `right.move_to(b, start_with=tickets[1])`, awaited
-/// together, begin within a millisecond of each other, once all robots are ready. Such a motion
-/// supersedes nothing. If the others do not come within `timeout` seconds, or one is dropped
-/// before, it raises `MotionError` of the kind `start`, and nothing has moved.
+/// Tickets of a common start, a list of one for each of `members` motions. `left.move_to(a,
+/// start_with=tickets[0])` and `right.move_to(b, start_with=tickets[1])`, awaited together, begin
+/// within a millisecond of each other, once all robots are ready. Such a motion supersedes nothing.
+/// If the others are not ready within `timeout` seconds, or one is dropped before, it raises
+/// `MotionError` of the kind `start`, and nothing has moved.
 #[pyfunction]
 #[pyo3(signature = (members, timeout = 10.0))]
 pub(crate) fn start_tickets(members: usize, timeout: f64) -> PyResult<Vec<StartTicket>> {
@@ -28,7 +28,7 @@ pub(crate) fn start_tickets(members: usize, timeout: f64) -> PyResult<Vec<StartT
     Ok(tickets.into_iter().map(ticket).collect())
 }
 
-/// The part of one motion in a common start: made by `start_tickets`. One that goes before the
+/// The part of one motion in a common start: created by `start_tickets`. Dropping it before the
 /// start ends the wait of the others.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct StartTicket(Mutex<Option<Ticket>>);

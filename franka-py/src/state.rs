@@ -1,4 +1,4 @@
-//! States as numpy arrays. What is made of them, such as text, is in `state_views`.
+//! States as numpy arrays. Derived forms, such as text, are in `state_views`.
 #![allow(non_snake_case)]
 
 use franka_async::connection::Version;
@@ -11,11 +11,11 @@ use pyo3::types::PyTuple;
 use crate::arrays::{array, columns, table};
 use crate::names::Named;
 
-/// Everything that the robot says in one millisecond, by the vendor's names: O base, F flange, NE
-/// nominal end effector, EE end effector, K stiffness frame; `X_T_Y` is the pose of Y in X, with
-/// the translation in the last column.
+/// The robot's state of one millisecond, with the vendor's names: O base, F flange, NE nominal end
+/// effector, EE end effector, K stiffness frame; `X_T_Y` is the pose of Y in X, with the
+/// translation in the last column.
 ///
-/// It does not change. Each array is a new one, which the program may change.
+/// It is immutable. Each array is a new one, which the program may change.
 #[pyclass(frozen, eq, module = "franka_async")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct RobotState {
@@ -183,13 +183,13 @@ impl RobotState {
         array(py, &self.state.elbow_c)
     }
 
-    /// Velocity of the commanded elbow, `(2,)`: of joint 3 in rad/s, then 0.
+    /// Velocity of the commanded elbow, `(2,)`: velocity of joint 3 in rad/s, then 0.
     #[getter]
     fn delbow_c<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, &self.state.delbow_c)
     }
 
-    /// Acceleration of the commanded elbow, `(2,)`: of joint 3 in rad/s^2, then 0.
+    /// Acceleration of the commanded elbow, `(2,)`: acceleration of joint 3 in rad/s^2, then 0.
     #[getter]
     fn ddelbow_c<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, &self.state.ddelbow_c)
@@ -309,7 +309,7 @@ impl RobotState {
         self.state.message_id
     }
 
-    /// What the robot does: `other`, `idle`, `move`, `guiding`, `reflex`, `user_stopped` or
+    /// Overall mode of the robot: `other`, `idle`, `move`, `guiding`, `reflex`, `user_stopped` or
     /// `automatic_error_recovery`.
     #[getter]
     pub(crate) fn robot_mode(&self) -> &'static str {
@@ -328,7 +328,7 @@ impl RobotState {
         self.state.controller_mode.python_name()
     }
 
-    /// Errors that hold the robot now, by the vendor's names.
+    /// Errors that block the robot now, by the vendor's names.
     #[getter]
     pub(crate) fn current_errors(&self) -> Vec<String> {
         names(self.state.errors)
@@ -373,7 +373,7 @@ impl RobotState {
     }
 }
 
-/// The state that `pickle` wrote.
+/// The state written by `pickle`.
 #[pyfunction]
 pub(crate) fn _state_of_json(json: &str, version: u16) -> PyResult<RobotState> {
     let version = Version::from_number(version)

@@ -9,7 +9,7 @@ use pyo3::types::{PyDict, PyMappingProxy};
 use crate::arrays::array;
 use crate::state::RobotState;
 
-/// Where each part of `RobotState.flat()` is: name, begin, end.
+/// Places of the parts of `RobotState.flat()`: name, begin, end.
 pub(crate) const FLAT_LAYOUT: [(&str, usize, usize); 13] = [
     ("q", 0, 7),
     ("dq", 7, 14),
@@ -29,7 +29,7 @@ pub(crate) const FLAT_LAYOUT: [(&str, usize, usize); 13] = [
 /// The length of `RobotState.flat()`.
 pub(crate) const FLAT_LEN: usize = 69;
 
-/// Writes the numbers that `RobotState.flat()` has.
+/// Writes the numbers of `RobotState.flat()`.
 pub(crate) fn write_flat(state: &franka_async::state::RobotState, numbers: &mut [f64]) {
     let (position, quaternion) = place(&state.O_T_EE);
     let (position_c, quaternion_c) = place(&state.O_T_EE_c);
@@ -53,7 +53,8 @@ pub(crate) fn write_flat(state: &franka_async::state::RobotState, numbers: &mut 
     }
 }
 
-/// Position and quaternion `x y z w` with `w >= 0`; zeros for what is not a rigid transformation.
+/// Returns position and quaternion `x y z w` with `w >= 0`; zeros if the matrix is not a rigid
+/// transformation.
 fn place(matrix: &[f64; 16]) -> ([f64; 3], [f64; 4]) {
     let Ok(pose) = pose::from_array(matrix) else {
         return ([0.0; 3], [0.0; 4]);
@@ -65,7 +66,7 @@ fn place(matrix: &[f64; 16]) -> ([f64; 3], [f64; 4]) {
 
 #[pymethods]
 impl RobotState {
-    /// Where each part of `flat()` is: name, begin, end.
+    /// Places of the parts of `flat()`: name, begin, end.
     #[classattr]
     #[pyo3(name = "FLAT_LAYOUT")]
     fn flat_layout() -> Vec<(&'static str, usize, usize)> {
@@ -79,7 +80,7 @@ impl RobotState {
         FLAT_LEN
     }
 
-    /// The numbers that a policy wants, as one array, `(69,)`: see `FLAT_LAYOUT`.
+    /// The usual observation of a policy as one array, `(69,)`: see `FLAT_LAYOUT`.
     fn flat<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let mut numbers = [0.0; FLAT_LEN];
         write_flat(&self.state, &mut numbers);
@@ -153,7 +154,7 @@ impl RobotState {
         )
     }
 
-    /// The numbers that a person looks at first: name, numbers, unit.
+    /// Returns the most important numbers for a person: name, numbers, unit.
     fn table(&self) -> Vec<(&'static str, Vec<String>, &'static str)> {
         let state = &*self.state;
         let (position, quaternion) = place(&state.O_T_EE);
@@ -169,7 +170,7 @@ impl RobotState {
         ]
     }
 
-    /// The errors that there are, by attribute.
+    /// Returns the current errors, by attribute.
     fn errors(&self) -> Vec<(&'static str, String)> {
         let current = ("current_errors", self.current_errors());
         let last = ("last_errors", self.last_motion_errors());
@@ -180,7 +181,7 @@ impl RobotState {
     }
 }
 
-/// Numbers as text; those that would read `-0.000` without the sign.
+/// Returns numbers as text; `-0.000` loses its sign.
 fn fixed(numbers: &[f64], decimals: usize) -> Vec<String> {
     let least = 0.5 * 10_f64.powi(-(decimals as i32));
     let shown = |x: f64| if x.abs() < least { 0.0 } else { x };

@@ -1,4 +1,4 @@
-//! States as they come.
+//! Streams of states.
 
 use franka_async::state::Reading;
 use futures::{StreamExt, future};
@@ -12,9 +12,9 @@ use crate::stream::stream;
 
 #[pymethods]
 impl Robot {
-    /// The newest state as it changes, for `async for` or `for`; at most `rate` of them per second,
-    /// by the robot's clock, if that is given. States that come while the program does
-    /// something else are skipped for the newest. Ends when the connection does.
+    /// Newest state as it changes, for `async for` or `for`; at most `rate` of them per second, by
+    /// the robot's clock, if given. States that arrive while the program is busy are skipped for
+    /// the newest. Ends with the connection.
     #[pyo3(signature = (rate = None))]
     fn states<'py>(&self, py: Python<'py>, rate: Option<f64>) -> PyResult<Bound<'py, PyAny>> {
         let robot = self.connected()?;
@@ -32,7 +32,7 @@ impl Robot {
             let now = state.message_id as f64;
             let is_due = now >= due;
             if is_due {
-                // Late ones do not make the later ones come closer together.
+                // Late states do not reduce the interval of later ones.
                 due = f64::max(due + period, now + period - 1.0);
             }
             future::ready(is_due)
@@ -43,8 +43,8 @@ impl Robot {
     }
 
     /// Every state from now on, each once and in order, for `async for` or `for`: pairs of the
-    /// state and how many are `missed` before it. A program may lag about a second behind
-    /// before it misses any. Ends when the connection does.
+    /// state and the number of states `missed` before it. A program may lag about a second behind
+    /// before it misses any. Ends with the connection.
     fn state_stream<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let robot = self.connected()?;
         let version = robot.version();

@@ -1,4 +1,4 @@
-//! How punctual control is, and what was counted.
+//! The punctuality of control, and its counters.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use crate::runtime::runtime;
 #[pymethods]
 impl Robot {
     /// Counters and times of the control thread since the connection was made, as a new `dict`;
-    /// without waiting, whatever moves.
+    /// without waiting, also during motions.
     ///
     /// Counters: `states`, `commands`, `skipped`, `lost`, `stale`, `foreign`, `malformed`,
     /// `receive_errors`, `send_errors`, `records_lost`, `states_lost`, `reports_lost`. Times, each
@@ -72,8 +72,8 @@ impl Robot {
         Ok(all)
     }
 
-    /// What the operating system granted the control thread, as a new `dict`: its `SCHED_FIFO`
-    /// `priority` or `None`, `busy_poll` in s or `None`, and `refusals`, texts, under
+    /// Rights granted to the control thread by the operating system, as a new `dict`: its
+    /// `SCHED_FIFO` `priority` or `None`, `busy_poll` in s or `None`, and `refusals`, texts, under
     /// `realtime="ignore"`.
     fn granted<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let granted = self.connected()?.granted();
@@ -88,15 +88,15 @@ impl Robot {
         Ok(all)
     }
 
-    /// The robot's metrics as OpenMetrics text, for Prometheus and whatever else reads that; the
-    /// label `robot` is its address. `franka_async.metrics.text` is the text of several robots.
+    /// The robot's metrics as OpenMetrics text, for Prometheus and compatible tools; the label
+    /// `robot` is its address. `franka_async.metrics.text` is the text of several robots.
     fn metrics(&self, py: Python<'_>) -> PyResult<String> {
         let robot = self.connected()?;
         Ok(py.detach(|| robot.metrics()))
     }
 }
 
-/// The metrics of the robots that are connected, each with its value of the label `robot`, as one
+/// Returns the metrics of the connected robots, each with its value of the label `robot`, as one
 /// text.
 #[pyfunction]
 pub(crate) fn _metrics(
@@ -137,7 +137,7 @@ fn times<'py>(py: Python<'py>, cycle: &CycleTimes) -> PyResult<Bound<'py, PyDict
     Ok(all)
 }
 
-/// The times of the phases of a cycle, s.
+/// Returns the times of the phases of a cycle, s.
 pub(crate) fn phases<'py>(py: Python<'py>, phases: &Phases) -> PyResult<Bound<'py, PyDict>> {
     let all = PyDict::new(py);
     for (name, time) in [

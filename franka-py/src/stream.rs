@@ -9,15 +9,15 @@ use pyo3::prelude::*;
 
 use crate::operation::Operation;
 
-/// Becomes an object where the interpreter is at hand.
+/// Converted to an object when the interpreter is held.
 type Item = Box<dyn FnOnce(Python<'_>) -> PyResult<Py<PyAny>> + Send>;
 
 type Items = Pin<Box<dyn Stream<Item = Item> + Send>>;
 
-/// Where the items of `franka_async.streams.Stream` come from.
+/// The source of the items of `franka_async.streams.Stream`.
 ///
-/// An item is waited for and taken in two steps, so that none is lost where the waiting is
-/// cancelled: `ready()` takes time and changes nothing that a program sees, `take()` does not.
+/// An item is awaited and taken in two steps, so that none is lost if the wait is cancelled:
+/// `ready()` takes time and changes nothing visible, `take()` is immediate.
 #[pyclass(frozen, module = "franka_async._native")]
 pub(crate) struct Source(Arc<Shared>);
 
@@ -29,7 +29,7 @@ struct Shared {
 enum Next {
     Unknown,
     Known(Item),
-    /// There is none, and will be none.
+    /// No more items exist.
     End,
 }
 
@@ -40,7 +40,7 @@ impl Shared {
 
     /// Waits until the next item is known.
     async fn ready(&self) {
-        // Whoever waits at the same time finds it there.
+        // Another waiting task finds the item there.
         let mut items = self.items.lock().await;
         if matches!(*self.next(), Next::Unknown) {
             let next = items.next().await.map_or(Next::End, Next::Known);
@@ -51,13 +51,13 @@ impl Shared {
 
 #[pymethods]
 impl Source {
-    /// Resolves when `take()` has something.
+    /// Resolves when `take()` has an item.
     fn ready(&self) -> Operation {
         let shared = self.0.clone();
         Operation::infallible("next", async move { shared.ready().await })
     }
 
-    /// The next item, as a tuple of one; `None` if another task has taken it. Raises
+    /// Next item, as a tuple of one; `None` if another task has taken it. Raises
     /// `StopAsyncIteration` at the end.
     fn take(&self, py: Python<'_>) -> PyResult<Option<(Py<PyAny>,)>> {
         let mut next = self.0.next();
@@ -75,7 +75,7 @@ impl Source {
     }
 }
 
-/// A `franka_async.streams.Stream` of what `stream` yields; `object` makes each item.
+/// Returns a `franka_async.streams.Stream` of the items of `stream`; `object` converts each item.
 pub(crate) fn stream<'py, T: Send + 'static>(
     py: Python<'py>,
     stream: impl Stream<Item = T> + Send + 'static,

@@ -45,7 +45,7 @@ struct BackoffFields {
 /// Reads a `franka_async.supervision.Policy`.
 ///
 /// # Errors
-/// `TypeError` for another object, `ValueError` for values that make no sense.
+/// `TypeError` for another object, `ValueError` for invalid values.
 pub(crate) fn policy(policy: &Bound<'_, PyAny>) -> PyResult<Policy> {
     let fields: PolicyFields = policy.extract()?;
     let mut policy = Policy::default().silence(seconds("silence", fields.silence)?);
@@ -97,7 +97,7 @@ pub(crate) fn policy(policy: &Bound<'_, PyAny>) -> PyResult<Policy> {
     Ok(policy)
 }
 
-/// The robot's error that the argument called `argument` names.
+/// Returns the robot's error named by the argument `argument`.
 ///
 /// # Errors
 /// `ValueError` with all names.
@@ -113,17 +113,17 @@ pub(crate) fn error_called(argument: &str, name: &str) -> PyResult<RobotError> {
     })
 }
 
-/// Raises `ValueError` for a policy that makes no sense.
+/// Raises `ValueError` for an invalid policy.
 #[pyfunction]
 pub(crate) fn _check_policy(policy: &Bound<'_, PyAny>) -> PyResult<()> {
     self::policy(policy).map(drop)
 }
 
-/// Has a robot supervised by `policy`, or `True` for the default one, and `ask` called with the
-/// reflex before each recovery.
+/// Supervises a robot by `policy`, or `True` for the default one; `ask` is called with the reflex
+/// before each recovery.
 ///
 /// # Errors
-/// As [`policy`]; `ValueError` for a function without a policy.
+/// The errors of [`policy`]; `ValueError` for a function without a policy.
 pub(crate) fn supervise_by(
     builder: Builder,
     policy: Option<&Bound<'_, PyAny>>,
@@ -145,7 +145,7 @@ pub(crate) fn supervise_by(
         return Ok(builder);
     };
     Ok(builder.ask_before_recovery(move |reflex| {
-        // On a thread for what blocks. No answer where the interpreter exits.
+        // Runs on a thread that may block. No answer if the interpreter exits.
         let agreed = exit::in_python(|py| {
             let answer = self::reflex(py, reflex)
                 .and_then(|reflex| ask.bind(py).call1((reflex,)))
@@ -161,22 +161,22 @@ pub(crate) fn supervise_by(
 
 #[pymethods]
 impl Robot {
-    /// What happens to the robot from now on, for `async for`: connections lost and made, reflexes,
-    /// recoveries, user stop, guiding, brakes, motions, loads; see `Event`. It is there for a robot
-    /// that is not supervised, too. Ends when there is no connection and will be none.
+    /// Events of the robot from now on, for `async for`: connections lost and made, reflexes,
+    /// recoveries, user stop, guiding, brakes, motions, loads; see `Event`. Also available for a
+    /// robot without supervision. Ends when the connection has ended permanently.
     fn events<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         stream(py, self.connected()?.events(), |py, notification| {
             Ok(event(py, notification)?.unbind())
         })
     }
 
-    /// How the robot is now: whether it takes motions, why not, how often it was reconnected and
-    /// recovered.
+    /// Current health of the robot: readiness for motions, the reason if it is not ready, and
+    /// counts of reconnects and recoveries.
     fn health<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         health(py, self.connected()?.health().newest())
     }
 
-    /// How the robot is, now and as it changes, for `async for`. Ends as `events()` does.
+    /// Health of the robot, now and as it changes, for `async for`. Ends like `events()`.
     fn health_changes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let changes = self.connected()?.health();
         let now = futures::stream::iter([changes.newest()]);
@@ -185,15 +185,15 @@ impl Robot {
         })
     }
 
-    /// Agrees, or not, to the recovery from the reflex of this number: for a `Policy` that asks
-    /// first. Returns whether that was awaited. The number is that of the event or of
+    /// Approves or rejects the recovery from the reflex with this number, for a `Policy` that asks
+    /// first. Returns `True` if the answer was awaited. The number is in the event and in
     /// `health().reflex`.
     #[pyo3(signature = (reflex, yes = true))]
     fn agree(&self, reflex: u64, yes: bool) -> PyResult<bool> {
         Ok(self.connected()?.agree(reflex, yes))
     }
 
-    /// Waits until there is no connection and will be none, and returns why: a `CloseReason`.
+    /// Waits until the connection has ended permanently, and returns the reason: a `CloseReason`.
     /// Cancelling has no effect on the robot.
     fn closed(&self) -> PyResult<Operation> {
         let robot = self.connected()?;
@@ -203,7 +203,7 @@ impl Robot {
     }
 }
 
-/// A reason, made into a `franka_async.supervision.CloseReason`.
+/// A reason, converted to a `franka_async.supervision.CloseReason`.
 struct Closed(CloseReason);
 
 impl<'py> IntoPyObject<'py> for Closed {
@@ -311,7 +311,7 @@ fn event(py: Python<'_>, notification: Notification) -> PyResult<Bound<'_, PyAny
             fields.set_item("center", array(py, &load.F_x_Cload))?;
             fields.set_item("inertia", columns::<3, 3>(py, &load.I_load))?;
         }
-        // Kinds that this package does not know have no fields.
+        // Kinds unknown to this package have no fields.
         _ => {}
     }
     let robot_time = robot_time.map(|time| time as f64 / 1000.0);

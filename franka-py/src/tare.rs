@@ -1,4 +1,4 @@
-//! The external wrench without what the robot shows of it with nothing attached.
+//! The external wrench without its offset for an untouched arm.
 
 use franka_async::state::WrenchTare;
 use numpy::PyArray1;
@@ -11,11 +11,11 @@ use crate::state::RobotState;
 
 #[pymethods]
 impl Robot {
-    /// Takes the average of what the robot estimates of external forces and torques, over
-    /// `duration` seconds of its clock (0.02 to 60), and returns a `WrenchTare`. The arm has to
-    /// rest, untouched: raises `TareError` otherwise, and `ReadError` if states no longer come. A
-    /// tare belongs to the posture in which it was taken. Nothing moves, and nothing is changed at
-    /// the robot; cancelled, it takes no tare.
+    /// Averages the robot's estimates of external forces and torques over `duration` seconds of its
+    /// clock (0.02 to 60), and returns a `WrenchTare`. The arm must be at rest and untouched:
+    /// raises `TareError` otherwise, and `ReadError` if states stop arriving. A tare is valid near
+    /// the posture in which it was taken. The arm does not move, and the robot's settings do not
+    /// change; if cancelled, no tare is taken.
     #[pyo3(signature = (duration = 0.5))]
     fn tare(&self, duration: f64) -> PyResult<Operation> {
         let (robot, duration) = (self.connected()?, seconds("duration", duration)?);
@@ -25,7 +25,7 @@ impl Robot {
     }
 }
 
-/// The robot's estimate for an untouched arm at rest, to take off later. It belongs to the
+/// The robot's estimate for an untouched arm at rest, to be subtracted later. It is valid near the
 /// posture in which it was taken.
 #[pyclass(frozen, eq, name = "WrenchTare", module = "franka_async")]
 #[derive(Clone, PartialEq)]
@@ -33,7 +33,7 @@ pub(crate) struct PyWrenchTare(pub(crate) WrenchTare);
 
 #[pymethods]
 impl PyWrenchTare {
-    /// A tare is taken to hold within so much of its posture, rad of any joint.
+    /// Largest distance from its posture at which a tare is valid, rad of any joint.
     #[classattr]
     const NEAR: f64 = WrenchTare::NEAR;
 
@@ -56,21 +56,21 @@ impl PyWrenchTare {
         array(py, &self.0.joint_torques)
     }
 
-    /// Joint positions in which it was taken, `(7,)` rad.
+    /// Joint positions of the tare, `(7,)` rad.
     #[getter]
     fn q<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, &self.0.q)
     }
 
-    /// How many states it is the average of.
+    /// Number of averaged states.
     #[getter]
     fn states(&self) -> u32 {
         self.0.states
     }
 
-    /// The wrench of a state without the tare: force, then moment about the origin of the stiffness
-    /// frame, in axes of the base, `(6,)` N and N m, positive where the arm exerts it. `None` where
-    /// the robot has no estimate, near a singularity.
+    /// The wrench of a state minus the tare: force, then moment about the origin of the stiffness
+    /// frame, in axes of the base, `(6,)` N and N m, positive when the arm pushes. `None` if the
+    /// robot has no estimate, near a singularity.
     fn compensate<'py>(
         &self,
         py: Python<'py>,
@@ -80,7 +80,7 @@ impl PyWrenchTare {
         Some(array(py, &wrench))
     }
 
-    /// The external joint torques of a state without the tare, `(7,)` N m.
+    /// The external joint torques of a state minus the tare, `(7,)` N m.
     fn compensate_torques<'py>(
         &self,
         py: Python<'py>,
@@ -89,7 +89,7 @@ impl PyWrenchTare {
         array(py, &self.0.compensate_torques(&state.state))
     }
 
-    /// The largest change of a joint since the tare, rad: beyond `NEAR`, take a new one.
+    /// Largest change of a joint since the tare, rad: beyond `NEAR`, take a new tare.
     fn turned(&self, state: &RobotState) -> f64 {
         self.0.turned(&state.state)
     }

@@ -1,4 +1,4 @@
-//! Several arms as one: motions that begin together, one stop.
+//! Several arms as one: motions that begin together, and a common stop.
 
 use std::future::Future;
 use std::pin::Pin;
@@ -32,7 +32,7 @@ pub(crate) enum Members {
     Four(Joint<4>),
 }
 
-/// Does the same with a team of any size.
+/// Runs the same code with a team of any size.
 macro_rules! with_team {
     ($members:expr, $team:ident => $act:expr) => {
         match $members {
@@ -46,13 +46,13 @@ macro_rules! with_team {
 type Outcomes = Pin<Box<dyn Future<Output = Vec<Outcome>> + Send>>;
 
 /// Two to four arms as one: `async with await Team.engage(left, right) as team:`. Their motions
-/// begin within a millisecond of each other, and the fault of one brakes the others within two
-/// cycles of their control threads, whatever Python is busy with.
+/// begin within a millisecond of each other, and a fault of one brakes the others within two cycles
+/// of their control threads, independent of Python.
 ///
-/// A joint motion returns a list of one `MotionReport` for each arm. If one of them has not
-/// arrived, it raises `TeamError` with `outcomes`, one for each arm, of which the error of the arm
-/// at fault is the cause. Cancelling a joint motion brakes all arms. When the last reference to the
-/// team and its arms goes, all brake and their sessions end.
+/// A joint motion returns a list of one `MotionReport` for each arm. If an arm has not arrived, it
+/// raises `TeamError` with `outcomes`, one for each arm; the error of the arm at fault is its
+/// cause. Cancelling a joint motion brakes all arms. When the last reference to the team and its
+/// arms is dropped, all brake and their sessions end.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Team {
     pub(crate) members: Threaded<Arc<Members>>,
@@ -61,11 +61,11 @@ pub(crate) struct Team {
 
 #[pymethods]
 impl Team {
-    /// Begins a session for each robot, as `Robot.engage` does, with the same options for all:
+    /// Begins a session for each robot, like `Robot.engage`, with the same options for all:
     /// `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture`, `speed_cap`;
     /// returns a `Team`. A robot that is silent for `silence` seconds brakes the others. Raises
-    /// `MotionError` of the first arm that is not engaged; the others are then let go. Cancelling
-    /// ends all sessions.
+    /// `MotionError` of the first arm that could not be engaged; the others are then released.
+    /// Cancelling ends all sessions.
     #[staticmethod]
     #[pyo3(signature = (*robots, silence = SILENCE.as_secs_f64(), **options))]
     fn engage(
@@ -106,8 +106,8 @@ impl Team {
         self.arms.iter().map(|arm| arm.clone_ref(py)).collect()
     }
 
-    /// A motion of all arms, each to its target, which `Arm.move_to` takes; with the same options
-    /// for all.
+    /// A motion of all arms, each to its own target as in `Arm.move_to`, with the same options for
+    /// all.
     #[pyo3(signature = (targets, **options))]
     fn move_to(
         &self,
@@ -127,11 +127,11 @@ impl Team {
         self.joint("Team.move_to", motions)
     }
 
-    /// A motion of all arms: `motions` are one of each arm, in their order,
-    /// `[team.arms[0].move_to(a), team.arms[1].move_by(b)]`, which are then not to be awaited
-    /// themselves. All begin together. An arm may follow a `Latest`, `team.arms[1].follow(latest)`:
-    /// it begins with the first target, and the motion ends when the others have arrived and the
-    /// `Latest` is closed.
+    /// A motion of all arms: `motions` has one motion of each arm, in their order,
+    /// `[team.arms[0].move_to(a), team.arms[1].move_by(b)]`; do not await these motions themselves.
+    /// All begin together. An arm may follow a `Latest`, `team.arms[1].follow(latest)`: it begins
+    /// with the first target, and the motion ends when the others have arrived and the `Latest` is
+    /// closed.
     fn run(&self, motions: Vec<Bound<'_, PyAny>>) -> PyResult<Operation> {
         self.check_count("motions", motions.len())?;
         let arms = self.arms.iter().map(|arm| &arm.get().told);
@@ -139,16 +139,16 @@ impl Team {
         self.joint("Team.run", motions)
     }
 
-    /// Brakes all arms, each within two of its cycles. Never waits, fit for any thread. Motions
-    /// raise, the sessions go on and hold the arms. A joint motion that begins before every arm has
-    /// seen the stop does not start, and raises in the same way.
+    /// Brakes all arms, each within two of its cycles. Never waits, usable on any thread. Motions
+    /// raise; the sessions continue and hold the arms. A joint motion that begins before every arm
+    /// has seen the stop does not start, and raises in the same way.
     fn stop(&self) {
         with_team!(&**self.members, team => team.stop());
     }
 
-    /// Brakes all arms as `stop` does, ends their sessions and latches the stop of each robot: see
-    /// `Robot.latch_stop`. Waits until all rest, and raises `MotionError` of the first arm that was
-    /// not seen to.
+    /// Brakes all arms like `stop`, ends their sessions and latches the stop of each robot: see
+    /// `Robot.latch_stop`. Waits until all are at rest, and raises `MotionError` of the first arm
+    /// that was not seen to be at rest.
     fn latch_stop(&self) -> Operation {
         let members = Arc::clone(&self.members);
         Operation::new("Team.latch_stop", async move {
@@ -159,14 +159,14 @@ impl Team {
         })
     }
 
-    /// Releases the latched stop of each robot, and returns whether one was latched. The sessions
-    /// have ended: the next motions are those of a new team.
+    /// Releases the latched stop of each robot, and returns `True` if one was latched. The sessions
+    /// have ended: the next motions need a new team.
     fn release_stop(&self) -> bool {
         with_team!(&**self.members, team => team.release_stop())
     }
 
-    /// Why the newest joint motion, or what came after it, has stopped: `requested`, or the name of
-    /// what happened with the number of the arm, `("robot_stopped", 1)`; `None` if nothing has.
+    /// Reason why the newest joint motion, or the team afterwards, has stopped: `requested`, or the
+    /// name of the event with the number of the arm, `("robot_stopped", 1)`; `None` without a stop.
     fn stopped<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let stopped = with_team!(&**self.members, team => team.stopped());
         Ok(match stopped {
@@ -178,9 +178,9 @@ impl Team {
         })
     }
 
-    /// Takes an object as held by all arms from now on, where it is: `bases` are the robots' base
-    /// frames and `object` is the object's, poses in one frame of the program's choice. Nothing
-    /// moves. Raises `MotionError` if a session has ended.
+    /// Declares an object as held by all arms from now on, in its current place: `bases` are the
+    /// robots' base frames and `object` is the object's, poses in one frame of the program's
+    /// choice. The arms do not move. Raises `MotionError` if a session has ended.
     fn grasp(
         this: &Bound<'_, Self>,
         bases: Vec<Bound<'_, PyAny>>,
@@ -200,8 +200,8 @@ impl Team {
         })
     }
 
-    /// Brakes all arms, lets them go and ends their sessions. Raises `TeamError` if one ended
-    /// otherwise.
+    /// Brakes and releases all arms and ends their sessions. Raises `TeamError` if a session ended
+    /// in another way.
     fn disengage(&self) -> PyResult<Operation> {
         let (sessions, ended) = self.ending()?;
         Ok(Operation::new("Team.disengage", async move {
@@ -223,7 +223,7 @@ impl Team {
         let (sessions, ended) = self.ending()?;
         Ok(Operation::new("Team.disengage", async move {
             match judge(ended.await, sessions) {
-                // What the block raised is not replaced, and what it was told not repeated.
+                // The block's exception is not replaced, and known errors are not repeated.
                 Err(error) if !raised && !error.is_known() => Err(error),
                 _ => Ok(()),
             }
@@ -254,7 +254,7 @@ impl Team {
         sessions.collect()
     }
 
-    /// The sessions, and their end.
+    /// Returns the sessions, and their end.
     fn ending(&self) -> PyResult<(Vec<Session>, impl Future<Output = Vec<Outcome>> + use<>)> {
         let sessions = self.sessions()?;
         let ending = sessions.iter().map(|(_, arm)| arm.clone().disengage());
@@ -276,7 +276,7 @@ impl Team {
     }
 }
 
-/// An object that all arms of a team hold: made by `Team.grasp`.
+/// An object that all arms of a team hold: created by `Team.grasp`.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct TeamGrasp {
     team: Py<Team>,
@@ -288,8 +288,8 @@ pub(crate) struct TeamGrasp {
 #[pymethods]
 impl TeamGrasp {
     /// A motion of the object to this pose, in the frame of the bases, on a straight line; with
-    /// options of `Arm.move_to` other than `limits`, the same for all arms. An arm that is held
-    /// back holds up the others.
+    /// options of `Arm.move_to` except `limits`, the same for all arms. If one arm is blocked, the
+    /// others wait.
     #[pyo3(signature = (object, **options))]
     fn move_to(
         &self,
@@ -311,7 +311,7 @@ impl TeamGrasp {
         Ok(Operation::new("TeamGrasp.move_to", async move {
             let running: Outcomes = with_team!(&*members, team => {
                 let grasp = team.grasp_at(sized(&bases), sized(&hands));
-                // The options of the members come in their order.
+                // The options of the members are in their order.
                 let chosen = std::cell::RefCell::new(chosen.into_iter());
                 let motion = grasp.move_with(object, |motion| {
                     let options = chosen.borrow_mut().next().expect("one for each arm");
@@ -323,7 +323,7 @@ impl TeamGrasp {
         }))
     }
 
-    /// Where the object is by the newest state of each arm, in the frame of the bases: a list of
+    /// Pose of the object from the newest state of each arm, in the frame of the bases: a list of
     /// `(4, 4)`.
     fn measured<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let measured: Vec<Pose> = with_team!(&**self.team.get().members, team => {
@@ -333,7 +333,7 @@ impl TeamGrasp {
     }
 }
 
-/// As many as there are members, which was checked.
+/// Converts to an array; the number of members was checked.
 fn sized<const N: usize>(poses: &[Pose]) -> [Pose; N] {
     poses.try_into().expect("one for each arm")
 }
@@ -349,7 +349,7 @@ async fn begin<const N: usize>(
     Ok(Joint::engage_tolerating(silence, members).await?)
 }
 
-/// A team that has just begun, made into a `Team`.
+/// A new team, converted to a `Team`.
 struct Engaged(Members);
 
 impl<'py> IntoPyObject<'py> for Engaged {
@@ -389,14 +389,14 @@ impl<'py> IntoPyObject<'py> for Reports {
     }
 }
 
-/// The outcomes of a motion of which a member has not arrived.
+/// The outcomes of a motion in which a member has not arrived.
 struct Failed {
     outcomes: Vec<Outcome>,
-    /// One for each.
+    /// One session for each.
     sessions: Vec<Session>,
 }
 
-/// A session, and what was told of it.
+/// A session, with its raised errors.
 type Session = (Told, franka_async::Arm);
 
 fn judge(outcomes: Vec<Outcome>, sessions: Vec<Session>) -> Result<Reports, Failed> {
@@ -411,13 +411,13 @@ fn judge(outcomes: Vec<Outcome>, sessions: Vec<Session>) -> Result<Reports, Fail
 }
 
 impl Failed {
-    /// The errors, each with its session.
+    /// Returns the errors, each with its session.
     fn errors(&self) -> impl Iterator<Item = (&MotionError, &Session)> {
         let each = self.outcomes.iter().zip(&self.sessions);
         each.filter_map(|(outcome, session)| Some((outcome.as_ref().err()?, session)))
     }
 
-    /// Whether the program was told all of it before.
+    /// True if all errors were raised before.
     fn is_known(&self) -> bool {
         self.errors().all(|(error, (told, _))| told.knows(error))
     }
@@ -433,7 +433,7 @@ impl Raise for Failed {
 }
 
 fn raised(py: Python<'_>, outcomes: Vec<Outcome>) -> PyResult<PyErr> {
-    // The arm at fault, rather than those that were braked for it.
+    // The arm at fault, rather than the arms that were braked because of it.
     let follows = |error: &MotionError| matches!(error, MotionError::Braked(Lapse::Team(_)));
     let failed = |outcome: &Outcome| outcome.is_err();
     let at_fault = |outcome: &Outcome| outcome.as_ref().is_err_and(|error| !follows(error));

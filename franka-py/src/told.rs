@@ -1,4 +1,5 @@
-//! What a program has been told of the end of a session: the end of its block does not repeat it.
+//! The errors of a session that were already raised, so that the end of its block does not repeat
+//! them.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -9,16 +10,16 @@ use pyo3::prelude::*;
 use crate::errors::Raise;
 use crate::operation::Operation;
 
-/// Which errors of a session were raised. Clones are of the same session.
+/// The raised errors of a session. Clones belong to the same session.
 #[derive(Clone, Default)]
 pub(crate) struct Told(Arc<Mutex<Raised>>);
 
 #[derive(Default)]
 struct Raised {
-    /// What ended the session.
+    /// True if the end of the session was raised.
     end: bool,
-    /// The newest error before the session had ended, if the session has not been seen to go on
-    /// since: a motion resolves before its session does, which a stop has brake first.
+    /// The newest error before the end of the session, unless the session has continued since. A
+    /// motion resolves before its session, because a stop brakes first.
     newest: Option<String>,
 }
 
@@ -27,7 +28,7 @@ impl Told {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Notes that `error` of the session `arm` is raised.
+    /// Records that `error` of the session `arm` is raised.
     pub(crate) fn note(&self, arm: &Arm, error: &MotionError) {
         match arm.ended().now_or_never() {
             Some(Err(end)) => self.raised().end |= end.to_string() == error.to_string(),
@@ -36,30 +37,30 @@ impl Told {
         }
     }
 
-    /// Notes how something that the session was asked for has turned out: what went well shows that
-    /// an error before it was not the end.
+    /// Records the result of a later request: a success shows that the earlier error was not the
+    /// end.
     pub(crate) fn saw<T, E>(&self, outcome: &Result<T, E>) {
         if outcome.is_ok() {
             self.raised().newest = None;
         }
     }
 
-    /// Whether the program knows that `error` ended the session.
+    /// True if the program already received `error` as the end of the session.
     pub(crate) fn knows(&self, error: &MotionError) -> bool {
         let raised = self.raised();
         raised.end || raised.newest.as_ref() == Some(&error.to_string())
     }
 
-    /// Whether both are of one session.
+    /// True if both belong to one session.
     pub(crate) fn is(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
 }
 
-/// An error of a session, which is noted when it is raised.
+/// An error of a session, which is recorded when it is raised.
 pub(crate) struct Telling {
     pub(crate) error: MotionError,
-    /// `None` of a motion without a session.
+    /// `None` for a motion without a session.
     pub(crate) of: Option<(Told, Arm)>,
 }
 
@@ -72,7 +73,7 @@ impl Raise for Telling {
     }
 }
 
-/// An operation called `name` that does `work` of a session.
+/// Creates an operation named `name` with `work` of a session.
 pub(crate) fn telling<T>(
     name: &'static str,
     (told, arm): (Told, Arm),
@@ -91,8 +92,8 @@ where
     })
 }
 
-/// Ends the session at the end of a `with` block. What the block raised is not replaced, and what
-/// the program was told before is not raised again.
+/// Ends the session at the end of a `with` block. The block's exception is not replaced, and errors
+/// that the program already received are not raised again.
 pub(crate) fn leave((told, arm): (Told, Arm), raised: Option<&Bound<'_, PyAny>>) -> Operation {
     let raised = raised.is_some_and(|kind| !kind.is_none());
     Operation::new("Arm.disengage", async move {

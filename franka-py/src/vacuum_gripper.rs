@@ -12,9 +12,8 @@ use crate::operation::{Operation, seconds};
 use crate::robot::Robot;
 use crate::stream::stream;
 
-/// A vacuum gripper, which has a connection of its own beside the robot's. What `Gripper` says of
-/// connecting, of actions and of their ends holds for it as well; cancelling an action stops the
-/// pump.
+/// A vacuum gripper, with its own connection in addition to the robot's. Connection, actions and
+/// their ends work as for `Gripper`; cancelling an action stops the pump.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct VacuumGripper(pub(crate) Device<vacuum::VacuumGripper>);
 
@@ -32,8 +31,8 @@ device_methods!(
 
 #[pymethods]
 impl Robot {
-    /// The vacuum gripper of this robot, at its host and the second port after the robot's; it is
-    /// yet to be connected, as `gripper()`.
+    /// The vacuum gripper of this robot, at its host and the second port after the robot's, not yet
+    /// connected, like `gripper()`.
     fn vacuum_gripper(&self) -> VacuumGripper {
         VacuumGripper::new(self.beside(2))
     }
@@ -41,7 +40,7 @@ impl Robot {
 
 #[pymethods]
 impl VacuumGripper {
-    /// Describes a connection to the gripper at `address`, `host` or `host:port`; nothing is sent
+    /// Describes a connection to the gripper at `address`, `host` or `host:port`; it sends nothing
     /// yet. The port is 1339 unless given.
     #[new]
     #[pyo3(signature = (address))]
@@ -53,20 +52,20 @@ impl VacuumGripper {
         )?))
     }
 
-    /// The newest state, without waiting.
+    /// Newest state, without waiting.
     fn state(&self) -> PyResult<VacuumGripperState> {
         Ok(VacuumGripperState(self.0.connected()?.state()))
     }
 
-    /// The newest state as it changes, for `async for`. Ends when the connection does.
+    /// Newest state as it changes, for `async for`. Ends with the connection.
     fn states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         stream(py, self.0.connected()?.states(), |py, state| {
             VacuumGripperState(state).into_py_any(py)
         })
     }
 
-    /// Sucks an object on and holds it; returns whether the vacuum was reached within `timeout`
-    /// seconds, which go out in whole milliseconds. `vacuum` is in units of 10 mbar, 0 to 255;
+    /// Picks up an object and holds it; returns `True` if the vacuum was reached within `timeout`
+    /// seconds, which are sent in whole milliseconds. `vacuum` is in units of 10 mbar, 0 to 255;
     /// `profile` is a production set-up profile of the device, 0 to 3. Raises `ActionError`;
     /// cancelling stops the pump.
     #[pyo3(signature = (vacuum, timeout, profile = 0))]
@@ -85,7 +84,7 @@ impl VacuumGripper {
         }))
     }
 
-    /// Drops the object; returns whether that was done within `timeout` seconds. Raises
+    /// Drops the object; returns `True` if this succeeded within `timeout` seconds. Raises
     /// `ActionError`; cancelling stops the pump.
     fn drop_off(&self, timeout: f64) -> PyResult<Operation> {
         let timeout = seconds("timeout", timeout)?;
@@ -95,8 +94,8 @@ impl VacuumGripper {
         }))
     }
 
-    /// Stops the action that runs, which raises `ActionError`; returns whether that succeeded. Once
-    /// it has begun, it goes on even if it is cancelled.
+    /// Stops the current action, which raises `ActionError`; returns `True` on success. Once begun,
+    /// the stop continues even if it is cancelled.
     fn stop(&self) -> PyResult<Operation> {
         let gripper = self.0.connected()?;
         Ok(Operation::new("VacuumGripper.stop", async move {
@@ -105,26 +104,26 @@ impl VacuumGripper {
     }
 }
 
-/// What a vacuum gripper says of itself. It does not change.
+/// The state of a vacuum gripper. It is immutable.
 #[pyclass(frozen, eq, hash, module = "franka_async")]
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) struct VacuumGripperState(pub(crate) vacuum::State);
 
 #[pymethods]
 impl VacuumGripperState {
-    /// Whether the vacuum is inside its range.
+    /// True if the vacuum is within its range.
     #[getter]
     fn in_control_range(&self) -> bool {
         self.0.in_control_range
     }
 
-    /// Whether the object has been dropped off.
+    /// True if the object has been dropped off.
     #[getter]
     fn part_detached(&self) -> bool {
         self.0.part_detached
     }
 
-    /// Whether the gripper holds an object.
+    /// True if the gripper holds an object.
     #[getter]
     fn part_present(&self) -> bool {
         self.0.part_present

@@ -1,7 +1,7 @@
-//! A control law behind a C function pointer: what the function gets, and how it is called.
+//! A control law behind a C function pointer: its input, and its calls.
 //!
-//! Nothing in here knows of Python. [`Running`] is what the real-time thread calls: it neither
-//! allocates nor waits.
+//! This module does not use Python. The real-time thread calls [`Running`], which neither allocates
+//! nor waits.
 
 use std::any::Any;
 use std::sync::Arc;
@@ -14,26 +14,25 @@ use franka_async::model::{EndEffector, GRAVITY_EARTH, JointVector, Load, Model};
 use franka_async::nalgebra::{Matrix3, Matrix4, SMatrix};
 use franka_async::state::RobotState;
 
-/// The version of [`Cycle`] and [`Function`]: incremented when a field changes its place or
-/// meaning. Fields that are added at the end change `Cycle::size` alone.
+/// The version of [`Cycle`] and [`Function`]: incremented when a field moves or changes its
+/// meaning. New fields at the end only change `Cycle::size`.
 pub(crate) const VERSION: u32 = 1;
 
-/// The most numbers in parameters and in memory.
+/// Largest number of parameters, and of memory values.
 pub(crate) const MOST: usize = 256;
 
-/// The numbers that cross between threads: as many as are used, then zeros.
+/// The numbers exchanged between threads, padded with zeros.
 pub(crate) type Numbers = [f64; MOST];
 
-/// The numbers of an output: as many as the command has, the widest of which is a pose with an
-/// elbow.
+/// The numbers of an output; the widest command is a pose with an elbow.
 pub(crate) type Output = [f64; 18];
 
-/// What is called: `(cycle, parameters, memory, output)`. It returns 0 to go on, a positive number
-/// for the last command, and a negative one to stop the robot, which is the error's code.
+/// The called function: `(cycle, parameters, memory, output)`. It returns 0 to continue, a positive
+/// number for the last command, and a negative number to stop the robot, which is the error's code.
 pub(crate) type Function =
     unsafe extern "C" fn(*const Cycle, *const f64, *mut f64, *mut f64) -> i32;
 
-/// A function, and what its code belongs to.
+/// A function, with the owner of its code.
 pub(crate) struct Code {
     function: Function,
     /// Frees the code when it is dropped.
@@ -41,14 +40,15 @@ pub(crate) struct Code {
 }
 
 impl Code {
-    /// The function at `address`, which lives as long as `owner`. `None` for the null pointer.
+    /// Creates the function at `address`, which lives as long as `owner`. `None` for the null
+    /// pointer.
     ///
     /// # Safety
-    /// At `address` is a [`Function`] that reads and writes no more than the lengths in [`Cycle`]
-    /// and of the output allow, and that any thread may call.
+    /// `address` must be a [`Function`] that respects the lengths in [`Cycle`] and of the output,
+    /// and that any thread may call.
     pub(crate) unsafe fn new(address: usize, owner: Box<dyn Any + Send + Sync>) -> Option<Self> {
-        // SAFETY: a pointer and an optional function pointer have the same representation, null is
-        // `None`; the caller vouches for the rest.
+        // SAFETY: a pointer and an optional function pointer have the same representation, and null
+        // is `None`; the caller guarantees the rest.
         let function = unsafe { std::mem::transmute::<usize, Option<Function>>(address) }?;
         Some(Self {
             function,
@@ -59,7 +59,7 @@ impl Code {
 
 /// A number or array in [`Cycle`].
 trait Field {
-    /// As numpy writes it.
+    /// The numpy format.
     const FORMAT: &'static str;
     fn shape() -> Vec<usize>;
 }
@@ -84,12 +84,12 @@ impl<F: Field, const N: usize> Field for [F; N] {
     }
 }
 
-/// Where a field is: its name, its offset in bytes, its shape, its numpy format.
+/// The place of a field: its name, its offset in bytes, its shape, its numpy format.
 pub(crate) type Place = (&'static str, usize, Vec<usize>, &'static str);
 
 macro_rules! cycle {
     ($($name:ident: $type:ty,)*) => {
-        /// What a law gets in a cycle. Matrices are row by row, poses with the translation in the
+        /// The input of a law in a cycle. Matrices are row-major, poses have the translation in the
         /// last column. Documented in `include/franka_async_law.h`, which has the same fields.
         #[repr(C)]
         #[derive(Clone, Default)]
@@ -98,7 +98,7 @@ macro_rules! cycle {
             $($name: $type,)*
         }
 
-        /// Every field in its order.
+        /// Returns every field in its order.
         pub(crate) fn layout() -> Vec<Place> {
             vec![$((
                 stringify!($name),
@@ -155,7 +155,7 @@ cycle! {
 }
 
 impl Cycle {
-    /// Takes over a state, with the terms of `model` for it.
+    /// Copies a state, with the terms of `model` for it.
     fn update(&mut self, state: &RobotState, version: Version, model: &Model) {
         self.message_id = state.message_id;
         self.q = state.q;
@@ -210,27 +210,27 @@ fn rows<const R: usize, const C: usize>(matrix: &SMatrix<f64, R, C>) -> [[f64; C
     std::array::from_fn(|row| std::array::from_fn(|column| matrix[(row, column)]))
 }
 
-/// A law that runs: called with one state after the other.
+/// A running law: called with one state after the other.
 pub(crate) struct Running {
     code: Arc<Code>,
     model: Arc<Model>,
     version: Version,
     cycle: Box<Cycle>,
-    /// The newest parameters that have arrived.
+    /// The newest received parameters.
     parameters: Box<Numbers>,
     arriving: SlotReader<Numbers>,
     memory: Box<Numbers>,
-    /// Where the memory can be read while the law runs.
+    /// The writer of the memory, which can be read while the law runs.
     remembered: SlotWriter<Numbers>,
 }
 
-/// What a law runs with.
+/// The inputs of a law.
 pub(crate) struct Setup<'a> {
     pub(crate) model: Arc<Model>,
     pub(crate) version: Version,
     /// The parameters of the first cycle.
     pub(crate) parameters: &'a [f64],
-    /// Where later ones come from: always as many.
+    /// Later parameters, with the same length.
     pub(crate) arriving: SlotReader<Numbers>,
     /// The memory before the first cycle.
     pub(crate) memory: &'a [f64],
@@ -238,7 +238,7 @@ pub(crate) struct Setup<'a> {
 }
 
 impl Running {
-    /// Parameters and memory have [`MOST`] numbers at most.
+    /// Parameters and memory have at most [`MOST`] numbers.
     pub(crate) fn new(code: Arc<Code>, setup: Setup<'_>) -> Self {
         let cycle = Cycle {
             version: VERSION,
@@ -259,10 +259,10 @@ impl Running {
         }
     }
 
-    /// Calls the law. Returns its output and what it returned; numbers of the output that it did
-    /// not write are NaN, which no robot is sent.
+    /// Calls the law. Returns its output and its return value; output numbers that it did not write
+    /// are NaN, which is never sent to a robot.
     pub(crate) fn call(&mut self, state: &RobotState, step: Duration) -> (Output, i32) {
-        // A torn read keeps the parameters of the cycle before.
+        // A torn read keeps the parameters of the previous cycle.
         if let Read::Newer(parameters) = self.arriving.read_newer() {
             *self.parameters = parameters;
         }
@@ -272,14 +272,14 @@ impl Running {
         cycle.update(state, self.version, &self.model);
         let mut output = [f64::NAN; 18];
         let (parameters, memory) = (self.parameters.as_ptr(), self.memory.as_mut_ptr());
-        // SAFETY: the pointers are to as many numbers as the lengths say or more, alive and not
-        // aliased during the call; `Code::new` has vouched for the function.
+        // SAFETY: the pointers are to at least the stated numbers of values, alive and not aliased
+        // during the call; the caller of `Code::new` has guaranteed the function.
         let code = unsafe { (self.code.function)(cycle, parameters, memory, output.as_mut_ptr()) };
         self.remembered.write(&self.memory);
         (output, code)
     }
 
-    /// The command that the law answers a state with, made of its output by `command`.
+    /// Returns the command of the law for a state, created from its output by `command`.
     pub(crate) fn next<C>(
         &mut self,
         state: &RobotState,
@@ -295,7 +295,7 @@ impl Running {
     }
 }
 
-/// `numbers` and zeros.
+/// Returns `numbers`, padded with zeros.
 ///
 /// # Panics
 /// If there are more than [`MOST`].

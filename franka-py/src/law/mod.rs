@@ -2,8 +2,8 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | this | the class, and how a robot runs a law |
-//! | `function` | what the function gets in a cycle, and how it is called |
+//! | this | the class, and the execution of a law by a robot |
+//! | `function` | the function's input, and its calls |
 
 mod function;
 
@@ -29,36 +29,36 @@ use crate::state::RobotState;
 use function::{Code, MOST, Numbers, Output, Running, Setup};
 
 /// A control law: a C function that the real-time thread calls with every state, without the
-/// interpreter. `include/franka_async_law.h` says what the function gets and returns.
+/// interpreter. `include/franka_async_law.h` documents its input and its return value.
 ///
-/// `code` is a `numba.cfunc`, what `franka_async.laws.compiled` makes, a function of a library that
-/// `ctypes` or `cffi` has loaded, or an address as an integer, whose code the program then has to
-/// keep. `command` is what the law's output is: `torques`, `joint_positions`, `joint_velocities`,
-/// `cartesian_pose` or `cartesian_velocities`. With `elbow=True` the latter two have that of the
-/// elbow behind them: position of joint 3, rad, and the sign of joint 4; otherwise it is left to
-/// the robot. `parameters` and `memory`, `(n,)` with 256 numbers at most, are what the law finds
-/// in its first cycle.
+/// `code` is a `numba.cfunc`, a result of `franka_async.laws.compiled`, a function of a library
+/// loaded by `ctypes` or `cffi`, or an address as an integer, whose code the program must keep.
+/// `command` is the kind of the law's output: `torques`, `joint_positions`, `joint_velocities`,
+/// `cartesian_pose` or `cartesian_velocities`. With `elbow=True`, the elbow follows the output of
+/// the latter two: position of joint 3, rad, and the sign of joint 4; otherwise the robot chooses
+/// the elbow. `parameters` and `memory`, `(n,)` with at most 256 numbers, are the initial values in
+/// the first cycle.
 ///
-/// The function runs on the real-time thread, with some 300 us to answer: it must not lock,
-/// allocate, print or wait, and nothing guards against code that writes where it should not.
+/// The function runs on the real-time thread, with some 300 us to answer. It must not lock,
+/// allocate, print or wait. Code that writes to invalid memory is not detected.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Law {
     code: Arc<Code>,
     command: CommandKind,
-    /// Whether the output has an elbow.
+    /// True if the output has an elbow.
     elbow: bool,
     parameters: Mutex<Parameters>,
     memory: Vec<f64>,
     /// The memory of the newest run.
     remembered: Mutex<(SlotReader<Numbers>, Box<Numbers>)>,
-    /// The cycles that `step` makes.
+    /// The cycles created by `step`.
     dry_run: Mutex<Option<Running>>,
 }
 
 struct Parameters {
     newest: Vec<f64>,
     writer: SlotWriter<Numbers>,
-    /// Never read from: every clone of it gets the newest.
+    /// Never read directly: every clone of it receives the newest parameters.
     reader: SlotReader<Numbers>,
 }
 
@@ -85,7 +85,8 @@ impl Law {
         let memory = numbers("memory", memory)?;
         let laws = py.import("franka_async.laws")?;
         let address = laws.call_method1("address_of", (code,))?.extract()?;
-        // SAFETY: what the class asks of its caller; the object that owns the code goes with it.
+        // SAFETY: the class requires this from its caller; the object that owns the code is kept
+        // with it.
         let code = unsafe { Code::new(address, Box::new(code.clone().unbind())) };
         let code = code.ok_or_else(|| PyValueError::new_err("code is the null pointer"))?;
         let (writer, reader) = slot();
@@ -105,14 +106,14 @@ impl Law {
         })
     }
 
-    /// What the law's output is.
+    /// Kind of the law's output.
     #[getter]
     fn command(&self) -> &'static str {
         self.command.name()
     }
 
-    /// The newest parameters, `(n,)`. Setting them reaches a law that runs with its next cycle, all
-    /// of them at once; their number stays. Raises `ValueError`.
+    /// The newest parameters, `(n,)`. A running law receives new ones in its next cycle, all at
+    /// once; their number is fixed. Raises `ValueError`.
     #[getter]
     fn parameters<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, &lock(&self.parameters).newest)
@@ -131,8 +132,8 @@ impl Law {
         Ok(())
     }
 
-    /// The memory after the newest cycle of the newest run, `(n,)`; before the first one, what the
-    /// law was made with.
+    /// The memory after the newest cycle of the newest run, `(n,)`; before the first run, the
+    /// initial memory.
     #[getter]
     fn memory<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let mut remembered = lock(&self.remembered);
@@ -143,11 +144,11 @@ impl Law {
         array(py, &newest[..self.memory.len()])
     }
 
-    /// Calls the law once, with `state` and `dt` seconds after the state before, without a robot.
-    /// Returns its output, `(7,)`, `(4, 4)` or `(6,)`, or with an elbow as it was written, `(18,)`
-    /// or `(8,)`; and what it returned. Numbers that it did not write are NaN. Time and memory go
-    /// on from call to call; `reset()` begins anew. Model terms are those of the vendor's
-    /// constants for the kind of robot that the state is from.
+    /// Calls the law once, with `state` and `dt` seconds after the previous state, without a robot.
+    /// Returns its output, `(7,)`, `(4, 4)` or `(6,)`, or with an elbow the raw output, `(18,)` or
+    /// `(8,)`; and its return value. Numbers that it did not write are NaN. Time and memory
+    /// continue from call to call; `reset()` starts again. Model terms use the vendor's constants
+    /// for the state's kind of robot.
     #[pyo3(signature = (state, dt = 0.001))]
     fn step<'py>(
         &self,
@@ -168,7 +169,7 @@ impl Law {
         Ok((self.shaped(py, &output)?, code))
     }
 
-    /// Has the next `step` begin with time 0 and the memory that the law was made with.
+    /// Makes the next `step` begin with time 0 and the initial memory.
     fn reset(&self) {
         *lock(&self.dry_run) = None;
     }
@@ -182,7 +183,7 @@ impl Law {
 }
 
 impl Law {
-    /// The law before the first cycle of a run, whose memory is the one that is shown from now on.
+    /// Returns the law before the first cycle of a run, whose memory is visible from now on.
     fn running(&self, model: Arc<Model>, version: Version) -> Running {
         let (remembered, reader) = slot();
         *lock(&self.remembered) = (reader, Box::new(function::padded(&self.memory)));
@@ -198,7 +199,7 @@ impl Law {
         Running::new(self.code.clone(), setup)
     }
 
-    /// The control function that calls the law.
+    /// Returns the control function that calls the law.
     fn control(&self, robot: &franka_async::Robot) -> Control {
         let model = Arc::new(robot.model().clone());
         let mut law = self.running(model, robot.version());
@@ -229,7 +230,7 @@ impl Law {
         }
     }
 
-    /// The output as an array of the command's shape.
+    /// Returns the output as an array of the command's shape.
     fn shaped<'py>(
         &self,
         py: Python<'py>,
@@ -248,18 +249,18 @@ impl Law {
 
 #[pymethods]
 impl Robot {
-    /// Control by a law that needs no interpreter in the cycle, a `Law`, or code that one is made
-    /// of with `command`, `elbow`, `parameters` and `memory`. Resolves with a `MotionReport` when
-    /// the law has returned a positive number and the robot has ended the motion.
+    /// Controls by a law without the interpreter in the cycle: a `Law`, or code for one with
+    /// `command`, `elbow`, `parameters` and `memory`. Resolves with a `MotionReport` when the law
+    /// has returned a positive number and the robot has ended the motion.
     ///
-    /// `controller` is which of the robot's own controllers follows, where no torques are
-    /// commanded. `limit_rate` is whether commands pass the limiter: by default on a Franka Emika
-    /// Robot and not on a Franka Research 3, as with the vendor's library. `cutoff_frequency` is
-    /// that of the low-pass filter, Hz; 1000 switches it off.
+    /// `controller` selects the robot's own controller for commands other than torques.
+    /// `limit_rate` enables the limiter: by default on a Franka Emika Robot and not on a Franka
+    /// Research 3, as in the vendor's library. `cutoff_frequency` is the frequency of the low-pass
+    /// filter, Hz; 1000 disables it.
     ///
     /// Raises `MotionError` of the kind `given_up` if the law returned a negative number, which is
-    /// its `code`, of the kind `invalid` for output that is not finite, and `busy` while anything
-    /// else controls the arm. Cancelling has the robot stop.
+    /// its `code`; of the kind `invalid` for output that is not finite; and `busy` while another
+    /// motion controls the arm. Cancelling stops the robot.
     #[pyo3(signature = (
         law, *, command = None, elbow = false, parameters = None, memory = None,
         controller = "joint_impedance", limit_rate = None, cutoff_frequency = None,
@@ -308,8 +309,7 @@ impl Robot {
     }
 }
 
-/// Where each field of what a law gets is: name, offset in bytes, shape, numpy format; and the size
-/// of it all.
+/// Places of a law's input fields: name, offset in bytes, shape, numpy format; and the total size.
 #[pyfunction]
 pub(crate) fn _law_layout() -> (Vec<function::Place>, usize) {
     (function::layout(), size_of::<function::Cycle>())
@@ -329,7 +329,7 @@ fn numbers(name: &str, argument: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<f64>
     Ok(values)
 }
 
-/// Where the elbow is in the output, for commands that have one.
+/// Returns the position of the elbow in the output, for commands that have one.
 fn elbow_at(command: CommandKind) -> Option<usize> {
     match command {
         CommandKind::CartesianPose => Some(16),
@@ -342,15 +342,15 @@ fn first<const N: usize>(output: &Output) -> [f64; N] {
     std::array::from_fn(|i| output[i])
 }
 
-/// A pose column by column, as commands have it, from one row by row.
+/// Returns a pose in column-major order, as in commands, from row-major order.
 fn transposed(output: &Output) -> [f64; 16] {
     std::array::from_fn(|i| output[i % 4 * 4 + i / 4])
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    // Nothing in here can be half done.
+    // No operation leaves the data in an invalid state.
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Reads of a memory that is written every millisecond, in some 100 ns.
+/// Number of attempts to read a memory that is written every millisecond, in some 100 ns.
 const ATTEMPTS: usize = 100;

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, check_finite, pose_of, unexpected_shape, vector};
 
-/// The frame of this name.
+/// Returns the frame with this name.
 ///
 /// # Errors
 /// `ValueError` with all names.
@@ -34,10 +34,10 @@ const FRAMES: [&str; 10] = [
     "stiffness",
 ];
 
-/// Where the user's frames are on the flange; the identity where an argument is not there.
+/// Returns the poses of the user's frames on the flange; the identity for a missing argument.
 ///
 /// # Errors
-/// `ValueError` for what is not a pose.
+/// `ValueError` for values that are not a pose.
 #[allow(non_snake_case)]
 pub(super) fn end_effector(
     F_T_EE: Option<&Bound<'_, PyAny>>,
@@ -49,7 +49,7 @@ pub(super) fn end_effector(
     })
 }
 
-/// A transformation as it stands, as a robot may have one that is a little off a rigid one.
+/// Returns a transformation unchanged, because a robot's may deviate slightly from a rigid one.
 fn transformation(name: &str, argument: Option<&Bound<'_, PyAny>>) -> PyResult<Matrix4<f64>> {
     let Some(argument) = argument else {
         return Ok(Matrix4::identity());
@@ -65,7 +65,8 @@ fn transformation(name: &str, argument: Option<&Bound<'_, PyAny>>) -> PyResult<M
     })
 }
 
-/// The load with the mass `m_total`, the centre of mass `F_x_Ctotal` and the inertia `I_total`.
+/// Returns the load with the mass `m_total`, the centre of mass `F_x_Ctotal` and the inertia
+/// `I_total`.
 ///
 /// # Errors
 /// `ValueError` for a mass below zero or shapes other than `(3,)` and `(3, 3)`.
@@ -97,7 +98,8 @@ fn inertia(argument: &Bound<'_, PyAny>) -> PyResult<Matrix3<f64>> {
     Ok(Matrix3::from_row_slice(&values))
 }
 
-/// The gravitational acceleration in the base frame; that of an upright robot if it is not there.
+/// Returns the gravitational acceleration in the base frame; the value of an upright robot for a
+/// missing argument.
 ///
 /// # Errors
 /// `ValueError` for another shape than `(3,)`.
@@ -107,7 +109,7 @@ pub(super) fn gravity(argument: Option<&Bound<'_, PyAny>>) -> PyResult<Vector3<f
     })
 }
 
-/// Poses of an argument that is one or many.
+/// Poses of an argument with one or many.
 pub(super) struct Poses {
     poses: Vec<Pose>,
     is_single: bool,
@@ -117,7 +119,7 @@ impl Poses {
     /// Reads `(4, 4)`, `(7,)`, `(n, 4, 4)` or `(n, 7)`.
     ///
     /// # Errors
-    /// `ValueError` for another shape and for what is not a pose, which says which one.
+    /// `ValueError` for another shape and for invalid poses, with their index.
     pub(super) fn read(name: &str, argument: &Bound<'_, PyAny>) -> PyResult<Self> {
         let Numbers { shape, values } = Numbers::read(name, argument)?;
         if let Some(pose) = pose_of(name, &shape, &values)? {
@@ -141,7 +143,7 @@ impl Poses {
         Ok(Self { poses, is_single })
     }
 
-    /// Pose `index`; the only one counts for every index.
+    /// Returns pose `index`; a single pose is used for every index.
     pub(super) fn get(&self, index: usize) -> &Pose {
         &self.poses[if self.is_single { 0 } else { index }]
     }

@@ -1,4 +1,4 @@
-//! Distances of the arm to itself.
+//! Distances within the arm.
 
 use franka_model::JointVector;
 use franka_model::collision::{Proximity, Shape};
@@ -10,13 +10,14 @@ use pyo3::types::PyAny;
 use super::Model;
 use crate::batch::{Batch, Cost, outputs};
 
-/// The least distance between two bodies of the arm; of a batch, with a leading axis.
+/// The least distance between two bodies of the arm; with a leading axis for a batch.
 #[pyclass(frozen, get_all, module = "franka_async")]
 pub(crate) struct Clearance {
-    /// Between the surfaces, m: an array without axes, or `(n,)`. Negative where they overlap.
+    /// Distance between the surfaces, m: an array without axes, or `(n,)`. Negative for overlapping
+    /// bodies.
     distance: Py<PyArrayDyn<f64>>,
-    /// Which bodies, the inner one first, `(2,)`: 0 is the base, 1 to 7 are the links, 8 is what is
-    /// on the flange.
+    /// Numbers of the bodies, the inner one first, `(2,)`: 0 is the base, 1 to 7 are the links, 8
+    /// is the tool on the flange.
     bodies: Py<PyArrayDyn<i64>>,
     /// Change of the distance per joint position, `(7,)` m/rad.
     gradient: Py<PyArrayDyn<f64>>,
@@ -26,8 +27,8 @@ pub(crate) struct Clearance {
 
 #[pymethods]
 impl Model {
-    /// The least distance of the arm to itself, and between which bodies. `hand` says whether there
-    /// is a Franka Hand on the flange.
+    /// The least distance within the arm, and its bodies. `hand` is true for a Franka Hand on the
+    /// flange.
     ///
     /// `shape` is `vendor`, the vendor's capsules for self-collision, which do not cover the links
     /// everywhere, or `covering`, which contain them and are up to 3.5 cm thicker.

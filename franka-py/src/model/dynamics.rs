@@ -10,7 +10,7 @@ use super::arguments::{end_effector, gravity, load};
 use super::{Array, Model};
 use crate::batch::{Batch, Cost, output, outputs, write_matrix};
 
-/// Everything that a control law needs about a state of the arm, from one pass. Results of a batch
+/// The quantities that a control law needs at a state of the arm, from one pass. Results of a batch
 /// have a leading axis.
 #[pyclass(frozen, get_all, module = "franka_async")]
 pub(crate) struct Dynamics {
@@ -34,9 +34,9 @@ impl Model {
     /// Joint-space inertia without rotors, `(7, 7)` or `(n, 7, 7)` kg m^2.
     ///
     /// A load has the mass `m_total` in kg, its centre of mass `F_x_Ctotal` in the flange frame,
-    /// `(3,)` m, and its inertia about that in flange axes, `I_total`, `(3, 3)` kg m^2, as states
-    /// have them. So everywhere. There is none unless given, nor a tool: what a robot carries is
-    /// passed from its state.
+    /// `(3,)` m, and its inertia about that point in flange axes, `I_total`, `(3, 3)` kg m^2, as in
+    /// states. This applies to all methods. The default is no load and no tool: pass a robot's
+    /// values from its state.
     #[pyo3(signature = (q, I_total = None, m_total = 0.0, F_x_Ctotal = None))]
     fn mass<'py>(
         &self,
@@ -54,7 +54,7 @@ impl Model {
     }
 
     /// Torques of Coriolis and centrifugal forces, `(7,)` or `(n, 7)` N m. Without tool and load
-    /// unless given, as of `mass`.
+    /// unless given, as for `mass`.
     #[pyo3(signature = (q, dq, I_total = None, m_total = 0.0, F_x_Ctotal = None))]
     fn coriolis<'py>(
         &self,
@@ -75,8 +75,8 @@ impl Model {
     }
 
     /// Torques that hold the arm still against gravity, `(7,)` or `(n, 7)` N m. `gravity_earth` is
-    /// the gravitational acceleration in the base frame, `(3,)` m/s^2, that of an upright robot
-    /// unless given. Without tool and load unless given, as of `mass`.
+    /// the gravitational acceleration in the base frame, `(3,)` m/s^2, by default for an upright
+    /// robot. Without tool and load unless given, as for `mass`.
     #[pyo3(signature = (q, m_total = 0.0, F_x_Ctotal = None, gravity_earth = None))]
     fn gravity<'py>(
         &self,
@@ -96,9 +96,9 @@ impl Model {
     }
 
     /// Pose, Jacobian, mass, Coriolis and gravity torques from one pass, for the end effector
-    /// `F_T_EE`, the identity unless given. Without tool and load unless given, as of `mass`.
+    /// `F_T_EE`, the identity unless given. Without tool and load unless given, as for `mass`.
     #[pyo3(signature = (q, dq, *, F_T_EE = None, I_total = None, m_total = 0.0, F_x_Ctotal = None, gravity_earth = None))]
-    #[allow(clippy::too_many_arguments)] // each is named by the caller
+    #[allow(clippy::too_many_arguments)] // the caller names each argument
     fn dynamics<'py>(
         &self,
         py: Python<'py>,
@@ -139,9 +139,9 @@ impl Model {
     }
 
     /// Torques for the accelerations `ddq`, `M ddq + C dq + g`: `(7,)` or `(n, 7)` N m. Without
-    /// tool and load unless given, as of `mass`.
+    /// tool and load unless given, as for `mass`.
     #[pyo3(signature = (q, dq, ddq, *, I_total = None, m_total = 0.0, F_x_Ctotal = None, gravity_earth = None))]
-    #[allow(clippy::too_many_arguments)] // each is named by the caller
+    #[allow(clippy::too_many_arguments)] // the caller names each argument
     fn inverse_dynamics<'py>(
         &self,
         py: Python<'py>,
@@ -166,11 +166,11 @@ impl Model {
     }
 
     /// Accelerations under the joint torques `tau`, gravity included: `(7,)` or `(n, 7)` rad/s^2.
-    /// `armature` is the inertia of the rotors felt at the joints, `(7,)` kg m^2, none unless
-    /// given. Where mass and armature make no physical arm, the result is NaN. Without tool and
-    /// load unless given, as of `mass`.
+    /// `armature` is the reflected rotor inertia of the joints, `(7,)` kg m^2, zero unless given.
+    /// If mass and armature are not physical, the result is NaN. Without tool and load unless
+    /// given, as for `mass`.
     #[pyo3(signature = (q, dq, tau, *, I_total = None, m_total = 0.0, F_x_Ctotal = None, gravity_earth = None, armature = None))]
-    #[allow(clippy::too_many_arguments)] // each is named by the caller
+    #[allow(clippy::too_many_arguments)] // the caller names each argument
     fn forward_dynamics<'py>(
         &self,
         py: Python<'py>,
@@ -200,7 +200,7 @@ impl Model {
     }
 }
 
-/// Three batches of joint vectors, and their common number of rows.
+/// Returns three batches of joint vectors, and their common number of rows.
 ///
 /// # Errors
 /// `ValueError` for wrong shapes and different numbers of rows.

@@ -16,15 +16,15 @@ use super::{Array, Model};
 use crate::arrays::{self, table};
 use crate::batch::{Batch, Cost, common_count, output, outputs};
 
-/// A velocity of joints, and what of the twist is missing.
+/// A velocity of the joints, and the missing part of the twist.
 type Step<'py> = (Array<'py>, Array<'py>);
 
 #[pymethods]
 impl Model {
     /// Every posture within the joint limits that brings the end effector to `pose`, `(k, 7)` rad,
-    /// for one more number that picks from the arm's self-motion: the angle of `joint7`, of
+    /// for one additional number that selects from the arm's self-motion: the angle of `joint7`, of
     /// `joint4`, or the `swivel` angle of the elbow about the line from shoulder to wrist, rad,
-    /// zero with the elbow on top. k is 0 if there is none; with joint 7 or 4 it is 8 at most.
+    /// zero with the elbow on top. k is 0 if no posture exists; with joint 7 or 4 it is at most 8.
     #[pyo3(signature = (pose, *, joint7 = None, joint4 = None, swivel = None, F_T_EE = None))]
     fn ik<'py>(
         &self,
@@ -41,7 +41,7 @@ impl Model {
         Ok(table(py, &found, 7))
     }
 
-    /// `ik` of each of many poses, `(n, 4, 4)` or `(n, 7)`: a list of n arrays `(k, 7)`.
+    /// `ik` for each of many poses, `(n, 4, 4)` or `(n, 7)`: a list of n arrays `(k, 7)`.
     #[pyo3(signature = (poses, *, joint7 = None, joint4 = None, swivel = None, F_T_EE = None))]
     fn ik_many<'py>(
         &self,
@@ -66,10 +66,11 @@ impl Model {
     }
 
     /// The posture within the joint limits that brings the end effector to `pose` and is nearest to
-    /// `q` in the sum of squares, of all that there are: `(7,)` rad, some 0.3 ms. `ValueError` if
-    /// the pose is out of reach.
+    /// `q` (least sum of squares): `(7,)` rad, some 0.3 ms. `ValueError` if the pose is out of
+    /// reach.
     ///
-    /// Of many poses or many `q`, `(n, 7)`, with NaN in the rows of poses that are out of reach.
+    /// For many poses or many `q` the result is `(n, 7)`, with NaN in the rows of unreachable
+    /// poses.
     #[pyo3(signature = (pose, q, F_T_EE = None))]
     fn ik_near<'py>(
         &self,
@@ -93,11 +94,12 @@ impl Model {
     }
 
     /// A posture within the joint limits that brings the end effector to `pose`, `(7,)` rad, by
-    /// iteration from `seed`, which decides which one: usually one nearby. Some 10 microseconds
-    /// near the seed, 2 ms until a pose out of reach raises `ValueError`. `ik_near` looks at all
-    /// postures instead.
+    /// iteration from `seed`, which selects the posture: usually one nearby. It takes some 10
+    /// microseconds near the seed, and 2 ms until an unreachable pose raises `ValueError`.
+    /// `ik_near` examines all postures instead.
     ///
-    /// Of many poses or many seeds, `(n, 7)`, with NaN in the rows of poses that are out of reach.
+    /// For many poses or many seeds the result is `(n, 7)`, with NaN in the rows of unreachable
+    /// poses.
     #[pyo3(signature = (pose, seed, F_T_EE = None))]
     fn ik_from<'py>(
         &self,
@@ -120,16 +122,16 @@ impl Model {
         self.within_reach(count, found, &poses, &ee)
     }
 
-    /// Joint velocities that give the end effector the `twist` `[linear; angular]`, m/s and rad/s
-    /// in base axes, as far as they can, and what is missing of it: `(7,)` rad/s and `(6,)`, or of
-    /// many `q` or twists with a leading axis. It also works on displacements, in m and rad.
+    /// Joint velocities for the `twist` of the end effector, `[linear; angular]`, m/s and rad/s in
+    /// base axes, and the missing part of the twist: `(7,)` rad/s and `(6,)`, with a leading axis
+    /// for many `q` or twists. It also works with displacements, in m and rad.
     ///
-    /// The velocities are exactly within `lower` and `upper`, `(7,)` or `(n, 7)`, by default what
-    /// the arm may do at `q`. Where the twist leaves freedom they follow `posture`, by default
-    /// zero. Near singularities and at bounds the position comes first; with `smooth` position and
-    /// orientation give way alike.
+    /// The velocities are exactly within `lower` and `upper`, `(7,)` or `(n, 7)`, by default the
+    /// limits at `q`. In the nullspace they follow `posture`, by default zero. Near singularities
+    /// and at bounds the position has priority; with `smooth`, position and orientation have equal
+    /// priority.
     #[pyo3(signature = (q, twist, *, posture = None, lower = None, upper = None, smooth = false, F_T_EE = None))]
-    #[allow(clippy::too_many_arguments)] // each is named by the caller
+    #[allow(clippy::too_many_arguments)] // the caller names each argument
     fn differential_ik<'py>(
         &self,
         py: Python<'py>,
@@ -184,7 +186,7 @@ impl Model {
 }
 
 impl Model {
-    /// Rows of seven numbers, a posture each.
+    /// Returns rows of seven numbers, one posture each.
     fn solutions(&self, pose: &Pose, ee: &EndEffector, given: Redundancy) -> PyResult<Vec<f64>> {
         let found = analytic_ik::solve(&self.numbers, pose, ee, given).map_err(refused)?;
         Ok(found.iter().flat_map(|found| found.q.data.0[0]).collect())
@@ -193,7 +195,7 @@ impl Model {
     /// Returns `found`.
     ///
     /// # Errors
-    /// Why there is no posture, if a single pose was asked for and has none.
+    /// The reason if a single pose was given and has no posture.
     fn within_reach<'py>(
         &self,
         count: Option<usize>,
@@ -212,7 +214,7 @@ impl Model {
             let why = inverse_kinematics::solve(&self.numbers, pose, ee, &franka_model::READY);
             let text = match why {
                 Err(why) => why.to_string(),
-                // The sweep misses what only a hundredth of a radian of joint 7 can reach.
+                // The sweep misses poses that allow only a hundredth of a radian of joint 7.
                 Ok(_) => "no posture was found; ik_from finds one".into(),
             };
             return Err(PyValueError::new_err(format!("pose: {text}")));
@@ -237,7 +239,7 @@ fn check_order(lower: &[f64; 7], upper: &[f64; 7]) -> PyResult<()> {
     }
 }
 
-/// The one number of three.
+/// Returns the given one of the three numbers.
 ///
 /// # Errors
 /// `ValueError` unless exactly one is given, and finite.

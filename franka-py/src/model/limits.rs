@@ -17,13 +17,13 @@ pub(crate) struct JointLimits(limits::JointLimits);
 
 #[pymethods]
 impl Model {
-    /// What the joints may do.
+    /// Limits of the joints.
     #[getter]
     fn joint_limits(&self) -> JointLimits {
         JointLimits(*self.numbers.joint_limits())
     }
 
-    /// What Cartesian motion commands may do.
+    /// Limits of Cartesian motion commands.
     #[getter]
     fn cartesian_limits(&self) -> CartesianLimits {
         let limits = self.numbers.cartesian_limits();
@@ -43,64 +43,64 @@ impl Model {
 
 #[pymethods]
 impl JointLimits {
-    /// Least positions to command, rad, a little inside `hard_lower`.
+    /// Smallest commanded positions, rad, slightly inside `hard_lower`.
     #[getter]
     fn lower<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, self.0.lower.as_slice())
     }
 
-    /// Greatest positions to command, rad, a little inside `hard_upper`.
+    /// Largest commanded positions, rad, slightly inside `hard_upper`.
     #[getter]
     fn upper<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, self.0.upper.as_slice())
     }
 
-    /// Positions, rad, where the velocity envelope towards them ends.
+    /// Lower ends of the velocity envelope, rad.
     #[getter]
     fn hard_lower<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, self.0.hard_lower.as_slice())
     }
 
-    /// Positions, rad, where the velocity envelope towards them ends.
+    /// Upper ends of the velocity envelope, rad.
     #[getter]
     fn hard_upper<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, self.0.hard_upper.as_slice())
     }
 
-    /// Greatest speeds anywhere, rad/s; near position limits see `velocity_envelope`.
+    /// Largest speeds at any position, rad/s; near position limits see `velocity_envelope`.
     #[getter]
     fn velocity<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, self.0.velocity.as_slice())
     }
 
-    /// Greatest accelerations of a commanded motion, rad/s^2.
+    /// Largest accelerations of a commanded motion, rad/s^2.
     #[getter]
     fn acceleration<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, self.0.acceleration.as_slice())
     }
 
-    /// Greatest jerks of a commanded motion, rad/s^3.
+    /// Largest jerks of a commanded motion, rad/s^3.
     #[getter]
     fn jerk<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, self.0.jerk.as_slice())
     }
 
-    /// Greatest torques, N m.
+    /// Largest torques, N m.
     #[getter]
     fn torque<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, self.0.torque.as_slice())
     }
 
-    /// Greatest rates of commanded torques, N m/s.
+    /// Largest rates of commanded torques, N m/s.
     #[getter]
     fn torque_rate<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         array(py, self.0.torque_rate.as_slice())
     }
 
-    /// Least and greatest joint velocities at the positions `q`, two arrays `(7,)` or `(n, 7)`,
-    /// rad/s. On a Franka Research 3 the speed towards a position limit is bounded by what stops
-    /// before it. `margin` in rad/s comes off both sides: the robot checks with 0, libfranka limits
-    /// with 0.001.
+    /// Smallest and largest joint velocities at the positions `q`, two arrays `(7,)` or `(n, 7)`,
+    /// rad/s. On a Franka Research 3, the speed towards a position limit is bounded so that the
+    /// joint can stop before it. `margin` in rad/s is subtracted on both sides: the robot checks
+    /// with 0, libfranka limits with 0.001.
     #[pyo3(signature = (q, margin = 0.0))]
     fn velocity_envelope<'py>(
         &self,
@@ -129,7 +129,7 @@ impl JointLimits {
         }))
     }
 
-    /// Whether every position is within `lower` and `upper`: one, or an array `(n,)`.
+    /// True if every position is within `lower` and `upper`: one value, or an array `(n,)`.
     fn contains<'py>(
         &self,
         py: Python<'py>,
@@ -166,11 +166,11 @@ impl JointLimits {
 #[pyclass(frozen, get_all, eq, module = "franka_async")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct MotionLimits {
-    /// m/s or rad/s.
+    /// Velocity, m/s or rad/s.
     velocity: f64,
-    /// m/s^2 or rad/s^2.
+    /// Acceleration, m/s^2 or rad/s^2.
     acceleration: f64,
-    /// m/s^3 or rad/s^3.
+    /// Jerk, m/s^3 or rad/s^3.
     jerk: f64,
 }
 
@@ -188,11 +188,11 @@ impl MotionLimits {
 #[pyclass(frozen, get_all, eq, module = "franka_async")]
 #[derive(PartialEq)]
 pub(crate) struct CartesianLimits {
-    /// Of the end effector's position: bounds on the norm, m.
+    /// Limits of the end effector's position: bounds on the norm, m.
     translation: MotionLimits,
-    /// Of the end effector's orientation: bounds on the norm, rad.
+    /// Limits of the end effector's orientation: bounds on the norm, rad.
     rotation: MotionLimits,
-    /// Of the elbow's angle, joint 3, rad.
+    /// Limits of the elbow's angle, joint 3, rad.
     elbow: MotionLimits,
 }
 

@@ -2,12 +2,12 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | this | the class, poses and Jacobians, and what it is pickled as |
+//! | this | the class, poses and Jacobians, and its pickled form |
 //! | `arguments` | frames, tools and loads |
 //! | `dynamics` | mass, Coriolis, gravity, inverse and forward dynamics |
 //! | `ik` | joint positions for a pose, joint velocities for a twist |
 //! | `limits` | limits of the joints and of Cartesian motions |
-//! | `clearance` | distances of the arm to itself |
+//! | `clearance` | distances within the arm |
 
 pub(crate) mod arguments;
 mod clearance;
@@ -31,51 +31,52 @@ use arguments::{end_effector, frame};
 
 #[pymethods]
 impl Robot {
-    /// The model of the connected arm, which control computes with: of a Franka Research 3 its
-    /// description of itself, of a Franka Emika Robot the constants of its own library.
+    /// The model of the connected arm, used by control. For a Franka Research 3 it comes from the
+    /// robot's description, for a Franka Emika Robot from the constants of its own library.
     fn model(&self) -> PyResult<Model> {
         Ok(Model::of(self.connected()?.model()))
     }
 }
 
-/// An array of as many axes as the arguments call for.
+/// An array whose number of axes depends on the arguments.
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// Kinematics, dynamics and limits of one arm, without a connection: `Model.fr3()`, `Model.fer()`,
 /// `Model.from_urdf(text)`.
 ///
 /// Joint positions `q` (rad), velocities `dq` (rad/s) and so on are one vector, `(7,)`, or a batch,
-/// `(n, 7)`: results of a batch have a leading axis of length n. Where a function takes several,
-/// a single one goes with a batch of the other. Batches leave the interpreter to other threads.
+/// `(n, 7)`: results of a batch have a leading axis of length n. If a function has several
+/// arguments, a single one is used for the whole batch of the other. Batches release the
+/// interpreter to other threads.
 ///
 /// Frames are `joint1` to `joint7`, `flange`, `ee` (the end effector, `F_T_EE` from the flange) and
 /// `stiffness` (`EE_T_K` from the end effector); both poses are the identity unless given. The base
-/// frame is that of link 0, z upwards along the axis of joint 1. Wrong shapes and numbers that are
-/// not finite raise `ValueError`.
+/// frame is the frame of link 0, z upwards along the axis of joint 1. Wrong shapes and numbers that
+/// are not finite raise `ValueError`.
 #[pyclass(frozen, eq, module = "franka_async")]
 #[derive(PartialEq)]
 pub(crate) struct Model {
     numbers: Numbers,
-    /// The description that it was read from.
+    /// The description of the model.
     urdf: Option<Box<str>>,
 }
 
 #[pymethods]
 impl Model {
-    /// The Franka Research 3, by the vendor's numbers.
+    /// The Franka Research 3, with the vendor's numbers.
     #[staticmethod]
     fn fr3() -> Self {
         Self::of(Numbers::fr3())
     }
 
-    /// The Franka Emika Robot (Panda), as its own model library computes it.
+    /// The Franka Emika Robot (Panda), as computed by its own model library.
     #[staticmethod]
     fn fer() -> Self {
         Self::of(Numbers::fer())
     }
 
-    /// The model in the URDF `text` that a Franka Research 3 serves, with the masses and limits of
-    /// that arm. `ValueError` says what is wrong with another text.
+    /// The model from the URDF `text` of a Franka Research 3, with the masses and limits of that
+    /// arm. `ValueError` describes the error in another text.
     #[staticmethod]
     fn from_urdf(text: &str) -> PyResult<Self> {
         let numbers = Numbers::from_urdf(text).map_err(|error| {
@@ -85,7 +86,7 @@ impl Model {
         Ok(Self { numbers, urdf })
     }
 
-    /// Which robot it is: `fr3` or `fer`.
+    /// Kind of robot: `fr3` or `fer`.
     #[getter]
     fn kind(&self) -> &'static str {
         match self.numbers.kind() {
@@ -96,8 +97,9 @@ impl Model {
 
     /// The pose of `frame` in the base frame, `(4, 4)` or `(n, 4, 4)`.
     ///
-    /// `F_T_EE` and `EE_T_K` are the identity unless given, whatever tool a robot has: pass those
-    /// of its state for its own `ee` and `stiffness`. `Robot.pose_at` has the former.
+    /// `F_T_EE` and `EE_T_K` are the identity unless given, even if a robot has a tool: pass the
+    /// values of its state for its own `ee` and `stiffness`. `Robot.pose_at` uses the robot's
+    /// `F_T_EE`.
     #[pyo3(signature = (frame, q, F_T_EE = None, EE_T_K = None))]
     #[allow(non_snake_case)]
     fn pose<'py>(
@@ -114,7 +116,7 @@ impl Model {
     }
 
     /// Twist of `frame` per joint velocity, in base axes about the frame's origin, linear rows
-    /// first: `(6, 7)` or `(n, 6, 7)`. Tools as of `pose`: the identity unless given.
+    /// first: `(6, 7)` or `(n, 6, 7)`. Tools as for `pose`: the identity unless given.
     #[pyo3(signature = (frame, q, F_T_EE = None, EE_T_K = None))]
     #[allow(non_snake_case)]
     fn zero_jacobian<'py>(
@@ -133,7 +135,7 @@ impl Model {
         }))
     }
 
-    /// `zero_jacobian` in the frame's own axes. Tools as of `pose`: the identity unless given.
+    /// `zero_jacobian` in the frame's own axes. Tools as for `pose`: the identity unless given.
     #[pyo3(signature = (frame, q, F_T_EE = None, EE_T_K = None))]
     #[allow(non_snake_case)]
     fn body_jacobian<'py>(
@@ -165,8 +167,8 @@ impl Model {
         }))
     }
 
-    /// How far an arm is from a singularity: `sqrt(det(J J'))`, 0 in one, 0.080 in the ready pose.
-    /// A number, or `(n,)`.
+    /// Distance of an arm from a singularity: `sqrt(det(J J'))`, 0 in a singularity, 0.080 in the
+    /// ready pose. A number, or `(n,)`.
     fn manipulability<'py>(&self, py: Python<'py>, q: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
         let q = Batch::read("q", q)?;
         let (model, ee) = (&self.numbers, EndEffector::default());
@@ -200,7 +202,7 @@ impl Model {
 }
 
 impl Model {
-    /// The model with these numbers.
+    /// Returns the model with these numbers.
     pub(crate) fn of(numbers: &Numbers) -> Self {
         Self {
             numbers: numbers.clone(),

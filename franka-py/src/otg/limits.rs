@@ -7,10 +7,10 @@ use pyo3::types::PyAny;
 
 use crate::arrays::{Numbers, array, unexpected_shape};
 
-/// Greatest velocity, acceleration and jerk of each axis, in both directions. Units are the
-/// program's: rad or m, per second and its powers.
+/// Largest velocity, acceleration and jerk of each axis, in both directions. The program chooses
+/// the units: rad or m, per second and its powers.
 ///
-/// Each is one number for all axes or one for each, `(n,)`; all have to be positive and finite.
+/// Each is one number for all axes or one for each, `(n,)`; all must be positive and finite.
 #[pyclass(frozen, eq, module = "franka_async")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct AxisLimits {
@@ -37,14 +37,14 @@ impl AxisLimits {
         Ok(limits)
     }
 
-    /// Those of the joints of a Franka Research 3. Near a position limit it allows less: see
-    /// `JointLimits.velocity_envelope`.
+    /// Limits of the joints of a Franka Research 3. Near a position limit the robot allows less:
+    /// see `JointLimits.velocity_envelope`.
     #[staticmethod]
     fn fr3() -> Self {
         Self::of(RobotKind::Fr3)
     }
 
-    /// Those of the joints of a Franka Emika Robot (Panda).
+    /// Limits of the joints of a Franka Emika Robot (Panda).
     #[staticmethod]
     fn fer() -> Self {
         Self::of(RobotKind::Fer)
@@ -71,19 +71,19 @@ impl AxisLimits {
         })
     }
 
-    /// Greatest velocities: `(n,)`, or `(1,)` for all axes alike.
+    /// Largest velocities: `(n,)`, or `(1,)` for all axes.
     #[getter]
     fn velocity<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
         array(py, &self.velocity)
     }
 
-    /// Greatest accelerations: `(n,)`, or `(1,)` for all axes alike.
+    /// Largest accelerations: `(n,)`, or `(1,)` for all axes.
     #[getter]
     fn acceleration<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
         array(py, &self.acceleration)
     }
 
-    /// Greatest jerks: `(n,)`, or `(1,)` for all axes alike.
+    /// Largest jerks: `(n,)`, or `(1,)` for all axes.
     #[getter]
     fn jerk<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
         array(py, &self.jerk)
@@ -108,10 +108,10 @@ impl AxisLimits {
         }
     }
 
-    /// The number of axes; `None` if they go with any number.
+    /// Returns the number of axes; `None` if any number matches.
     ///
     /// # Errors
-    /// `ValueError` if the quantities have different numbers.
+    /// `ValueError` if the quantities have different numbers of axes.
     pub(super) fn axes(&self) -> PyResult<Option<usize>> {
         let mut axes = None;
         for (name, limits) in [

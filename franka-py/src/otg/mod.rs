@@ -4,7 +4,7 @@
 //! | module | content |
 //! |---|---|
 //! | this | planning, and the planned motion |
-//! | `limits` | what bounds it |
+//! | `limits` | its limits |
 
 mod limits;
 
@@ -21,20 +21,19 @@ pub(crate) use limits::AxisLimits;
 
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
-/// A planned motion. It begins at time 0 in the state that it was planned from, and is at rest from
-/// `duration` on.
+/// A planned motion. It begins at time 0 in its start state, and is at rest from `duration` on.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Trajectory {
     motion: Box<dyn Motion>,
     axes: usize,
 }
 
-/// A plan for a number of axes that the compiler knows, which may be more than those asked for.
+/// A plan for a number of axes known at compile time, which may exceed the requested number.
 trait Motion: Send + Sync {
-    /// When all axes rest, and when the target is met, s.
+    /// Returns the times at which all axes rest, and at which the target is met, s.
     fn times(&self) -> [f64; 2];
 
-    /// The position at which it comes to rest.
+    /// Returns the position of rest.
     fn end(&self) -> &[f64];
 
     /// Writes position, velocity and acceleration at time `t`.
@@ -63,16 +62,15 @@ impl<const N: usize> Motion for Generator<N> {
 /// 64. Without a target, `None`, to rest as early as possible.
 ///
 /// The motion may begin with `start_velocity` and `start_acceleration`, and pass the target with
-/// `target_velocity` and `target_acceleration`, `(n,)` each, zero unless given; past a target in
-/// motion it comes to rest. All axes are at the target at the same time: with `synchronisation`
-/// `straight` on a straight line wherever the state at the start allows one, with `time` each on
-/// its own.
+/// `target_velocity` and `target_acceleration`, `(n,)` each, zero unless given; it stops behind a
+/// target in motion. All axes are at the target at the same time: with `synchronisation` `straight`
+/// on a straight line if the start state allows one, with `time` each on its own path.
 ///
-/// `ValueError` for shapes that do not fit each other, numbers that are not finite, and a target
-/// that moves faster than the limits allow.
+/// `ValueError` for shapes that do not match, numbers that are not finite, and a target that moves
+/// faster than the limits allow.
 #[pyfunction]
 #[pyo3(signature = (start, target, limits, *, start_velocity = None, start_acceleration = None, target_velocity = None, target_acceleration = None, synchronisation = "straight"))]
-#[allow(clippy::too_many_arguments)] // each is named by the caller
+#[allow(clippy::too_many_arguments)] // the caller names each argument
 pub(crate) fn plan_trajectory(
     py: Python<'_>,
     start: &Bound<'_, PyAny>,
@@ -136,7 +134,7 @@ pub(crate) fn plan_trajectory(
     Ok(Trajectory { motion, axes: n })
 }
 
-/// The greatest number of axes.
+/// Largest number of axes.
 const AXES_MAX: usize = 64;
 
 fn axes(name: &str, argument: &Bound<'_, PyAny>, expected: Option<usize>) -> PyResult<Vec<f64>> {
@@ -157,7 +155,7 @@ fn axes(name: &str, argument: &Bound<'_, PyAny>, expected: Option<usize>) -> PyR
     Ok(values)
 }
 
-/// What to plan: position, velocity and acceleration of each axis.
+/// The planning task: position, velocity and acceleration of each axis.
 struct Task<'a> {
     start: [Vec<f64>; 3],
     target: Option<[Vec<f64>; 3]>,
@@ -166,8 +164,7 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    /// Plans with `N` axes, of which those beyond the given ones stand still at zero: a plan takes
-    /// no account of them.
+    /// Plans with `N` axes; additional axes stay at zero and do not affect the plan.
     fn plan<const N: usize>(&self) -> Result<Box<dyn Motion>, PlanError> {
         let limits = Limits::per_axis(std::array::from_fn(|axis| self.limits.axis(axis)))?;
         let generator = Generator::<N>::new(state(&self.start), limits)?;
@@ -190,33 +187,33 @@ fn state<const N: usize>([position, velocity, acceleration]: &[Vec<f64>; 3]) -> 
 
 #[pymethods]
 impl Trajectory {
-    /// The time until rest, s.
+    /// Time until rest, s.
     #[getter]
     fn duration(&self) -> f64 {
         self.motion.times()[0]
     }
 
-    /// When the target is met, s: the duration, unless the target moves.
+    /// Time at which the target is met, s: the duration, unless the target moves.
     #[getter]
     fn arrival(&self) -> f64 {
         self.motion.times()[1]
     }
 
-    /// The number of axes.
+    /// Number of axes.
     #[getter]
     fn axes(&self) -> usize {
         self.axes
     }
 
-    /// Where it comes to rest, `(axes,)`.
+    /// Position of rest, `(axes,)`.
     #[getter]
     fn end<'py>(&self, py: Python<'py>) -> Bound<'py, numpy::PyArray1<f64>> {
         array(py, &self.motion.end()[..self.axes])
     }
 
     /// Position, velocity and acceleration at the time `t` in s, `(axes,)` each, or at many times,
-    /// `(m,)`, `(m, axes)` each. Before the beginning it is at its beginning, after its end at
-    /// rest.
+    /// `(m,)`, `(m, axes)` each. Before the beginning it returns the start state, after the end the
+    /// state at rest.
     fn at<'py>(
         &self,
         py: Python<'py>,
@@ -231,8 +228,8 @@ impl Trajectory {
         }
     }
 
-    /// Times every `dt` seconds from the beginning to the first one at rest, `(m,)`, and position,
-    /// velocity and acceleration there, `(m, axes)` each.
+    /// Times every `dt` seconds from the beginning to the first one at rest, `(m,)`, with position,
+    /// velocity and acceleration, `(m, axes)` each.
     #[pyo3(signature = (dt = 0.001))]
     fn sample<'py>(
         &self,
@@ -281,5 +278,5 @@ impl Trajectory {
     }
 }
 
-/// More samples are taken for a mistake in the unit of `dt`.
+/// Number of samples above which `dt` is considered to have a wrong unit.
 const SAMPLES_MAX: f64 = 1e8;

@@ -1,4 +1,4 @@
-//! Chosen columns of every cycle, collected beside the interpreter.
+//! Selected columns of every cycle, collected without the interpreter.
 //!
 //! ```text
 //!  Robot::state_stream --task--> Table of states --+
@@ -32,8 +32,8 @@ use table::{Seen, Source, Table};
 #[pymethods]
 impl Robot {
     /// Records these columns of every cycle, of `record_columns()`, while a `with` or `async with`
-    /// block runs: see `Recording`. It keeps the first `longest` seconds. Raises `ValueError` for a
-    /// column that is not known.
+    /// block runs: see `Recording`. It keeps the first `longest` seconds. Raises `ValueError` for
+    /// an unknown column.
     #[pyo3(signature = (columns, *, longest = 3600.0))]
     fn record(&self, columns: &Bound<'_, PyAny>, longest: f64) -> PyResult<Recording> {
         let columns: Vec<String> = match columns.is_instance_of::<PyString>() {
@@ -45,7 +45,7 @@ impl Robot {
             false => columns.extract()?,
         };
         let mut chosen = Vec::with_capacity(columns.len());
-        // The time of each row is there in any case.
+        // The time of each row is always recorded.
         for name in columns.iter().filter(|name| *name != "time") {
             let column = Column::find(name).ok_or_else(|| {
                 let known: Vec<&str> = Column::all().iter().map(|column| column.name).collect();
@@ -67,7 +67,8 @@ impl Robot {
     }
 }
 
-/// What can be recorded: a `dict` of each column's name to its unit and shape in one cycle.
+/// The columns that can be recorded: a `dict` of each column's name to its unit and shape in one
+/// cycle.
 #[pyfunction]
 pub(crate) fn record_columns(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let all = PyDict::new(py);
@@ -79,19 +80,20 @@ pub(crate) fn record_columns(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(all)
 }
 
-/// Columns of every cycle: `with robot.record(["q", "tau_c"]) as recording:` begins, the end of the
-/// block ends it, and `recording["q"]` is an array of one row for each cycle, `recording["time"]`
+/// Columns of every cycle: `with robot.record(["q", "tau_c"]) as recording:` begins, and the end of
+/// the block ends it. `recording["q"]` is an array of one row for each cycle, `recording["time"]`
 /// its time, s.
 ///
-/// It is collected beside the interpreter: however long Python is busy, nothing is lost by that.
-/// The columns of a state and those of the control thread that belong to the same cycle are in the
-/// same row. Reading it is possible while it goes on.
+/// The data is collected without the interpreter, so nothing is lost while Python is busy. The
+/// columns of a state and of the control thread for the same cycle are in the same row. The
+/// recording can be read while it runs.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Recording {
-    /// Until it has ended: a recording that is read does not keep the connection.
+    /// The robot until the end of the recording, so that a finished recording does not keep the
+    /// connection.
     robot: Mutex<Option<franka_async::Robot>>,
     columns: Vec<&'static Column>,
-    /// Rows that are kept.
+    /// Largest number of rows.
     most: usize,
     begun: Mutex<Option<Begun>>,
 }
@@ -131,7 +133,7 @@ impl Recording {
         Operation::infallible("record", async {})
     }
 
-    /// The names of the columns, `time` first.
+    /// Names of the columns, `time` first.
     fn keys(&self) -> Vec<&'static str> {
         let names = self.columns.iter().map(|column| column.name);
         std::iter::once("time").chain(names).collect()
@@ -146,7 +148,8 @@ impl Recording {
         PyList::new(py, self.keys())?.try_iter()
     }
 
-    /// The column of this name, a new array with one row for each cycle. Raises `KeyError`.
+    /// Returns the column with this name, a new array with one row for each cycle. Raises
+    /// `KeyError`.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         self.begun()?.cut(py).column(py, &self.columns, name)
     }
@@ -162,20 +165,20 @@ impl Recording {
         Ok(all)
     }
 
-    /// How many cycles are recorded.
+    /// Number of recorded cycles.
     fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
         Ok(self.begun()?.cut(py).len())
     }
 
-    /// How many cycles of the robot since the begin are missing: their states did not arrive, were
-    /// skipped by the control thread for a newer one, or came after the longest time.
+    /// Number of missing cycles since the beginning: their states did not arrive, were skipped by
+    /// the control thread for a newer one, or came after the longest time.
     #[getter]
     fn lost(&self, py: Python<'_>) -> PyResult<u64> {
         let begun = self.begun()?;
         Ok(begun.cut(py).lost(begun.shared.begin))
     }
 
-    /// Writes all columns into a file, `.npz`: `numpy.load(path)["q"]`.
+    /// Writes all columns to a file, `.npz`: `numpy.load(path)["q"]`.
     fn save(&self, py: Python<'_>, path: &Bound<'_, PyAny>) -> PyResult<()> {
         let arrays = self.arrays(py)?;
         py.import("numpy")?
@@ -213,7 +216,7 @@ impl Recording {
                 .collect::<Vec<_>>()
         };
         let (of_state, of_cycle) = (of(Source::State), of(Source::Cycle));
-        // Something has to show which cycles there were.
+        // At least one table must show the existing cycles.
         let uses_states = !of_state.is_empty() || of_cycle.is_empty();
         let uses_cycles = !of_cycle.is_empty();
         let shared = Arc::new(Shared {
@@ -241,7 +244,7 @@ impl Recording {
         Ok(())
     }
 
-    /// Ends with the newest state. What has not come yet is awaited where it is read.
+    /// Ends with the newest state. Reading waits for the rest.
     fn end(&self) {
         let robot = self.robot().take();
         let begun = self.begun.lock().unwrap_or_else(PoisonError::into_inner);
@@ -263,12 +266,12 @@ impl Recording {
 }
 
 impl Begun {
-    /// Time of the last cycle that belongs to it.
+    /// Returns the time of the last cycle of the recording.
     fn last(&self) -> u64 {
         self.end.borrow().unwrap_or(u64::MAX)
     }
 
-    /// What there is to read.
+    /// Returns the readable part.
     fn cut(&self, py: Python<'_>) -> Cut<'_> {
         if self.end.borrow().is_some() {
             self.shared.wait(py);
@@ -282,7 +285,7 @@ impl Begun {
     }
 }
 
-/// Fills a table until it has the cycle in which the recording ends, or nobody has the recording.
+/// Fills a table until it contains the last cycle of the recording, or the recording is dropped.
 async fn collect(
     items: impl Stream<Item = Seen>,
     source: Source,
@@ -308,13 +311,13 @@ async fn collect(
     shared.completed.notify_all();
 }
 
-/// The records of the control thread.
+/// Returns the records of the control thread.
 fn cycles(records: broadcast::Receiver<Record>) -> impl Stream<Item = Seen> {
     futures::stream::unfold(records, async |mut records| {
         loop {
             match records.recv().await {
                 Ok(record) => return Some((Seen::Cycle(Box::new(record)), records)),
-                // The times of the rows show how many.
+                // The times of the rows show the number.
                 Err(RecvError::Lagged(_)) => {}
                 Err(RecvError::Closed) => return None,
             }
@@ -327,8 +330,8 @@ impl Shared {
         self.tables.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits until the tables have all that belongs to a recording that is over. Of a robot that
-    /// sends nothing any more, what there is has to do.
+    /// Waits until the tables contain all data of a finished recording. If the robot sends no more
+    /// states, the existing data is used.
     fn wait(&self, py: Python<'_>) {
         py.detach(|| {
             let is_incomplete =
@@ -341,6 +344,6 @@ impl Shared {
     }
 }
 
-/// How long a recording that is over waits for its last cycles, where it is read: the control
-/// thread hands them on within 50 ms.
+/// Time limit for the last cycles of a finished recording when it is read: the control thread
+/// delivers them within 50 ms.
 const PATIENCE: Duration = Duration::from_secs(2);

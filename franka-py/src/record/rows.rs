@@ -11,7 +11,7 @@ use pyo3::types::{PyAny, PyDict};
 use super::table::{Source, Table};
 use crate::arrays::array;
 
-/// That of the states, and that of the control thread's cycles.
+/// The table of the states, and the table of the control thread's cycles.
 pub(super) struct Tables(pub(super) [Table; 2]);
 
 impl Tables {
@@ -19,8 +19,7 @@ impl Tables {
         &mut self.0[source as usize]
     }
 
-    /// Rows of each table up to `last` that belong to the same cycles, of all tables that are in
-    /// use.
+    /// Returns the rows of each table up to `last` for the same cycles, of all tables in use.
     pub(super) fn rows(&self, last: u64) -> [Vec<usize>; 2] {
         let [states, cycles] = &self.0;
         let until = |table: &Table| table.times.partition_point(|time| *time <= last);
@@ -47,14 +46,14 @@ impl Tables {
         }
     }
 
-    /// Time of the newest cycle that all tables in use have been offered.
+    /// Returns the time of the newest cycle that all tables in use have received.
     pub(super) fn newest(&self) -> u64 {
         let used = self.0.iter().filter(|table| table.is_used);
         used.map(|table| table.newest).min().unwrap_or_default()
     }
 }
 
-/// Rows of the cycles that a recording has so far, and all that lies behind them.
+/// The current rows of the cycles of a recording, and their tables.
 pub(super) struct Cut<'a> {
     pub(super) tables: MutexGuard<'a, Tables>,
     pub(super) rows: [Vec<usize>; 2],
@@ -96,7 +95,7 @@ impl Cut<'_> {
     }
 }
 
-/// The numbers of a column in some rows as a new array, of the type that its kind wants.
+/// Returns the numbers of a column in some rows as a new array, with the type of its kind.
 pub(crate) fn column_array<'py>(
     py: Python<'py>,
     column: &Column,

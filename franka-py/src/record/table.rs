@@ -1,9 +1,9 @@
-//! Rows of numbers by the robot's time, as they come.
+//! Rows of numbers by the robot's time, in order of arrival.
 
 use franka_async::record::{Column, ColumnSource, Record};
 use franka_async::state::RobotState;
 
-/// Which table a column is in.
+/// The table of a column.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Source {
     State,
@@ -19,14 +19,14 @@ impl Source {
     }
 }
 
-/// One cycle, as the robot or as the control thread has it.
+/// One cycle, from the robot or from the control thread.
 pub(super) enum Seen {
     State(Box<RobotState>),
     Cycle(Box<Record>),
 }
 
 impl Seen {
-    /// `message_id` of the state.
+    /// Returns `message_id` of the state.
     fn time(&self) -> u64 {
         match self {
             Self::State(state) => state.message_id,
@@ -34,7 +34,7 @@ impl Seen {
         }
     }
 
-    /// Appends what a column is in this cycle.
+    /// Appends the value of a column in this cycle.
     fn append(&self, column: &Column, row: &mut Vec<f64>) {
         match (column.source, self) {
             (ColumnSource::State(read), Self::State(state)) => read(state, row),
@@ -44,23 +44,23 @@ impl Seen {
     }
 }
 
-/// Rows of some columns, each with the `message_id` of its state; in the order of time.
+/// Rows of some columns, each with the `message_id` of its state, in the order of time.
 pub(super) struct Table {
     pub(super) columns: Vec<&'static Column>,
     width: usize,
     pub(super) times: Vec<u64>,
-    /// Rows one after the other. In blocks: none is copied when there are more.
+    /// Consecutive rows, in blocks, so that growing copies nothing.
     blocks: Vec<Vec<f64>>,
-    /// Time of the newest row that was offered.
+    /// Time of the newest received row.
     pub(super) newest: u64,
-    /// Whether rows are put into it at all.
+    /// True if rows are stored.
     pub(super) is_used: bool,
-    /// Whether no more rows come.
+    /// True if no more rows arrive.
     pub(super) is_complete: bool,
 }
 
 impl Table {
-    /// An empty table for rows after `begin`.
+    /// Creates an empty table for rows after `begin`.
     pub(super) fn new(columns: Vec<&'static Column>, begin: u64, is_used: bool) -> Self {
         Self {
             width: columns.iter().map(|column| column.width()).sum(),
@@ -73,7 +73,7 @@ impl Table {
         }
     }
 
-    /// Appends a row of this cycle, unless it is an old one or there are `most` already.
+    /// Appends a row for this cycle, unless it is old or the table already has `most` rows.
     pub(super) fn push(&mut self, seen: &Seen, most: usize) {
         let time = seen.time();
         if time <= self.newest {
@@ -93,7 +93,7 @@ impl Table {
         }
     }
 
-    /// The numbers of a column in these rows.
+    /// Returns the numbers of a column in these rows.
     pub(super) fn values(&self, column: &Column, rows: &[usize]) -> Vec<f64> {
         let before = self.columns.iter().take_while(|it| it.name != column.name);
         let offset: usize = before.map(|column| column.width()).sum();
@@ -106,5 +106,5 @@ impl Table {
     }
 }
 
-/// Rows of a block.
+/// Number of rows of a block.
 const BLOCK: usize = 1024;

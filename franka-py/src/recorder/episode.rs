@@ -42,13 +42,13 @@ impl EpisodeUnderWay {
         &self.name
     }
 
-    /// What is to be done, in words.
+    /// Description of the task.
     #[getter]
     fn task(&self) -> &str {
         &self.task
     }
 
-    /// Whether it was done; `None` until somebody says so.
+    /// Success of the task; `None` until it is set.
     #[getter]
     fn get_success(&self) -> Option<bool> {
         *self.judged()
@@ -92,7 +92,7 @@ impl EpisodeUnderWay {
         let success = *self.judged();
         let ended = self.tell(py, |recorder| recorder.end_episode(success));
         self.shared.in_episode.store(false, Ordering::Relaxed);
-        // What the block raised is not replaced.
+        // The block's exception is not replaced.
         if raised { Ok(()) } else { ended }
     }
 

@@ -25,14 +25,14 @@ use crate::vacuum_gripper::VacuumGripper;
 pub(crate) use episode::EpisodeUnderWay;
 use status::Status;
 
-/// Records robots in a file, every cycle and what was asked of them: `async with
+/// Records robots to a file, with every cycle and every request: `async with
 /// Recorder.to_file("run.mcap") as recorder:`, and in it `await recorder.attach(robot)`. The end of
 /// the block ends the recording and waits until it is on the disk.
 ///
-/// Threads of its own write the file, beside the interpreter. Nothing that it does delays a cycle:
-/// what there is no room for is dropped and counted. Without a block, `await recorder.finish()`
-/// ends it. When the last reference goes it ends in the background, perhaps without the newest
-/// events; at the exit of the interpreter, what was written by then is readable.
+/// Separate threads write the file, without the interpreter. The recorder cannot delay a cycle:
+/// data without space is dropped and counted. Without a block, `await recorder.finish()` ends it.
+/// When its last reference is dropped it ends in the background, possibly without the newest
+/// events; after the exit of the interpreter, the data written by then is readable.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct Recorder {
     shared: Threaded<Arc<Shared>>,
@@ -41,9 +41,9 @@ pub(crate) struct Recorder {
 
 struct Shared {
     stage: RwLock<Stage>,
-    /// As it was read last: for those who ask while the recording is being finished.
+    /// The last known status, for calls while the recording is being finished.
     newest: Mutex<RecordStatus>,
-    /// Whether an episode has begun and not ended.
+    /// True if an episode has begun and not ended.
     in_episode: AtomicBool,
 }
 
@@ -54,18 +54,17 @@ enum Stage {
 
 #[pymethods]
 impl Recorder {
-    /// Begins a recording in a new MCAP file at `path`, whose folder has to be there.
+    /// Begins a recording in a new MCAP file at `path`, whose folder must exist.
     ///
-    /// Options: `thinned`, whether cycles are kept at the full rate only around what is notable
-    /// (reflexes, contacts, failures), else every tenth. `flush`, the longest time between two
-    /// writes, 0.01 to 1 s (1): what a crash can lose. `sync`, whether each write is forced to the
-    /// disk, against power cuts (`True`). `rotate_bytes` and `rotate_time`, s: after which a new
-    /// file is begun, `run-0002.mcap` after `run.mcap`. `metadata`, a `dict` of texts, and
-    /// `attachments`, a `dict` of file names and bytes, go into the file. `black_box`, a
-    /// `recording.BlackBox`, also writes the last seconds before an incident to a file of their
-    /// own.
+    /// Options: `thinned`, true to keep the full rate only around notable cycles (reflexes,
+    /// contacts, failures), and otherwise every tenth cycle. `flush`, the longest time between two
+    /// writes, 0.01 to 1 s (1): the largest loss in a crash. `sync`, true to force each write to
+    /// the disk, against power failures (`True`). `rotate_bytes` and `rotate_time`, s: when to
+    /// begin a new file, `run-0002.mcap` after `run.mcap`. `metadata`, a `dict` of texts, and
+    /// `attachments`, a `dict` of file names and bytes, are stored in the file. `black_box`, a
+    /// `recording.BlackBox`, also writes the last seconds before an incident to a separate file.
     ///
-    /// Raises `RecordError` if there is such a file or it cannot be made, `ValueError`.
+    /// Raises `RecordError` if the file exists or cannot be created, `ValueError`.
     #[staticmethod]
     #[pyo3(signature = (path, **options))]
     fn to_file(
@@ -79,9 +78,10 @@ impl Recorder {
         Self::begin(py, path, |path| recording::Recorder::to_file(path, options))
     }
 
-    /// Keeps the last `before` seconds, 1 to 300, in memory only. When a motion ends by a reflex, a
-    /// lost link or a guard, it writes them and the `after` seconds that follow, 60 at most, to a
-    /// file in `directory`, named by time, robot and cause. The newest `keep` files are kept.
+    /// Keeps only the last `before` seconds, 1 to 300, in memory. When a motion ends because of a
+    /// reflex, a lost link or a guard, it writes them and the following `after` seconds, at most
+    /// 60, to a file in `directory`, named by time, robot and cause. The newest `keep` files are
+    /// kept.
     ///
     /// Raises `RecordError`, `ValueError`.
     #[staticmethod]
@@ -97,11 +97,11 @@ impl Recorder {
         Self::begin(py, directory, |_| recording::Recorder::black_box(black_box))
     }
 
-    /// Records a robot, which is connected, from now on: every cycle, goals and how they end,
-    /// diagnoses, events and requests; of a supervised robot also after it was connected to again.
-    /// `name`, of letters, digits, `-` and `_`, tells several robots of a recording apart.
-    /// `with_address` writes the network address down. `capacity` is how many cycles may wait for
-    /// the recorder, 4096 by default. Raises `RecordError`, `ValueError`. Cancelling gives it up.
+    /// Records a connected robot from now on: every cycle, goals and their outcomes, diagnoses,
+    /// events and requests; for a supervised robot also after a reconnect. `name`, of letters,
+    /// digits, `-` and `_`, distinguishes several robots of a recording. `with_address` stores the
+    /// network address. `capacity` is the number of cycles that may wait for the recorder, 4096 by
+    /// default. Raises `RecordError`, `ValueError`. Cancelling aborts it.
     #[pyo3(signature = (robot, name = "", *, with_address = false, capacity = None))]
     fn attach(
         &self,
@@ -121,8 +121,8 @@ impl Recorder {
         }))
     }
 
-    /// Records the robots of a team, each under its name, and which member each is; otherwise like
-    /// `attach`. Robots before the one that an error is about are recorded.
+    /// Records the robots of a team, each with its name and its member number; otherwise like
+    /// `attach`. If an error concerns one robot, the previous ones are recorded.
     #[pyo3(signature = (team, names, *, with_address = false, capacity = None))]
     fn attach_team(
         &self,
@@ -150,8 +150,7 @@ impl Recorder {
     }
 
     /// Records an end effector, a connected `Gripper` or `VacuumGripper`, with the robot of this
-    /// name: its states, and actions when they have ended. Raises `RecordError` unless that robot
-    /// is attached.
+    /// name: its states, and completed actions. Raises `RecordError` unless that robot is attached.
     #[pyo3(signature = (gripper, robot = ""))]
     fn attach_gripper(
         &self,
@@ -182,27 +181,27 @@ impl Recorder {
         self.with(py, |recorder| recorder.note(text))
     }
 
-    /// An episode, an attempt at a task, while a `with` block runs:
-    /// `with recorder.episode("pick-1", task="pick the cube") as episode:`. The block sets
-    /// `episode.success` to `True` or `False`; it is `None`, not judged, unless that was done, and
-    /// `False` if the block raises. One episode runs at a time. `name` has letters, digits, `-` and
-    /// `_`; raises `ValueError`.
+    /// An episode, an attempt at a task, while a `with` block runs: `with
+    /// recorder.episode("pick-1", task="pick the cube") as episode:`. The block sets
+    /// `episode.success` to `True` or `False`. Otherwise it is `None`, not judged, or `False` if
+    /// the block raises. One episode runs at a time. `name` has letters, digits, `-` and `_`;
+    /// raises `ValueError`.
     #[pyo3(signature = (name, *, task))]
     fn episode(&self, name: String, task: String) -> PyResult<EpisodeUnderWay> {
         Episode::check(&name, &task).map_err(|error| PyValueError::new_err(error.to_string()))?;
         Ok(EpisodeUnderWay::new(self.shared.clone(), name, task))
     }
 
-    /// What was recorded so far and what has failed, a `recording.RecordStatus`.
+    /// Progress and failures of the recording, a `recording.RecordStatus`.
     fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let status = py.detach(|| self.shared.status());
         Status(status).into_pyobject(py)
     }
 
-    /// Ends the recording and waits, 10 s at most, until all of it is on the disk: what has
-    /// happened before the call is in it. Returns the `recording.RecordStatus`, again if it has
-    /// ended. Raises `RecordError` if the files could not be written to their end; what was written
-    /// is readable. Once it has begun, it goes on even if it is cancelled.
+    /// Ends the recording and waits, at most 10 s, until all of it is on the disk, including the
+    /// events before the call. Returns the `recording.RecordStatus`, also if it has already ended.
+    /// Raises `RecordError` if the files could not be completed; the written data is readable. Once
+    /// begun, it continues even if it is cancelled.
     fn finish(&self) -> Operation {
         Operation::new("Recorder.finish", finish(self.shared.clone()))
     }
@@ -213,7 +212,7 @@ impl Recorder {
 
     #[pyo3(signature = (kind = None, *_rest))]
     fn __aexit__(&self, kind: Option<&Bound<'_, PyAny>>, _rest: &Bound<'_, PyAny>) -> Operation {
-        // What the block raised is not replaced.
+        // The block's exception is not replaced.
         let raised = kind.is_some_and(|kind| !kind.is_none());
         let finished = finish(self.shared.clone());
         Operation::new("Recorder.finish", async move {
@@ -239,7 +238,7 @@ impl Recorder {
         to: PathBuf,
         begin: impl FnOnce(&PathBuf) -> Result<recording::Recorder, RecordError> + Send,
     ) -> PyResult<Self> {
-        // In a forked child it is dropped without waiting for threads that are not there.
+        // In a forked child it is dropped without waiting for threads that do not exist.
         runtime::runtime()?;
         let recorder = py.detach(|| begin(&to)).map_err(|error| error.raise(py))?;
         let newest = recorder.status();
@@ -253,7 +252,7 @@ impl Recorder {
         })
     }
 
-    /// Does something with the recorder, with the interpreter released.
+    /// Runs a function with the recorder, with the interpreter released.
     fn with<T: Send>(
         &self,
         py: Python<'_>,
@@ -266,7 +265,7 @@ impl Recorder {
 }
 
 impl Shared {
-    /// Does something with the recorder.
+    /// Runs a function with the recorder.
     ///
     /// # Errors
     /// [`RecordError::Ended`] also while it is being finished.

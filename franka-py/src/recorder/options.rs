@@ -9,10 +9,10 @@ use pyo3::prelude::*;
 use crate::operation::seconds;
 use crate::options::Keywords;
 
-/// Those of `Recorder.to_file`.
+/// Reads the options of `Recorder.to_file`.
 ///
 /// # Errors
-/// `TypeError`, `ValueError`; ranges are checked where the recording begins.
+/// `TypeError`, `ValueError`; ranges are checked when the recording begins.
 pub(super) fn of_file(py: Python<'_>, keywords: &mut Keywords<'_>) -> PyResult<RecordOptions> {
     let default = RecordOptions::default();
     let mut time = |name| {
@@ -64,10 +64,10 @@ struct BlackBoxFields {
     keep: usize,
 }
 
-/// A black box of these seconds and files.
+/// Creates a black box with these seconds and files.
 ///
 /// # Errors
-/// `ValueError` for times that are none; ranges are checked where the recording begins.
+/// `ValueError` for invalid times; ranges are checked when the recording begins.
 pub(super) fn black_box(
     directory: PathBuf,
     before: f64,
@@ -82,7 +82,7 @@ pub(super) fn black_box(
     })
 }
 
-/// The media type that the name of a file stands for.
+/// Returns the media type for the name of a file.
 fn media_type(py: Python<'_>, name: &str) -> PyResult<String> {
     let guessed = py
         .import("mimetypes")?

@@ -1,4 +1,4 @@
-//! What a recorder says of itself, and why it does not record.
+//! The status of a recorder, and its errors.
 
 use franka_async::record::AttachError;
 use franka_async::recording::{RecordError, RecordStatus, TrackError};
@@ -9,7 +9,7 @@ use pyo3::types::PyAny;
 use crate::errors::{Raise, made};
 use crate::names::Named;
 
-/// A [`RecordStatus`] on its way into Python.
+/// A [`RecordStatus`] for Python.
 pub(super) struct Status(pub(super) RecordStatus);
 
 impl<'py> IntoPyObject<'py> for Status {

@@ -1,4 +1,4 @@
-//! Cycles of a recording: one by one, and columns of them as arrays.
+//! Cycles of a recording: individually, and columns of them as arrays.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -16,7 +16,7 @@ use crate::errors::Raise;
 use crate::record::column_array;
 use crate::state::RobotState;
 
-/// What recordings in files have: a `dict` of each column's name to its unit and shape in one
+/// The columns of recordings in files: a `dict` of each column's name to its unit and shape in one
 /// cycle.
 #[pyfunction]
 pub(crate) fn recording_columns(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
@@ -30,10 +30,10 @@ pub(crate) fn recording_columns(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(all)
 }
 
-/// The columns of these names, without those of the times.
+/// Returns the columns with these names, except the times.
 ///
 /// # Errors
-/// `ValueError` for one that recordings do not have.
+/// `ValueError` for a column that recordings do not have.
 pub(super) fn chosen(names: &[&str]) -> PyResult<Vec<&'static Column>> {
     let names = names.iter().filter(|name| !TIMES.contains(name));
     Columns::named(names.clone().copied())
@@ -73,7 +73,7 @@ impl Rows {
         Ok(rows)
     }
 
-    /// The column of this name, which has to be one of them.
+    /// Returns the column with this name, which must be one of them.
     pub(super) fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         match name {
             "time" => Ok(PyArray1::from_slice(py, &self.times).into_any()),
@@ -89,8 +89,8 @@ impl Rows {
     }
 }
 
-/// The cycles of a recording, one after the other. After an error `next()` goes on behind what is
-/// damaged.
+/// The cycles of a recording, one after the other. After an error `next()` continues behind the
+/// damage.
 #[pyclass(frozen, module = "franka_async", name = "_Cycles")]
 pub(crate) struct Cycles {
     cycles: Mutex<EachCycle>,
@@ -134,19 +134,20 @@ pub(crate) struct RecordedCycle {
 
 #[pymethods]
 impl RecordedCycle {
-    /// When this computer had the state, ns since 1970.
+    /// Time at which this computer received the state, ns since 1970.
     #[getter]
     fn host_time(&self) -> u64 {
         self.cycle.time.as_nanos()
     }
 
-    /// What the robot said. Fields that recordings leave out are zero.
+    /// The robot's state. Fields that are not recorded are zero.
     #[getter]
     fn state(&self) -> RobotState {
         RobotState::new(self.cycle.state, self.version)
     }
 
-    /// The column of this name in this cycle: a number, an array, or a name. Raises `ValueError`.
+    /// Returns the column with this name in this cycle: a number, an array, or a name. Raises
+    /// `ValueError`.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let rows = Rows {
             times: vec![self.cycle.state.message_id as f64 / 1000.0],

@@ -1,4 +1,4 @@
-//! Recordings as tables and datasets of other programs.
+//! Exports recordings as tables and datasets for other programs.
 
 use std::path::PathBuf;
 
@@ -15,10 +15,11 @@ use crate::names::Named;
 
 #[pymethods]
 impl RecordingFile {
-    /// Writes a table as comma-separated text, a line for each cycle, and returns how many. First
-    /// come `time`, ms of the robot's clock, and `host_time`; then these columns of
-    /// `recording_columns()`, or all. The file has its name once it is complete, and never replaces
-    /// another. With `units` the first line has the units. Raises `ExportError`, `ValueError`.
+    /// Writes a table as comma-separated text, one line for each cycle, and returns the number of
+    /// cycles. The first columns are `time`, ms of the robot's clock, and `host_time`; then these
+    /// columns of `recording_columns()`, or all. The file gets its name once it is complete, and
+    /// never replaces another. With `units` the first line contains the units. Raises
+    /// `ExportError`, `ValueError`.
     #[pyo3(signature = (path, columns = None, *, units = true))]
     fn to_csv(
         &self,
@@ -38,9 +39,10 @@ impl RecordingFile {
         written.map_err(|error: ExportError| error.raise(py))
     }
 
-    /// Writes a Parquet table, a row for each cycle, and returns how many; columns as of `to_csv`.
-    /// The metadata of the file has the units, as JSON by the key `units`. The file has its name
-    /// once it is complete, and never replaces another. Raises `ExportError`, `ValueError`.
+    /// Writes a Parquet table, one row for each cycle, and returns the number of cycles; columns as
+    /// for `to_csv`. The metadata of the file contains the units, as JSON with the key `units`. The
+    /// file gets its name once it is complete, and never replaces another. Raises `ExportError`,
+    /// `ValueError`.
     #[pyo3(signature = (path, columns = None))]
     fn to_parquet(
         &self,
@@ -54,14 +56,14 @@ impl RecordingFile {
         written.map_err(|error| error.raise(py))
     }
 
-    /// Writes the episodes as a dataset in LeRobot's layout v3.0 to `folder`, which must not be
-    /// there or be empty; returns how many episodes and frames. `append` adds them to the dataset
-    /// that is there: twice, if the same recording is given twice. `fps` are frames per second.
-    /// `robot_type` is `franka_fr3` or `franka_fer` unless given. `gripper`, whether its width is
-    /// part of states and actions: by default, if the recording has one of a Hand. `action` is
-    /// `reference`, where the arm was to be at the next frame, or `measured`, where it was: for
-    /// demonstrations by hand. `episodes` are the names of those to write; all by default. Raises
-    /// `ExportError`, `ValueError`; a dataset that is there is then as it was.
+    /// Writes the episodes as a dataset in LeRobot's layout v3.0 to `folder`, which must not exist
+    /// or be empty; returns the numbers of episodes and frames. `append` adds them to an existing
+    /// dataset: twice, if the same recording is given twice. `fps` are frames per second.
+    /// `robot_type` is `franka_fr3` or `franka_fer` unless given. `gripper` includes the width in
+    /// states and actions; the default is true if the recording contains a Hand. `action` is
+    /// `reference`, the commanded position at the next frame, or `measured`, the measured one: for
+    /// demonstrations by hand. `episodes` are the names of the episodes to write; all by default.
+    /// Raises `ExportError`, `ValueError`; an existing dataset is then unchanged.
     #[pyo3(signature = (
         folder, *, fps = 30, robot_type = None, gripper = None, action = "reference", append = false,
         episodes = None,
@@ -137,7 +139,7 @@ impl RecordingFile {
                 ..
             } in &chosen
             {
-                // The width that the gripper had before is that of the first frames.
+                // The first frames use the previous width of the gripper.
                 let until = view.to(*end);
                 let samples = Samples::new(until.from(*begin).cycles(), until.gripper_states());
                 let samples = samples.collect::<Result<Vec<Sample>, _>>();

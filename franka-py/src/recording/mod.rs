@@ -1,4 +1,4 @@
-//! Recordings read back: columns as arrays, cycles, events, episodes.
+//! Reads recordings: columns as arrays, cycles, events, episodes.
 
 mod cycles;
 mod export;
@@ -26,19 +26,19 @@ pub(crate) use cycles::{Cycles, RecordedCycle, recording_columns};
 
 type EachCycle = Box<dyn Iterator<Item = Result<Cycle, RecordingError>> + Send>;
 
-/// What was recorded of a robot in a file, or in a part of its time, as
-/// `RecordingFile.open("run.mcap")` returns it.
+/// The recording of a robot in a file, or a part of its time, as returned by
+/// `RecordingFile.open("run.mcap")`.
 ///
-/// Nothing is read before it is asked for, and no more than the part that is asked for. Reading
-/// releases the interpreter. `column("q")` is an array with a row for each cycle; `for cycle in
-/// recording:` has the whole state of each. A damaged part raises `RecordingError`.
+/// Data is read on request only, and only the requested part. Reading releases the interpreter.
+/// `column("q")` is an array with a row for each cycle; `for cycle in recording:` provides the
+/// whole state of each. A damaged part raises `RecordingError`.
 ///
 /// Times in the file are this computer's clock, whole nanoseconds since 1970.
 #[pyclass(frozen, module = "franka_async", name = "RecordingFile")]
 #[derive(Clone)]
 pub(crate) struct RecordingFile {
     recording: Arc<Recording>,
-    /// `None` until one of several was chosen.
+    /// Name of the robot; `None` until one of several was chosen.
     robot: Option<String>,
     from: HostTime,
     to: HostTime,
@@ -47,8 +47,8 @@ pub(crate) struct RecordingFile {
 
 #[pymethods]
 impl RecordingFile {
-    /// Opens a recording. One whose end is missing is read as far as it goes: see `damage`. Raises
-    /// `RecordingError`.
+    /// Opens a recording. A recording without an end is read up to the last whole part: see
+    /// `damage`. Raises `RecordingError`.
     #[staticmethod]
     fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let opened = py.detach(|| Recording::open(path));
@@ -66,8 +66,8 @@ impl RecordingFile {
         })
     }
 
-    /// Writes all that is whole in the file `damaged` to a new file, with the index that was
-    /// missing. Returns a `recording.Recovery`. Raises `RecordingError`.
+    /// Writes the intact parts of the file `damaged` to a new file, with the missing index. Returns
+    /// a `recording.Recovery`. Raises `RecordingError`.
     #[staticmethod]
     fn recover<'py>(
         py: Python<'py>,
@@ -88,21 +88,21 @@ impl RecordingFile {
         )
     }
 
-    /// Why the file is not as its writer was to leave it, after a crash, a power cut or on a full
-    /// disk; `None` if it is. What was flushed can be read all the same.
+    /// Damage of the file, after a crash, a power failure or on a full disk; `None` if it is
+    /// complete. The flushed data can still be read.
     #[getter]
     fn damage(&self) -> Option<&str> {
         self.recording.damage()
     }
 
-    /// Time of the first and the last message of the file; `None` if there is none.
+    /// Times of the first and the last message of the file; `None` if it has no messages.
     #[getter]
     fn span(&self) -> Option<(u64, u64)> {
         let (begin, end) = self.recording.span()?;
         Some((begin.as_nanos(), end.as_nanos()))
     }
 
-    /// What is known of the whole recording: versions, host, kernel, options.
+    /// Metadata of the whole recording: versions, host, kernel, options.
     #[getter]
     fn metadata<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.recording.metadata().into_pyobject(py)
@@ -123,13 +123,13 @@ impl RecordingFile {
         made.collect()
     }
 
-    /// The names of the files inside.
+    /// Names of the attached files.
     fn attachments(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         let names = py.detach(|| self.recording.attachments());
         names.map_err(|error| error.raise(py))
     }
 
-    /// The bytes of a file inside; `None` if there is none of that name, or it is damaged.
+    /// Returns the bytes of an attached file; `None` if no file has this name, or it is damaged.
     fn attachment<'py>(
         &self,
         py: Python<'py>,
@@ -140,7 +140,7 @@ impl RecordingFile {
         Ok(data.map(|data| PyBytes::new(py, &data)))
     }
 
-    /// The same for the robot of this name, where there are several. Raises `RecordingError`.
+    /// The recording of the robot with this name, if there are several. Raises `RecordingError`.
     fn robot(&self, py: Python<'_>, name: String) -> PyResult<Self> {
         self.recording
             .robot(&name)
@@ -151,7 +151,7 @@ impl RecordingFile {
         })
     }
 
-    /// The same from one time to another, both included; `None` is as far as it goes.
+    /// The part from one time to another, both included; `None` means no bound.
     #[pyo3(signature = (begin = None, end = None))]
     fn between(&self, begin: Option<u64>, end: Option<u64>) -> Self {
         let begin = HostTime::from_nanos(begin.unwrap_or(0));
@@ -163,8 +163,8 @@ impl RecordingFile {
         }
     }
 
-    /// The same at `rate` cycles per second of the robot's clock, 1000 at most: at each time the
-    /// newest cycle that came before. Events and grippers are as they are.
+    /// The recording at `rate` cycles per second of the robot's clock, at most 1000: at each time
+    /// the newest cycle before it. Events and grippers are unchanged.
     fn resampled(&self, rate: f64) -> PyResult<Self> {
         if !(rate > 0.0 && rate <= 1000.0) {
             let text = format!("rate is {rate}, expected more than 0 and at most 1000 per second");
@@ -181,13 +181,14 @@ impl RecordingFile {
         Ok(Cycles::new(self.cycles(py)?, self.version()))
     }
 
-    /// A column as a new array with a row for each cycle: one of `recording_columns()`, or `time`,
-    /// the robot's clock, s, or `host_time`. Raises `ValueError`.
+    /// Returns a column as a new array with a row for each cycle: one of `recording_columns()`, or
+    /// `time`, the robot's clock, s, or `host_time`. Raises `ValueError`.
     fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         self.rows(py, &[name])?.column(py, name)
     }
 
-    /// Columns as new arrays, in one go: a `dict` by name, `time` and `host_time` included.
+    /// Returns columns as new arrays, in one pass: a `dict` by name, `time` and `host_time`
+    /// included.
     fn columns<'py>(&self, py: Python<'py>, names: Vec<String>) -> PyResult<Bound<'py, PyDict>> {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let rows = self.rows(py, &names)?;
@@ -198,13 +199,14 @@ impl RecordingFile {
         Ok(all)
     }
 
-    /// What happened, oldest first: a list of `recording.RecordedEvent`.
+    /// The events, oldest first: a list of `recording.RecordedEvent`.
     fn events<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let events = self.read_events(py)?;
         events.iter().map(|event| event_object(py, event)).collect()
     }
 
-    /// The episodes, in their order: a list of `recording.Episode`. One without an end is left out.
+    /// The episodes, in their order: a list of `recording.Episode`. An episode without an end is
+    /// left out.
     fn episodes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let episodes = self.read_episodes(py)?.into_iter();
         let made = episodes.map(|episode| {
@@ -215,8 +217,8 @@ impl RecordingFile {
         made.collect()
     }
 
-    /// What the gripper said of itself, oldest first: a list of tuples of time and `GripperState`
-    /// or `VacuumGripperState`.
+    /// The gripper's states, oldest first: a list of tuples of time and `GripperState` or
+    /// `VacuumGripperState`.
     fn gripper_states<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let states = self.view(py, |view| {
             view.gripper_states().collect::<Result<Vec<_>, _>>()
@@ -259,10 +261,10 @@ impl RecordingFile {
 }
 
 impl RecordingFile {
-    /// Returns the name of the robot that is read.
+    /// Returns the name of the robot to read.
     ///
     /// # Errors
-    /// `ValueError` if there is no robot, or there are several and none was chosen.
+    /// `ValueError` if the file contains no robot, or several and none was chosen.
     pub(super) fn chosen(&self) -> PyResult<&str> {
         self.robot.as_deref().ok_or_else(|| {
             let robots = self.recording.robots().iter();
@@ -276,10 +278,10 @@ impl RecordingFile {
         })
     }
 
-    /// Reads from what was recorded of the robot, with the interpreter released.
+    /// Reads from the recording of the robot, with the interpreter released.
     ///
     /// # Errors
-    /// As [`RecordingFile::chosen`].
+    /// The errors of [`RecordingFile::chosen`].
     pub(crate) fn view<T: Send>(
         &self,
         py: Python<'_>,
@@ -293,7 +295,7 @@ impl RecordingFile {
         Ok(py.detach(|| read(&view.from(self.from).to(self.to))))
     }
 
-    /// The samples of the robot, which has been chosen.
+    /// Returns the samples of the chosen robot.
     pub(crate) fn samples(&self) -> Result<Vec<Sample>, RecordingError> {
         let robot = self.robot.as_deref().unwrap_or_default();
         let view = self.recording.robot(robot)?.from(self.from).to(self.to);
@@ -325,7 +327,7 @@ impl RecordingFile {
         episodes.map_err(|error| error.raise(py))
     }
 
-    /// Which robot it is, if the file says so.
+    /// Returns the kind of the robot, if the file names it.
     pub(crate) fn kind(&self) -> Option<RobotKind> {
         let mut robots = self.recording.robots().iter();
         let robot = robots.find(|robot| Some(&robot.name) == self.robot.as_ref());
@@ -340,7 +342,7 @@ impl RecordingFile {
     }
 }
 
-/// An event as a `recording.RecordedEvent`.
+/// Returns an event as a `recording.RecordedEvent`.
 fn event_object<'py>(py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyAny>> {
     let kind = &event.kind;
     let goal = match kind {
@@ -366,7 +368,7 @@ fn event_object<'py>(py: Python<'py>, event: &Event) -> PyResult<Bound<'py, PyAn
     value(py, "RecordedEvent", fields)
 }
 
-/// An object of a class of `recording.py`.
+/// Returns an object of a class of `recording.py`.
 pub(crate) fn value<'py>(
     py: Python<'py>,
     class: &str,

@@ -1,4 +1,4 @@
-//! What an action makes of each cycle: commands that keep the robot's limits.
+//! Conversion of actions to the commands of each cycle, within the robot's limits.
 
 use franka_async::goal::target_range_of;
 use franka_async::nalgebra::{Matrix4, Vector3};
@@ -41,8 +41,8 @@ impl Kind {
 }
 
 impl Settings {
-    /// The accelerations that motions use, `[rad/s²]`: they come to rest before the end of a range
-    /// without leaving the velocity envelope towards it.
+    /// Returns the accelerations of motions, `[rad/s²]`: they stop before the end of a range
+    /// without leaving the velocity envelope.
     fn acceleration(&self) -> JointVector {
         let limits = self.model().joint_limits();
         let share = limits.acceleration * ACCELERATION;
@@ -52,7 +52,7 @@ impl Settings {
         share.inf(&(envelope.deceleration * DECELERATION))
     }
 
-    /// Least and greatest positions that motions go to, `[rad]`.
+    /// Returns the smallest and largest positions of motions, `[rad]`.
     fn range(&self) -> (JointVector, JointVector) {
         let limits = self.model().joint_limits();
         let range = target_range_of(limits, &self.acceleration().data.0[0]);
@@ -60,7 +60,7 @@ impl Settings {
         (lower.into(), upper.into())
     }
 
-    /// Greatest action of each axis that means anything in a step of `dt` seconds.
+    /// Returns the largest effective action of each axis in a step of `dt` seconds.
     pub(super) fn action_bound(&self, dt: f64) -> Vec<f64> {
         let model = self.model();
         let velocity = model.joint_limits().velocity * self.speed;
@@ -78,7 +78,7 @@ impl Settings {
     }
 }
 
-/// The way from actions to commands.
+/// The conversion from actions to commands.
 pub(super) enum Control {
     Velocity(Box<Velocity>),
     Position(Box<Position>),
@@ -86,7 +86,7 @@ pub(super) enum Control {
 }
 
 impl Control {
-    /// At rest at the desired positions `q`, with an arm of these lengths.
+    /// Creates the control of an arm with these lengths, at rest at the desired positions `q`.
     pub(super) fn new(settings: &Settings, lengths: Lengths, q: &JointVector) -> Self {
         let model = settings.model();
         match settings.control {
@@ -111,7 +111,7 @@ impl Control {
         }
     }
 
-    /// Takes an action, which has the length of its kind.
+    /// Sets an action, which has the length of its kind.
     pub(super) fn act(&mut self, action: &[f64]) {
         match self {
             Self::Velocity(velocity) => {
@@ -127,7 +127,7 @@ impl Control {
         }
     }
 
-    /// The command of the next cycle, without the state that it answers.
+    /// Returns the command of the next cycle, without the state that it answers.
     pub(super) fn command(&mut self) -> RobotCommand {
         let mut command = RobotCommand::default();
         match self {
@@ -139,15 +139,15 @@ impl Control {
     }
 }
 
-/// Joint velocities that approach wanted ones within limits of acceleration and jerk, and slow down
-/// before the ends of the ranges.
+/// Joint velocities that approach the requested ones within limits of acceleration and jerk, and
+/// slow down before the ends of the ranges.
 pub(super) struct Velocity {
     limits: &'static JointLimits,
-    /// `[rad]`
+    /// Angles, `[rad]`.
     range: (JointVector, JointVector),
-    /// `[rad/s]`
+    /// Largest velocity, `[rad/s]`.
     bound: JointVector,
-    /// `[rad/s²]`
+    /// Acceleration, `[rad/s²]`.
     acceleration: JointVector,
     wanted: JointVector,
     q: JointVector,
@@ -176,15 +176,15 @@ impl Velocity {
     }
 }
 
-/// Joint targets that actions move, and the way to them.
+/// Joint targets moved by actions, and the path to them.
 pub(super) struct Position {
     model: Model,
     ee: EndEffector,
     is_cartesian: bool,
-    /// `[rad]`
+    /// Angles, `[rad]`.
     range: (JointVector, JointVector),
     generator: Generator<7>,
-    /// `[rad]`
+    /// Angles, `[rad]`.
     target: JointVector,
 }
 
@@ -220,7 +220,7 @@ impl Position {
         };
         let ((lower, upper), at) = (&self.range, self.generator.state().position);
         self.target = JointVector::from_fn(|i, _| {
-            // The target stays near: actions that the arm cannot follow do not add up.
+            // The target stays near: actions that the arm cannot follow do not accumulate.
             let near = wanted[i].clamp(at[i] - LEASH, at[i] + LEASH);
             near.clamp(lower[i], upper[i])
         });
@@ -229,8 +229,8 @@ impl Position {
         planned.expect("a target within the ranges of the joints");
     }
 
-    /// Joint positions where the end effector is moved by `delta` from where the target has it, as
-    /// far as the arm can.
+    /// Returns joint positions with the end effector moved by `delta` from the target's pose, if
+    /// the arm can reach it.
     fn moved(&self, delta: &Twist) -> JointVector {
         let Some(from) = self.pose(&self.target) else {
             return self.target;
@@ -265,10 +265,10 @@ impl Position {
     }
 }
 
-/// Torques that approach wanted ones as fast as the robot allows.
+/// Torques that approach the requested ones as fast as the robot allows.
 pub(super) struct Torque {
     limits: &'static JointLimits,
-    /// `[N·m]`
+    /// Requested torques, `[N·m]`.
     wanted: JointVector,
     torque: JointVector,
 }
@@ -276,7 +276,7 @@ pub(super) struct Torque {
 impl Torque {
     fn advance(&mut self) -> JointVector {
         for i in 0..7 {
-            // A little less, for rounding.
+            // Slightly less, because of rounding.
             let most = 0.999 * self.limits.torque_rate[i] * CYCLE;
             self.torque[i] += (self.wanted[i] - self.torque[i]).clamp(-most, most);
         }
@@ -284,29 +284,30 @@ impl Torque {
     }
 }
 
-/// Shares of the greatest accelerations and jerks that motions use.
+/// Share of the largest accelerations and jerks that motions use.
 const ACCELERATION: f64 = 0.4;
 const JERK: f64 = 0.5;
 
-/// And of the deceleration of the velocity envelope. What is left, and the distance of targets from
-/// the ends of the ranges, outweigh the speed that the envelope takes off.
+/// Share of the velocity envelope's deceleration. The rest, and the distance of targets from the
+/// ends of the ranges, compensate for the reduced speed of the envelope.
 const DECELERATION: f64 = 0.6;
 
-/// How fast a velocity approaches a wanted one, `[1/s]`.
+/// Rate at which a velocity approaches the requested one, `[1/s]`.
 const RESPONSE: f64 = 100.0;
 
-/// Share of the acceleration that is planned with before the end of a range; the rest makes up for
-/// the response.
+/// Share of the acceleration planned before the end of a range; the rest compensates for the
+/// response.
 const BRAKING: f64 = 0.6;
 
 /// Velocity per distance to the end of a range, close to it, `[1/s]`.
 const APPROACH: f64 = 4.0;
 
-/// How far a target may be ahead, `[rad]`.
+/// Largest distance of a target ahead, `[rad]`.
 const LEASH: f64 = 0.3;
 
-/// Steps of inverse kinematics for an action; four meet a pose to a micrometre from centimetres.
+/// Number of inverse kinematics steps for an action; four steps reach a pose to a micrometre from
+/// centimetres.
 const IK_STEPS: usize = 4;
 
-/// The greatest displacement of a joint in one of them, `[rad]`.
+/// Largest displacement of a joint in one step, `[rad]`.
 const IK_STEP: f64 = 0.1;

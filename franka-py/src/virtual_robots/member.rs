@@ -12,12 +12,12 @@ use franka_sim::{Config, Robot, Tool};
 
 use super::control::{Control, Kind};
 
-/// What robots have in common.
+/// The common settings of robots.
 pub(super) struct Settings {
     pub(super) kind: RobotKind,
     pub(super) control: Kind,
     pub(super) tool: Tool,
-    /// Share of the greatest velocity that motions use.
+    /// Share of the largest velocity that motions use.
     pub(super) speed: f64,
 }
 
@@ -27,7 +27,7 @@ impl Settings {
     }
 }
 
-/// A robot in motion, or one that has stopped itself.
+/// A robot in motion, or a robot that has stopped itself.
 pub(super) struct Member {
     robot: Robot,
     control: Control,
@@ -35,17 +35,17 @@ pub(super) struct Member {
 }
 
 impl Member {
-    /// A robot at rest at `q`, the ready pose unless given, with a motion begun.
+    /// Creates a robot at rest at `q`, the ready pose unless given, and begins a motion.
     ///
     /// # Errors
-    /// Why the robot did not begin it.
+    /// The reason why the robot did not begin it.
     pub(super) fn new(
         settings: &Settings,
         arm: Arm,
         seed: u64,
         q: Option<JointVector>,
     ) -> Result<Self, String> {
-        // The limits that actions are bounded by, those of `Model.fr3()`.
+        // The limits of actions, the same as in `Model.fr3()`.
         let arm = Arm {
             limits: SystemLimits::Before5_9,
             ..arm
@@ -69,7 +69,7 @@ impl Member {
         })
     }
 
-    /// Takes an action and lets `cycles` milliseconds pass. A robot that has stopped stands still.
+    /// Sets an action and simulates `cycles` milliseconds. A stopped robot does not move.
     pub(super) fn run(&mut self, action: &[f64], cycles: u32) {
         if !self.is_running() {
             return;
@@ -92,7 +92,7 @@ impl Member {
         }
     }
 
-    /// Whether the motion goes on.
+    /// True if the motion continues.
     pub(super) fn is_running(&self) -> bool {
         self.robot.state().robot_mode == RobotMode::Move
     }
@@ -110,10 +110,10 @@ impl Member {
     }
 }
 
-/// Connects to a robot and begins a motion, as a client does.
+/// Connects to a robot and begins a motion, like a client.
 ///
 /// # Errors
-/// Why it is not in motion then.
+/// The reason why it is not in motion.
 fn begin(robot: &mut Robot, control: Kind) -> Result<(), String> {
     let version = robot.version();
     let (controller, generator) = match control {
@@ -141,7 +141,7 @@ fn begin(robot: &mut Robot, control: Kind) -> Result<(), String> {
     }
 }
 
-/// Sends a message to the robot and reads what it answers at once.
+/// Sends a message to the robot and reads its immediate answer.
 fn exchange(
     robot: &mut Robot,
     session: &mut Session<Version>,
@@ -161,5 +161,5 @@ fn exchange(
     Ok(())
 }
 
-/// Where states would go: nothing is sent.
+/// Port for states; nothing is sent.
 const UDP_PORT: u16 = 5000;

@@ -1,5 +1,5 @@
-//! Simulated robots without sockets and clocks: they advance when they are told to, as fast as the
-//! machine computes.
+//! Simulated robots without sockets and clocks: they advance on request, as fast as the machine
+//! computes.
 //!
 //! ```text
 //! action ──> Control: a command per cycle ──wire──> franka_sim::Robot ──> observation, errors
@@ -9,7 +9,7 @@
 //! |---|---|
 //! | this | the class: many robots, stepped together |
 //! | `member` | one robot and its client |
-//! | `control` | what an action makes of each cycle |
+//! | `control` | conversion of an action to the commands of each cycle |
 
 mod control;
 mod member;
@@ -31,18 +31,19 @@ use crate::state_views::{FLAT_LEN, write_flat};
 use control::Kind;
 use member::{Member, Settings};
 
-/// Simulated robots in one process, without sockets, each under a motion of its own: `step` gives
-/// every one an action and lets it run for some milliseconds of its time.
+/// Simulated robots in one process, without sockets, each with a separate motion: `step` sets an
+/// action for each and simulates some milliseconds.
 ///
-/// Actions are, by `control`: `joint_velocity`, `(7,)` rad/s to approach; `joint_delta`, `(7,)` rad
-/// by which the target moves; `cartesian_delta`, `(6,)` m and a rotation vector in base axes by
-/// which the end effector's target moves; `torque`, `(7,)` N m on top of gravity. Motions keep the
-/// robot's limits of velocity, acceleration and jerk, torques its rate limit; positions keep off
-/// the ends of the joints' ranges. `speed` is the share of the greatest velocity that motions use.
+/// Actions depend on `control`: `joint_velocity`, `(7,)` rad/s to approach; `joint_delta`, `(7,)`
+/// rad by which the target moves; `cartesian_delta`, `(6,)` m and a rotation vector in base axes by
+/// which the end effector's target moves; `torque`, `(7,)` N m in addition to gravity. Motions keep
+/// the robot's limits of velocity, acceleration and jerk, torques its rate limit; positions stay
+/// away from the ends of the joint ranges. `speed` is the share of the largest velocity that
+/// motions use.
 ///
-/// The arm is `realistic` (it sticks and flexes), `ideal`, `nominal`, `bad`, or `sampled`: another
-/// realistic one by each seed. Robots have a Franka Hand unless `hand` is false. `threads` share
-/// the work of a step.
+/// The arm is `realistic` (with stiction and elasticity), `ideal`, `nominal`, `bad`, or `sampled`:
+/// a different realistic arm for each seed. Robots have a Franka Hand unless `hand` is false.
+/// `threads` share the work of a step.
 #[pyclass(frozen, module = "franka_async")]
 pub(crate) struct VirtualRobots {
     settings: Settings,
@@ -52,10 +53,10 @@ pub(crate) struct VirtualRobots {
     robots: Mutex<Vec<Member>>,
 }
 
-/// Observations, and which robots still move.
+/// Observations, and the flags of the moving robots.
 type Step<'py> = (Bound<'py, PyArrayDyn<f64>>, Bound<'py, PyArray1<bool>>);
 
-/// Which arm a robot has.
+/// The choice of a robot's arm.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ArmChoice {
     Ideal,
@@ -81,7 +82,7 @@ impl ArmChoice {
 impl VirtualRobots {
     #[new]
     #[pyo3(signature = (kind = "fr3", count = 1, *, control = "joint_velocity", arm = "realistic", hand = true, speed = 0.5, threads = 1))]
-    #[allow(clippy::too_many_arguments)] // each is named by the caller
+    #[allow(clippy::too_many_arguments)] // the caller names each argument
     fn new(
         py: Python<'_>,
         kind: &str,
@@ -124,28 +125,28 @@ impl VirtualRobots {
         })
     }
 
-    /// The number of robots.
+    /// Number of robots.
     fn __len__(&self) -> usize {
         self.count
     }
 
-    /// The length of an action: 6 or 7.
+    /// Length of an action: 6 or 7.
     #[getter]
     fn action_size(&self) -> usize {
         self.settings.control.size()
     }
 
-    /// Greatest action of each axis that means anything in one step of `cycles`: rad/s, rad, m and
-    /// rad, or N m. Larger ones are cut.
+    /// Largest effective action of each axis in one step of `cycles`: rad/s, rad, m and rad, or N
+    /// m. Larger actions are clipped.
     #[pyo3(signature = (cycles = 1))]
     fn action_bound<'py>(&self, py: Python<'py>, cycles: u32) -> Bound<'py, PyArray1<f64>> {
         let bound = self.settings.action_bound(f64::from(cycles) * 1e-3);
         PyArray1::from_vec(py, bound)
     }
 
-    /// Begins anew with robot `index`, counted from 0: at rest at the joint positions `q`, `(7,)`
-    /// rad, by default the ready pose. Noise, and a sampled arm, come from `seed`: the same seed
-    /// and actions give the same states.
+    /// Restarts robot `index`, counted from 0: at rest at the joint positions `q`, `(7,)` rad, by
+    /// default the ready pose. Noise, and a sampled arm, come from `seed`: the same seed and
+    /// actions give the same states.
     #[pyo3(signature = (index, *, seed = 0, q = None))]
     fn reset(
         &self,
@@ -169,9 +170,9 @@ impl VirtualRobots {
         })
     }
 
-    /// Gives every robot its action, `(n, 6 or 7)`, and lets it run for `cycles` milliseconds.
-    /// Returns `flat()` of the states after that, `(n, 69)`, and which robots still move, `(n,)`:
-    /// one that the robot itself has stopped (see `errors`) stands until its `reset`.
+    /// Sets the action of every robot, `(n, 6 or 7)`, and simulates `cycles` milliseconds. Returns
+    /// `flat()` of the states after that, `(n, 69)`, and flags for the moving robots, `(n,)`: a
+    /// robot that has stopped itself (see `errors`) does not move until its `reset`.
     #[pyo3(signature = (actions, cycles = 1))]
     fn step<'py>(
         &self,
@@ -212,20 +213,20 @@ impl VirtualRobots {
         })
     }
 
-    /// The newest state of robot `index`.
+    /// Newest state of robot `index`.
     fn state(&self, py: Python<'_>, index: usize) -> PyResult<RobotState> {
         self.with(py, index, |robot| {
             RobotState::new(*robot.state(), robot.version())
         })
     }
 
-    /// The errors with which robot `index` has stopped, by the vendor's names; none while it moves.
+    /// The errors that stopped robot `index`, by the vendor's names; none while it moves.
     fn errors(&self, py: Python<'_>, index: usize) -> PyResult<Vec<String>> {
         self.with(py, index, |robot| crate::state::names(robot.state().errors))
     }
 
     /// Pushes the end effector of robot `index` with `wrench`, `(6,)` N and N m in base axes, for
-    /// so many milliseconds of its time.
+    /// this number of milliseconds of its time.
     fn push(
         &self,
         py: Python<'_>,
@@ -261,11 +262,11 @@ impl VirtualRobots {
         Err(PyIndexError::new_err(text))
     }
 
-    /// What `work` makes of robot `index`. Who waits for a step of another thread leaves the
-    /// interpreter to others meanwhile.
+    /// Runs `work` with robot `index`. While it waits for a step of another thread, the interpreter
+    /// is released.
     ///
     /// # Errors
-    /// `IndexError` if there is no such robot.
+    /// `IndexError` if the robot does not exist.
     fn with<T: Send>(
         &self,
         py: Python<'_>,
@@ -276,7 +277,8 @@ impl VirtualRobots {
         Ok(py.detach(|| work(&mut self.lock()[index])))
     }
 
-    /// A new array of a row for each robot that `write` fills while the interpreter is free.
+    /// Returns a new array with a row for each robot that `write` fills while the interpreter is
+    /// released.
     fn observe<'py>(
         &self,
         py: Python<'py>,
@@ -293,7 +295,7 @@ impl VirtualRobots {
         array
     }
 
-    /// Does `work` on every job, shared by the threads.
+    /// Runs `work` on every job, shared by the threads.
     fn share<T: Send>(&self, mut jobs: Vec<T>, work: impl Fn(T) + Sync) {
         let each = jobs.len().div_ceil(self.threads);
         thread::scope(|scope| {
@@ -315,7 +317,7 @@ const ARMS: [(&str, ArmChoice); 5] = [
     ("sampled", ArmChoice::Sampled),
 ];
 
-/// The value of this name.
+/// Returns the value with this name.
 ///
 /// # Errors
 /// `ValueError` with all names.

@@ -25,116 +25,117 @@ _Command: TypeAlias = Literal['torques', 'joint_positions', 'joint_velocities', 
 
 @final
 class Arm:
-    """A session of target control: the arm is held, and goes from goal to goal without a stop in
-    between, whatever their kinds. Made by `Robot.engage`.
+    """A session of target control: the arm is held, and moves from goal to goal without a stop in
+    between, for all kinds of goals. Created by `Robot.engage`.
 
-    When the last reference to it goes, the arm brakes and the session ends, in the background;
-    `disengage()` does the same and can be awaited. `Robot.stop` ends it from outside, as does the
-    robot by a reflex: whatever is asked of the session afterwards raises the reason. While it
-    lasts, motions of the `Robot` itself are refused as `busy`.
+    When its last reference is dropped, the arm brakes and the session ends, in the background;
+    `disengage()` does the same and can be awaited. `Robot.stop` or a reflex also ends the session:
+    later calls then raise the reason. During the session, motions of the `Robot` itself are refused
+    as `busy`.
     """
 
     def move_to(self, target: Destination, **options: Unpack[MotionOptions]) -> MotionReport:
-        """As `Robot.move_to`; the arm is then held at the target. Cancelling it brakes the arm and
-        holds it.
+        """Like `Robot.move_to`; the arm is then held at the target. Cancelling it brakes and holds the
+        arm.
         """
 
     def replay(self, recording: RecordingFile, *, speed: float=1.0, source: Literal['reference', 'measured']='reference', targets: Literal['joints', 'poses']='joints') -> ReplayReport:
-        """Moves to where the recorded motion begins, as `move_joints` does, and then follows the
-        motion of a `RecordingFile`, or of the part of one that `between` gives, with all guards of
-        the session. Returns a `recording.ReplayReport` once the arm rests.
+        """Moves to the beginning of the recorded motion, like `move_joints`, and then follows the
+        motion of a `RecordingFile`, or of a part from `between`, with all guards of the session.
+        Returns a `recording.ReplayReport` once the arm is at rest.
 
-        `speed` is 0.01 to 1, as a share of the recorded one. `source` is `reference`, where the arm
-        was to be, or `measured`, where it was: of arms that were moved by hand. `targets` is
-        `joints`, or `poses`: the hand moves as recorded, the elbow as it can.
+        `speed` is 0.01 to 1, as a share of the recorded speed. `source` is `reference`, the
+        commanded positions, or `measured`, the measured positions: for arms that were moved by
+        hand. `targets` is `joints`, or `poses`: the hand moves as recorded, but the elbow may
+        differ.
 
-        Raises `ReplayError` for a motion that is not one for this arm, before anything moves, and
-        of the kind `off` once the arm is far from where it was in the recording; `MotionError`,
+        Raises `ReplayError` for a motion that is invalid for this arm, before the arm moves, and of
+        the kind `off` if the arm is far from its recorded position; `MotionError`,
         `RecordingError`, `ValueError`. Cancelling brakes the arm.
         """
 
     def move_joints(self, q: ArrayLike, **options: Unpack[MotionOptions]) -> MotionReport:
-        """As `Robot.move_joints`; the arm is then held."""
+        """Like `Robot.move_joints`; the arm is then held."""
 
     def move_by(self, way: ArrayLike, frame: Literal['base', 'tool']='base', from_arm: bool=False, **options: Unpack[MotionOptions]) -> MotionReport:
-        """As `Robot.move_by`, from the target that the arm is held at; the arm is then held."""
+        """Like `Robot.move_by`, relative to the target at which the arm is held; the arm is then held."""
 
     def move_through(self, waypoints: Iterable[Target | Waypoint], blend: float=0.0, **options: Unpack[MotionOptions]) -> MotionReport:
-        """As `Robot.move_through`; the arm is then held."""
+        """Like `Robot.move_through`; the arm is then held."""
 
     def follow(self, targets: Latest | Iterable[Target] | AsyncIterable[Target], **options: Unpack[FollowOptions]) -> MotionReport:
-        """As `Robot.follow`; the arm is then held at the last target."""
+        """Like `Robot.follow`; the arm is then held at the last target."""
 
     def hold(self, **options: Unpack[MotionOptions]) -> MotionReport:
-        """Brakes, whatever the arm is doing, and is over when it rests; it is then held there."""
+        """Brakes the arm in any motion, and completes when it is at rest; the arm is then held there."""
 
     def set(self, target: Destination) -> None:
-        """Heads for `target` from now on, in the place of whatever came before, and holds it; what
-        `move_to` takes, and targets with velocities. Over as soon as the goal is taken.
-        Cancelling takes nothing back.
+        """Moves to `target` from now on, replacing any other goal, and holds it. Accepts the targets
+        of `move_to`, and targets with velocities. Completes as soon as the goal is accepted.
+        Cancelling does not revoke the goal.
         """
 
     def try_set(self, target: Destination) -> None:
-        """As `set`, without waiting for an answer: for loops at a rate of their own, on any thread.
-        The newest of goals that come faster than they are taken counts. Raises `MotionError`
-        for a goal that is not accepted, and for what ended the session.
+        """Like `set`, without waiting for an answer: for loops with their own rate, on any thread. If
+        goals come faster than they are accepted, the newest counts. Raises `MotionError` for a goal
+        that is refused, and for the end of the session.
         """
 
     def target(self) -> _Array | tuple[_Array, _Array] | Joints | None:
-        """What the arm is held at or heads for: a pose, `(4, 4)`, `Joints`, or a pair with the twist.
-        `None` along a chunk, at the beginning, where a goal was given up, and once the session
-        has ended.
+        """The target at which the arm is held or to which it moves: a pose, `(4, 4)`, `Joints`, or a
+        pair with the twist. `None` along a chunk, at the beginning, after an aborted goal, and once
+        the session has ended.
         """
 
     def reference(self) -> Reference | None:
-        """Where the arm is to be in this millisecond: a `Reference`; `None` once the session has
-        ended.
+        """The commanded position of the arm in this millisecond: a `Reference`; `None` once the
+        session has ended.
         """
 
     def at_rest(self, timeout: float | None=None) -> bool:
-        """Waits until the arm rests at the target that was taken last, or where that has been given
-        up; returns whether it does. Without a `timeout` it waits for ever for an arm that is pushed
-        or held back, or that follows a stream; `False` says that it did not rest within so many
-        seconds. Cancelling has no effect on the arm.
+        """Waits until the arm is at rest at the last accepted target, or where that target was
+        aborted; returns `True` if it is. Without a `timeout` it waits indefinitely for an arm that
+        is pushed or blocked, or that follows a stream; `False` means that it was not at rest within
+        `timeout` seconds. Cancelling has no effect on the arm.
         """
 
     def chunk(self, points: ArrayLike | Chunk, dt: float | None=None, times: ArrayLike | None=None, *, velocities: ArrayLike | None=None, joints: bool=False, observed_at: RobotState | int | None=None, blend: float | None=None) -> None:
-        """Follows points with times, as a policy predicts them, from now on; over as soon as they are
-        taken. The arm rests at the last one unless another chunk or goal comes.
+        """Follows points with times, such as a policy's predictions, from now on; completes as soon as
+        they are accepted. The arm stops at the last point unless another chunk or goal follows.
 
         `points` are positions `(N, 3)`, poses `(N, 7)` or `(N, 4, 4)`, or with `joints` joint
-        positions `(N, 7)`, rad; or a `Chunk`, whose fields are the other arguments. `dt` is the
-        time between two points, s, or `times` that of each. `velocities` are twists `(N, 6)` or
-        joint velocities `(N, 7)`. `observed_at` is the `RobotState` that the policy saw: times
-        count from it. `blend` is the time to fade over from the chunk before, 0.1 s by default. A
-        chunk has 1024 points and 60 s at most: the rest is the next chunk, with the same
-        `observed_at`, and waits for its first point.
+        positions `(N, 7)`, rad; or a `Chunk`, whose fields replace the other arguments. `dt` is the
+        time between two points, s, or `times` the time of each. `velocities` are twists `(N, 6)` or
+        joint velocities `(N, 7)`. `observed_at` is the `RobotState` of the policy's observation:
+        times count from it. `blend` is the time of the transition from the previous chunk, 0.1 s by
+        default. A chunk has at most 1024 points and 60 s: send the rest as the next chunk with the
+        same `observed_at`; it waits for its first point.
 
-        Raises `ValueError` for arrays that are no chunk, and `MotionError` when it is awaited: for
-        one that comes too late or ends out of reach, and then the chunk before goes on; and of the
-        kind `held` or `braked`, once, if the chunk before was given up, as by a silent `Deadman`.
+        Raises `ValueError` for invalid arrays. Awaiting raises `MotionError` for a chunk that is
+        too late or ends out of reach; the previous chunk then continues. It raises the kind `held`
+        or `braked`, once, if the previous chunk was aborted, for example by a silent `Deadman`.
         """
 
     def guide(self, axes: Sequence[bool]=..., elbow: bool=True) -> None:
-        """Lets a hand guide the arm, once it rests, until the next goal; `hold()` ends it. `axes` are
-        free: x y z and about x y z of the base frame, six truth values; the others stay where
-        they are. Over as soon as it is taken. The load has to be declared, or it pulls the arm
-        down.
+        """Allows hand guiding of the arm, once it is at rest, until the next goal; `hold()` ends it.
+        `axes` are the free directions: x y z and about x y z of the base frame, six truth values;
+        the others are held. Completes as soon as it is accepted. The load must be declared, or it
+        pulls the arm down.
         """
 
     def tune(self, **options: Unpack[TuneOptions]) -> None:
-        """Changes `gains`, `limits`, `force_cap`, `leash`, `deviation` and `posture`, as far as they
-        are given, of the goal under way and of those to come. Gains fade over 0.3 s.
+        """Changes the given options among `gains`, `limits`, `force_cap`, `leash`, `deviation` and
+        `posture`, for the current goal and for later ones. Gains change gradually over 0.3 s.
         """
 
     def disengage(self) -> MotionReport:
-        """Brakes, lets the arm go and ends the session, with a `MotionReport`; a goal under way raises
-        `stopped`. Raises how the session ended if it ended otherwise.
+        """Brakes and releases the arm and ends the session, with a `MotionReport`; a current goal
+        raises `stopped`. Raises the reason if the session ended in another way.
         """
 
     def ended(self) -> MotionReport:
-        """Waits until the session has ended, and returns or raises how. Cancelling has no effect on
-        the arm.
+        """Waits until the session has ended, and returns its report or raises the reason. Cancelling
+        has no effect on the arm.
         """
 
     def __enter__(self) -> Arm:
@@ -146,26 +147,26 @@ class Arm:
 @final
 class AsynchronousControl:
     """A motion between sparse joint targets that the robot itself plans. Any thread may set targets.
-    `stop()`, or dropping it, has the robot stop.
+    `stop()`, or dropping it, stops the robot.
     """
 
     def set_target(self, q: ArrayLike) -> None:
-        """Sends the robot to `q`, `(7,)` rad, wherever it was going before. Raises what ended the
-        motion, if it has ended.
+        """Moves the robot to `q`, `(7,)` rad, replacing the previous target. Raises the reason if the
+        motion has ended.
         """
 
     def status(self) -> tuple[Literal['idle', 'executing', 'target_reached', 'aborted'], str | None]:
-        """How far the newest target has been followed: `idle`, `executing`, `target_reached` or
-        `aborted`; and why it was aborted, if it was.
+        """Status of the newest target: `idle`, `executing`, `target_reached` or `aborted`; and the
+        reason if it was aborted.
         """
 
     def reached(self) -> None:
-        """Waits until the newest target is reached. Raises what ended the motion before. Cancelling
-        leaves the robot on its way.
+        """Waits until the newest target is reached. Raises the reason if the motion ends before.
+        Cancelling does not stop the robot.
         """
 
     def stop(self) -> None:
-        """Has the robot stop. Without effect once it was stopped."""
+        """Stops the robot. Without effect once it was stopped."""
 
     def __enter__(self) -> AsynchronousControl:
         ...
@@ -175,17 +176,16 @@ class AsynchronousControl:
 
 @final
 class Gripper:
-    """A Franka Hand, which has a connection of its own beside the robot's.
+    """A Franka Hand, with its own connection in addition to the robot's.
 
     `async with Gripper(address) as gripper:` connects, and disconnects at the end; `await
-    gripper.connect()` does so without a block. On threads without an event loop, `.wait()`
-    stands in the place of `await`. What is grasped stays grasped when the connection ends.
+    gripper.connect()` does so without a block. On threads without an event loop, use `.wait()` in
+    place of `await`. A grasped object stays grasped when the connection ends.
 
-    One action runs at a time. A newer one aborts it, which then raises `ActionError` of the kind
-    `aborted`, and so does `stop()`, from any task or thread. Cancelling the task that awaits an
-    action stops the fingers, and so does a timeout around it. An action has no deadline of its own:
-    a move that an obstacle blocks takes minutes. None holds the interpreter while it is awaited or
-    waited for.
+    One action runs at a time. A newer action, or `stop()` from any task or thread, aborts it; it
+    then raises `ActionError` of the kind `aborted`. Cancelling the task that awaits an action, or a
+    timeout around it, stops the fingers. An action has no deadline: a move that an obstacle blocks
+    takes minutes. Waiting for an action releases the interpreter.
     """
 
     def __init__(self, address: str) -> None:
@@ -193,20 +193,20 @@ class Gripper:
 
     @property
     def address(self) -> str:
-        """Where it is: as given, and resolved once it is connected."""
+        """Address: as given, and resolved once it is connected."""
 
     @property
     def is_connected(self) -> bool:
-        """Whether there is a connection. One that was lost counts until `disconnect()`."""
+        """True if there is a connection. A lost connection counts until `disconnect()`."""
 
     def connect(self) -> Gripper:
         """Connects, and returns this object; without effect while it is connected. Raises
-        `ConnectError`. Cancelling gives it up.
+        `ConnectError`. Cancelling aborts the connection.
         """
 
     def disconnect(self) -> None:
-        """Closes the connection, without waiting. An action under way is stopped. Without
-        effect if there is no connection.
+        """Closes the connection, without waiting. A running action is stopped. Without effect
+        if there is no connection.
         """
 
     def __enter__(self) -> Gripper:
@@ -216,32 +216,33 @@ class Gripper:
         ...
 
     def state(self) -> GripperState:
-        """The newest state, without waiting."""
+        """Newest state, without waiting."""
 
     def states(self) -> Stream[GripperState]:
-        """The newest state as it changes, for `async for`. Ends when the connection does."""
+        """Newest state as it changes, for `async for`. Ends with the connection."""
 
     def homing(self) -> bool:
-        """Finds how wide the fingers open, `max_width` of the state; returns whether that succeeded.
-        Needed once after power-on and after a change of fingers. Raises `ActionError`; cancelling
-        stops the fingers.
+        """Determines the largest opening of the fingers, `max_width` of the state; returns `True` on
+        success. Needed once after power-on and after a change of fingers. Raises `ActionError`;
+        cancelling stops the fingers.
         """
 
     def move_to(self, width: float, speed: float=0.1) -> bool:
-        """Moves the fingers to `width`, m, at `speed`, m/s (the Hand's most is 0.1, and more is not
-        refused); returns whether they arrived. Raises `ActionError`; cancelling stops the fingers.
+        """Moves the fingers to `width`, m, at `speed`, m/s (the Hand's largest speed is 0.1, and
+        higher values are not refused); returns `True` if they arrived. Raises `ActionError`;
+        cancelling stops the fingers.
         """
 
     def grasp(self, width: float, speed: float=0.1, force: float=20.0, epsilon_inner: float=0.005, epsilon_outer: float=0.005) -> bool:
         """Closes the fingers on an object of this `width`, m, at `speed`, m/s, and holds it with
-        `force`, N. Returns whether they ended at most `epsilon_inner` narrower and `epsilon_outer`
-        wider, m; the force stays applied either way, until the next action or `stop()`. Raises
-        `ActionError`; cancelling stops the fingers and lets go.
+        `force`, N. Returns `True` if they ended at most `epsilon_inner` narrower and
+        `epsilon_outer` wider, m. The force stays applied in both cases, until the next action or
+        `stop()`. Raises `ActionError`; cancelling stops the fingers and releases the object.
         """
 
     def stop(self) -> bool:
-        """Stops the fingers and lets go of what they hold; returns whether that succeeded. The action
-        that runs raises `ActionError`. Once it has begun, it goes on even if it is cancelled.
+        """Stops the fingers and releases the object; returns `True` on success. The running action
+        raises `ActionError`. Once begun, the stop continues even if it is cancelled.
         """
 
 @final
@@ -250,108 +251,109 @@ class IdentificationPlan:
 
     @property
     def waypoints(self) -> _Array:
-        """The joint positions that the arm goes to, `(n, 7)` rad, one row for each motion; the last
-        one is where it is now.
+        """The joint positions of the motions, `(n, 7)` rad, one row for each; the last one is the
+        current position.
         """
 
     @property
     def duration(self) -> float:
-        """About how long it will take, s."""
+        """Approximate duration, s."""
 
     @property
     def reach_of_joints(self) -> _Array:
-        """Farthest that each joint goes from where it is, either way, `(7,)` rad."""
+        """Largest displacement of each joint from its current position, in either direction, `(7,)`
+        rad.
+        """
 
     @property
     def reach(self) -> float:
-        """Farthest that the end effector goes from where it is, m."""
+        """Largest displacement of the end effector from its current position, m."""
 
     @property
     def reach_down(self) -> float:
-        """Farthest that the end effector goes down, base frame, m."""
+        """Largest downward displacement of the end effector, base frame, m."""
 
     def run(self) -> Identified:
-        """Moves the arm, and returns an `Identified`. Nothing is changed at the robot: pass the result
-        to `Robot(address, known=...)` of later connections, and declare the load by `set_load` if
-        you like. Raises `MotionError`, and `IdentifyError` if the arm is no longer where this was
-        planned, or was held or pushed. Cancelling brakes the arm; what was measured is lost.
+        """Moves the arm, and returns an `Identified`. The robot's settings do not change: pass the
+        result to `Robot(address, known=...)` of later connections, and declare the load with
+        `set_load` if needed. Raises `MotionError`, and `IdentifyError` if the arm has moved since
+        the plan, or was held or pushed. Cancelling brakes the arm and discards the measurement.
         """
 
 @final
 class Recorder:
-    """Records robots in a file, every cycle and what was asked of them: `async with
+    """Records robots to a file, with every cycle and every request: `async with
     Recorder.to_file("run.mcap") as recorder:`, and in it `await recorder.attach(robot)`. The end of
     the block ends the recording and waits until it is on the disk.
 
-    Threads of its own write the file, beside the interpreter. Nothing that it does delays a cycle:
-    what there is no room for is dropped and counted. Without a block, `await recorder.finish()`
-    ends it. When the last reference goes it ends in the background, perhaps without the newest
-    events; at the exit of the interpreter, what was written by then is readable.
+    Separate threads write the file, without the interpreter. The recorder cannot delay a cycle:
+    data without space is dropped and counted. Without a block, `await recorder.finish()` ends it.
+    When its last reference is dropped it ends in the background, possibly without the newest
+    events; after the exit of the interpreter, the data written by then is readable.
     """
 
     @staticmethod
     def to_file(path: str | PathLike[str], **options: Unpack[RecordOptions]) -> Recorder:
-        """Begins a recording in a new MCAP file at `path`, whose folder has to be there.
+        """Begins a recording in a new MCAP file at `path`, whose folder must exist.
 
-        Options: `thinned`, whether cycles are kept at the full rate only around what is notable
-        (reflexes, contacts, failures), else every tenth. `flush`, the longest time between two
-        writes, 0.01 to 1 s (1): what a crash can lose. `sync`, whether each write is forced to the
-        disk, against power cuts (`True`). `rotate_bytes` and `rotate_time`, s: after which a new
-        file is begun, `run-0002.mcap` after `run.mcap`. `metadata`, a `dict` of texts, and
-        `attachments`, a `dict` of file names and bytes, go into the file. `black_box`, a
-        `recording.BlackBox`, also writes the last seconds before an incident to a file of their
-        own.
+        Options: `thinned`, true to keep the full rate only around notable cycles (reflexes,
+        contacts, failures), and otherwise every tenth cycle. `flush`, the longest time between two
+        writes, 0.01 to 1 s (1): the largest loss in a crash. `sync`, true to force each write to
+        the disk, against power failures (`True`). `rotate_bytes` and `rotate_time`, s: when to
+        begin a new file, `run-0002.mcap` after `run.mcap`. `metadata`, a `dict` of texts, and
+        `attachments`, a `dict` of file names and bytes, are stored in the file. `black_box`, a
+        `recording.BlackBox`, also writes the last seconds before an incident to a separate file.
 
-        Raises `RecordError` if there is such a file or it cannot be made, `ValueError`.
+        Raises `RecordError` if the file exists or cannot be created, `ValueError`.
         """
 
     @staticmethod
     def black_box(directory: str | PathLike[str], *, before: float=30.0, after: float=1.0, keep: int=20) -> Recorder:
-        """Keeps the last `before` seconds, 1 to 300, in memory only. When a motion ends by a reflex, a
-        lost link or a guard, it writes them and the `after` seconds that follow, 60 at most, to a
-        file in `directory`, named by time, robot and cause. The newest `keep` files are kept.
+        """Keeps only the last `before` seconds, 1 to 300, in memory. When a motion ends because of a
+        reflex, a lost link or a guard, it writes them and the following `after` seconds, at most
+        60, to a file in `directory`, named by time, robot and cause. The newest `keep` files are
+        kept.
 
         Raises `RecordError`, `ValueError`.
         """
 
     def attach(self, robot: Robot, name: str='', *, with_address: bool=False, capacity: int | None=None) -> None:
-        """Records a robot, which is connected, from now on: every cycle, goals and how they end,
-        diagnoses, events and requests; of a supervised robot also after it was connected to again.
-        `name`, of letters, digits, `-` and `_`, tells several robots of a recording apart.
-        `with_address` writes the network address down. `capacity` is how many cycles may wait for
-        the recorder, 4096 by default. Raises `RecordError`, `ValueError`. Cancelling gives it up.
+        """Records a connected robot from now on: every cycle, goals and their outcomes, diagnoses,
+        events and requests; for a supervised robot also after a reconnect. `name`, of letters,
+        digits, `-` and `_`, distinguishes several robots of a recording. `with_address` stores the
+        network address. `capacity` is the number of cycles that may wait for the recorder, 4096 by
+        default. Raises `RecordError`, `ValueError`. Cancelling aborts it.
         """
 
     def attach_team(self, team: Team, names: Sequence[str], *, with_address: bool=False, capacity: int | None=None) -> None:
-        """Records the robots of a team, each under its name, and which member each is; otherwise like
-        `attach`. Robots before the one that an error is about are recorded.
+        """Records the robots of a team, each with its name and its member number; otherwise like
+        `attach`. If an error concerns one robot, the previous ones are recorded.
         """
 
     def attach_gripper(self, gripper: Gripper | VacuumGripper, robot: str='') -> None:
         """Records an end effector, a connected `Gripper` or `VacuumGripper`, with the robot of this
-        name: its states, and actions when they have ended. Raises `RecordError` unless that robot
-        is attached.
+        name: its states, and completed actions. Raises `RecordError` unless that robot is attached.
         """
 
     def note(self, text: str) -> None:
         """Records a remark, for all robots. Raises `RecordError` if the recording has ended."""
 
     def episode(self, name: str, *, task: str) -> EpisodeUnderWay:
-        """An episode, an attempt at a task, while a `with` block runs:
-        `with recorder.episode("pick-1", task="pick the cube") as episode:`. The block sets
-        `episode.success` to `True` or `False`; it is `None`, not judged, unless that was done, and
-        `False` if the block raises. One episode runs at a time. `name` has letters, digits, `-` and
-        `_`; raises `ValueError`.
+        """An episode, an attempt at a task, while a `with` block runs: `with
+        recorder.episode("pick-1", task="pick the cube") as episode:`. The block sets
+        `episode.success` to `True` or `False`. Otherwise it is `None`, not judged, or `False` if
+        the block raises. One episode runs at a time. `name` has letters, digits, `-` and `_`;
+        raises `ValueError`.
         """
 
     def status(self) -> RecordStatus:
-        """What was recorded so far and what has failed, a `recording.RecordStatus`."""
+        """Progress and failures of the recording, a `recording.RecordStatus`."""
 
     def finish(self) -> RecordStatus:
-        """Ends the recording and waits, 10 s at most, until all of it is on the disk: what has
-        happened before the call is in it. Returns the `recording.RecordStatus`, again if it has
-        ended. Raises `RecordError` if the files could not be written to their end; what was written
-        is readable. Once it has begun, it goes on even if it is cancelled.
+        """Ends the recording and waits, at most 10 s, until all of it is on the disk, including the
+        events before the call. Returns the `recording.RecordStatus`, also if it has already ended.
+        Raises `RecordError` if the files could not be completed; the written data is readable. Once
+        begun, it continues even if it is cancelled.
         """
 
     def __enter__(self) -> Recorder:
@@ -363,25 +365,24 @@ class Recorder:
 @final
 class Robot:
     """A robot at an address. `async with Robot(address) as robot:` connects, and shuts down at the
-    end: what moves is braked. Its methods may be called from any thread.
+    end: motions are braked. Its methods may be called from any thread.
 
-    When the last reference to a connected robot goes, it is braked and closed in the background;
-    when the interpreter exits, it is waited for.
+    When the last reference to a connected robot is dropped, it is braked and closed in the
+    background; the exit of the interpreter waits for this.
 
-    Options: `realtime` is `enforce` or `ignore`: whether a host without real-time scheduling is
-    refused. `None` is the environment variable `FRANKA_REALTIME`, and `enforce` without one.
+    Options: `realtime` is `enforce` or `ignore`; `enforce` refuses a host without real-time
+    scheduling. `None` uses the environment variable `FRANKA_REALTIME`, or else `enforce`.
     `priority` (1 to 99) and `cpu` are for the control thread; threads of Python keep theirs.
-    `version` is the protocol version, 5 or 10; negotiated if `None`. `connect_timeout` is for each
-    step of connecting, and `link_timeout` the silence of the robot after which a motion fails with
-    `link_lost`, 0.02 to 10 s, 1 s by default; more than that is for simulated robots on busy hosts.
-    `log_size` is how many cycles an error carries, 10000 at most. `nominal_model` computes with the
-    vendor's constants whatever the robot says of itself. `accept_geometry_error` connects to a
-    robot whose poses have another geometry than its model; `geometry_residual` is by how much.
-    `known` is an `Identified` of this arm.
-    `supervise` is a `Policy`, or `True` for the default one: lost connections are made again, and
-    the robot is recovered as the policy says. `ask_before_recovery` is called with the `Reflex`
-    before each recovery, on a thread of its own, and has to return whether it may be; it implies
-    `ask_first`. `ValueError` for options that make no sense.
+    `version` is the protocol version, 5 or 10; negotiated if `None`. `connect_timeout` applies to
+    each step of connecting. `link_timeout` is the silence of the robot after which a motion fails
+    with `link_lost`, 0.02 to 10 s, 1 s by default; longer times are for simulated robots on busy
+    hosts. `log_size` is the number of cycles in an error, at most 10000. `nominal_model` uses the
+    vendor's constants instead of the robot's description. `accept_geometry_error` connects to a
+    robot whose poses have another geometry than its model; `geometry_residual` is the difference.
+    `known` is an `Identified` of this arm. `supervise` is a `Policy`, or `True` for the default
+    one: lost connections are restored, and the robot is recovered according to the policy.
+    `ask_before_recovery` is called with the `Reflex` before each recovery, on a separate thread,
+    and must return `True` to allow it; it implies `ask_first`. `ValueError` for invalid options.
     """
 
     def __init__(self, address: str, *, realtime: Literal['enforce', 'ignore'] | None=None, priority: int | None=None, cpu: int | None=None, version: Literal[5, 10] | None=None, connect_timeout: float | None=None, link_timeout: float | None=None, log_size: int | None=None, nominal_model: bool=False, accept_geometry_error: bool=False, known: Identified | None=None, supervise: Policy | bool | None=None, ask_before_recovery: Callable[[Reflex], bool] | None=None) -> None:
@@ -389,12 +390,12 @@ class Robot:
 
     def connect(self) -> Robot:
         """Connects, and returns this robot; without effect while it is connected. Raises
-        `ConnectError`. Cancelling gives it up.
+        `ConnectError`. Cancelling aborts the connection.
         """
 
     def shutdown(self) -> None:
-        """Brakes whatever moves, ends it and closes the connection; without effect if there is none.
-        Once it has begun, it goes on even if it is cancelled.
+        """Brakes and ends any motion and closes the connection; without effect without a connection.
+        Once begun, it continues even if it is cancelled.
         """
 
     def __enter__(self) -> Robot:
@@ -405,187 +406,185 @@ class Robot:
 
     @property
     def address(self) -> str:
-        """Where the robot is: as given, and resolved once it is connected."""
+        """Address of the robot: as given, and resolved once it is connected."""
 
     @property
     def is_connected(self) -> bool:
-        """Whether there is a connection, or of a supervised robot will be one again."""
+        """True if there is a connection, or a supervised robot will be reconnected."""
 
     @property
     def fci_version(self) -> int:
-        """The protocol version that the robot speaks: 10 for a Franka Research 3, 5 for a Franka Emika
-        Robot.
-        """
+        """Protocol version of the robot: 10 for a Franka Research 3, 5 for a Franka Emika Robot."""
 
     @property
     def geometry_residual(self) -> float | None:
-        """How far the pose that the robot reported at connect was from that of `model()` at the same
-        joint positions, m, or a tenth of a metre times the largest difference of an element of
-        their rotation matrices, whichever is greater: at most 2e-6, or an error that was accepted.
-        `None` if the robot reported no pose.
+        """Difference between the reported pose at connect and the pose of `model()` at the same joint
+        positions, m; or a tenth of a metre times the largest difference of an element of their
+        rotation matrices, if this is larger. It is at most 2e-6, or an accepted error. `None` if
+        the robot reported no pose.
         """
 
     def state(self) -> RobotState:
-        """The newest state, without waiting, however old it is: once the link is gone the last one
-        stays. `health()` tells.
+        """Newest state, without waiting, at any age: after the loss of the link, the last state stays.
+        `health()` shows the loss.
         """
 
     def states(self, rate: float | None=None) -> Stream[RobotState]:
-        """The newest state as it changes, for `async for` or `for`; at most `rate` of them per second,
-        by the robot's clock, if that is given. States that come while the program does
-        something else are skipped for the newest. Ends when the connection does.
+        """Newest state as it changes, for `async for` or `for`; at most `rate` of them per second, by
+        the robot's clock, if given. States that arrive while the program is busy are skipped for
+        the newest. Ends with the connection.
         """
 
     def state_stream(self) -> Stream[Reading]:
         """Every state from now on, each once and in order, for `async for` or `for`: pairs of the
-        state and how many are `missed` before it. A program may lag about a second behind
-        before it misses any. Ends when the connection does.
+        state and the number of states `missed` before it. A program may lag about a second behind
+        before it misses any. Ends with the connection.
         """
 
     def pose(self) -> _Array:
-        """The measured pose of the end effector in the base frame, `(4, 4)`, of the newest state."""
+        """Measured pose of the end effector in the base frame, `(4, 4)`, from the newest state."""
 
     def pose_at(self, q: ArrayLike) -> _Array:
-        """The pose in the base frame, `(4, 4)`, that the end effector has at joint positions `q`,
-        `(7,)` rad.
-        """
+        """Pose of the end effector in the base frame, `(4, 4)`, at joint positions `q`, `(7,)` rad."""
 
     def reference(self) -> Reference | None:
-        """Where target control has the arm go in this millisecond: a `Reference`; `None` while it
+        """Commanded position of target control in this millisecond: a `Reference`; `None` while it
         moves nothing.
         """
 
     def budget(self) -> Budget:
-        """The limits that a motion keeps unless it is given others: a `Budget`."""
+        """The default limits of a motion: a `Budget`."""
 
     def margin(self, gains: Gains) -> Margin | None:
-        """How far gains are from the first oscillation of an arm like this where it is: a `Margin`.
-        `None` for gains that are out of their bounds.
+        """Margin of gains to the first oscillation of such an arm in its current posture: a `Margin`.
+        `None` for gains that are out of range.
         """
 
     def stop(self) -> None:
-        """Brakes whatever moves, and waits until the motion has ended and a state shows the arm at
-        rest; that motion raises `MotionError` of the kind `stopped` at once, while the arm still
-        brakes. A motion that another task asks for meanwhile takes over: `stop` then raises
-        `MotionError` of the kind `superseded`. It raises others if the arm was not seen to rest:
+        """Brakes any motion, and waits until it has ended and a state shows the arm at rest. That
+        motion raises `MotionError` of the kind `stopped` at once, while the arm still brakes. A
+        motion that another task requests meanwhile takes over: `stop` then raises `MotionError` of
+        the kind `superseded`. It raises other kinds if the arm was not seen to be at rest:
         `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. An arm that hands keep in motion
-        for two seconds is stopped by the robot's own controller; the wait is over after eight. Once
-        it has begun, it goes on even if it is cancelled.
+        for two seconds is stopped by the robot's own controller; the wait ends within eight. Once
+        begun, it continues even if it is cancelled.
         """
 
     def latch_stop(self) -> None:
-        """Stops as `stop` does, and latches the stop: until `release_stop` every motion, session and
-        goal is refused, as `MotionError` of the kind `not_ready`, whoever asks for it. The latch
-        outlives connections, and holds whatever this raises. It is no safety function.
+        """Stops like `stop`, and latches the stop: until `release_stop`, every motion, session and
+        goal of any caller is refused, as `MotionError` of the kind `not_ready`. The latch survives
+        reconnects, and stays set even if this raises. It is not a safety function.
         """
 
     def release_stop(self) -> bool:
-        """Releases a latched stop: motions are admitted again. Nothing moves by it. Returns whether
-        one was latched.
+        """Releases a latched stop: motions are allowed again. It does not move the arm. Returns `True`
+        if a stop was latched.
         """
 
     @property
     def is_stop_latched(self) -> bool:
-        """Whether a stop is latched."""
+        """True if a stop is latched."""
 
     def recover(self) -> None:
-        """Recovers the robot from a reflex, and waits until it takes motions again; without effect if
-        there is nothing to recover from. Moves nothing. Raises `CommandError`.
+        """Recovers the robot from a reflex, and waits until it accepts motions again; without effect
+        if no recovery is needed. It does not command a motion. Raises `CommandError`.
         """
 
     def move_to(self, target: Destination, **options: Unpack[MotionOptions]) -> MotionReport:
-        """A motion of the end effector to `target` in the base frame: a pose, `(4, 4)`, or 3 + 4
-        numbers with a quaternion `x y z w`, which may be a pair; 3 numbers, a position that is
-        reached with the orientation kept; `(3, 3)` or 4 numbers, an orientation; or `Joints`.
-        To a pose it is a straight line.
+        """A motion of the end effector to `target` in the base frame. A pose is `(4, 4)`, or 3 + 4
+        numbers with a quaternion `x y z w`, which may be a pair. 3 numbers are a position, reached
+        with constant orientation. `(3, 3)` or 4 numbers are an orientation. `Joints` are joint
+        positions. The path to a pose is a straight line.
 
         Options of every motion: `speed`, a factor; `limits`, a `Budget`; `gains`, `Gains`;
         `stiffness` at the end effector, 6 numbers; `force_cap`, N, or `None` for off; `leash`,
-        `deviation`, `tolerance`, `settling`; `posture`, 7 joint positions; `until`, a
-        condition; `start_with`, a `StartTicket`; and `joint_fallback`, whether the joints go there
-        where the arm cannot follow the line. Raises `ValueError` for arguments that make no sense,
-        and `MotionError` when it is awaited.
+        `deviation`, `tolerance`, `settling`; `posture`, 7 joint positions; `until`, a condition;
+        `start_with`, a `StartTicket`; and `joint_fallback`, true for a joint motion if the arm
+        cannot follow the line. Raises `ValueError` for invalid arguments, and `MotionError` when it
+        is awaited.
         """
 
     def replay(self, recording: RecordingFile, *, speed: float=1.0, source: Literal['reference', 'measured']='reference', targets: Literal['joints', 'poses']='joints') -> ReplayReport:
-        """Moves to where a recorded motion begins, makes it again, and lets the arm go: a session with
-        the defaults, and `Arm.replay` in it.
+        """Moves to the beginning of a recorded motion, repeats it, and releases the arm: a session
+        with the defaults, with `Arm.replay` in it.
         """
 
     def move_joints(self, q: ArrayLike, **options: Unpack[MotionOptions]) -> MotionReport:
-        """A motion of the joints to `q`, 7 numbers, rad; all arrive together. Options as of `move_to`."""
-
-    def move_by(self, way: ArrayLike, frame: Literal['base', 'tool']='base', from_arm: bool=False, **options: Unpack[MotionOptions]) -> MotionReport:
-        """A motion of the end effector away from where it is, or from the target of a motion under
-        way: 3 numbers, m, or 6, with a rotation vector, rad; along and about the axes of the
-        `base` or the `tool`. `from_arm` counts from the measured arm in any case. Options as of
+        """A motion of the joints to `q`, 7 numbers, rad; all arrive together. Options as for
         `move_to`.
         """
 
+    def move_by(self, way: ArrayLike, frame: Literal['base', 'tool']='base', from_arm: bool=False, **options: Unpack[MotionOptions]) -> MotionReport:
+        """A motion of the end effector relative to its position, or to the target of the current
+        motion: 3 numbers, m, or 6, with a rotation vector, rad, along and about the axes of the
+        `base` or the `tool`. With `from_arm` it is always relative to the measured position.
+        Options as for `move_to`.
+        """
+
     def move_through(self, waypoints: Iterable[Target | Waypoint], blend: float=0.0, **options: Unpack[MotionOptions]) -> MotionReport:
-        """A motion through several poses, or several `Joints`, to the last of them, without a stop
-        where the corner is rounded: within `blend` (m; rad for joints), or as each `Waypoint`
-        says. Options as of `move_to`.
+        """A motion through several poses, or several `Joints`, to the last of them, without a stop at
+        rounded corners: within `blend` (m; rad for joints), or within the blend of each `Waypoint`.
+        Options as for `move_to`.
         """
 
     def follow(self, targets: Latest | Iterable[Target] | AsyncIterable[Target], **options: Unpack[FollowOptions]) -> MotionReport:
         """Follows the newest of `targets`, poses or `Joints`, alone or with velocities as a pair,
-        until they end, and then comes to rest at the last one. `targets` is a `Latest`, which
-        any thread sets; an asynchronous iterator, which runs in the event loop that awaits; or
-        a plain one, which runs on a thread of its own and may wait.
+        until they end, and then stops at the last one. `targets` is a `Latest`, which any thread
+        sets; an asynchronous iterator, which runs in the event loop that awaits; or a plain one,
+        which runs on a separate thread and may wait.
 
-        Options as of `move_to`, and `lead`, a `Lead`: how far ahead of the arm a target may be; and
-        `watchdog`, a pair of seconds and `brake` or `hold`: what happens if no target comes for so
-        long. Nothing begins before the first target, and no watchdog counts until then. What the
-        iterator raises brakes the arm and is raised.
+        Options as for `move_to`, and `lead`, a `Lead`: the largest distance of a target ahead of
+        the arm; and `watchdog`, a pair of seconds and `brake` or `hold`: the reaction if no target
+        arrives for this time. The motion and the watchdog begin with the first target. An exception
+        of the iterator brakes the arm and is raised.
         """
 
     def engage(self, **options: Unpack[EngageOptions]) -> Arm:
-        """Begins a session that holds the arm where it is and goes from goal to goal without a stop in
+        """Begins a session that holds the arm in place and moves from goal to goal without a stop in
         between: `async with robot.engage() as arm`, or `arm = await robot.engage()`.
 
-        Options: `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture` as of
-        `move_to`, for all its goals; `keep_out`, regions (`Plane`, `Box`) that the arm keeps
-        out of; `speed_cap`, in m/s, the most of any joint, the flange and the end effector;
-        `deadman`, a `Deadman`; and `backend`, `torques` or a pair of a controller of
-        the robot and its setpoints.
+        Options: `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture` as for
+        `move_to`, for all its goals; `keep_out`, regions (`Plane`, `Box`) that the arm must avoid;
+        `speed_cap`, the largest speed of the joints, the flange and the end effector, m/s;
+        `deadman`, a `Deadman`; and `backend`, `torques` or a pair of a controller of the robot and
+        its setpoints.
         """
 
     def events(self) -> Stream[Event]:
-        """What happens to the robot from now on, for `async for`: connections lost and made, reflexes,
-        recoveries, user stop, guiding, brakes, motions, loads; see `Event`. It is there for a robot
-        that is not supervised, too. Ends when there is no connection and will be none.
+        """Events of the robot from now on, for `async for`: connections lost and made, reflexes,
+        recoveries, user stop, guiding, brakes, motions, loads; see `Event`. Also available for a
+        robot without supervision. Ends when the connection has ended permanently.
         """
 
     def health(self) -> Health:
-        """How the robot is now: whether it takes motions, why not, how often it was reconnected and
-        recovered.
+        """Current health of the robot: readiness for motions, the reason if it is not ready, and
+        counts of reconnects and recoveries.
         """
 
     def health_changes(self) -> Stream[Health]:
-        """How the robot is, now and as it changes, for `async for`. Ends as `events()` does."""
+        """Health of the robot, now and as it changes, for `async for`. Ends like `events()`."""
 
     def agree(self, reflex: int, yes: bool=True) -> bool:
-        """Agrees, or not, to the recovery from the reflex of this number: for a `Policy` that asks
-        first. Returns whether that was awaited. The number is that of the event or of
+        """Approves or rejects the recovery from the reflex with this number, for a `Policy` that asks
+        first. Returns `True` if the answer was awaited. The number is in the event and in
         `health().reflex`.
         """
 
     def closed(self) -> CloseReason:
-        """Waits until there is no connection and will be none, and returns why: a `CloseReason`.
+        """Waits until the connection has ended permanently, and returns the reason: a `CloseReason`.
         Cancelling has no effect on the robot.
         """
 
     def gripper(self) -> Gripper:
-        """The Franka Hand of this robot, at its host and the port after the robot's; it is yet to be
-        connected: `async with robot.gripper() as gripper:`. That of a simulator on a free port has
-        another one, and nothing or something else listens at this: `Gripper(sim.hand_address)`, of
-        a `Sim` with `hand=True`.
+        """The Franka Hand of this robot, at its host and the port after the robot's, not yet
+        connected: `async with robot.gripper() as gripper:`. The Hand of a simulator on a free port
+        has another port, and another program may listen at this one: use
+        `Gripper(sim.hand_address)` of a `Sim` with `hand=True`.
         """
 
     def vacuum_gripper(self) -> VacuumGripper:
-        """The vacuum gripper of this robot, at its host and the second port after the robot's; it is
-        yet to be connected, as `gripper()`.
+        """The vacuum gripper of this robot, at its host and the second port after the robot's, not yet
+        connected, like `gripper()`.
         """
 
     def set_collision_behavior(self, *thresholds: ArrayLike, **named: ArrayLike) -> None:
@@ -593,92 +592,92 @@ class Robot:
         (upper).
 
         Either one of the names `careful` (10 N and 10 N m, for the robot's own controllers),
-        `compliant` (60, for an arm that a hand pushes) and `insensitive` (100, for work that
-        presses); or four arrays: `lower_torque_thresholds`, `upper_torque_thresholds`, `(7,)` N m,
+        `compliant` (60, for an arm that is pushed by hand) and `insensitive` (100, for tasks that
+        press); or four arrays: `lower_torque_thresholds`, `upper_torque_thresholds`, `(7,)` N m,
         `lower_force_thresholds`, `upper_force_thresholds`, `(6,)` N and N m; or eight, each of the
         four twice: `..._acceleration` while the arm accelerates, and `..._nominal`, in the order of
-        `COLLISION_THRESHOLDS`. Positional or by name. Below about 10 N the friction of an arm that
-        touches nothing is enough for a reflex.
+        `COLLISION_THRESHOLDS`. Positional or by name. Below about 10 N the friction of an arm
+        without contact is enough for a reflex.
 
-        The vendor documents no range of them. The simulator refuses what is negative.
+        The vendor does not document their ranges. The simulator refuses negative values.
 
-        Raises `ValueError`, `TypeError` and `CommandError`; a robot that moves refuses it. Once it
-        has begun, the robot may carry it out even if it is cancelled.
+        Raises `ValueError`, `TypeError` and `CommandError`; a moving robot refuses it. Once begun,
+        the robot may execute it even if it is cancelled.
         """
 
     def set_joint_impedance(self, stiffness: ArrayLike) -> None:
         """Sets the stiffness of the robot's own joint impedance controller, `(7,)` N m/rad, each 0 to
-        14250. Raises and is cancelled as `set_collision_behavior`.
+        14250. Raises and is cancelled like `set_collision_behavior`.
         """
 
     def set_cartesian_impedance(self, stiffness: ArrayLike) -> None:
         """Sets the stiffness of the robot's own Cartesian impedance controller in the stiffness frame,
         `(6,)`: x y z, 10 to 3000 N/m, and roll pitch yaw, 1 to 300 N m/rad. Raises and is cancelled
-        as `set_collision_behavior`.
+        like `set_collision_behavior`.
         """
 
     def set_guiding_mode(self, free: Sequence[bool], elbow: bool=True) -> None:
-        """Sets which directions are free in hand guiding: six truth values, x y z and roll pitch yaw,
-        and whether the `elbow` is. Raises and is cancelled as `set_collision_behavior`.
+        """Sets the free directions in hand guiding: six truth values, x y z and roll pitch yaw, and
+        the `elbow`. Raises and is cancelled like `set_collision_behavior`.
         """
 
     def set_k(self, EE_T_K: ArrayLike) -> None:
-        """Sets the stiffness frame in the end effector's, `EE_T_K`: a pose. The vendor documents no
-        range; the simulator refuses what is more than 2 m away. Resolves when a state shows it.
-        Raises and is cancelled as `set_collision_behavior`.
+        """Sets the stiffness frame in the end effector's, `EE_T_K`: a pose. The vendor does not
+        document a range; the simulator refuses a distance of more than 2 m. Resolves when a state
+        shows it. Raises and is cancelled like `set_collision_behavior`.
         """
 
     def set_ee(self, NE_T_EE: ArrayLike) -> None:
-        """Sets the end effector in the nominal end effector's frame, `NE_T_EE`: a pose. Its range,
-        and when it resolves, are as of `set_k`. Raises and is cancelled as
-        `set_collision_behavior`.
+        """Sets the end effector in the nominal end effector's frame, `NE_T_EE`: a pose. Range and
+        completion are as for `set_k`. Raises and is cancelled like `set_collision_behavior`.
         """
 
     def set_load(self, mass: float, center: ArrayLike | None=None, inertia: ArrayLike | None=None) -> None:
-        """Declares the load beyond the end effector: `mass`, kg; `center` of mass in the flange frame,
-        `(3,)` m; `inertia` about it, `(3, 3)` or its nine numbers, kg m^2, zero unless given.
+        """Declares the load in addition to the end effector: `mass`, kg; `center` of mass in the
+        flange frame, `(3,)` m; `inertia` about it, `(3, 3)` or its nine numbers, kg m^2, zero
+        unless given.
 
-        The vendor documents no range. The simulator refuses more than 10 kg, a centre more than 1 m
-        away, and an inertia that no body has or with a principal moment above 1 kg m^2. Resolves
-        when a state shows it. Raises and is cancelled as `set_collision_behavior`.
+        The vendor does not document a range. The simulator refuses more than 10 kg, a centre more
+        than 1 m away, and an inertia that is not physical or has a principal moment above 1 kg m^2.
+        Resolves when a state shows it. Raises and is cancelled like `set_collision_behavior`.
         """
 
     def set_filters(self, *, joint_position: float=1000.0, joint_velocity: float=1000.0, cartesian_position: float=1000.0, cartesian_velocity: float=1000.0, controller: float=1000.0) -> None:
         """Sets the cutoff frequencies of the robot's own low-pass filters, each 1 to 1000 Hz; 1000
-        switches a filter off. Franka Emika Robot only, and deprecated by the vendor. Raises and is
-        cancelled as `set_collision_behavior`; `CommandError` of the kind `request` from a robot
-        that has no such command.
+        disables a filter. Franka Emika Robot only, and deprecated by the vendor. Raises and is
+        cancelled like `set_collision_behavior`; `CommandError` of the kind `request` if the robot
+        has no such command.
         """
 
     def virtual_wall(self, id: int) -> VirtualWall:
-        """Reads the virtual wall `id` as it is set up in Desk; returns a `VirtualWall`. Franka Emika
-        Robot only. Raises `CommandError`, of the kind `request` from a robot that has no such
+        """Reads the virtual wall `id` from the configuration in Desk; returns a `VirtualWall`. Franka
+        Emika Robot only. Raises `CommandError`, of the kind `request` if the robot has no such
         command.
         """
 
     def urdf(self) -> str:
-        """Reads the robot's description of itself; returns URDF text. Franka Research 3 only. Raises
-        `CommandError`, of the kind `request` from a robot that has no such command.
+        """Reads the robot's description; returns URDF text. Franka Research 3 only. Raises
+        `CommandError`, of the kind `request` if the robot has no such command.
         """
 
     def identify(self) -> IdentificationPlan:
-        """Plans motions that show friction and bias of the joints and the load at the flange: in each
-        of six poses around where the arm is, all joints go 0.2 rad to and fro twice, at 0.2 rad/s,
-        about a minute in all. Nothing moves before `run()` of the plan is awaited. The arm has to
-        be free to go so far, see `reach`, and to carry what it is to be identified with.
+        """Plans motions that determine friction and bias of the joints and the load at the flange. In
+        each of six poses around the current position, all joints move 0.2 rad back and forth twice,
+        at 0.2 rad/s: about a minute in total. The arm does not move before `run()` of the plan is
+        awaited. It must have free space, see `reach`, and carry the tool to be identified.
         """
 
     def tare(self, duration: float=0.5) -> WrenchTare:
-        """Takes the average of what the robot estimates of external forces and torques, over
-        `duration` seconds of its clock (0.02 to 60), and returns a `WrenchTare`. The arm has to
-        rest, untouched: raises `TareError` otherwise, and `ReadError` if states no longer come. A
-        tare belongs to the posture in which it was taken. Nothing moves, and nothing is changed at
-        the robot; cancelled, it takes no tare.
+        """Averages the robot's estimates of external forces and torques over `duration` seconds of its
+        clock (0.02 to 60), and returns a `WrenchTare`. The arm must be at rest and untouched:
+        raises `TareError` otherwise, and `ReadError` if states stop arriving. A tare is valid near
+        the posture in which it was taken. The arm does not move, and the robot's settings do not
+        change; if cancelled, no tare is taken.
         """
 
     def stats(self) -> dict[str, Any]:
         """Counters and times of the control thread since the connection was made, as a new `dict`;
-        without waiting, whatever moves.
+        without waiting, also during motions.
 
         Counters: `states`, `commands`, `skipped`, `lost`, `stale`, `foreign`, `malformed`,
         `receive_errors`, `send_errors`, `records_lost`, `states_lost`, `reports_lost`. Times, each
@@ -692,33 +691,33 @@ class Robot:
         """
 
     def granted(self) -> dict[str, Any]:
-        """What the operating system granted the control thread, as a new `dict`: its `SCHED_FIFO`
-        `priority` or `None`, `busy_poll` in s or `None`, and `refusals`, texts, under
+        """Rights granted to the control thread by the operating system, as a new `dict`: its
+        `SCHED_FIFO` `priority` or `None`, `busy_poll` in s or `None`, and `refusals`, texts, under
         `realtime="ignore"`.
         """
 
     def metrics(self) -> str:
-        """The robot's metrics as OpenMetrics text, for Prometheus and whatever else reads that; the
-        label `robot` is its address. `franka_async.metrics.text` is the text of several robots.
+        """The robot's metrics as OpenMetrics text, for Prometheus and compatible tools; the label
+        `robot` is its address. `franka_async.metrics.text` is the text of several robots.
         """
 
     def record(self, columns: Iterable[str], *, longest: float=3600.0) -> Recording:
         """Records these columns of every cycle, of `record_columns()`, while a `with` or `async with`
-        block runs: see `Recording`. It keeps the first `longest` seconds. Raises `ValueError` for a
-        column that is not known.
+        block runs: see `Recording`. It keeps the first `longest` seconds. Raises `ValueError` for
+        an unknown column.
         """
 
     def active_torques(self) -> ActiveControl:
         """Begins control by torques, `(7,)` N m, without gravity and friction. Returns an
-        `ActiveControl`. The first command is due within a few milliseconds: read on the thread that
-        controls at once. Raises `MotionError`, of the kind `busy` while anything else controls the
-        arm. Cancelling has the robot stop.
+        `ActiveControl`. The first command is due within a few milliseconds: read at once on the
+        controlling thread. Raises `MotionError`, of the kind `busy` while another motion controls
+        the arm. Cancelling stops the robot.
         """
 
     def active_joint_positions(self, controller: Controller='joint_impedance') -> ActiveControl:
         """Begins control by joint positions, `(7,)` rad, for one of the robot's own controllers,
-        `joint_impedance` or `cartesian_impedance`; with `external_controller` every command needs
-        torques beside it. Otherwise like `active_torques`.
+        `joint_impedance` or `cartesian_impedance`; with `external_controller` every command also
+        needs torques. Otherwise like `active_torques`.
         """
 
     def active_joint_velocities(self, controller: Controller='joint_impedance') -> ActiveControl:
@@ -738,50 +737,50 @@ class Robot:
         """Begins a motion in which the robot itself moves to sparse joint targets. Returns an
         `AsynchronousControl`. Protocol 10 (Franka Research 3) only, and experimental there.
 
-        `maximum_joint_velocities` are `(7,)` rad/s; within `goal_tolerance`, in rad as Euclidean
-        norm, a target counts as reached. Raises `MotionError`: `unsupported` by another protocol,
-        `busy` while anything else controls the arm. Cancelling has the robot stop.
+        `maximum_joint_velocities` are `(7,)` rad/s. A target counts as reached within
+        `goal_tolerance`, in rad as Euclidean norm. Raises `MotionError`: `unsupported` with another
+        protocol, `busy` while another motion controls the arm. Cancelling stops the robot.
         """
 
     def run_law(self, law: Any, *, command: _Command | None=None, elbow: bool=False, parameters: ArrayLike | None=None, memory: ArrayLike | None=None, controller: Controller='joint_impedance', limit_rate: bool | None=None, cutoff_frequency: float | None=None) -> MotionReport:
-        """Control by a law that needs no interpreter in the cycle, a `Law`, or code that one is made
-        of with `command`, `elbow`, `parameters` and `memory`. Resolves with a `MotionReport` when
-        the law has returned a positive number and the robot has ended the motion.
+        """Controls by a law without the interpreter in the cycle: a `Law`, or code for one with
+        `command`, `elbow`, `parameters` and `memory`. Resolves with a `MotionReport` when the law
+        has returned a positive number and the robot has ended the motion.
 
-        `controller` is which of the robot's own controllers follows, where no torques are
-        commanded. `limit_rate` is whether commands pass the limiter: by default on a Franka Emika
-        Robot and not on a Franka Research 3, as with the vendor's library. `cutoff_frequency` is
-        that of the low-pass filter, Hz; 1000 switches it off.
+        `controller` selects the robot's own controller for commands other than torques.
+        `limit_rate` enables the limiter: by default on a Franka Emika Robot and not on a Franka
+        Research 3, as in the vendor's library. `cutoff_frequency` is the frequency of the low-pass
+        filter, Hz; 1000 disables it.
 
         Raises `MotionError` of the kind `given_up` if the law returned a negative number, which is
-        its `code`, of the kind `invalid` for output that is not finite, and `busy` while anything
-        else controls the arm. Cancelling has the robot stop.
+        its `code`; of the kind `invalid` for output that is not finite; and `busy` while another
+        motion controls the arm. Cancelling stops the robot.
         """
 
     def model(self) -> Model:
-        """The model of the connected arm, which control computes with: of a Franka Research 3 its
-        description of itself, of a Franka Emika Robot the constants of its own library.
+        """The model of the connected arm, used by control. For a Franka Research 3 it comes from the
+        robot's description, for a Franka Emika Robot from the constants of its own library.
         """
 
 @final
 class Team:
     """Two to four arms as one: `async with await Team.engage(left, right) as team:`. Their motions
-    begin within a millisecond of each other, and the fault of one brakes the others within two
-    cycles of their control threads, whatever Python is busy with.
+    begin within a millisecond of each other, and a fault of one brakes the others within two cycles
+    of their control threads, independent of Python.
 
-    A joint motion returns a list of one `MotionReport` for each arm. If one of them has not
-    arrived, it raises `TeamError` with `outcomes`, one for each arm, of which the error of the arm
-    at fault is the cause. Cancelling a joint motion brakes all arms. When the last reference to the
-    team and its arms goes, all brake and their sessions end.
+    A joint motion returns a list of one `MotionReport` for each arm. If an arm has not arrived, it
+    raises `TeamError` with `outcomes`, one for each arm; the error of the arm at fault is its
+    cause. Cancelling a joint motion brakes all arms. When the last reference to the team and its
+    arms is dropped, all brake and their sessions end.
     """
 
     @staticmethod
     def engage(*robots: Robot, silence: float=..., **options: Unpack[TeamOptions]) -> Team:
-        """Begins a session for each robot, as `Robot.engage` does, with the same options for all:
+        """Begins a session for each robot, like `Robot.engage`, with the same options for all:
         `speed`, `limits`, `gains`, `force_cap`, `leash`, `deviation`, `posture`, `speed_cap`;
         returns a `Team`. A robot that is silent for `silence` seconds brakes the others. Raises
-        `MotionError` of the first arm that is not engaged; the others are then let go. Cancelling
-        ends all sessions.
+        `MotionError` of the first arm that could not be engaged; the others are then released.
+        Cancelling ends all sessions.
         """
 
     @property
@@ -789,49 +788,49 @@ class Team:
         """The arms, in the order of the robots."""
 
     def move_to(self, targets: Sequence[Destination], **options: Unpack[GoalOptions]) -> list[MotionReport]:
-        """A motion of all arms, each to its target, which `Arm.move_to` takes; with the same options
-        for all.
+        """A motion of all arms, each to its own target as in `Arm.move_to`, with the same options for
+        all.
         """
 
     def run(self, motions: Sequence[Callable[[_native.Arm], Motion | Follow]]) -> list[MotionReport]:
-        """A motion of all arms: `motions` are one of each arm, in their order,
-        `[team.arms[0].move_to(a), team.arms[1].move_by(b)]`, which are then not to be awaited
-        themselves. All begin together. An arm may follow a `Latest`, `team.arms[1].follow(latest)`:
-        it begins with the first target, and the motion ends when the others have arrived and the
-        `Latest` is closed.
+        """A motion of all arms: `motions` has one motion of each arm, in their order,
+        `[team.arms[0].move_to(a), team.arms[1].move_by(b)]`; do not await these motions themselves.
+        All begin together. An arm may follow a `Latest`, `team.arms[1].follow(latest)`: it begins
+        with the first target, and the motion ends when the others have arrived and the `Latest` is
+        closed.
         """
 
     def stop(self) -> None:
-        """Brakes all arms, each within two of its cycles. Never waits, fit for any thread. Motions
-        raise, the sessions go on and hold the arms. A joint motion that begins before every arm has
-        seen the stop does not start, and raises in the same way.
+        """Brakes all arms, each within two of its cycles. Never waits, usable on any thread. Motions
+        raise; the sessions continue and hold the arms. A joint motion that begins before every arm
+        has seen the stop does not start, and raises in the same way.
         """
 
     def latch_stop(self) -> None:
-        """Brakes all arms as `stop` does, ends their sessions and latches the stop of each robot: see
-        `Robot.latch_stop`. Waits until all rest, and raises `MotionError` of the first arm that was
-        not seen to.
+        """Brakes all arms like `stop`, ends their sessions and latches the stop of each robot: see
+        `Robot.latch_stop`. Waits until all are at rest, and raises `MotionError` of the first arm
+        that was not seen to be at rest.
         """
 
     def release_stop(self) -> bool:
-        """Releases the latched stop of each robot, and returns whether one was latched. The sessions
-        have ended: the next motions are those of a new team.
+        """Releases the latched stop of each robot, and returns `True` if one was latched. The sessions
+        have ended: the next motions need a new team.
         """
 
     def stopped(self) -> str | tuple[str, int] | None:
-        """Why the newest joint motion, or what came after it, has stopped: `requested`, or the name of
-        what happened with the number of the arm, `("robot_stopped", 1)`; `None` if nothing has.
+        """Reason why the newest joint motion, or the team afterwards, has stopped: `requested`, or the
+        name of the event with the number of the arm, `("robot_stopped", 1)`; `None` without a stop.
         """
 
     def grasp(self, bases: Sequence[ArrayLike], object: ArrayLike) -> TeamGrasp:
-        """Takes an object as held by all arms from now on, where it is: `bases` are the robots' base
-        frames and `object` is the object's, poses in one frame of the program's choice. Nothing
-        moves. Raises `MotionError` if a session has ended.
+        """Declares an object as held by all arms from now on, in its current place: `bases` are the
+        robots' base frames and `object` is the object's, poses in one frame of the program's
+        choice. The arms do not move. Raises `MotionError` if a session has ended.
         """
 
     def disengage(self) -> list[MotionReport]:
-        """Brakes all arms, lets them go and ends their sessions. Raises `TeamError` if one ended
-        otherwise.
+        """Brakes and releases all arms and ends their sessions. Raises `TeamError` if a session ended
+        in another way.
         """
 
     def __enter__(self) -> Team:
@@ -845,24 +844,23 @@ class Team:
 
 @final
 class TeamGrasp:
-    """An object that all arms of a team hold: made by `Team.grasp`."""
+    """An object that all arms of a team hold: created by `Team.grasp`."""
 
     def move_to(self, object: ArrayLike, **options: Unpack[GoalOptions]) -> list[MotionReport]:
         """A motion of the object to this pose, in the frame of the bases, on a straight line; with
-        options of `Arm.move_to` other than `limits`, the same for all arms. An arm that is held
-        back holds up the others.
+        options of `Arm.move_to` except `limits`, the same for all arms. If one arm is blocked, the
+        others wait.
         """
 
     def measured(self) -> list[_Array]:
-        """Where the object is by the newest state of each arm, in the frame of the bases: a list of
+        """Pose of the object from the newest state of each arm, in the frame of the bases: a list of
         `(4, 4)`.
         """
 
 @final
 class VacuumGripper:
-    """A vacuum gripper, which has a connection of its own beside the robot's. What `Gripper` says of
-    connecting, of actions and of their ends holds for it as well; cancelling an action stops the
-    pump.
+    """A vacuum gripper, with its own connection in addition to the robot's. Connection, actions and
+    their ends work as for `Gripper`; cancelling an action stops the pump.
     """
 
     def __init__(self, address: str) -> None:
@@ -870,20 +868,20 @@ class VacuumGripper:
 
     @property
     def address(self) -> str:
-        """Where it is: as given, and resolved once it is connected."""
+        """Address: as given, and resolved once it is connected."""
 
     @property
     def is_connected(self) -> bool:
-        """Whether there is a connection. One that was lost counts until `disconnect()`."""
+        """True if there is a connection. A lost connection counts until `disconnect()`."""
 
     def connect(self) -> VacuumGripper:
         """Connects, and returns this object; without effect while it is connected. Raises
-        `ConnectError`. Cancelling gives it up.
+        `ConnectError`. Cancelling aborts the connection.
         """
 
     def disconnect(self) -> None:
-        """Closes the connection, without waiting. An action under way is stopped. Without
-        effect if there is no connection.
+        """Closes the connection, without waiting. A running action is stopped. Without effect
+        if there is no connection.
         """
 
     def __enter__(self) -> VacuumGripper:
@@ -893,24 +891,24 @@ class VacuumGripper:
         ...
 
     def state(self) -> VacuumGripperState:
-        """The newest state, without waiting."""
+        """Newest state, without waiting."""
 
     def states(self) -> Stream[VacuumGripperState]:
-        """The newest state as it changes, for `async for`. Ends when the connection does."""
+        """Newest state as it changes, for `async for`. Ends with the connection."""
 
     def vacuum(self, vacuum: int, timeout: float, profile: int=0) -> bool:
-        """Sucks an object on and holds it; returns whether the vacuum was reached within `timeout`
-        seconds, which go out in whole milliseconds. `vacuum` is in units of 10 mbar, 0 to 255;
+        """Picks up an object and holds it; returns `True` if the vacuum was reached within `timeout`
+        seconds, which are sent in whole milliseconds. `vacuum` is in units of 10 mbar, 0 to 255;
         `profile` is a production set-up profile of the device, 0 to 3. Raises `ActionError`;
         cancelling stops the pump.
         """
 
     def drop_off(self, timeout: float) -> bool:
-        """Drops the object; returns whether that was done within `timeout` seconds. Raises
+        """Drops the object; returns `True` if this succeeded within `timeout` seconds. Raises
         `ActionError`; cancelling stops the pump.
         """
 
     def stop(self) -> bool:
-        """Stops the action that runs, which raises `ActionError`; returns whether that succeeded. Once
-        it has begun, it goes on even if it is cancelled.
+        """Stops the current action, which raises `ActionError`; returns `True` on success. Once begun,
+        the stop continues even if it is cancelled.
         """
