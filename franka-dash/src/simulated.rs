@@ -245,7 +245,7 @@ fn network_under(conditions: Conditions, seed: u64) -> Option<Network> {
         jitter: milliseconds(jitter_ms),
         ..network::Conditions::default()
     };
-    // The pauses are those of the robot's interface.
+    // The robot's interface causes the pauses.
     let stalls = (stalls_per_second > 0.0 && stall_ms > 0.0).then(|| Stalls {
         per_second: stalls_per_second,
         shortest: milliseconds(stall_ms),

@@ -236,7 +236,8 @@ pub(super) fn worst(error: RobotError, readings: &[Reading]) -> Option<Finding> 
 }
 
 /// The finding for readings of commands. The robot stops at the first command that exceeds a limit,
-/// so it is the newest one that does. If none certainly does, it is the newest that is near.
+/// so the newest excess counts. If no reading certainly exceeds its limit, the newest near one
+/// counts.
 pub(super) fn newest(error: RobotError, readings: &[Reading]) -> Option<Finding> {
     let last = |least: f64| {
         let cycle = readings

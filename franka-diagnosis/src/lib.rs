@@ -10,7 +10,8 @@
 //! The robot only names errors, without a joint or a number. Joint and number are computed here
 //! from the log of the motion's last cycles, with the robot's differences and limits (FCI
 //! documentation). The precision is limited by the published data and by the single precision of
-//! the states. Nothing is guessed: if the log does not show the cause, the [`Diagnosis`] says so.
+//! the states. Nothing is guessed: if the log does not show the cause, the [`Diagnosis`] states
+//! this.
 //!
 //! * [`Diagnose`]: the diagnosis of an error where it was caught. [`Case`], [`Diagnosis::of`]: the
 //!   diagnosis of a log, saved or live.
@@ -226,7 +227,7 @@ impl Diagnosis {
         Some(self.end?.saturating_sub(self.finding?.since))
     }
 
-    /// The errors except the one that explains them.
+    /// The errors except the explaining error.
     fn others(&self) -> Errors {
         let mut others = self.errors;
         if let Some(error) = self.error {

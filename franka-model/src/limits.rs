@@ -64,8 +64,8 @@ impl JointLimits {
     /// with an envelope, the bound towards it is `-margin`: only motion away from the limit is
     /// allowed.
     ///
-    /// Formula and operation order are those of libfranka 0.21; the results are identical to the
-    /// last digit.
+    /// Formula and operation order are the same as in libfranka 0.21; the results are identical to
+    /// the last digit.
     pub fn velocity_envelope(&self, q: &JointVector, margin: f64) -> (JointVector, JointVector) {
         let speed = |i: usize, distance: f64| {
             let nominal = self.velocity[i];

@@ -29,8 +29,8 @@ impl OperationalSpace {
     /// Creates the operational space of a point with this Jacobian, on an arm with this joint-space
     /// inertia.
     ///
-    /// The point is the origin of the Jacobian's frame, the axes are those of the Jacobian: base
-    /// axes for a zero Jacobian. For another point of the last link, move the end effector to it
+    /// The point is the origin of the Jacobian's frame, and the axes are the Jacobian's: base axes
+    /// for a zero Jacobian. For another point of the last link, move the end effector to it
     /// ([`EndEffector::f_t_ee`]).
     ///
     /// `None` if `mass` is not positive definite, which is impossible for a physical arm.

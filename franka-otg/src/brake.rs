@@ -70,8 +70,8 @@ pub(crate) fn into_limits(task: Task) -> (Pieces, Task) {
     (pieces, task)
 }
 
-/// Brings a velocity that exceeds the limit, or will exceed it, back to the limit. The frame is
-/// that of positive velocity.
+/// Brings a velocity that exceeds the limit, or will exceed it, back to the limit. In this frame
+/// the velocity is positive.
 fn slow_down(pieces: &mut Pieces, task: Task, sign: f64) -> Task {
     let Task { v, a, top, .. } = task.mirrored(sign);
     let to_acceleration_limit = a + 1.0;

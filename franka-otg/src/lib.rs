@@ -68,10 +68,10 @@
 //! # Targets in motion
 //!
 //! At a target in motion an axis cannot wait, and there may be *blocked* durations between feasible
-//! ones. But for one duration the reachable positions are still an interval, whose ends have closed
-//! forms, and the mean of two admissible motions is admissible. So two evaluations decide whether a
-//! duration is feasible, and a profile for it is a weighted mean. One short search per axis finds
-//! the beginnings of the feasible durations (`moving_target`).
+//! ones. For one duration, however, the reachable positions are still an interval, whose ends have
+//! closed forms, and the mean of two admissible motions is admissible. So two evaluations decide
+//! whether a duration is feasible, and a profile for it is a weighted mean. One short search per
+//! axis finds the beginnings of the feasible durations (`moving_target`).
 //!
 //! # Guarantees
 //!

@@ -86,7 +86,7 @@ mod tests {
     use super::*;
     use std::string::ToString;
 
-    /// Expected texts are those of C's `printf("%g")`.
+    /// The expected texts come from C's `printf("%g")`.
     #[test]
     fn numbers_print_as_in_c() {
         for (value, expected) in [

@@ -142,8 +142,8 @@ pub(crate) fn reaction(until: &Bound<'_, PyAny>) -> PyResult<Reaction> {
 /// A number that changes while the arm moves: compare it with `<`, `<=`, `>` or `>=` to create a
 /// condition.
 ///
-/// Forces and torques are the robot's estimates, positive where the arm exerts them. Axes are those
-/// of the base frame.
+/// Forces and torques are the robot's estimates, positive where the arm exerts them. Axes are the
+/// base frame's.
 #[pyclass(frozen, module = "franka_async.condition")]
 pub(crate) struct Quantity {
     quantity: condition::Quantity,

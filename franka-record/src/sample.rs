@@ -83,8 +83,8 @@ impl Sample {
     }
 }
 
-/// Returns the samples from the first to the last with a commanded position; all samples if there
-/// is none.
+/// Returns the samples from the first to the last with a commanded position; all samples if no
+/// position was commanded.
 pub(crate) fn told(samples: &[Sample]) -> &[Sample] {
     let is_told = |sample: &Sample| sample.q_ref.is_some();
     let first = samples.iter().position(is_told);

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use crate::viewer::{Served, Viewer};
 
-/// Ends a hold of a viewer; the number is that of the hold's next message.
+/// Ends a hold of a viewer; the argument is the number of the hold's next message.
 type Way = dyn Fn(&mut Viewer, u32);
 
 fn up() -> serde_json::Value {

@@ -1,4 +1,4 @@
-//! Last commands: of an arm in motion, and of an arm whose commands have jumped.
+//! Last commands of an arm in motion, and of an arm whose commands have jumped.
 
 use franka_model::Model;
 use franka_proto::MotionGeneratorMode as Generator;

@@ -1,7 +1,7 @@
 //! The pages of Desk that require no login, in all generations of its interface.
 //!
-//! The paths and fields are those of existing clients of Desk; the vendor does not document the
-//! older generations.
+//! The paths and fields come from existing clients of Desk; the vendor does not document the older
+//! generations.
 
 use serde_json::Value;
 

@@ -12,7 +12,7 @@ use crate::model::Model;
 /// `q` (least sum of squares), over all redundancy parameters. Returns `None` if no posture was
 /// found.
 ///
-/// Joint 7 is swept through its range, and the best posture of every branch is refined; this takes
+/// Joint 7 is swept through its range, and the best posture of every branch is refined. This takes
 /// some 0.3 ms. The sweep may miss a pose that allows only a hundredth of a radian of joint 7;
 /// [`reach`](super::reach) searches more finely.
 ///

@@ -217,8 +217,8 @@ impl Axis {
     /// the point that leaves the box last, the direction, and the negative length.
     ///
     /// The relative positions at which the two meet fill a polytope: the box swept by the segment.
-    /// Its faces are those of the box, and the faces that the segment sweeps from the box's edges.
-    /// The nearest of them is the way out (Gottschalk, Lin and Manocha, OBBTree, 1996).
+    /// Its faces are the faces of the box, and the faces that the segment sweeps from the box's
+    /// edges. The nearest of them is the way out (Gottschalk, Lin and Manocha, OBBTree, 1996).
     fn shortest_way_out(&self) -> (f64, Vector3<f64>, f64) {
         let mut best = (0.0, Vector3::zeros(), f64::NEG_INFINITY);
         for i in 0..3 {

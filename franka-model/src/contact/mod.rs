@@ -34,9 +34,10 @@
 //!
 //! # Errors of external torques
 //!
-//! External torques measured without a contact are errors: of the arm's model, of the sensors'
-//! zero, and of the friction between the sensor and the link. [`Tare`] removes the constant part.
-//! Friction also takes up part of a contact's torque; [`TorqueError`] states the expected amount.
+//! External torques measured without a contact are errors. They come from the arm's model, from the
+//! sensors' zero, and from the friction between the sensor and the link. [`Tare`] removes the
+//! constant part. Friction also takes up part of a contact's torque; [`TorqueError`] states the
+//! expected amount.
 
 mod patches;
 mod tare;

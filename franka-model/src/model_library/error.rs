@@ -2,7 +2,7 @@
 
 use std::string::String;
 
-/// The reason why a model library cannot be used. The texts are those of libfranka 0.9.
+/// The reason why a model library cannot be used. The texts come from libfranka 0.9.
 ///
 /// One of libfranka's texts is not needed: a library that is already loaded. Here each library is a
 /// separate value.

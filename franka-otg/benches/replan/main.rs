@@ -28,7 +28,7 @@ fn replan<const N: usize>() {
     );
 }
 
-/// Limits similar to those of an arm's joint.
+/// Limits similar to an arm's joint.
 const LIMITS: AxisLimits = AxisLimits {
     velocity: 2.62,
     acceleration: 10.0,

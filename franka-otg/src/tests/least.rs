@@ -97,7 +97,7 @@ proptest! {
     }
 }
 
-/// Limits similar to those of an arm's joint.
+/// Limits similar to an arm's joint.
 const JOINT: AxisLimits = AxisLimits {
     velocity: 2.0,
     acceleration: 10.0,

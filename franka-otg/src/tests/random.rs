@@ -25,7 +25,7 @@ fn limits(
     })
 }
 
-/// Limits similar to those of joints and tools of an arm, down to a tenth of full speed.
+/// Limits similar to the limits of an arm's joints and tools, down to a tenth of full speed.
 pub(super) fn arm_limits() -> impl Strategy<Value = AxisLimits> {
     limits((-1.0, 0.7), (0.0, 1.3), (2.0, 4.0))
 }

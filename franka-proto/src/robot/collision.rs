@@ -64,8 +64,7 @@ impl CollisionBehavior {
 
     /// Returns thresholds at which a light push stops the robot: contact and collision at 10 N and
     /// 10 N m, or at 20 while the arm accelerates. They suit motions of the robot's own
-    /// controllers; compliant control presses harder. The values are those of the vendor's
-    /// examples.
+    /// controllers; compliant control presses harder. The values come from the vendor's examples.
     #[must_use]
     pub fn careful() -> Self {
         Self {
@@ -85,7 +84,7 @@ impl CollisionBehavior {
         Self::uniform([20.0; 7], [60.0; 7], [20.0; 6], [60.0; 6])
     }
 
-    /// Returns thresholds of 100 N and 100 N m, for tasks that press. The values are those of the
+    /// Returns thresholds of 100 N and 100 N m, for tasks that press. The values come from the
     /// vendor's examples of impedance control.
     #[must_use]
     pub fn insensitive() -> Self {

@@ -1696,8 +1696,8 @@ class Quantity:
     """A number that changes while the arm moves: compare it with `<`, `<=`, `>` or `>=` to create a
     condition.
 
-    Forces and torques are the robot's estimates, positive where the arm exerts them. Axes are those
-    of the base frame.
+    Forces and torques are the robot's estimates, positive where the arm exerts them. Axes are the
+    base frame's.
     """
 
     def above(self, value: float) -> Condition:

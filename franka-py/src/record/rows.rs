@@ -1,4 +1,4 @@
-//! The rows of a recording: those of its tables that belong to the same cycles, as arrays.
+//! The rows of a recording as arrays: rows of its tables for the same cycles.
 
 use std::cmp::Ordering;
 use std::sync::MutexGuard;

@@ -119,7 +119,7 @@ fn motions_after_the_stop_do_not_hide_it() {
     let explanation = explainer.finish();
     let times = explanation.timeline.iter().map(|moment| moment.time);
     assert_eq!((explanation.end, times.max()), (2500, Some(3000)));
-    // All 3000 chunks except those of the first three seconds, and two changes of the state.
+    // All 3000 chunks except the chunks of the first three seconds, and two changes of the state.
     assert_eq!(explanation.moments_left_out, 2852);
     assert_eq!(explanation.earlier, 0);
     let peak = explanation.peaks.external_torque.expect("a hit");

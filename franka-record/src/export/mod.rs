@@ -1,7 +1,7 @@
 //! Exports recordings as tables and datasets for other programs.
 //!
-//! * `cells`: the columns of a table. Their names, units and shapes are those of
-//!   [`franka_rt::driver::Column`].
+//! * `cells`: the columns of a table. [`franka_rt::driver::Column`] defines their names, units and
+//!   shapes.
 //! * `new_file`: files that appear once they are complete, and never replace a file.
 //! * `csv`: text. `table`, `parquet`: Parquet files (feature `export`).
 //! * [`lerobot`]: episodes for training (feature `export`).

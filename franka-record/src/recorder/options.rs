@@ -24,7 +24,7 @@ pub struct RecordOptions {
     /// True to force each write to the disk, so that a power failure loses no more than a crash. On
     /// by default. It does not affect the robot, because a separate thread waits for the disk.
     pub sync: bool,
-    /// When to begin a new file: `run.mcap` is followed by `run-0002.mcap` and so on, skipping the
+    /// Condition for a new file: `run.mcap` is followed by `run-0002.mcap` and so on, skipping the
     /// numbers of existing files.
     pub rotation: Rotation,
     /// Known facts about the recording, for its metadata.
@@ -138,7 +138,7 @@ const ROTATION_MIN: u64 = 1_000_000;
 const BEFORE_MAX: Duration = Duration::from_secs(300);
 const AFTER_MAX: Duration = Duration::from_secs(60);
 
-/// When a new file begins; never, by default.
+/// Condition for a new file; never, by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rotation {
     /// After a file has this many bytes.

@@ -88,8 +88,8 @@ pub(crate) fn each_record<E: From<RecordingError>>(
         .or_else(|| damage_outside(file, index.data_end)))
 }
 
-/// Returns the error outside of chunks: of the checksum over all bytes before `data_end`, or of the
-/// end.
+/// Returns an error outside of chunks: the checksum over all bytes before `data_end`, or the end of
+/// the file.
 fn damage_outside(file: &[u8], data_end: Option<u64>) -> Option<String> {
     let data_end = usize::try_from(data_end?).ok()?;
     let (data, rest) = file.split_at_checked(data_end)?;

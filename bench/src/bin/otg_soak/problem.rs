@@ -16,7 +16,7 @@ use crate::oracle::stop_point;
 /// The kind of an episode's limits.
 #[derive(Clone, Copy)]
 pub(crate) enum Kind {
-    /// Limits similar to those of joints and tools of an arm, down to a tenth of full speed.
+    /// Limits similar to the limits of an arm's joints and tools, down to a tenth of full speed.
     Arm,
     /// Mixed limits: each may or may not reach the others.
     Mixed,

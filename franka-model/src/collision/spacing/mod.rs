@@ -45,8 +45,8 @@ const AMPLE: f64 = 0.15;
 
 /// Pairs and their minimum distances: within an arm, and to regions.
 ///
-/// The distances are those of [`Placed`](super::Placed). The margin of a distance is its excess
-/// over the minimum, `[m]`; negative below the minimum.
+/// The distances are computed as in [`Placed`](super::Placed). The margin of a distance is its
+/// excess over the minimum, `[m]`; negative below the minimum.
 #[derive(Debug, Clone)]
 pub struct Spacing {
     lengths: Lengths,

@@ -129,9 +129,9 @@ fn lever(lengths: &Lengths, link: usize, point: &Vector3<f64>, joint: usize) -> 
     away + (joint..axis).map(|joint| step(lengths, joint)).sum::<f64>()
 }
 
-/// Returns the distance from the reference point of the axis of joint number `joint` to that of the
-/// next. The reference point is the shoulder for the first three, the elbow for the fourth, and the
-/// wrist for the fifth and sixth.
+/// Returns the distance from the reference point of the axis of joint number `joint` to the
+/// reference point of the next. The reference point is the shoulder for the first three, the elbow
+/// for the fourth, and the wrist for the fifth and sixth.
 fn step(lengths: &Lengths, joint: usize) -> f64 {
     match joint {
         3 => length(lengths.upper_arm, ELBOW),

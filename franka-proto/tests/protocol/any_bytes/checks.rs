@@ -17,7 +17,7 @@ use franka_proto::{
 /// A fuzz target: its name and its function.
 pub type Target = (&'static str, fn(&[u8]));
 
-/// All targets. Names are those of the binaries in `fuzz/fuzz_targets/`.
+/// All targets. The binaries in `fuzz/fuzz_targets/` have the same names.
 pub const TARGETS: [Target; 7] = [
     ("stream", stream),
     ("robot_state", robot_state),
