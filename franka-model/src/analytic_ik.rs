@@ -11,9 +11,9 @@
 //!
 //! With joint 7 given, the flange's pose fixes the wrist W, where axes 5 and 6 meet. Shoulder S,
 //! elbow E and wrist form a triangle, whose sides determine joint 4. The direction of the forearm
-//! in the hand's axes determines joints 6 and 5. The remaining rotation determines joints 1, 2 and
-//! 3. Every step is an equivalence with at most two answers, so no solution is lost. Fixing joint 7
-//! is the idea of He and Liu (2021). The enumeration and the other two parameters come from
+//! in the hand's axes determines joints 6 and 5. The remaining rotation determines joints 1 to 3.
+//! Every step is an equivalence with at most two answers, so no solution is lost. Fixing joint 7 is
+//! the idea of He and Liu (2021). The enumeration and the other two parameters come from
 //! López-Custodio, Gong and Figueredo (GeoFIK, 2025).
 //!
 //! | given | method | solutions, at most |

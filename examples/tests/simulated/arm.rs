@@ -269,9 +269,8 @@ impl Event {
     }
 }
 
-/// Returns the direction in which the joints at `q` can move without the hand, joint 3 forwards,
-/// with length
-/// 1. Both robots have the same kinematics.
+/// Returns the unit vector in which the joints at `q` can move without the hand, joint 3
+/// forwards. Both robots have the same kinematics.
 fn self_motion(q: &JointVector) -> JointVector {
     let jacobian = Model::fr3().zero_jacobian(Frame::EndEffector, q, &EndEffector::default());
     let gram = jacobian * jacobian.transpose();

@@ -18,8 +18,8 @@ use crate::wire;
 /// All values of one datagram of the robot, as `f64`; the field names are the vendor's.
 ///
 /// The frames are the vendor's: O base, F flange, NE nominal end effector, EE end effector, K
-/// stiffness frame. `X_T_Y` is the pose of Y in X as a 4x4 matrix, column-major (index = 4 * column
-/// + row). Inertia matrices are 3x3, column-major.
+/// stiffness frame. `X_T_Y` is the pose of Y in X as a 4x4 matrix, column-major
+/// (index `4 * column + row`). Inertia matrices are 3x3, column-major.
 ///
 /// [`Default`] has identities for poses, [`ControllerMode::Other`], and zero everywhere else.
 #[derive(Clone, Copy, Debug, PartialEq)]
