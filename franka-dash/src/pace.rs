@@ -10,8 +10,8 @@ use franka_async::state::RobotState;
 const BODY: f64 = 0.11;
 
 /// Returns a bound on the distance of any point of an arm with these lengths from the axis of each
-/// joint, `[m]`, at any posture, with a tool that ends `tool` from the flange: the sum of the
-/// lengths in between.
+/// joint, `[m]`, at any posture. The bound is the sum of the lengths in between, with a tool that
+/// ends `tool` from the flange.
 fn reach(lengths: &Lengths, tool: f64) -> [f64; 7] {
     let origins = lengths.joint_origins();
     let mut rest = FLANGE + tool + BODY;

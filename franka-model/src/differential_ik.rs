@@ -11,7 +11,7 @@
 //! # Position first
 //!
 //! `W` weighs radians of orientation against metres of position. It has no effect if both can be
-//! met. If not, because joints are at their bounds or the arm is singular, the small default
+//! met. If not, joints are at their bounds or the arm is singular. The small default then
 //! sacrifices the orientation, except for a share `W²/r²` of it, where `r` is the lever of the
 //! joints that turn the hand. The remaining error of the position is then added to the target, and
 //! the problem is solved once more (one step of the method of multipliers: Hestenes, 1969), which

@@ -80,9 +80,9 @@ impl Robot {
     }
 
     /// A motion of the end effector relative to its position, or to the target of the current
-    /// motion: 3 numbers, m, or 6, with a rotation vector, rad, along and about the axes of the
-    /// `base` or the `tool`. With `from_arm` it is always relative to the measured position.
-    /// Options as for `move_to`.
+    /// motion. The offset is 3 numbers, m, or 6, with a rotation vector, rad, along and about the
+    /// axes of the `base` or the `tool`. With `from_arm` it is always relative to the measured
+    /// position. Options as for `move_to`.
     #[pyo3(signature = (way, frame = "base", from_arm = false, **options))]
     fn move_by(
         &self,

@@ -76,8 +76,8 @@ impl CollisionBehavior {
         }
     }
 
-    /// Returns thresholds for pushing an arm by hand under compliant control: contact at 20 N and
-    /// 20 N m, collision at 60. The collision threshold is above the default force cap plus the
+    /// Returns thresholds for pushing an arm by hand under compliant control. Contact is at 20 N
+    /// and 20 N m, collision at 60. The collision threshold is above the default force cap plus the
     /// apparent force of friction.
     #[must_use]
     pub fn compliant() -> Self {

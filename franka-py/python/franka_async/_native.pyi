@@ -419,8 +419,8 @@ class Model:
         F_T_EE: ArrayLike | None = None,
     ) -> tuple[_Array, _Array]:
         """Joint velocities for the `twist` of the end effector, `[linear; angular]`, m/s and rad/s in
-        base axes, and the missing part of the twist: `(7,)` rad/s and `(6,)`, with a leading axis
-        for many `q` or twists. It also works with displacements, in m and rad.
+        base axes, and the missing part of the twist. The results are `(7,)` rad/s and `(6,)`, with
+        a leading axis for many `q` or twists. It also works with displacements, in m and rad.
 
         The velocities are exactly within `lower` and `upper`, `(7,)` or `(n, 7)`, by default the
         limits at `q`. In the nullspace they follow `posture`, by default zero. Near singularities
@@ -1065,9 +1065,9 @@ class Robot:
         **options: Unpack[MotionOptions],
     ) -> Motion:
         """A motion of the end effector relative to its position, or to the target of the current
-        motion: 3 numbers, m, or 6, with a rotation vector, rad, along and about the axes of the
-        `base` or the `tool`. With `from_arm` it is always relative to the measured position.
-        Options as for `move_to`.
+        motion. The offset is 3 numbers, m, or 6, with a rotation vector, rad, along and about the
+        axes of the `base` or the `tool`. With `from_arm` it is always relative to the measured
+        position. Options as for `move_to`.
         """
     def move_through(
         self, waypoints: Iterable[Target | Waypoint], blend: float = 0.0, **options: Unpack[MotionOptions]
@@ -2292,9 +2292,9 @@ class Recorder:
         directory: str | PathLike[str], *, before: float = 30.0, after: float = 1.0, keep: int = 20
     ) -> Recorder:
         """Keeps only the last `before` seconds, 1 to 300, in memory. When a motion ends because of a
-        reflex, a lost link or a guard, it writes them and the following `after` seconds, at most
-        60, to a file in `directory`, named by time, robot and cause. The newest `keep` files are
-        kept.
+        reflex, a lost link or a guard, it writes them to a file in `directory`, together with the
+        following `after` seconds, at most 60. The file is named by time, robot and cause. The
+        newest `keep` files are kept.
 
         Raises `RecordError`, `ValueError`.
         """

@@ -123,8 +123,8 @@ impl Model {
     }
 
     /// Joint velocities for the `twist` of the end effector, `[linear; angular]`, m/s and rad/s in
-    /// base axes, and the missing part of the twist: `(7,)` rad/s and `(6,)`, with a leading axis
-    /// for many `q` or twists. It also works with displacements, in m and rad.
+    /// base axes, and the missing part of the twist. The results are `(7,)` rad/s and `(6,)`, with
+    /// a leading axis for many `q` or twists. It also works with displacements, in m and rad.
     ///
     /// The velocities are exactly within `lower` and `upper`, `(7,)` or `(n, 7)`, by default the
     /// limits at `q`. In the nullspace they follow `posture`, by default zero. Near singularities

@@ -79,9 +79,9 @@ impl Recorder {
     }
 
     /// Keeps only the last `before` seconds, 1 to 300, in memory. When a motion ends because of a
-    /// reflex, a lost link or a guard, it writes them and the following `after` seconds, at most
-    /// 60, to a file in `directory`, named by time, robot and cause. The newest `keep` files are
-    /// kept.
+    /// reflex, a lost link or a guard, it writes them to a file in `directory`, together with the
+    /// following `after` seconds, at most 60. The file is named by time, robot and cause. The
+    /// newest `keep` files are kept.
     ///
     /// Raises `RecordError`, `ValueError`.
     #[staticmethod]

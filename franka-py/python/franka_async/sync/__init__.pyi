@@ -310,9 +310,9 @@ class Recorder:
     @staticmethod
     def black_box(directory: str | PathLike[str], *, before: float=30.0, after: float=1.0, keep: int=20) -> Recorder:
         """Keeps only the last `before` seconds, 1 to 300, in memory. When a motion ends because of a
-        reflex, a lost link or a guard, it writes them and the following `after` seconds, at most
-        60, to a file in `directory`, named by time, robot and cause. The newest `keep` files are
-        kept.
+        reflex, a lost link or a guard, it writes them to a file in `directory`, together with the
+        following `after` seconds, at most 60. The file is named by time, robot and cause. The
+        newest `keep` files are kept.
 
         Raises `RecordError`, `ValueError`.
         """
@@ -516,9 +516,9 @@ class Robot:
 
     def move_by(self, way: ArrayLike, frame: Literal['base', 'tool']='base', from_arm: bool=False, **options: Unpack[MotionOptions]) -> MotionReport:
         """A motion of the end effector relative to its position, or to the target of the current
-        motion: 3 numbers, m, or 6, with a rotation vector, rad, along and about the axes of the
-        `base` or the `tool`. With `from_arm` it is always relative to the measured position.
-        Options as for `move_to`.
+        motion. The offset is 3 numbers, m, or 6, with a rotation vector, rad, along and about the
+        axes of the `base` or the `tool`. With `from_arm` it is always relative to the measured
+        position. Options as for `move_to`.
         """
 
     def move_through(self, waypoints: Iterable[Target | Waypoint], blend: float=0.0, **options: Unpack[MotionOptions]) -> MotionReport:
