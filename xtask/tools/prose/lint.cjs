@@ -48,7 +48,7 @@ function extract(source, file) {
     } else if (isRust && text.startsWith('"') && token.index < testsAt) {
       const content = text.slice(1, -1).replace(/\\\n\s*/g, "").replace(/(\\n|\n)\s+/g, ". ").replace(/\\n|\n/g, " ").replace(/\\(.)/g, "$1");
       const prose = content.replace(/\{[^{}]*\}/g, "`x`");
-      if (/[A-Za-z]+,? [a-z]+,? [a-z]+/.test(prose) && !/[<;=|]|^libfranka/.test(prose)) lines[line] += `# ${prose.trim()}. `;
+      if (/[A-Za-z]+,? [a-z]+,? [a-z]+/.test(prose.replaceAll("`", "")) && !/[<;=|]|^libfranka/.test(prose)) lines[line] += `# ${prose.trim()}. `;
     }
     end = token.index;
   }
@@ -147,8 +147,11 @@ async function checkExamples() {
   const examples = yaml.safeLoad(read("examples.yml"));
   const names = [...read("words.yml").matchAll(/prh: ([\w-]+)/g)].map((it) => it[1]).concat("doc-start", "what-first", "length", "figures");
   for (const name of names) if (!examples.some((it) => it.rule === name)) throw new Error(`${name} has no example`);
-  for (const { rule, bad, good } of examples) {
-    const found = async (text) => (await lint(`/// ${text}\nfn f() {}\n`, "example.rs")).map((it) => it.rule).join();
+  for (const { rule, file, bad, good } of examples) {
+    const found = async (text) => {
+      const hits = await (file ? lint(text, file) : lint(`/// ${text}\nfn f() {}\n`, "example.rs"));
+      return hits.map((it) => it.rule).join();
+    };
     const [inBad, inGood] = [await found(bad), await found(good)];
     if (inBad !== rule || inGood) throw new Error(`the example of ${rule}: got ${inBad}; ${inGood || "nothing"}`);
   }
