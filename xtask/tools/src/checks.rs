@@ -15,8 +15,8 @@ use xtask::workspace::Workspace;
 use crate::others::OTHERS;
 use crate::ours::Ours;
 use crate::{
-    book, circles, commands, cross, dashboard, mujoco, names, package, peer_pages, playground, prose,
-    recordings, reference_pages, release, schemas, texts, tidy,
+    book, circles, commands, cross, dashboard, mujoco, names, package, peer_pages, playground,
+    prose, recordings, reference_pages, release, schemas, texts, tidy,
 };
 
 /// A step that can be chosen with `--only`.

@@ -103,7 +103,11 @@ pub(crate) fn bundle(
 }
 
 /// Installs the packages of the lock file in `from` in `work`, unless they are there.
-pub(crate) fn install_packages(workspace: &Workspace, from: &Path, work: &Path) -> anyhow::Result<()> {
+pub(crate) fn install_packages(
+    workspace: &Workspace,
+    from: &Path,
+    work: &Path,
+) -> anyhow::Result<()> {
     let (lock, installed) = (from.join("package-lock.json"), work.join("installed.json"));
     if fs::read(&installed).is_ok_and(|content| fs::read(&lock).is_ok_and(|it| it == content)) {
         return Ok(());

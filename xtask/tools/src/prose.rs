@@ -34,7 +34,7 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
 }
 
 /// Prints the hits in `paths`, or everywhere. With `is_lowering`, writes the counts that fell to
-/// the baseline instead; all counts if it does not exist.
+/// the baseline instead, or all counts if there is no baseline.
 pub(crate) fn run(
     workspace: &Workspace,
     paths: &[PathBuf],
@@ -48,19 +48,15 @@ pub(crate) fn run(
         println!("{} hits", hits.len());
         return Ok(());
     }
-    let counts = count(&hits);
-    let lowered = if baseline(workspace).exists() {
-        let mut lowered = read(workspace)?;
-        for (key, most) in &mut lowered {
-            *most = counts.get(key).map_or(0, |count| *count.min(most));
-        }
-        lowered
-    } else {
-        counts
-    };
+    let exists = baseline(workspace).exists();
+    let before = exists.then(|| read(workspace)).transpose()?;
     let mut text = String::from(HEADER);
-    for ((folder, rule), most) in lowered.iter().filter(|(_, most)| **most > 0) {
-        writeln!(text, "{folder} {rule} {most}")?;
+    for (key, count) in count(&hits) {
+        let allowed = |before: &Counts| before.get(&key).copied().unwrap_or_default();
+        let most = before.as_ref().map_or(count, allowed).min(count);
+        if most > 0 {
+            writeln!(text, "{} {} {most}", key.0, key.1)?;
+        }
     }
     Ok(fs::write(baseline(workspace), text)?)
 }
@@ -106,21 +102,14 @@ fn lint(workspace: &Workspace, paths: &[PathBuf]) -> anyhow::Result<Result<Vec<H
     if let Err(error) = dashboard::install_packages(workspace, &folder(workspace), &packages) {
         return Ok(Err(format!("textlint cannot be installed: {error:#}")));
     }
-    let mut listed = vec![
-        "ls-files",
-        "--cached",
-        "--others",
-        "--exclude-standard",
-        "--",
-    ];
+    let mut listed: Vec<_> = LISTED.to_vec();
     listed.extend(paths.iter().filter_map(|path| path.to_str()));
     let files = git(workspace, &listed)?;
     let is_prose = |file: &&str| {
         let is_known = KINDS.iter().any(|kind| file.ends_with(kind));
         is_known && !file.contains("/generated/") && workspace.root().join(file).exists()
     };
-    let files: BTreeSet<_> = files.lines().filter(is_prose).collect();
-    let files: Vec<_> = files.into_iter().collect();
+    let files: Vec<_> = files.lines().filter(is_prose).collect();
     let mut node = workspace.program("node");
     node.arg(folder(workspace).join("lint.cjs"));
     node.env("NODE_PATH", packages.join("node_modules"));
@@ -137,6 +126,15 @@ fn lint(workspace: &Workspace, paths: &[PathBuf]) -> anyhow::Result<Result<Vec<H
         .map(|line| Hit::parse(line).context(line.to_owned()));
     Ok(Ok(hits.collect::<Result<_, _>>()?))
 }
+
+/// Lists the files of the tree that git does not ignore.
+const LISTED: [&str; 5] = [
+    "ls-files",
+    "-co",
+    "--deduplicate",
+    "--exclude-standard",
+    "--",
+];
 
 /// Endings of the files that are read.
 const KINDS: [&str; 4] = [".rs", ".md", ".py", ".pyi"];
