@@ -1,6 +1,6 @@
 //! Plain English: the step `prose`, by textlint with the rules in `xtask/tools/prose`.
 //!
-//! `baseline.txt` there has the number of hits by top-level folder and rule. A number may only fall.
+//! `baseline.txt` there has the number of hits by top-level folder and rule, which may only fall.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
