@@ -264,6 +264,8 @@ impl Bench {
             Close => lifecycle.close(newest),
             Pause => lifecycle.pause(newest, true),
             GoOn => lifecycle.pause(newest, false),
+            // No caller can take back a stop.
+            Cancel if self.stops.contains(&newest) => {}
             Cancel => {
                 lifecycle.cancel(newest, NOW);
                 if let Some(goal) = self.of_newest() {
