@@ -8,6 +8,7 @@
 //! | [`follow`] | the lag behind a target that moves, in virtual time |
 //! | [`mishaps`] | networks with one kind of fault each |
 //! | [`push`] | a hand that pushes an arm, and the inertia that it meets |
+//! | [`held_push`] | pushes on an arm that holds its pose, and what they leave |
 //! | [`golden`] | the crates against stored vectors: wire bytes, model numbers, trajectories |
 
 use std::time::Duration;
@@ -17,6 +18,7 @@ pub mod contacts;
 pub mod cycle_counts;
 pub mod follow;
 pub mod golden;
+pub mod held_push;
 pub mod mishaps;
 pub mod push;
 

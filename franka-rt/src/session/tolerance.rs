@@ -1,5 +1,6 @@
 //! How near an arm comes to its target, and so what counts as arrived.
 
+use crate::law::compensation::STATIC_FRICTION;
 use crate::law::{Gains, Law};
 use crate::session::Controller;
 
@@ -81,10 +82,6 @@ impl Tolerance {
         }
     }
 }
-
-/// Torque at which the joints of a realistic arm break away at most, `[N m]`: the middle of the
-/// family times 1.38, the ends of its two spreads.
-const STATIC_FRICTION: [f64; 7] = [1.31, 1.59, 1.31, 1.79, 1.45, 0.83, 0.69];
 
 /// The force and the torque at the end effector that these come to, `[N]` and `[N m]`: what springs
 /// alone left in 99 of 100 goals times their stiffness, and a third more.
