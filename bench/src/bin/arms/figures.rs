@@ -41,6 +41,12 @@ pub(crate) struct ArmFigures {
     pub(crate) released_mm: f64,
     /// Force of a pushing hand without the contribution of the inertia, `[N]`.
     pub(crate) push_force_n: f64,
+    /// Greatest distances from a held pose in the third second after a push has ended, `[mm]` and
+    /// `[mrad]`.
+    pub(crate) pushed_mm: Vec<f64>,
+    pub(crate) pushed_mrad: Vec<f64>,
+    /// Motions to the held pose that did not arrive after such a push.
+    pub(crate) pushed_short: usize,
     /// Displacement of the robot's own controller under a push of 30 N, `[mm]`.
     pub(crate) push_yield_mm: f64,
     /// Force of a hand that guides the arm at up to 0.16 m/s, `[N]`.
@@ -60,7 +66,8 @@ impl fmt::Display for ArmFigures {
         write!(
             f,
             "seed {}: {} of {} goals short; {:.2} mm {:.2} mrad at most; 5 cm {:.2} s; lag p95 {:.1} mm; \
-             hold {:.3} mm, {:.3} N m; moving {:.3} N m; push {:.1} N, overshoot {:.1} mm",
+             hold {:.3} mm, {:.3} N m; moving {:.3} N m; push {:.1} N, overshoot {:.1} mm; \
+             after pushes {:.2} mm, {} short",
             self.seed,
             self.short.len(),
             self.goals,
@@ -73,6 +80,8 @@ impl fmt::Display for ArmFigures {
             self.moving_torque_hf_nm,
             self.push_force_n,
             self.release_overshoot_mm,
+            self.pushed_mm.iter().copied().fold(0.0, f64::max),
+            self.pushed_short,
         )?;
         for short in &self.short {
             write!(f, "\n  {short}")?;
@@ -133,6 +142,18 @@ impl Summary {
         put("handover_mm_max", most(|arm| arm.handover_mm));
         put("released_mm_max", most(|arm| arm.released_mm));
         put("push_force_n_max", most(|arm| arm.push_force_n));
+        let pushed_mm = all(|arm| &arm.pushed_mm);
+        let pushed_mrad = all(|arm| &arm.pushed_mrad);
+        if !pushed_mm.is_empty() {
+            for (name, share) in [("p50", 0.5), ("p99", 0.99), ("max", 1.0)] {
+                put(&format!("pushed_mm_{name}"), quantile(&pushed_mm, share));
+                put(
+                    &format!("pushed_mrad_{name}"),
+                    quantile(&pushed_mrad, share),
+                );
+            }
+        }
+        put("pushed_short", sum(|arm| arm.pushed_short));
         put("push_yield_mm_max", most(|arm| arm.push_yield_mm));
         put(
             "release_overshoot_mm_max",

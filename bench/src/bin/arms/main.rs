@@ -113,6 +113,11 @@ impl LawUnderTest {
         self.choice.backend(self.setpoints.into())
     }
 
+    /// True if it is what goals have by default.
+    pub(crate) fn is_default(self) -> bool {
+        matches!(self.choice, LawChoice::Default) && self.by == 1.0
+    }
+
     /// Returns the gains of a goal: its own unless it is a pose.
     pub(crate) fn gains(self, goal: &Goal) -> Gains {
         let gains = match goal.target {

@@ -8,6 +8,7 @@ use franka_rt::lifecycle::Engagement;
 use franka_rt::session::{Backend, Free, Goal, GoalId, OnArrival, PoseError, Target};
 use franka_sim::arm::Arm;
 use franka_sim::{Config, Network, Touch};
+use franka_tests::held_push::HeldPush;
 use franka_tests::push::{ArmInertia, PUSH, STIFFNESS, hand};
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use rand::rngs::SmallRng;
@@ -42,13 +43,13 @@ pub(crate) fn run(kind: RobotKind, arm: Arm, seed: u64, law: LawUnderTest) -> Ar
             ..ArmFigures::default()
         },
     };
-    let ended = programme.alone().and_then(|()| {
-        programme.engaged = Some(programme.lockstep.engage_with(Engagement {
-            backend: law.backend(),
-            ..Engagement::default()
-        }));
-        programme.all()
-    });
+    let ended = programme
+        .unknown()
+        .and_then(|()| programme.alone())
+        .and_then(|()| {
+            programme.engage();
+            programme.all()
+        });
     if let Err(reflex) = ended {
         programme.figures.reflex = Some(reflex);
     }
@@ -68,6 +69,48 @@ struct Programme {
 type Ended = String;
 
 impl Programme {
+    fn engage(&mut self) -> GoalId {
+        let engaged = self.lockstep.engage_with(Engagement {
+            backend: self.law.backend(),
+            ..Engagement::default()
+        });
+        self.engaged = Some(engaged);
+        engaged
+    }
+
+    /// Holds, and is pushed, before anything is known of the arm: by the law that goals have by
+    /// default, as the motions after such pushes do.
+    fn unknown(&mut self) -> Result<(), Ended> {
+        if !self.law.is_default() {
+            return Ok(());
+        }
+        let engaged = self.engage();
+        self.head_for(self.home.into(), OnArrival::Hold);
+        self.held_pushes(engaged, 1)?;
+        self.engaged = None;
+        self.lockstep.client.lifecycle.disengage(engaged);
+        self.lockstep.until_idle(2000);
+        Ok(())
+    }
+
+    /// Is pushed while it holds its pose, by pushes that end.
+    fn held_pushes(&mut self, engaged: GoalId, count: u64) -> Result<(), Ended> {
+        for i in 0..count {
+            let seed = self.figures.seed.wrapping_mul(97).wrapping_add(i);
+            let push = HeldPush::random(&mut SmallRng::seed_from_u64(seed));
+            for _ in 0..push.after {
+                self.tick()?;
+            }
+            let after = push.leave(&mut self.lockstep, engaged, &self.home);
+            self.tick()?;
+            let figures = &mut self.figures;
+            figures.pushed_mm.push(after.later.translation * 1e3);
+            figures.pushed_mrad.push(after.later.rotation * 1e3);
+            figures.pushed_short += usize::from(!after.arrived);
+        }
+        Ok(())
+    }
+
     /// Runs steps that are separate motions, under our law: the first ones have no knowledge of the
     /// arm.
     fn alone(&mut self) -> Result<(), Ended> {
@@ -119,6 +162,9 @@ impl Programme {
         // Guiding requires torques. So does an arm that yields to a continuing push, because the
         // robot's controllers resist until a torque sensor is out of its range.
         if self.law.backend() == Backend::Torques {
+            if let Some(engaged) = self.engaged.filter(|_| self.law.is_default()) {
+                self.held_pushes(engaged, 3)?;
+            }
             self.push()?;
             self.guide()?;
         } else {
