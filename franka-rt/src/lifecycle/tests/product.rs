@@ -406,7 +406,8 @@ impl Bench {
 
     fn look(&mut self) {
         let seen = std::mem::replace(&mut self.seen, self.pair.resolved.len());
-        for (goal, result) in self.pair.resolved[seen..].to_vec() {
+        let newer = self.pair.resolved[seen..].to_vec();
+        for (goal, result) in newer {
             let of_goal = self.pair.resolved.iter().filter(|(id, _)| *id == goal);
             let once = of_goal.count() == 1;
             self.check(once, || format!("{goal:?} is told twice"));
