@@ -30,7 +30,7 @@ impl Robot {
     /// before it ran.
     ///
     /// # Cancel safety
-    /// Dropping the future has the robot stop.
+    /// Dropping the future stops the robot.
     pub async fn active_torques(&self) -> Result<Active<Torques>, MotionError> {
         let generator = self.version().torque_generator();
         let request = MoveRequest::new(MoveControllerMode::ExternalController, generator);
@@ -106,14 +106,14 @@ impl Robot {
     }
 }
 
-/// A motion under active control. Send it to a thread, which then is the control cycle: from the
-/// first [`read_once`](Self::read_once) until this is dropped, states are received in there and
-/// nowhere else, and a thread that neither reads nor writes leaves the robot without commands,
+/// A motion under active control. Send it to a thread, which then is the control cycle. From the
+/// first [`read_once`](Self::read_once) until this is dropped, states are received in that thread
+/// and nowhere else. A thread that neither reads nor writes leaves the robot without commands,
 /// which stops it.
 ///
 /// **A thread that hangs** between two reads takes the states of the whole connection with it:
 /// [`Robot::state`] stands still and the loss of the link goes unseen. After the link timeout the
-/// motion is given up, the robot is told to stop, and what is read or written next fails with
+/// motion is given up, the robot is asked to stop, and the next read or write fails with
 /// [`MotionError::Stalled`]. Until then, or until this is dropped, other motions are refused with
 /// [`MotionError::Busy`].
 ///
@@ -121,7 +121,7 @@ impl Robot {
 /// Nothing is raised but the driver's own thread: real-time scheduling of the calling thread is up
 /// to the caller, see [`Scheduling::enter`](crate::realtime::Scheduling::enter).
 ///
-/// **Dropping it** before the last command has the robot stop.
+/// **Dropping it** before the last command stops the robot.
 #[derive(Debug)]
 pub struct Active<C> {
     robot: Robot,
@@ -131,7 +131,7 @@ pub struct Active<C> {
     lease: Option<Lease>,
     /// `None` once the end is known.
     outcome: Option<oneshot::Receiver<Outcome>>,
-    /// What ended the motion, if it did not end as asked.
+    /// Cause of the end of the motion, if it did not end as asked.
     error: Option<MotionError>,
     /// `message_id` of the newest state read.
     previous: Option<u64>,
@@ -213,7 +213,8 @@ impl<C> Active<C> {
         Ok(None)
     }
 
-    /// How the motion ended, if it was given up while nothing was read. The cycle then goes back.
+    /// Returns the outcome if the motion was given up while nothing was read. The cycle then goes
+    /// back.
     fn given_up(&mut self) -> Option<Outcome> {
         let outcome = self.outcome.as_mut()?.try_recv().ok()?;
         (self.lease, self.outcome) = (None, None);
@@ -241,7 +242,7 @@ impl<C> Active<C> {
         }
     }
 
-    /// Gives the cycle back and has the robot stop, unless the motion has ended.
+    /// Gives the cycle back and stops the robot, unless the motion has ended.
     fn stop(&mut self) {
         // The cycle goes back first, so that the thread ends the motion.
         self.lease = None;
@@ -286,8 +287,8 @@ impl<C: GeneratorCommand> Active<C> {
     /// report.
     ///
     /// # Errors
-    /// As [`Active<Torques>::write_once`]; without torques where the motion wants them, refused
-    /// with the vendor's text.
+    /// As [`Active<Torques>::write_once`]; fails with the vendor's text if the motion requires
+    /// torques and none are given.
     pub fn write_motion(
         &mut self,
         motion: impl Into<Next<C>>,

@@ -40,7 +40,7 @@ impl Engage {
     /// Keeps the arm out of these regions, base frame, none by default. The reference slows down on
     /// the way to one and stops [`KEEP_OUT_STOP`](crate::goal::KEEP_OUT_STOP) before it. A goal
     /// that this blocks is given up as [`Lapse::Blocked`](crate::error::Lapse::Blocked), while a
-    /// stream goes on and waits for other targets; an arm that stands in a region may leave it.
+    /// stream continues and waits for other targets; an arm that stands in a region may leave it.
     /// Links and the Franka Hand are kept out, no other tool.
     /// [`GoalError::KeepOut`](crate::error::GoalError::KeepOut) refuses more than
     /// [`KEEP_OUT_MAX`](crate::goal::KEEP_OUT_MAX) regions, non-finite numbers and negative sides.
@@ -49,10 +49,10 @@ impl Engage {
         self
     }
 
-    /// Keeps all joints, the flange and the end effector to this speed, `[m/s]`, 0.1 to 3; by
+    /// Limits the speed of all joints, the flange and the end effector, `[m/s]`, 0.1 to 3; by
     /// default there is only what goals ask for. On the way to a pose the reference is slowed to 94
-    /// % of it, and 0.03 m/s below it at least. An arm that is faster all the same, because its
-    /// goal leads over joints, or because something throws it, gives up its goal and is braked, as
+    /// % of it, and 0.03 m/s below it at least. An arm that is still faster, because its goal leads
+    /// over joints, or because something throws it, gives up its goal and is braked, as
     /// [`Lapse::TooFast`](crate::error::Lapse::TooFast).
     /// [`GoalError::Number`](crate::error::GoalError::Number) refuses other numbers.
     pub fn speed_cap(mut self, speed: f64) -> Self {
@@ -74,9 +74,10 @@ impl Engage {
         self
     }
 
-    /// What turns setpoints into torques; by default the session's own law. [`Backend`] says which
-    /// guards each has, and [`Setpoints`](crate::goal::Setpoints) which goals each kind takes. What
-    /// a backend cannot do is refused as [`GoalError::Backend`](crate::error::GoalError::Backend).
+    /// Sets the backend that turns setpoints into torques; by default the session's own law.
+    /// [`Backend`] lists the guards of each backend, and [`Setpoints`](crate::goal::Setpoints) the
+    /// goals that each kind takes. Goals that a backend does not support are refused as
+    /// [`GoalError::Backend`](crate::error::GoalError::Backend).
     pub fn backend(mut self, backend: Backend) -> Self {
         self.engagement.backend = backend;
         self
@@ -84,7 +85,7 @@ impl Engage {
 
     /// Shows every cycle to `function`, on the real-time thread, once its command has left: the
     /// record of the cycle and its state. It must not lock, allocate, print or wait; if it panics
-    /// it is not called again, and the session goes on. For records outside the thread see
+    /// it is not called again, and the session continues. For records outside the thread see
     /// [`Robot::records`].
     pub fn observer(mut self, function: impl FnMut(&Record, &RobotState) + Send + 'static) -> Self {
         let mut function = UserValue::new("an observer", function);
@@ -94,13 +95,13 @@ impl Engage {
     }
 }
 
-/// A session of target control: the arm is held, and goes from goal to goal without a stop in
-/// between, whatever their kinds. Made by [`Robot::engage`].
+/// A session of target control: the arm is held, and goes from goal to goal of any kind without a
+/// stop in between. Made by [`Robot::engage`].
 ///
 /// A cheap handle: clones share the session, motions that are awaited are handles too. Dropping the
 /// last one brakes the arm and ends the session, in the background; [`Self::disengage`] does the
-/// same and can be awaited. [`Robot::stop`] ends it from outside, as does the robot by a reflex:
-/// whatever is asked of the session afterwards is answered with the reason.
+/// same and can be awaited. [`Robot::stop`] ends it from outside, as does the robot by a reflex.
+/// Every later call on the session then returns the reason.
 ///
 /// While a session has the arm, motions of the [`Robot`] itself are refused as
 /// [`MotionError::Busy`].
@@ -192,35 +193,35 @@ impl Arm {
         self.move_to(Target::Rest).along(waypoints)
     }
 
-    /// Brakes, whatever the arm is doing, and resolves when it rests; it is then held there.
+    /// Brakes at any time, and resolves when the arm rests; it is then held there.
     pub fn hold(&self) -> Motion {
         self.move_to(Target::Rest)
     }
 
-    /// Heads for a pose or joint positions from now on, in the place of whatever came before, and
-    /// holds them. Returns as soon as the goal is taken: for programs that set goals at a rate of
-    /// their own and look at the state for the rest.
+    /// Replaces the current goal by a pose or joint positions, and holds them on arrival. Returns
+    /// as soon as the goal is taken. For programs that set goals at their own rate and read the
+    /// state for the rest.
     ///
-    /// A target that comes with its velocity is followed without a lag; for how long it goes on by
-    /// itself is [`Target::MOVES_ON_MS`].
+    /// A target that comes with its velocity is followed without a lag. Without new targets it
+    /// keeps moving for [`Target::MOVES_ON_MS`].
     ///
     /// # Errors
     /// [`MotionError::Goal`] for a goal that is not accepted, [`MotionError::Held`] while a
     /// [deadman](Engage::deadman) holds the arm, and what ended the session.
     ///
     /// # Cancel safety
-    /// Once polled the goal is taken all the same.
+    /// Once the future is polled, the goal is still taken.
     pub async fn set(&self, destination: impl Into<Destination>) -> Result<(), MotionError> {
         self.take(destination.into()).await
     }
 
-    /// As [`Self::set`], without waiting for an answer: for plain threads, callbacks and loops at a
-    /// rate of their own. The newest of goals that come faster than they are taken is the one that
-    /// counts. A goal is checked here. What only the session can tell is logged: [`Backend`], and
-    /// where an offset leads that comes faster than the goal before is taken.
+    /// As [`Self::set`], without waiting for an answer: for plain threads, callbacks and loops at
+    /// their own rate. If goals come faster than they are taken, the newest one counts. A goal is
+    /// checked here. Refusals by the session are only logged: by the [`Backend`], and of an offset
+    /// that comes before the previous goal was taken.
     ///
     /// # Errors
-    /// As of [`Self::set`].
+    /// Those of [`Self::set`].
     pub fn try_set(&self, destination: impl Into<Destination>) -> Result<(), MotionError> {
         let destination = destination.into();
         self.session.check_goal()?;
@@ -240,35 +241,36 @@ impl Arm {
         Ok(())
     }
 
-    /// What the arm is held at or heads for: what was taken last. [`Target::Rest`] along a chunk,
-    /// at the begin of a session and where a goal was given up; `None` once the session has ended.
+    /// Target that the arm heads for or is held at, the last one taken. [`Target::Rest`] along a
+    /// chunk, at the start of a session and where a goal was given up; `None` once the session has
+    /// ended.
     pub fn target(&self) -> Option<Target> {
         let ended = self.session.has_ended();
         self.session.link().course.target().filter(|_| !ended)
     }
 
-    /// Where the arm is to be in this very millisecond; `None` once the session has ended.
+    /// Position of the reference in this millisecond; `None` once the session has ended.
     pub fn reference(&self) -> Option<Reference> {
         let ended = self.session.has_ended();
         self.robot().reference().filter(|_| !ended)
     }
 
-    /// Waits until the arm rests at the target that was taken last, or where that has been given
-    /// up: the reference has not moved for 250 ms, and no joint by more than half a milliradian, so
-    /// that friction has been made up for. For goals that are [set](Self::set); a motion that is
-    /// awaited rests when it resolves.
+    /// Waits until the arm rests at the last target taken, or where that target has been given up.
+    /// At rest means that for 250 ms the reference has not moved and no joint has moved by more
+    /// than half a milliradian, so that friction has been made up for. For goals that are
+    /// [set](Self::set); a motion that is awaited rests when it resolves.
     ///
-    /// It has no time limit: an arm that is pushed, that something holds back from its target, or
-    /// that follows a stream, rests only when that ends, and only the program knows how long that
-    /// may take. Where it may take for ever, await it within `tokio::time::timeout`.
+    /// It has no time limit. An arm that is pushed, that an obstacle holds back from its target, or
+    /// that follows a stream, rests only when that ends. Only the program knows how long that may
+    /// take. Where it may take indefinitely, await it within `tokio::time::timeout`.
     ///
     /// # Errors
-    /// What ended the session.
+    /// The cause of the end of the session.
     ///
     /// # Cancel safety
     /// Nothing happens if the future is dropped.
     pub async fn at_rest(&self) -> Result<(), MotionError> {
-        // Goals that were set before are taken first, however long that task is held up.
+        // Goals that were set before are taken first, however long that task is delayed.
         self.session.ask(|taken| Input::Await { taken }).await?;
         let link = self.session.link();
         let mut states = self.robot().states();
@@ -300,18 +302,18 @@ impl Arm {
     }
 
     /// Follows a chunk of points with times, as a policy predicts them, from now on; returns as
-    /// soon as it is taken. A chunk that comes while another one runs goes on from it: see
-    /// [`Chunk::blend`]. Use [`Chunk::observed_at`] to compensate for
-    /// the age of the observation. The limits are kept for any points. The arm rests at the last
-    /// one unless another chunk or goal comes.
+    /// soon as it is taken. A chunk that comes while another one runs continues from it: see
+    /// [`Chunk::blend`]. Use [`Chunk::observed_at`] to compensate for the age of the observation.
+    /// The limits are kept for any points. The arm rests at the last one unless another chunk or
+    /// goal comes.
     ///
     /// # Errors
-    /// As [`Self::set`]; once, why a guard gave up the chunk before, as [`MotionError::Held`] or
-    /// [`MotionError::Braked`]; [`GoalError::Late`](crate::error::GoalError::Late) if all points have
-    /// passed, [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation is of another
-    /// clock, [`GoalError::Outdated`](crate::error::GoalError::Outdated) if that of the chunk
-    /// before is newer, and [`GoalError::Chunks`](crate::error::GoalError::Chunks) if chunks come
-    /// faster than the control thread takes them up.
+    /// Those of [`Self::set`]. If a guard gave up the previous chunk, once: [`MotionError::Held`]
+    /// or [`MotionError::Braked`]. [`GoalError::Late`](crate::error::GoalError::Late) if all points
+    /// have passed. [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation is of
+    /// another clock. [`GoalError::Outdated`](crate::error::GoalError::Outdated) if the observation
+    /// of the previous chunk is newer. [`GoalError::Chunks`](crate::error::GoalError::Chunks) if
+    /// chunks come faster than the control thread takes them up.
     ///
     /// # Cancel safety
     /// As [`Self::set`].
@@ -348,7 +350,7 @@ impl Arm {
     }
 
     /// Follows the newest of the targets that `targets` shows, poses or joint positions, until the
-    /// sender is dropped, and then comes to rest at the last one. See [`Robot::follow`].
+    /// sender is dropped, and then stops at the last one. See [`Robot::follow`].
     pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
         &self,
         targets: watch::Receiver<T>,
@@ -357,8 +359,8 @@ impl Arm {
     }
 
     /// Follows the newest of the targets that a stream yields, poses or joint positions, until it
-    /// ends, and then comes to rest at the last one. Targets that came while another one was taken
-    /// are skipped, up to 256 at once: a stream that is always ready is followed, too.
+    /// ends, and then stops at the last one. Targets that came while another one was taken are
+    /// skipped, up to 256 at once: a stream that is always ready is followed, too.
     pub fn follow_stream<T: Into<Target> + 'static>(
         &self,
         targets: impl Stream<Item = T> + Send + 'static,
@@ -379,7 +381,7 @@ impl Arm {
     /// session.
     ///
     /// # Cancel safety
-    /// Once polled it is done all the same.
+    /// Once the future is polled, the change is still made.
     pub async fn tune(&self, tuning: Tuning) -> Result<(), MotionError> {
         let (id, kept) = (self.session.id(), self.session.tuning().clone());
         let tuning = Box::new(tuning);
@@ -401,7 +403,7 @@ impl Arm {
     /// [`Robot::stop`].
     ///
     /// # Cancel safety
-    /// Once polled the session ends all the same.
+    /// Once the future is polled, the session still ends.
     pub async fn disengage(self) -> Result<MotionReport, MotionError> {
         let id = self.session.id();
         self.robot().send(Input::Disengage { id });
@@ -421,15 +423,15 @@ impl Arm {
         self.session.ended()
     }
 
-    /// True if the session of a motion is that of this arm.
+    /// True if a motion belongs to the session of this arm.
     pub(crate) fn owns(&self, session: Option<&Arc<Session>>) -> bool {
         session.is_some_and(|session| Arc::ptr_eq(session, &self.session))
     }
 
-    /// Where the end effector is to be now.
+    /// Pose of the reference of the end effector.
     ///
     /// # Errors
-    /// What ended the session.
+    /// The cause of the end of the session.
     pub(crate) fn held_pose(&self) -> Result<Isometry3<f64>, MotionError> {
         self.session.check()?;
         let reference = self.reference().ok_or(MotionError::Disengaged)?;
@@ -443,7 +445,7 @@ impl Arm {
         self.session.link().course.goal().filter(|_| !ended)
     }
 
-    /// Why the session takes no goals; `None` while it does.
+    /// Returns the reason why the session takes no goals; `None` while it does.
     #[cfg(feature = "record")]
     pub(crate) fn session_error(&self) -> Option<MotionError> {
         self.session.check().err()

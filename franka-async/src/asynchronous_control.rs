@@ -27,8 +27,8 @@ pub struct AsynchronousOptions {
 }
 
 impl Default for AsynchronousOptions {
-    /// 0.655 rad/s for joints 1 to 4 and 1.315 rad/s for the others, as in the example of libfranka
-    /// 0.21; its tolerance of 1 mrad.
+    /// The speeds and the tolerance of the example of libfranka 0.21: 0.655 rad/s for joints 1 to
+    /// 4, and 1.315 rad/s for the others. The tolerance is 1 mrad.
     fn default() -> Self {
         Self {
             maximum_joint_velocities: [0.655, 0.655, 0.655, 0.655, 1.315, 1.315, 1.315],
@@ -86,13 +86,13 @@ impl Robot {
     /// it runs. Protocol 10 only, and experimental there.
     ///
     /// # Errors
-    /// [`MotionError::Unsupported`] for a version without it, [`MotionError::Goal`] for a velocity
-    /// or a tolerance that is not positive, or beyond the robot's, both before a byte is sent;
-    /// [`MotionError::Busy`] while anything else controls the arm; otherwise what ended the motion
-    /// before it ran.
+    /// [`MotionError::Unsupported`] for a version without it. [`MotionError::Goal`] for a velocity
+    /// or a tolerance that is not positive, or beyond the robot's. Both are returned before a byte
+    /// is sent. [`MotionError::Busy`] while anything else controls the arm. Otherwise, the cause of
+    /// an end before the motion ran.
     ///
     /// # Cancel safety
-    /// Dropping the future has the robot stop.
+    /// Dropping the future stops the robot.
     pub async fn asynchronous_joint_positions(
         &self,
         options: AsynchronousOptions,
@@ -124,14 +124,14 @@ impl Robot {
 
 /// A motion from target to target, which the robot itself plans. May be shared between tasks.
 ///
-/// Dropping it has the robot stop.
+/// Dropping it stops the robot.
 #[derive(Debug)]
 pub struct AsynchronousControl {
     robot: Robot,
     id: GoalId,
     targets: Mutex<Targets>,
     goal_tolerance: f64,
-    /// How the motion ended.
+    /// Outcome of the motion.
     end: Shared<BoxFuture<'static, Outcome>>,
 }
 
@@ -142,8 +142,8 @@ struct Targets {
 }
 
 impl AsynchronousControl {
-    /// Sends the robot to `q`, `[rad]`, where it comes to rest; wherever it was going before. Sent
-    /// with the next state.
+    /// Sends the robot to `q`, `[rad]`, where it stops; replaces an earlier target. Sent with the
+    /// next state.
     ///
     /// # Errors
     /// [`MotionError::Invalid`] for non-finite numbers; what ended the motion, if it has
@@ -157,7 +157,7 @@ impl AsynchronousControl {
         Ok(())
     }
 
-    /// How far the newest target has been followed.
+    /// Returns how far the newest target has been followed.
     pub fn status(&self) -> TargetStatus {
         if self.end.clone().now_or_never().is_some() {
             return TargetStatus::Aborted(AbortReason::Ended);
@@ -169,14 +169,15 @@ impl AsynchronousControl {
     /// how long the way takes.
     ///
     /// # Errors
-    /// What ended the motion before; [`MotionError::Goal`] never, as the robot does the planning.
+    /// The cause of an earlier end of the motion; never [`MotionError::Goal`], as the robot does
+    /// the planning.
     ///
     /// # Cancel safety
-    /// Nothing is lost: the robot goes on.
+    /// Nothing is lost: the robot continues.
     pub async fn reached(&self) -> Result<(), MotionError> {
         let mut states = self.robot.states();
         loop {
-            // What `states` holds at first may be older than the target.
+            // The first value of `states` may be older than the target.
             let status = self.status_in(&self.robot.state());
             if status == TargetStatus::TargetReached {
                 return Ok(());
@@ -195,10 +196,10 @@ impl AsynchronousControl {
     /// [`Self::reached`]: the robot may refuse to end a motion that still moves.
     ///
     /// # Errors
-    /// What ended the motion instead.
+    /// The cause of another end of the motion.
     ///
     /// # Cancel safety
-    /// Once polled the motion ends; dropping the future has the robot stop at once.
+    /// Once polled the motion ends; dropping the future stops the robot at once.
     pub async fn finish(self) -> Outcome {
         let newest = self.lock().newest;
         self.write(newest.unwrap_or(self.robot.state().q_d), true);

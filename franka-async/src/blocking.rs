@@ -123,8 +123,8 @@ impl<S: Stream + Unpin> Iterator for Each<S> {
 pub struct Targets<T>(watch::Sender<T>);
 
 impl<T> Targets<T> {
-    /// Replaces the target, also one that has not been taken yet. Never waits. Returns whether
-    /// there is a motion, or what will be one, to take it.
+    /// Replaces the target, even if it has not been taken yet. Never waits. Returns true if there
+    /// is a motion to take it, or will be one.
     pub fn send(&self, target: T) -> bool {
         self.0.send(target).is_ok()
     }

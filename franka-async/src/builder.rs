@@ -1,4 +1,4 @@
-//! How to connect to a robot.
+//! Options of a connection to a robot.
 
 use std::fmt;
 use std::sync::Arc;
@@ -17,12 +17,12 @@ use crate::geometry_check::GeometryCheck;
 use crate::robot::Robot;
 use crate::user_value::UserValue;
 
-/// Which protocol versions to accept.
+/// Protocol versions to accept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum VersionPolicy {
-    /// Announce the newest version; if the robot refuses and names an older one that is known,
-    /// announce that.
+    /// Announce the newest version; if the robot refuses it and names an older version that is
+    /// known, announce that version.
     #[default]
     Negotiate,
     /// This one and no other.
@@ -40,7 +40,7 @@ pub struct Builder {
     pub(crate) link_timeout: Duration,
     pub(crate) nominal_model: bool,
     pub(crate) accept_geometry_error: bool,
-    /// What was found when the robot was connected before.
+    /// Result of the check at an earlier connection to the robot.
     pub(crate) geometry_before: Option<GeometryCheck>,
     pub(crate) log_size: usize,
     pub(crate) known: Option<Box<Identified>>,
@@ -49,7 +49,7 @@ pub struct Builder {
     pub(crate) cancellation: CancellationToken,
 }
 
-/// What the program is asked before a recovery.
+/// Question to the program before a recovery.
 #[derive(Clone)]
 pub(crate) struct Ask(pub(crate) Arc<dyn Fn(&Reflex) -> bool + Send + Sync>);
 
@@ -91,17 +91,17 @@ impl Builder {
         self
     }
 
-    /// Whether the control thread has to get what it asks the operating system for: `SCHED_FIFO` on
-    /// a `PREEMPT_RT` kernel. [`Realtime::Enforce`] by default; [`Realtime::Ignore`] suits
+    /// Sets whether the control thread must get what it asks the operating system for: `SCHED_FIFO`
+    /// on a `PREEMPT_RT` kernel. [`Realtime::Enforce`] by default; [`Realtime::Ignore`] suits
     /// simulators.
     pub fn realtime(mut self, realtime: Realtime) -> Self {
         self.scheduling.realtime = realtime;
         self
     }
 
-    /// `SCHED_FIFO` priority of the control thread, 1 to 99; the system's highest by default. What
-    /// the system refuses, another number included, is an error under [`Realtime::Enforce`] and
-    /// done without under [`Realtime::Ignore`].
+    /// `SCHED_FIFO` priority of the control thread, 1 to 99; the system's highest by default. A
+    /// number that the system refuses is an error under [`Realtime::Enforce`] and ignored under
+    /// [`Realtime::Ignore`].
     pub fn priority(mut self, priority: i32) -> Self {
         self.scheduling.priority = Some(priority);
         self
@@ -119,7 +119,7 @@ impl Builder {
         self
     }
 
-    /// Which protocol versions to accept; negotiated by default.
+    /// Sets the protocol versions to accept; negotiated by default.
     pub fn version(mut self, versions: VersionPolicy) -> Self {
         self.versions = versions;
         self
@@ -142,29 +142,29 @@ impl Builder {
         self
     }
 
-    /// Polls the network card for so long before each wait for a state, in whole microseconds:
-    /// `SO_BUSY_POLL`, 1 to 900 us; not at all by default. What the kernel refuses (it takes
-    /// `CAP_NET_ADMIN`) is an error under [`Realtime::Enforce`] and done without under
-    /// [`Realtime::Ignore`]; [`Robot::granted`] tells.
+    /// Polls the network card for `duration` before each wait for a state, in whole microseconds:
+    /// `SO_BUSY_POLL`, 1 to 900 us; not at all by default. The kernel requires `CAP_NET_ADMIN`. Its
+    /// refusal is an error under [`Realtime::Enforce`] and ignored under [`Realtime::Ignore`];
+    /// [`Robot::granted`] reports it.
     pub fn busy_poll(mut self, duration: Duration) -> Self {
         self.scheduling.busy_poll = Some(duration);
         self
     }
 
-    /// Silence of the robot after which a running motion fails with `LinkLost`: 20 ms to 10 s, 1 s
-    /// by default. More than that is for a simulated robot on a busy host, which may hold it up for
-    /// as long. Anything else is refused as
-    /// [`ConnectError::LinkTimeout`](crate::error::ConnectError::LinkTimeout). It is noticed late
-    /// by a quarter of it at most. A motion that no state shows within 5 s fails all the same.
+    /// Sets the silence of the robot after which a running motion fails with `LinkLost`: 20 ms to
+    /// 10 s, 1 s by default. Longer timeouts are for a simulated robot on a busy host, which may
+    /// delay it for as long. Anything else is refused as
+    /// [`ConnectError::LinkTimeout`](crate::error::ConnectError::LinkTimeout). Detection may take
+    /// up to a quarter longer. A motion that no state shows within 5 s still fails.
     pub fn link_timeout(mut self, timeout: Duration) -> Self {
         self.link_timeout = timeout;
         self
     }
 
-    /// Whether to compute with the vendor's published constants whatever the robot says of itself;
-    /// off by default, so that a Franka Research 3 is asked for its description, and keeps the
-    /// limits in there. For a robot whose description this driver refuses, once it is known that
-    /// its arm is that of the constants. A Franka Emika Robot has no description.
+    /// Sets whether to compute with the vendor's published constants in any case; off by default.
+    /// By default a Franka Research 3 is asked for its description, and the limits in there are
+    /// kept. For a robot whose description this driver refuses, once you know that its arm has
+    /// these constants. A Franka Emika Robot has no description.
     pub fn nominal_model(mut self, nominal: bool) -> Self {
         self.nominal_model = nominal;
         self
@@ -181,29 +181,29 @@ impl Builder {
         self
     }
 
-    /// How many of its last cycles an error carries when the robot ends a motion: see
-    /// [`ControlError::log`](crate::error::ControlError::log). 50 by default; 0 for none, and then
-    /// without the success rate in its text; 10 000 at most, ten seconds. More is refused as
-    /// [`ConnectError::LogSize`](crate::error::ConnectError::LogSize):
+    /// Sets how many of the last cycles an error carries when the robot ends a motion: see
+    /// [`ControlError::log`](crate::error::ControlError::log). 50 by default. 0 for none, and then
+    /// without the success rate in its text. At most 10 000, which is ten seconds; more is refused
+    /// as [`ConnectError::LogSize`](crate::error::ConnectError::LogSize).
     /// [`Robot::records`](crate::Robot::records) has the cycles of whole motions.
     pub fn log_size(mut self, cycles: usize) -> Self {
         self.log_size = cycles;
         self
     }
 
-    /// Begins with what [`Robot::identify`] has found of this arm before, so that the first motion
-    /// is compensated as later ones are. The load counts as far as it is not declared when that
-    /// motion begins. By default nothing is known. An arm of another kind and implausible numbers
-    /// are refused as [`ConnectError::Known`](crate::error::ConnectError::Known).
+    /// Begins with an earlier result of [`Robot::identify`] for this arm, so that the first motion
+    /// is compensated as later ones are. The load counts to the extent that it is not declared when
+    /// that motion begins. By default nothing is known. An arm of another kind and implausible
+    /// numbers are refused as [`ConnectError::Known`](crate::error::ConnectError::Known).
     pub fn known(mut self, found: Identified) -> Self {
         self.known = Some(Box::new(found));
         self
     }
 
-    /// Has the robot supervised: a connection that is lost is made again, and the robot recovered
-    /// from reflexes, as the policy says. Handles go on from connection to connection;
-    /// [`Robot::events`] and [`Robot::health`] tell what happens. Nothing that was begun before
-    /// goes on by itself. [`connect`](Self::connect) itself is not repeated.
+    /// Supervises the robot: reconnects when the connection is lost, and recovers the robot from
+    /// reflexes, as the policy states. Handles continue from connection to connection;
+    /// [`Robot::events`] and [`Robot::health`] report what happens. No earlier motion resumes.
+    /// [`connect`](Self::connect) itself is not repeated.
     ///
     /// The settings of this program (load, frames, thresholds, impedance, guiding mode, filters)
     /// are sent again after each reconnect, once the robot is idle, and compared with its states
@@ -220,8 +220,8 @@ impl Builder {
     /// a motion of this program, its log and [diagnosis](crate::diagnosis::Diagnose). Implies
     /// [`Policy::ask_first`](crate::supervision::Policy::ask_first). It runs on a thread for what
     /// blocks ([`spawn_blocking`](tokio::task::spawn_blocking)) and may take its time: the robot
-    /// waits for its answer, and nothing else does, but for a runtime that is dropped. An answer
-    /// that comes too late, as [`Robot::agree`] has it, has no effect. One that panics does not
+    /// waits for its answer, and nothing else does, except a runtime that is dropped. An answer
+    /// that comes too late has no effect: see [`Robot::agree`]. A function that panics does not
     /// agree. Without [`Self::supervise`], connecting fails as
     /// [`ConnectError::Unsupervised`](crate::error::ConnectError::Unsupervised).
     pub fn ask_before_recovery(
@@ -234,8 +234,8 @@ impl Builder {
     }
 
     /// Ends the connection when `token` is cancelled, as [`Robot::shutdown`] does: brakes, ends the
-    /// motion, closes. For programs that end all their tasks by one token; await `shutdown` all the
-    /// same, to know when it is done. Connecting itself goes on: drop its future to give it up.
+    /// motion, closes. For programs that end all their tasks by one token; also await `shutdown`,
+    /// to know when it is done. Connecting itself continues: drop its future to give it up.
     pub fn cancellation(mut self, token: CancellationToken) -> Self {
         self.cancellation = token;
         self

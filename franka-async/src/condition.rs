@@ -1,5 +1,5 @@
-//! Conditions that a motion goes on [until](crate::Motion::until), and what was seen when one
-//! became true.
+//! Conditions that end a motion ([`until`](crate::Motion::until)), and the values that were seen
+//! when one became true.
 //!
 //! The control thread looks at the condition in every cycle: however busy the program is, the arm
 //! brakes within the next millisecond.

@@ -26,7 +26,7 @@ impl Robot {
     /// [`Builder::realtime`].
     ///
     /// # Cancel safety
-    /// Dropping the future closes whatever was opened.
+    /// Dropping the future closes everything that was opened.
     pub async fn connect(endpoint: impl Into<Endpoint>) -> Result<Self, ConnectError> {
         Self::builder(endpoint).connect().await
     }
@@ -41,7 +41,7 @@ impl Builder {
     /// [`ConnectError`]; nothing is left behind. Nothing is tried twice, supervised or not.
     ///
     /// # Cancel safety
-    /// Dropping the future closes whatever was opened.
+    /// Dropping the future closes everything that was opened.
     pub async fn connect(self) -> Result<Robot, ConnectError> {
         let span = tracing::info_span!("connect", endpoint = %self.endpoint);
         async {

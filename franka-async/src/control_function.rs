@@ -25,7 +25,7 @@ impl Robot {
     /// [`Torques`], or `torques.finish()` for the last.
     ///
     /// The function runs on the real-time thread, once a millisecond, with some 300 us to answer:
-    /// it must not lock, allocate, print or wait. If it panics, the robot is told to stop and the
+    /// it must not lock, allocate, print or wait. If it panics, the robot is asked to stop and the
     /// motion resolves as [`MotionError::Panicked`](crate::MotionError::Panicked); the thread lives
     /// on.
     pub fn control_torques<R: Into<Next<Torques>>>(
@@ -87,10 +87,10 @@ impl Robot {
 /// detached.
 ///
 /// Awaiting it resolves when the function has finished and the robot has ended the motion. Unlike
-/// goals, it neither supersedes what runs nor is superseded: it is refused as
+/// goals, it neither supersedes the current motion nor is superseded. It is refused as
 /// [`MotionError::Busy`](crate::MotionError::Busy) while anything else controls the arm, and so is
-/// everything else while it does. **Dropping the future has the robot stop**; the function may
-/// still be called for the few cycles that this takes.
+/// everything else while it does. **Dropping the future stops the robot**; the function may still
+/// be called for the few cycles that this takes.
 ///
 /// `.await` takes it as it is; what takes a future, as `tokio::spawn`, `tokio::time::timeout` and
 /// `block_on` do, takes its `.into_future()`.
@@ -119,9 +119,8 @@ impl Control {
         }
     }
 
-    /// Which of the robot's own controllers follows the commands; joint impedance by default.
-    /// Without effect where torques are commanded. The external one needs
-    /// [`Self::with_torques`].
+    /// Sets which of the robot's own controllers follows the commands; joint impedance by default.
+    /// Without effect where torques are commanded. The external one needs [`Self::with_torques`].
     pub fn controller(mut self, controller: MoveControllerMode) -> Self {
         self.controller = controller;
         self
@@ -137,8 +136,8 @@ impl Control {
         self
     }
 
-    /// Whether commands pass the limiter; by default they do for protocol 5 and do not for protocol
-    /// 10, as in libfranka.
+    /// Sets whether commands pass the limiter; by default they do for protocol 5 and do not for
+    /// protocol 10, as in libfranka.
     pub fn limit_rate(mut self, limit: bool) -> Self {
         self.limit_rate = limit;
         self
@@ -155,8 +154,8 @@ impl Control {
     /// [`Motion::start_with`](crate::Motion::start_with). The function is not called until all are
     /// there. Until then the driver holds the arm: by the desired joint positions or pose of the
     /// robot, by velocities of zero, by torques of zero, which leave it to the robot's gravity
-    /// compensation. The function's first call is with a time step of zero all the same. The
-    /// report's duration includes the wait.
+    /// compensation. The function's first call still has a time step of zero. The report's duration
+    /// includes the wait.
     ///
     /// # Cancel safety
     /// See [`Motion::start_with`](crate::Motion::start_with).
@@ -198,7 +197,7 @@ impl Control {
     }
 }
 
-/// The same function, which the bridge can free whatever it has captured.
+/// The same function, which the bridge can free with everything that it has captured.
 fn kept<R>(
     function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
 ) -> impl FnMut(&RobotState, Duration) -> R + Send + 'static {

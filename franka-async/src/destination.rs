@@ -1,4 +1,5 @@
-//! Where a motion is to lead: a target, or what is said relative to the target or the arm of now.
+//! Destinations of motions: a target, or a place relative to the target or the current pose of the
+//! arm.
 
 use franka_model::Model;
 use franka_proto::RobotState;
@@ -7,10 +8,11 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use crate::end_effector_pose::{pose_at, pose_of};
 
-/// Where a motion is to lead. Made from a [`Pose`](crate::Pose) or joint positions `[rad]`, both
-/// with their velocities for a target that moves, from an [`Offset`], or by the functions here.
+/// Destination of a motion. Made from a [`Pose`](crate::Pose) or joint positions `[rad]`, both with
+/// their velocities for a target that moves, from an [`Offset`], or by the functions here.
 ///
-/// What is not a whole pose is completed by that of the present target, when the motion begins.
+/// A destination that is not a whole pose is completed by the present target, when the motion
+/// begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Destination {
@@ -35,7 +37,7 @@ impl Destination {
         Self::Orientation(orientation)
     }
 
-    /// The target, as far as it is known without that of now: its kind is final.
+    /// The target, to the extent that it is known without the current one: its kind is final.
     pub(crate) fn kind(&self) -> Target {
         match self {
             Self::Target(target) => *target,
@@ -76,15 +78,15 @@ impl From<Offset> for Destination {
 /// The poses of the end effector that a destination may be relative to, base frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Now {
-    /// Of the present target.
+    /// Pose of the present target.
     pub(crate) target: Isometry3<f64>,
     /// Measured.
     pub(crate) arm: Isometry3<f64>,
 }
 
 impl Now {
-    /// Of an arm in `state` that heads for a target, and is to be at the joint positions
-    /// `reference`, `[rad]`; none if nothing moves it.
+    /// Returns the poses of an arm in `state` that heads for a target. Its reference is at the
+    /// joint positions `reference`, `[rad]`; none if nothing moves it.
     pub(crate) fn of(
         model: &Model,
         state: &RobotState,
@@ -96,7 +98,7 @@ impl Now {
         let target = match heading {
             Some(Target::Pose(pose)) => pose,
             Some(Target::Joints(q)) => pose_at(q),
-            // What is held or followed has no pose of its own.
+            // A held or followed target has no pose.
             Some(_) => reference.map_or(arm, pose_at),
             None => arm,
         };
@@ -141,8 +143,8 @@ impl Offset {
     }
 
     /// Counts from where the arm is measured to be. By default an offset counts from the target
-    /// that the arm is held at or on its way to, so that several add up exactly; from the arm only
-    /// if there is none.
+    /// that the arm is held at or on its way to, so that several add up exactly; without such a
+    /// target it counts from the arm.
     #[must_use]
     pub fn from_arm(mut self) -> Self {
         self.from_arm = true;

@@ -40,8 +40,8 @@ pub struct Follow {
 
 impl Robot {
     /// Follows the newest of the targets that `targets` shows, poses or joint positions `[rad]`,
-    /// until the sender is dropped, and then comes to rest at the last one. Targets may come at any
-    /// pace and any distance apart: the arm moves within its budget.
+    /// until the sender is dropped, and then stops at the last one. Targets may come at any pace
+    /// and any distance apart: the arm moves within its budget.
     pub fn follow<T: Into<Target> + Clone + Send + Sync + 'static>(
         &self,
         targets: watch::Receiver<T>,
@@ -66,7 +66,7 @@ pub(crate) fn streamed<T: Into<Target> + 'static>(
     Box::pin(targets.map(Into::into).fuse())
 }
 
-/// The targets of a watch channel, beginning with the one that it holds.
+/// The targets of a watch channel, starting with its present value.
 pub(crate) fn watched<T: Into<Target> + Clone + Send + Sync + 'static>(
     targets: watch::Receiver<T>,
 ) -> Targets {
@@ -89,18 +89,19 @@ impl Follow {
     goal_options!(target);
 
     /// Bounds how far ahead of the arm a target may be, metres and radians above zero; by default
-    /// nothing does. One that is further ahead is drawn nearer, in every cycle anew while targets
-    /// come, so a wild one cannot send the arm far once the stream stops.
+    /// nothing does. A target that is further ahead is drawn nearer, in every cycle anew while
+    /// targets come. So a wild target cannot send the arm far once the stream stops.
     pub fn lead(mut self, lead: Lead) -> Self {
         self.lead = Some(lead);
         self
     }
 
-    /// Gives up when no target has come for `silence`, whole milliseconds from 10 on: the arm goes
-    /// on to the last one ([`OnTimeout::Hold`]) or brakes at once ([`OnTimeout::Brake`]), and the
-    /// future resolves as [`MotionError::Held`] or [`MotionError::Braked`] when it rests, unless
-    /// targets come again before that. A target counts even if it equals the one before. The
-    /// control thread watches this by itself. Without it, the last target is held for ever.
+    /// Gives up when no target has come for `silence`, whole milliseconds from 10 on. The arm then
+    /// continues to the last target ([`OnTimeout::Hold`]) or brakes at once ([`OnTimeout::Brake`]).
+    /// When it rests, the future resolves as [`MotionError::Held`] or [`MotionError::Braked`],
+    /// unless targets come again before that. A target counts even if it equals the previous one.
+    /// The control thread watches this alone. Without a watchdog, the last target is held
+    /// indefinitely.
     pub fn watchdog(mut self, silence: Duration, on_timeout: OnTimeout) -> Self {
         self.watchdog = Some(Watchdog {
             silence,
@@ -155,7 +156,7 @@ impl Follow {
             first = newest(&mut targets) => first,
         };
         let Some(first) = first else {
-            // Nothing to follow: the arm goes on with what it does.
+            // Nothing to follow: the arm continues as before.
             return Err(GoalError::NoTarget.into());
         };
         let motion = NewMotion::Goal {
@@ -187,7 +188,7 @@ impl Follow {
                 target,
                 taken,
             });
-            // Not taken, or no answer: the goal is over, and the motion itself says why.
+            // Not taken, or no answer: the goal is over, and the motion itself reports why.
             if let Ok(Err(error)) = answer.await {
                 robot.send(Input::Cancel {
                     goal: moving.id(),
@@ -226,10 +227,10 @@ async fn newest(targets: &mut Targets) -> Option<Target> {
 }
 
 /// Targets taken from a stream before the newest of them is passed on. A stream that yields one per
-/// millisecond, read by a task that was held up for a quarter of a second, has as many waiting.
+/// millisecond, read by a task that was delayed for a quarter of a second, has as many waiting.
 const AT_ONCE: usize = 256;
 
-/// What a stream has at once. Its next poll registers a waker again.
+/// Returns what a stream has at once. Its next poll registers a waker again.
 fn poll_once(targets: &mut Targets) -> Poll<Option<Target>> {
     let mut context = Context::from_waker(std::task::Waker::noop());
     targets.as_mut().poll_next(&mut context)

@@ -10,8 +10,8 @@ use crate::journal::Journal;
 use crate::states::States;
 use franka_proto::gripper::{Grasp, Move, Request, State, Version};
 
-/// A connected Franka Hand. It has a server of its own beside the robot's, and neither waits for
-/// the other.
+/// A connected Franka Hand. It has its own server besides the robot's, and neither waits for the
+/// other.
 ///
 /// A cheap handle: clones share one connection, from any task or thread. One action runs at a time:
 /// a newer one aborts it, and so does [`Gripper::stop`], from any handle. Dropping the last handle
@@ -36,13 +36,13 @@ impl Gripper {
     /// [`ConnectError`]; nothing is left behind.
     ///
     /// # Cancel safety
-    /// Dropping the future closes whatever was opened.
+    /// Dropping the future closes everything that was opened.
     pub async fn connect(endpoint: impl Into<Endpoint>) -> Result<Self, ConnectError<Version>> {
         let connection = DeviceConnection::connect(endpoint.into()).await?;
         Ok(Self { connection })
     }
 
-    /// Where the Hand is.
+    /// Address of the Hand.
     pub fn address(&self) -> SocketAddr {
         self.connection.address()
     }
@@ -95,20 +95,20 @@ impl Gripper {
     /// [`GripperError`].
     ///
     /// # Cancel safety
-    /// See [`Self::homing`]. Once the future has resolved, nothing lets go of the object but
-    /// another request.
+    /// See [`Self::homing`]. Once the future has resolved, only another request releases the
+    /// object.
     pub async fn grasp(&self, grasp: Grasp) -> Result<bool, GripperError> {
         self.connection.act(Request::Grasp(grasp)).await
     }
 
-    /// Stops the fingers and lets go of what they hold. The action that runs resolves as aborted.
-    /// True if it succeeded.
+    /// Stops the fingers and releases the object. The action that runs resolves as aborted. True if
+    /// it succeeded.
     ///
     /// # Errors
     /// [`GripperError`].
     ///
     /// # Cancel safety
-    /// Once polled, the fingers stop all the same.
+    /// Once the future is polled, the fingers still stop.
     pub async fn stop(&self) -> Result<bool, GripperError> {
         self.connection.act(Request::Stop).await
     }

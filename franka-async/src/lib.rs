@@ -1,11 +1,11 @@
 //! Async driver for Franka robots: motions are futures, states are a `watch`, control stays on a
 //! real-time thread.
 //!
-//! A program sets goals at its own rate. A thread of its own, one per robot, answers the robot
-//! every millisecond; no task of the runtime is on that path, so a busy or blocked program delays
-//! new goals and nothing else. This page is all that a first program needs. The book (`docs/src` of
-//! the repository) says where to start, and has whole programs among its first chapters: a service
-//! with a queue of jobs, a policy at 10 Hz, a guarded move, a script.
+//! A program sets goals at its own rate. A separate thread, one per robot, answers the robot every
+//! millisecond; no task of the runtime is on that path, so a busy or blocked program delays new
+//! goals and nothing else. This page is all that a first program needs. The book (`docs/src` of the
+//! repository) has a guide for its readers. Its first chapters have whole programs: a service with
+//! a queue of jobs, a policy at 10 Hz, a guarded move, a script.
 //!
 //! # Connect
 //!
@@ -33,9 +33,9 @@
 //!
 //! The address is a host name or an IP address, as any string. A [`Robot`] is a cheap handle: clone
 //! it into every task and request. Dropping the last one brakes what moves and closes the
-//! connection, as [`Robot::shutdown`] does and waits for; a program that is killed leaves the robot
-//! to stop by itself. A robot needs a host with a real-time kernel. Where there is none, as on most
-//! hosts of a simulator, connecting fails, and
+//! connection, as [`Robot::shutdown`] does and waits for. If the program is killed, the robot stops
+//! on its own. A robot needs a host with a real-time kernel. On a host without one, as most hosts
+//! of a simulator are, connecting fails, and
 //! `Robot::builder(address).realtime(Realtime::Ignore).connect()` does without. Every error of this
 //! crate converts into [`Error`]; `anyhow` prints its text when `main` returns it.
 //!
@@ -70,9 +70,9 @@
 //! # }
 //! ```
 //!
-//! Units are metres, radians, seconds and newtons. A [`Pose`] is that of the end effector in the
-//! frame of the base; it is an isometry of [`nalgebra`] with `f64`. [`Robot::pose`] is measured.
-//! [`mod@pose`] makes poses of quaternions and arrays.
+//! Units are metres, radians, seconds and newtons. A [`Pose`] is the pose of the end effector in
+//! the frame of the base; it is an isometry of [`nalgebra`] with `f64`. [`Robot::pose`] is
+//! measured. [`mod@pose`] makes poses of quaternions and arrays.
 //!
 //! The end effector goes to a pose on a straight line; to joint positions, the joints go. An
 //! [`Offset`] starts at the target of what moves, and at the arm if nothing does. A target out of
@@ -85,14 +85,14 @@
 //! Then
 //!
 //! * it resolves as `Ok` when the arm has arrived and rests, held by the robot itself, and
-//!   otherwise as a [`MotionError`] that says why not;
+//!   otherwise as a [`MotionError`] with the reason;
 //! * **dropping the future brakes the arm** within the robot's limits: it is still moving when
 //!   `drop` returns, and rests about a quarter of a second later. So the arm stops at a time limit,
 //!   in a `select!` that another branch wins, and when the client of a request has gone;
 //! * a newer motion of the same robot takes over without a stop, and the older one resolves as
 //!   [`MotionError::Superseded`].
 //!
-//! A motion that is to outlive its caller belongs to a task of its own, or is
+//! A motion that should outlive its caller belongs to a separate task, or is
 //! [detached](Motion::detach), which only logs its outcome. Its handle pauses or cancels it:
 //!
 //! ```no_run
@@ -113,7 +113,7 @@
 //! # }
 //! ```
 //!
-//! A queue of jobs is a task that awaits one motion after the other, whoever sends them:
+//! A queue of jobs is a task that awaits one motion after the other. Any task may send jobs:
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -151,7 +151,7 @@
 //!
 //! # States
 //!
-//! [`Robot::state`] is the newest state, whatever moves. [`Robot::states`] waits for changes, and
+//! [`Robot::state`] is the newest state, in motion or not. [`Robot::states`] waits for changes, and
 //! [`Robot::state_stream`] has every one of a thousand per second.
 //!
 //! ```no_run
@@ -226,15 +226,15 @@
 //!
 //! The control thread looks at the condition in every cycle. `force_z` is the external force along
 //! z of the base, either way; `relative` counts from the beginning of the motion, and the 200 ms
-//! leave out the torques in which it begins. `contact` says when and where that was. Without one
-//! the motion arrives: `reacted` is `None`. `touched.then(pose)` goes elsewhere at once instead of
-//! stopping; [`condition`] has the others.
+//! leave out the torques in which it begins. `contact` has the time and the place. Without a
+//! contact the motion arrives: `reacted` is `None`. `touched.then(pose)` goes elsewhere at once
+//! instead of stopping; [`condition`] has the others.
 //!
 //! # Errors and recovery
 //!
 //! A robot that stops itself (a *reflex*, for instance by a collision) takes no motion before it
-//! has been recovered. The error has the log of the last cycles, and its diagnosis says what to
-//! change. [`MotionError::party`] says where to act: in this program, on its computer, in the
+//! has been recovered. The error has the log of the last cycles, and its diagnosis names what to
+//! change. [`MotionError::party`] names where to act: in this program, on its computer, in the
 //! network, at the robot, or in the code of one side.
 //!
 //! ```no_run
@@ -359,14 +359,15 @@
 //!
 //! # Cancel safety
 //!
-//! Every future of this crate may be dropped at any point. A request that was sent is carried out
-//! by the robot all the same; its answer is then discarded. Dropping a motion brakes it. Methods
-//! that differ have a section of their own.
+//! Every future of this crate may be dropped at any point. The robot still carries out a request
+//! that was sent; its answer is then discarded. Dropping a motion brakes it. Methods that differ
+//! have a separate section.
 //!
 //! # What it does not do
 //!
-//! It neither reconnects nor recovers unless it is told to supervise, and moves nothing by itself.
-//! It is no safety function. It has not been run against a real arm yet.
+//! It neither reconnects nor recovers without
+//! [`Builder::supervise`](connection::Builder::supervise), and moves nothing without a call. It is
+//! no safety function. It has not been run against a real arm yet.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(
@@ -477,7 +478,7 @@ pub use nalgebra;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// What programs build on: handles go anywhere, futures go to any worker.
+/// Programs rely on this: handles go anywhere, futures go to any worker.
 const _: () = {
     const fn shared<T: Clone + Send + Sync + 'static>() {}
     const fn spawned<T: Send + 'static>() {}

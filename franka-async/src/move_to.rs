@@ -1,5 +1,5 @@
 //! Motions to one target, and [`Moving`], the future of these, of followed targets and of control
-//! functions. What dropping it does to the arm: `cancel`.
+//! functions. See `cancel` for what dropping it does to the arm.
 
 use std::future::IntoFuture;
 use std::pin::Pin;
@@ -25,7 +25,7 @@ use crate::robot::Robot;
 use crate::session::Session;
 
 /// A motion that has not begun: nothing is sent before it is awaited or detached. A clone is a
-/// motion of its own, with its own [`handle`](Self::handle) and without the
+/// separate motion, with its own [`handle`](Self::handle) and without the
 /// [`start_with`](Self::start_with) of the original.
 ///
 /// `.await` takes it as it is; what takes a future, as `tokio::spawn`, `tokio::time::timeout` and
@@ -51,10 +51,10 @@ impl Robot {
     ///
     /// The line to a pose is planned by the task that awaits the motion, in a millisecond as a
     /// rule. If joints would come to the ends of their ranges on it, or the arm too near itself,
-    /// the elbow is led to a posture with which they do not. If there is none, the motion is
-    /// refused as [`GoalError::NoLine`](crate::error::GoalError::NoLine), which names joint
-    /// positions that reach the pose, and nothing moves; with [`Motion::joint_fallback`] the joints
-    /// go there instead.
+    /// the elbow is led to a posture with which they do not. If there is no such posture, the
+    /// motion is refused as [`GoalError::NoLine`](crate::error::GoalError::NoLine), which names
+    /// joint positions that reach the pose, and nothing moves; with [`Motion::joint_fallback`] the
+    /// joints go there instead.
     pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
         Motion::of_robot(self, destination.into())
     }
@@ -63,8 +63,8 @@ impl Robot {
     /// the limits allow, on straight lines between them, and without a stop where the corner is
     /// [rounded](Waypoint::blend). It has one outcome. A waypoint that the arm cannot reach, or a
     /// way between two poses that it cannot follow, is refused before anything moves, as
-    /// [`MotionError::Path`]. Whatever holds the arm back holds the path up: no waypoint is left
-    /// out. Planning takes tens of milliseconds of the connection's task.
+    /// [`MotionError::Path`]. If the arm is held back, the path waits: no waypoint is left out.
+    /// Planning takes tens of milliseconds of the connection's task.
     ///
     /// ```no_run
     /// # use franka_async::{Error, Robot};
@@ -92,7 +92,7 @@ impl Robot {
 
     /// A motion of the end effector away from where it is, or from the target if a motion is under
     /// way; otherwise like [`Self::move_to`]. Where several follow each other,
-    /// [engage](Self::engage) the arm: it moves a little when it is let go in between.
+    /// [engage](Self::engage) the arm: it moves a little when it is released in between.
     pub fn move_by(&self, offset: Offset) -> Motion {
         self.move_to(offset)
     }
@@ -150,9 +150,9 @@ impl Motion {
         self
     }
 
-    /// Begins together with the motions of other robots: the robot starts the motion, and holds the
+    /// Begins together with the motions of other robots. The robot starts the motion, and holds the
     /// arm until all that have a ticket of the same [`StartBarrier`](crate::motion::StartBarrier)
-    /// are there; then they begin within a millisecond of each other. Such a motion supersedes
+    /// are there. Then they begin within a millisecond of each other. Such a motion supersedes
     /// nothing: it is refused as [`MotionError::Busy`] while anything controls the arm. If the
     /// others do not all come, it resolves as [`MotionError::Start`], and the arm has not moved.
     ///
@@ -193,15 +193,16 @@ impl Motion {
         }
     }
 
-    /// Returns a handle that says from elsewhere how far the motion is, and pauses or brakes it.
+    /// Returns a handle that reports the progress of the motion from elsewhere, and pauses or
+    /// brakes it.
     pub fn handle(&self) -> MotionHandle {
         MotionHandle(self.canceller.clone())
     }
 
-    /// What the arm would do if the motion began now, or why the motion would be refused; nothing
-    /// moves, and nothing is sent. A motion to one target is taken for a path of one waypoint,
-    /// which it is if it begins at rest. Whether the arm would come too near itself or a region to
-    /// keep out of, [`Preview::blocked`] says. Takes milliseconds.
+    /// Returns what the arm would do if the motion began now, or why the motion would be refused;
+    /// nothing moves, and nothing is sent. A motion to one target is taken for a path of one
+    /// waypoint, which it is if it begins at rest. [`Preview::blocked`] reports whether the arm
+    /// would come too near itself or a region to keep out of. Takes milliseconds.
     ///
     /// # Errors
     /// [`MotionError::Path`] and [`MotionError::Goal`].
@@ -238,7 +239,7 @@ impl Motion {
         Ok(Preview::of(path, &q, &goal, model, &state)?)
     }
 
-    /// Its options and those of its session.
+    /// Its options and the options of its session.
     fn pursued(&self) -> GoalOptions {
         let session = self.session.as_ref();
         self.options
@@ -276,7 +277,7 @@ fn plan_line(motion: &mut Beginning, robot: &Robot, session: Option<&Session>) {
     };
     let (model, state, course) = (robot.model(), robot.state(), &robot.link().course);
     let reference = course.reference().map(|reference| reference.q);
-    // The bridge says that a session has ended, or that a program moves the arm.
+    // The bridge reports that a session has ended, or that a program moves the arm.
     let ended = session.is_some_and(Session::has_ended);
     if ended || reference.is_none() && state.robot_mode == RobotMode::Move {
         return;
@@ -343,12 +344,12 @@ impl MotionHandle {
         self.0.set_paused(true);
     }
 
-    /// Lets the motion go on.
+    /// Resumes the motion.
     pub fn resume(&self) {
         self.0.set_paused(false);
     }
 
-    /// How far the motion has come; `None` before it has begun and after its end.
+    /// Progress of the motion; `None` before it has begun and after its end.
     pub fn progress(&self) -> Option<Progress> {
         self.0.robot()?.link().course.progress(self.0.id())
     }

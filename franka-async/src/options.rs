@@ -6,7 +6,8 @@ use franka_rt::session::{Budget, Goal, GoalError, Reaction, Settling, Tolerance}
 use franka_rt::team::Round;
 use nalgebra::Isometry3;
 
-/// Options of one goal or of many. What is `None` is left to the goal, whose kind decides.
+/// Options of one goal or of many. An option that is `None` is left to the goal, whose kind
+/// decides.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct GoalOptions {
     pub(crate) tuning: Tuning,
@@ -72,8 +73,8 @@ impl GoalOptions {
     }
 }
 
-/// Setters for a type with the field `options: GoalOptions`: those of every type, and with `target`
-/// those of a type that has one target or one stream of them.
+/// Setters for a type with the field `options: GoalOptions`. With `target`, also the setters of a
+/// type that has one target or one stream of them.
 macro_rules! goal_options {
     () => {
         /// Walks the same paths `factor` times as fast as the limits allow: velocities scale with
@@ -85,14 +86,14 @@ macro_rules! goal_options {
             self
         }
 
-        /// Replaces the limits, which [`Self::speed`] then scales; by default those of
+        /// Replaces the limits, which [`Self::speed`] then scales; by default the limits of
         /// [`Budget::of`](crate::goal::Budget::of), or of the session.
         pub fn limits(mut self, budget: crate::goal::Budget) -> Self {
             self.options.tuning.budget = Some(budget);
             self
         }
 
-        /// Replaces the law and all gains; by default those of the session, or
+        /// Replaces the law and all gains; by default the gains of the session, or
         /// [`Gains::cartesian`](crate::goal::Gains::cartesian) for poses and
         /// [`Gains::joint`](crate::goal::Gains::joint) for joint positions. The kind of the first
         /// target of a stream decides. The law is [`Gains::law`](crate::goal::Gains::law):
@@ -104,7 +105,7 @@ macro_rules! goal_options {
         }
 
         /// Bounds the force with which springs and dampers press at the end effector, `[N]`,
-        /// between 5 and 200; by default that of the session, or
+        /// between 5 and 200; by default the cap of the session, or
         /// [`ForceCap::DEFAULT_NEWTONS`](crate::goal::ForceCap::DEFAULT_NEWTONS). An undeclared
         /// load counts: the arm sinks under more weight than the cap, and the motion does not
         /// arrive. Refused under
@@ -125,29 +126,29 @@ macro_rules! goal_options {
 
         /// Sets how far the reference may be ahead of the arm, between
         /// [`Leash::LEAST`](crate::goal::Leash::LEAST) and
-        /// [`Leash::MOST`](crate::goal::Leash::MOST); by default 25 mm, 0.15 rad, and 0.1 rad of
-        /// each joint. An arm that is held feels its springs at that length. Without effect under
-        /// [`Backend::RobotController`](crate::goal::Backend::RobotController).
+        /// [`Leash::MOST`](crate::goal::Leash::MOST). The defaults are 25 mm and 0.15 rad, and 0.1
+        /// rad of each joint. An arm that is held feels its springs at that length. Without effect
+        /// under [`Backend::RobotController`](crate::goal::Backend::RobotController).
         pub fn leash(mut self, leash: crate::goal::Leash) -> Self {
             self.options.tuning.leash = Some(leash);
             self
         }
 
         /// Sets how far the arm may be pushed off its way before the motion is given up as
-        /// [`Lapse::Displaced`](crate::error::Lapse::Displaced); by default 30 cm, 0.5 rad, and
-        /// 1 rad of a joint. Without effect under
+        /// [`Lapse::Displaced`](crate::error::Lapse::Displaced). The defaults are 30 cm and 0.5
+        /// rad, and 1 rad of a joint. Without effect under
         /// [`Backend::RobotController`](crate::goal::Backend::RobotController).
         pub fn deviation(mut self, deviation: crate::goal::Deviation) -> Self {
             self.options.tuning.deviation = Some(deviation);
             self
         }
 
-        /// Sets the posture, joint positions in `[rad]`, that the arm takes as far as the pose of
-        /// its end effector leaves it free (its null space), on the way to poses and while it holds
-        /// them. The elbow moves at no more than half of the joints' budget, and a motion that is
-        /// awaited arrives when it rests. By default the elbow is kept near where the motion or the
-        /// session began. An engaged arm keeps its posture until it is given another. Positions out
-        /// of range are refused as [`GoalError::OutOfRange`](crate::error::GoalError::OutOfRange).
+        /// Sets the posture, joint positions in `[rad]`, for the null space of the end effector's
+        /// pose. The arm takes it on the way to poses and while it holds them. The elbow moves at
+        /// no more than half of the joints' budget, and a motion that is awaited arrives when it
+        /// rests. By default the elbow is kept near where the motion or the session began. An
+        /// engaged arm keeps its posture until it is given another. Positions out of range are
+        /// refused as [`GoalError::OutOfRange`](crate::error::GoalError::OutOfRange).
         pub fn posture(mut self, posture: impl Into<[f64; 7]>) -> Self {
             self.options.tuning.posture = Some(posture.into());
             self
@@ -157,7 +158,7 @@ macro_rules! goal_options {
         goal_options!();
 
         /// Sets the stiffness at the end effector, x y z `[N/m]` and about x y z `[N m/rad]`, base
-        /// axes, in the place of that of the gains, whether those are set before or after;
+        /// axes. It replaces the stiffness of the gains, whether those are set before or after;
         /// dampings keep their ratio.
         pub fn stiffness(mut self, stiffness: [f64; 6]) -> Self {
             self.options.stiffness = Some(stiffness);
@@ -180,15 +181,15 @@ macro_rules! goal_options {
             self
         }
 
-        /// Goes on until a condition is true, if that comes before the arrival: then the arm stops
-        /// as quickly as the jerk limit allows, or, for a
+        /// Ends the motion early when a condition becomes true before the arrival. Then the arm
+        /// stops as quickly as the jerk limit allows, or, for a
         /// [`Reaction`](crate::condition::Reaction) with another target, brakes and goes there. The
         /// control thread checks the condition in every cycle, until the motion is reported, and
         /// acts in the next one. Replaces an earlier condition.
         ///
-        /// Both ends are `Ok`: [`MotionReport::reacted`](crate::MotionReport::reacted) tells a
-        /// reaction from an arrival without one. See [`condition`](crate::condition) for what to
-        /// compare, and with what.
+        /// Both ends are `Ok`: [`MotionReport::reacted`](crate::MotionReport::reacted)
+        /// distinguishes a reaction from an arrival. See [`condition`](crate::condition) for what
+        /// to compare, and with what.
         ///
         /// ```no_run
         /// # use std::time::Duration;

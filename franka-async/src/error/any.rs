@@ -9,9 +9,9 @@ use super::{
     ActionError, ActiveError, CommandError, ConnectError, IdentifyError, ReadError, TareError,
 };
 
-/// Anything that can go wrong with a robot or its end effectors: what a program with many kinds of
-/// calls returns. Every error of this crate converts into it, so that `?` does, and `Display` is
-/// that of the error inside.
+/// Any error of a robot or its end effectors: the return type of a program with many kinds of
+/// calls. Every error of this crate converts into it, also by `?`, and `Display` prints the error
+/// inside.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -28,7 +28,7 @@ pub enum Error {
     /// A motion ended short of its goal for another reason.
     #[error(transparent)]
     Motion(MotionError),
-    /// Active control could not go on.
+    /// Active control could not continue.
     #[error(transparent)]
     Active(ActiveError),
     /// An arm was not identified, for another reason than a motion.
@@ -95,8 +95,8 @@ impl From<TareError> for Error {
 }
 
 impl Error {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`, which says what to
-    /// do. Every error of a call has it.
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`, which explains
+    /// what to do. Every error of a call has it.
     ///
     /// ```
     /// # use franka_async::{Error, MotionError};

@@ -1,4 +1,4 @@
-//! Why a call on a connection has no result.
+//! Errors of calls on a connection.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use franka_rt::lifecycle::{CloseReason, MotionError, Party};
 use franka_rt::tare::TareRefused;
 use franka_rt::thread::{BorrowError, WriteFault};
 
-/// Why a command other than a motion was not carried out.
+/// Reason why a command other than a motion was not carried out.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CommandError {
@@ -24,7 +24,7 @@ pub enum CommandError {
     InvalidArgument {
         /// The robot's answer, or the one it would have given.
         refusal: Refusal,
-        /// What was asked for, and what is documented.
+        /// Value that was given, and the documented range.
         why: String,
     },
     /// Caller: the protocol version has no such command. Nothing was sent.
@@ -33,17 +33,17 @@ pub enum CommandError {
     /// Caller: a number is not finite. Nothing was sent.
     #[error("number {number} of {what} is not finite")]
     NotFinite {
-        /// Of what.
+        /// Thing that is counted.
         what: &'static str,
-        /// Which one, from 1.
+        /// Its number, from 1.
         number: usize,
     },
-    /// Robot or link: no answer in time. The robot may carry the command out all the same.
+    /// Robot or link: no answer in time. The robot may still carry the command out.
     #[error("no answer to {command} within {} ms", .deadline.as_millis())]
     Timeout {
-        /// What was asked for.
+        /// Command without an answer.
         command: Command,
-        /// How long the answer was awaited.
+        /// Time for which the answer was awaited.
         deadline: Duration,
     },
     /// Link: no robot state comes, so it is unknown whether the command was carried out.
@@ -58,7 +58,7 @@ pub enum CommandError {
     /// The connection has ended. The party that can act on it depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
-        /// What ended it.
+        /// Cause of the end.
         reason: CloseReason,
     },
 }
@@ -91,7 +91,8 @@ impl CommandError {
     }
 }
 
-/// Why an action of an end effector has no result; `C` is what can be asked of it.
+/// Reason why an action of an end effector has no result; `C` is the command type of the end
+/// effector.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ActionError<C: ServiceCommand> {
@@ -101,9 +102,9 @@ pub enum ActionError<C: ServiceCommand> {
     /// Caller: the device could not do it, for what was asked of it is out of its range.
     #[error("{failure} ({why})")]
     OutOfRange {
-        /// What the device answered.
+        /// Answer of the device.
         failure: Failure<C>,
-        /// What was asked for, and what is possible.
+        /// Value that was given, and the possible range.
         why: String,
     },
     /// Caller: too many requests wait for their answers. Nothing was sent.
@@ -115,7 +116,7 @@ pub enum ActionError<C: ServiceCommand> {
     /// The connection has ended. The party that can act on it depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
-        /// What ended it.
+        /// Cause of the end.
         reason: CloseReason,
     },
 }
@@ -143,11 +144,11 @@ impl<C: ServiceCommand> ActionError<C> {
     }
 }
 
-/// Why states could not be read any further.
+/// Reason why no more states could be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
-    /// Link: the robot fell silent. The text begins as that of the reference client.
+    /// Link: the robot fell silent. The text begins as in the reference client.
     #[error("libfranka: UDP receive: Timeout (no robot state for {} ms)", .silence.as_millis())]
     LinkLost {
         /// The silence so far.
@@ -156,7 +157,7 @@ pub enum ReadError {
     /// The connection has ended. The party that can act on it depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
-        /// What ended it.
+        /// Cause of the end.
         reason: CloseReason,
     },
 }
@@ -179,7 +180,7 @@ impl ReadError {
     }
 }
 
-/// Why a state could not be read or a command not written.
+/// Reason why a state could not be read or a command not written.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ActiveError {
@@ -192,7 +193,7 @@ pub enum ActiveError {
     /// The motion has ended as asked: its last command was written before.
     #[error("the motion has finished, and takes neither reads nor commands: begin a new one")]
     Finished,
-    /// The command was not sent; the motion goes on.
+    /// The command was not sent; the motion continues.
     #[error(transparent)]
     Write(#[from] WriteFault),
     /// The cycle cannot be had.
@@ -229,7 +230,7 @@ fn needs_recovery(error: &MotionError) -> bool {
 
 const RECOVER: &str = ", `recover` before the next";
 
-/// Why an arm was not identified.
+/// Reason why an arm was not identified.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum IdentifyError {
@@ -241,9 +242,9 @@ pub enum IdentifyError {
     Moved {
         /// The joint, 1 to 7.
         joint: usize,
-        /// Where it is, `[rad]`.
+        /// Present position, `[rad]`.
         got: f64,
-        /// Where it was, `[rad]`.
+        /// Earlier position, `[rad]`.
         expected: f64,
     },
     /// A motion did not arrive. The arm stays where it is.
@@ -274,7 +275,7 @@ impl IdentifyError {
     }
 }
 
-/// Why no tare was taken.
+/// Reason why no tare was taken.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TareError {
@@ -304,7 +305,7 @@ impl TareError {
     }
 }
 
-/// Why the robot's model library cannot be used.
+/// Reason why the robot's model library cannot be used.
 #[cfg(all(feature = "model-library", target_os = "linux"))]
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

@@ -1,4 +1,4 @@
-//! Why there is no connection.
+//! Errors of connecting.
 
 use std::io;
 use std::net::SocketAddr;
@@ -18,11 +18,11 @@ use franka_rt::thread::{LinkFault, StartError};
 use super::CommandError;
 use crate::endpoint::EndpointError;
 
-/// What a program without an arm does instead.
+/// Hint for a program without an arm.
 const IGNORE: &str = " (for a simulator: `Realtime::Ignore`, in Python `realtime=\"ignore\"`)";
 
-/// Why there is no connection: to a robot, unless `P` says otherwise. Nothing is left behind;
-/// connecting again is always possible.
+/// Reason why there is no connection: to a robot, unless `P` names another device. Nothing is left
+/// behind; connecting again is always possible.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConnectError<P: Protocol = Version> {
@@ -37,7 +37,7 @@ pub enum ConnectError<P: Protocol = Version> {
     /// [`Builder::link_timeout`](crate::connection::Builder::link_timeout).
     #[error(transparent)]
     LinkTimeout(#[from] LinkTimeoutError),
-    /// Caller: the log of a motion is to hold more cycles than there is memory for, see
+    /// Caller: the requested log of a motion has more cycles than there is memory for, see
     /// [`Builder::log_size`](crate::connection::Builder::log_size). Nothing was sent.
     #[error(
         "a log of {got} cycles is too long: expected {} at most",
@@ -47,13 +47,13 @@ pub enum ConnectError<P: Protocol = Version> {
         /// Cycles asked for.
         got: usize,
     },
-    /// Caller: a function is to be asked before recoveries, and no policy supervises the robot, see
+    /// Caller: a function would be asked before recoveries, and no policy supervises the robot, see
     /// [`Builder::ask_before_recovery`](crate::connection::Builder::ask_before_recovery). Nothing
     /// was sent.
     #[error("ask_before_recovery without supervise: expected a policy that recovers")]
     Unsupervised,
-    /// Caller: what was given as known of the arm is of another kind of robot, or has numbers that
-    /// no arm has, see [`Builder::known`](crate::connection::Builder::known).
+    /// Caller: the known values of the arm belong to another kind of robot, or have numbers that no
+    /// arm has, see [`Builder::known`](crate::connection::Builder::known).
     #[error(transparent)]
     Known(#[from] KnownError),
     /// Host: no thread, socket or descriptor.
@@ -64,7 +64,7 @@ pub enum ConnectError<P: Protocol = Version> {
         "libfranka: Connection to FCI refused. Please install FCI feature or enable FCI mode in Desk. ({address})"
     )]
     Refused {
-        /// Where.
+        /// Address tried.
         address: SocketAddr,
     },
     /// Link: no answer.
@@ -72,7 +72,7 @@ pub enum ConnectError<P: Protocol = Version> {
         "libfranka: Connection timeout. Please check your network connection or settings. ({address})"
     )]
     Timeout {
-        /// Where.
+        /// Address tried.
         address: SocketAddr,
     },
     /// Link: any other failure to connect.
@@ -85,7 +85,7 @@ pub enum ConnectError<P: Protocol = Version> {
     /// them.
     #[error("{}", list(.attempts))]
     NoAddress {
-        /// What came of each, in the order tried.
+        /// Result of each attempt, in the order tried.
         attempts: Vec<Attempt<P>>,
     },
     /// Robot: its system has a protocol version that is not spoken here. Caller: the version was
@@ -100,13 +100,13 @@ pub enum ConnectError<P: Protocol = Version> {
     /// reason.
     #[error("{reason}{}", likely(.reason))]
     ConnectionClosed {
-        /// What ended it.
+        /// Cause of the end.
         reason: CloseReason,
     },
     /// Link: a datagram of the robot could not be read.
     #[error("{fault}")]
     Datagram {
-        /// What was wrong with it.
+        /// Fault of the link.
         fault: LinkFault,
     },
     /// Peer: it left the protocol.
@@ -118,14 +118,14 @@ pub enum ConnectError<P: Protocol = Version> {
     /// Link: the handshake was not answered in time.
     #[error("libfranka: TCP receive: Timeout ({address})")]
     HandshakeTimeout {
-        /// Where.
+        /// Address tried.
         address: SocketAddr,
     },
     /// Link: the handshake succeeded and no state came. A firewall in the way of UDP is the usual
     /// cause.
     #[error("libfranka: UDP receive: Timeout ({address})")]
     NoState {
-        /// Where the handshake succeeded.
+        /// Address where the handshake succeeded.
         address: SocketAddr,
     },
     /// Robot: it computes the poses that it reports with another geometry than its description, or
@@ -184,7 +184,7 @@ impl<P: Protocol> ConnectError<P> {
             | Self::LogSize { .. }
             | Self::Unsupervised
             | Self::Known(_) => Party::Caller,
-            // One that refuses is there, the others need not be.
+            // A device that refuses exists; the others may not.
             Self::NoAddress { attempts } => attempts
                 .iter()
                 .map(|attempt| attempt.error.party())
@@ -217,11 +217,11 @@ impl<P: Protocol> ConnectError<P> {
 pub struct Attempt<P: Protocol = Version> {
     /// The address.
     pub address: SocketAddr,
-    /// What went wrong.
+    /// Error of the attempt.
     pub error: ConnectError<P>,
 }
 
-/// What usually ends a connection before the robot has answered.
+/// Usual cause of the end of a connection before the robot has answered.
 fn likely(reason: &CloseReason) -> &'static str {
     match reason {
         CloseReason::ClosedByPeer
@@ -245,7 +245,7 @@ impl From<StartError> for ConnectError {
         match error {
             StartError::Scheduling(error) => Self::Realtime(error),
             StartError::System(error) => Self::System(error),
-            // The enum is open; whatever else keeps the thread from starting is the host's doing.
+            // The enum is open; every other obstacle to starting the thread is a fault of the host.
             other => Self::System(io::Error::other(other)),
         }
     }
@@ -264,8 +264,9 @@ impl From<LinkFault> for ConnectError {
     }
 }
 
-/// Why there is no model of the connected arm.
-/// [`Builder::nominal_model`](crate::connection::Builder::nominal_model) does without its description.
+/// Reason why there is no model of the connected arm.
+/// [`Builder::nominal_model`](crate::connection::Builder::nominal_model) does without its
+/// description.
 #[cfg(feature = "urdf")]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -273,7 +274,7 @@ pub enum ModelError {
     /// The robot was asked for its description and did not give it.
     #[error(transparent)]
     Command(#[from] CommandError),
-    /// Robot: its description is not that of an arm that this driver knows.
+    /// Robot: its description does not fit an arm that this driver knows.
     #[error(transparent)]
     Urdf(#[from] UrdfError),
 }

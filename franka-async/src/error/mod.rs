@@ -1,6 +1,6 @@
-//! What can go wrong, grouped by the party that can act on it. Texts are those of the reference
-//! client where it has one. [`Error`](crate::Error) holds any of them,
-//! [`MotionError`](crate::MotionError) says why a motion ended short of its goal.
+//! Errors, grouped by the party that can act on them. Texts follow the reference client where it
+//! has one. [`Error`](crate::Error) holds any of them; [`MotionError`](crate::MotionError) is the
+//! reason why a motion ended short of its goal.
 
 pub(crate) mod any;
 mod calls;
@@ -43,8 +43,8 @@ pub use franka_rt::shaping::{FilterFault, InvalidCommand, Signal};
 pub use franka_rt::thread::{BorrowError, LinkFault, WriteFault};
 pub use franka_rt::together::StartFault;
 
-/// Why an action of the Franka Hand has no result.
+/// Reason why an action of the Franka Hand has no result.
 pub type GripperError = ActionError<gripper::Command>;
 
-/// Why an action of the vacuum gripper has no result.
+/// Reason why an action of the vacuum gripper has no result.
 pub type VacuumGripperError = ActionError<vacuum::Command>;
