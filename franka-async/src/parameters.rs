@@ -29,13 +29,13 @@ const ANSWER: Duration = Duration::from_secs(5);
 /// Time for a recovery, which moves brakes.
 const RECOVERY: Duration = Duration::from_secs(30);
 
-/// How much longer than the link timeout a robot that recovers may be silent.
+/// Silence allowed to a robot that recovers, in addition to the link timeout.
 const SILENT: Duration = Duration::from_secs(3);
 
 /// Payload of both arms, `[kg]`. Source: the vendor's data sheets.
 const PAYLOAD: f64 = 3.0;
 
-/// How many milliseconds after the answer states are looked through for what was set.
+/// Time after the answer in which states are searched for the new value, `[ms]`.
 const SHOWN_MS: u64 = 200;
 
 /// Time for these states, if they come at all.
@@ -54,7 +54,7 @@ impl Robot {
     /// [`CommandError`].
     ///
     /// # Cancel safety
-    /// Once polled the request may be carried out all the same, and a robot that is
+    /// Once the future is polled, the request may still be carried out, and a robot that is
     /// [supervised](crate::connection::Builder::supervise) counts it as set.
     pub async fn set_collision_behavior(
         &self,
@@ -118,10 +118,10 @@ impl Robot {
     }
 
     /// Sets the end effector in the nominal end effector's frame, `NE_T_EE`. Its range, and when it
-    /// resolves, are those of [`Self::set_k`].
+    /// resolves, are as for [`Self::set_k`].
     ///
     /// # Errors
-    /// Those of [`Self::set_k`].
+    /// As for [`Self::set_k`].
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
@@ -133,13 +133,14 @@ impl Robot {
     /// Declares the load beyond the end effector: mass `[kg]`, centre of mass in the flange frame
     /// `[m]`, inertia about it `[kg m^2]`, column-major. Resolves when a state shows it.
     ///
-    /// A load that no rigid body has is refused, and not sent: a mass below 0, an inertia that is
-    /// not symmetric, or one with a principal moment below 0 or above the sum of the others. The
-    /// vendor documents no range. The simulator also refuses more than 10 kg, a centre more than 1
-    /// m away, and a principal moment above 1 kg m^2; its configuration has other bounds.
+    /// A load that no rigid body has is refused, and not sent. Such loads have a mass below 0, an
+    /// inertia that is not symmetric, or a principal moment below 0 or above the sum of the others.
+    /// The vendor documents no range. The simulator also refuses more than 10 kg and a centre more
+    /// than 1 m away. It refuses a principal moment above 1 kg m^2; its configuration has other
+    /// bounds.
     ///
     /// # Errors
-    /// Those of [`Self::set_k`].
+    /// As for [`Self::set_k`].
     ///
     /// # Cancel safety
     /// See [`Self::set_collision_behavior`].
@@ -189,9 +190,9 @@ impl Robot {
         urdf(&self.channel(), ANSWER).await
     }
 
-    /// Sets the cutoff frequencies of the robot's own low-pass filters, each in [1, 1000] Hz; 1000
-    /// switches a filter off. Protocol 5 only (Franka Emika Robot), and deprecated by the vendor:
-    /// filter on this side.
+    /// Sets the cutoff frequencies of the robot's own low-pass filters, each in [1, 1000] Hz. The
+    /// upper end switches a filter off. Protocol 5 only (Franka Emika Robot), and deprecated by the
+    /// vendor: filter on this side.
     ///
     /// # Errors
     /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command.
@@ -240,7 +241,7 @@ impl Robot {
             return Err(error);
         }
         note(&link.thresholds, &request);
-        // Closed: whatever is next says so.
+        // Closed: the next call reports it.
         tokio::select! {
             biased;
             answer = shown(&link.newest, &request) => declared.answer = answer,
@@ -267,8 +268,8 @@ impl Drop for Declared<'_> {
     }
 }
 
-/// What settings are set again with, over one connection. The last handle of the robot closes the
-/// connection, whatever is under way.
+/// Resources to set settings again over one connection. The last handle of the robot closes the
+/// connection, also while a request is under way.
 pub(crate) struct Again {
     supervisor: Arc<Supervisor>,
     setting: Arc<Mutex<()>>,
@@ -302,7 +303,7 @@ impl Again {
                     note(&self.thresholds, &request);
                     shown(&self.newest, &request).await
                 }
-                // The supervisor is told of its end.
+                // The supervisor is notified of its end.
                 Err(CommandError::ConnectionClosed { .. }) => return,
                 Err(error) => answer_of(&explained(error, &request)),
             };
@@ -314,7 +315,7 @@ impl Again {
     }
 }
 
-/// What an error means for a setting.
+/// Meaning of an error for a setting.
 fn answer_of(error: &CommandError) -> Answer {
     let text = error.to_string();
     match error {
@@ -335,7 +336,7 @@ fn note(thresholds: &Thresholds, request: &Request) {
     }
 }
 
-/// Waits for a state that shows what the robot has taken, or for so many that none will.
+/// Waits for a state that shows the new value, or until [`SHOWN_MS`] have passed without one.
 async fn shown(newest: &Newest, request: &Request) -> Answer {
     if difference(request, &newest.state()).is_none() {
         return Answer::Taken;
@@ -356,7 +357,7 @@ async fn shown(newest: &Newest, request: &Request) -> Answer {
     }
 }
 
-/// Refuses numbers of which a robot can make nothing. What it takes is for the robot to say.
+/// Refuses numbers that no robot can use. The robot itself decides which others it takes.
 fn check_finite(request: &Request) -> Result<(), CommandError> {
     for &(what, values) in &parts(request) {
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
@@ -494,7 +495,8 @@ fn explained(error: CommandError, request: &Request) -> CommandError {
     CommandError::InvalidArgument { refusal, why }
 }
 
-/// What a state shows in the place of what was set. Of what no state shows: nothing.
+/// Difference between the value that was set and the value in a state. `None` for values that no
+/// state shows.
 fn difference(request: &Request, state: &RobotState) -> Option<String> {
     let text = |got: &dyn Debug, set: &dyn Debug| {
         format!("the robot has taken it, and its states show {got:?}, expected {set:?}")
@@ -521,7 +523,7 @@ fn difference(request: &Request, state: &RobotState) -> Option<String> {
     }
 }
 
-/// Whether a state, which may be of single precision, shows these numbers.
+/// True if a state, which may be of single precision, shows these numbers.
 fn is_near<const N: usize>(shown: &[f64; N], set: &[f64; N]) -> bool {
     shown
         .iter()

@@ -35,7 +35,7 @@ use nalgebra::{Matrix4, Quaternion, Translation3, UnitQuaternion};
 
 use crate::robot::Pose;
 
-/// Why a matrix is not a pose.
+/// Reason why a matrix is not a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotRigid {
@@ -86,7 +86,7 @@ pub fn from_matrix(matrix: &Matrix4<f64>) -> Result<Pose, NotRigid> {
 /// [`from_matrix`] of 16 numbers, column by column, as in `O_T_EE`.
 ///
 /// # Errors
-/// Those of [`from_matrix`].
+/// As for [`from_matrix`].
 pub fn from_array(column_major: &[f64; 16]) -> Result<Pose, NotRigid> {
     from_matrix(&Matrix4::from_column_slice(column_major))
 }
@@ -170,7 +170,7 @@ mod tests {
         let start = Pose::from_parts([0.4, 0.1, 0.3].into(), about(Vector3::x() * 1.0));
         let turned = rotated(&start, about(Vector3::z() * 0.5));
         assert_eq!(turned.translation, start.translation);
-        // The x axis of the pose is that of the base: it turns in the plane.
+        // The x axis of the pose is the x axis of the base: it turns in the plane.
         let x = turned * Vector3::x();
         assert!((x - Vector3::new(0.5_f64.cos(), 0.5_f64.sin(), 0.0)).norm() < 1e-12);
     }

@@ -1,4 +1,4 @@
-//! What a first program needs, by one import:
+//! Names for a first program, by one import:
 //!
 //! ```
 //! use franka_async::prelude::*;

@@ -12,10 +12,10 @@ use crate::robot::Robot;
 
 impl Robot {
     /// Begins a program and waits until it runs. Returns the receiver of its outcome. Dropping the
-    /// future has the robot stop.
+    /// future stops the robot.
     ///
     /// # Errors
-    /// What ended the motion before it ran.
+    /// The cause of an end of the motion before it ran.
     pub(crate) async fn begin_program(
         &self,
         id: GoalId,

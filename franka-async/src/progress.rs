@@ -1,4 +1,4 @@
-//! What target control heads for, where it has the arm go, and how far a motion has come.
+//! Target and reference of target control, and the progress of a motion.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -7,7 +7,7 @@ use franka_rt::driver::{ReferenceReader, ReferenceState};
 use franka_rt::session::{Bindings, GoalId, Target};
 use nalgebra::Isometry3;
 
-/// Where target control has the arm go, in the newest cycle.
+/// Reference of target control, in the newest cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Reference {
@@ -21,18 +21,18 @@ pub struct Reference {
     pub ddq: [f64; 7],
     /// The end effector at those positions, base frame.
     pub pose: Isometry3<f64>,
-    /// Which guards have held the arm back within the last 0.1 s, and at most 0.2 s.
+    /// Guards that have held the arm back within the last 0.1 s, and at most 0.2 s.
     pub guards: Bindings,
 }
 
-/// How far a motion has come.
+/// Progress of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
     /// Since it began, by the robot's clock, pauses included.
     pub elapsed: Duration,
-    /// Until the reference is at the target, if nothing holds it up. The arm settles after that, a
-    /// quarter of a second at the least.
+    /// Time until the reference is at the target, if nothing delays it. The arm settles after that,
+    /// a quarter of a second at least.
     pub remaining: Duration,
 }
 
@@ -48,11 +48,11 @@ impl Progress {
     }
 }
 
-/// What a connection's target control heads for, and where it is.
+/// Target and reference of target control on a connection.
 #[derive(Clone, Debug)]
 pub(crate) struct Course {
     references: ReferenceReader,
-    /// What was taken last, and its name. Held for a copy only.
+    /// Last target taken, and its name. Locked only to copy it.
     heading: Arc<Mutex<Option<(GoalId, Target)>>>,
 }
 
@@ -70,7 +70,7 @@ impl Course {
         *noted = heading;
     }
 
-    /// What target control heads for; `None` if it moves nothing.
+    /// Present target of target control; `None` if it moves nothing.
     pub(crate) fn target(&self) -> Option<Target> {
         let noted = self.heading.lock().unwrap_or_else(PoisonError::into_inner);
         noted.map(|(_, target)| target)
@@ -88,7 +88,7 @@ impl Course {
         self.references.newest()
     }
 
-    /// How far the motion `goal` has come; `None` before it has begun and after its end.
+    /// Progress of the motion `goal`; `None` before it has begun and after its end.
     pub(crate) fn progress(&self, goal: GoalId) -> Option<Progress> {
         // In the first cycle of a session nothing is planned yet.
         let begun = |newest: &ReferenceState| newest.goal == goal && !newest.elapsed.is_zero();

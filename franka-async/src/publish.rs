@@ -21,7 +21,7 @@ const STATES: usize = 1024;
 #[derive(Clone, Debug)]
 pub(crate) enum Update {
     State(Arc<RobotState>),
-    /// No state has come for so long that the link counts as lost.
+    /// No state has come for this duration, so that the link counts as lost.
     Silence(Duration),
 }
 
@@ -37,7 +37,7 @@ pub(crate) struct Publisher {
     listeners: Listeners,
 }
 
-/// The silence that was told last.
+/// The silence that was reported last.
 #[derive(Clone, Copy, Debug)]
 struct Silent {
     /// `message_id` of the state before it.
@@ -51,7 +51,7 @@ struct Listeners {
     records: broadcast::Sender<Record>,
 }
 
-/// Where to subscribe. Weak, so that subscribers see the end of the connection.
+/// Sources for subscribers. Weak, so that subscribers see the end of the connection.
 #[derive(Clone, Debug)]
 pub(crate) struct Subscriptions {
     updates: broadcast::WeakSender<Update>,
@@ -102,7 +102,8 @@ impl Publisher {
     /// wakes the bridge for every state.
     pub(crate) fn publish(&mut self) {
         self.refresh();
-        // Counted before the subscribers are: none of these is due to one that comes later.
+        // Counted before the subscribers are: none of these is due to a subscriber that comes
+        // later.
         let come = self.sequence.waiting();
         if self.listeners.updates.receiver_count() == 0 {
             self.sequence.skip(come);
@@ -129,15 +130,15 @@ impl Publisher {
         }
     }
 
-    /// Passes on the newest state only. Without subscribers, the one that was passed on last
-    /// may be some states old.
+    /// Passes on the newest state only. Without subscribers, the state that was passed on last may
+    /// be some states old.
     pub(crate) fn refresh(&mut self) {
         if let Some(state) = self.newest.newest() {
             newest_state::publish(&self.listeners.newest, state);
         }
     }
 
-    /// Passes on that the robot has been silent for so long.
+    /// Passes on that the robot has been silent for `silence`.
     pub(crate) fn tell_silence(&self, silence: Duration) {
         let since = self.state().message_id;
         *lock(&self.silent) = Some(Silent { since, silence });

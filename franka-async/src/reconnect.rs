@@ -22,12 +22,12 @@ use crate::robot::{Robot, WeakRobot};
 use crate::supervisor::{Job, Supervisor};
 use crate::world;
 
-/// What a supervised robot is reconnected with.
+/// Resources for reconnecting a supervised robot.
 pub(crate) struct Reconnector {
     robot: WeakRobot,
     supervisor: Arc<Supervisor>,
     builder: Builder,
-    /// Goes on from connection to connection, and ends with this.
+    /// Continues from connection to connection, and ends with this.
     states: Arc<watch::Sender<RobotState>>,
     connecting: OptionFuture<BoxFuture<'static, Result<Opened, ConnectError>>>,
     recovering: OptionFuture<BoxFuture<'static, (u64, Result<(), CommandError>)>>,
@@ -57,7 +57,7 @@ impl Reconnector {
     }
 
     /// Runs until there is no connection and will be none. `handles` is cancelled when the last
-    /// handle is dropped; `shutdowns` are told of the end.
+    /// handle is dropped; `shutdowns` are notified of the end.
     pub(crate) async fn run(
         mut self,
         mut shutdowns: mpsc::UnboundedReceiver<oneshot::Sender<()>>,
@@ -102,7 +102,7 @@ impl Reconnector {
         while let Some(ended) = shutdowns.recv().await {
             done.push(ended);
         }
-        // What ends with it, ends before whoever waits is told.
+        // Everything that ends with it ends before the waiting callers are notified.
         drop(self);
         for ended in done {
             // Fails if the caller was dropped.
@@ -153,7 +153,7 @@ impl Reconnector {
             Ok(opened) => opened,
             Err(error) => return self.supervisor.on_connect_failed(failure(&error)),
         };
-        // Without handles nobody wants it: dropping it closes it.
+        // Without handles no program needs it: dropping it closes it.
         let Some(robot) = self.robot.upgrade() else {
             return;
         };
@@ -256,7 +256,7 @@ fn failure(error: &ConnectError) -> ConnectFailure {
     }
 }
 
-/// What differs between two models, for a person.
+/// Differences of two models, for a person.
 fn difference(expected: &Model, got: &Model) -> String {
     if expected.kind() != got.kind() {
         return format!("got {:?}, expected {:?}", got.kind(), expected.kind());

@@ -4,7 +4,7 @@
 //! Recording::open --cycles--> Samples --ReplayPlan::new--> plan --Arm::replay--> ReplayReport
 //! ```
 //!
-//! What is followed, and what is refused, is decided in [`ReplayPlan`], before anything moves.
+//! [`ReplayPlan`] decides what is followed and what is refused, before anything moves.
 
 use std::time::Duration;
 
@@ -19,7 +19,7 @@ pub use franka_record::replay::{
 use crate::arm::{Arm, Engage};
 use crate::robot::Robot;
 
-/// How a replay went.
+/// Report of a replay.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ReplayReport {
@@ -34,7 +34,8 @@ pub struct ReplayReport {
     pub states: usize,
 }
 
-/// Why a replay has no report. The arm is braked and then held, unless the session has ended.
+/// Reason why a replay has no report. The arm is braked and then held, unless the session has
+/// ended.
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReplayFailure {
@@ -49,7 +50,7 @@ pub enum ReplayFailure {
     Off {
         /// The time in the replay.
         after: Duration,
-        /// What was measured.
+        /// Measured distance.
         distance: String,
         /// The most that is accepted.
         most: String,
@@ -88,10 +89,9 @@ impl Robot {
 
 impl Arm {
     /// Moves to the first target of a recorded motion as [`Arm::move_joints`] does, slower by the
-    /// [speed of the plan](ReplayPlan::speed), and then follows the targets at their times, with
-    /// all guards of the session and the limits of the
-    /// [plan](ReplayPlan::budget). Resolves when the arm rests at the last one, with how far it was
-    /// from where the recorded arm was.
+    /// [speed of the plan](ReplayPlan::speed). Then it follows the targets at their times, with all
+    /// guards of the session and the limits of the [plan](ReplayPlan::budget). Resolves when the
+    /// arm rests at the last target, with the distance to the position of the recorded arm.
     ///
     /// It ends as [`ReplayFailure::Off`] once a joint is further than
     /// [`ReplayPlan::JOINTS_OFF_MAX`] from there, or, of a replay by poses, the end effector than
@@ -159,8 +159,9 @@ impl Arm {
         })
     }
 
-    /// Why a replay is over: what ended the session if it has ended, or else `error`. A session
-    /// that is about to end takes no goals, and has no other reason for that.
+    /// Returns the reason why a replay is over: the cause of the end of the session if it has
+    /// ended, or else `error`. A session that is about to end takes no goals, and has no other
+    /// reason for that.
     fn over(&self, error: MotionError) -> MotionError {
         match (self.session_error(), error) {
             (Some(ended), _) => ended,
@@ -169,7 +170,7 @@ impl Arm {
         }
     }
 
-    /// A goal with other limits than those of the session.
+    /// A goal with other limits than the session.
     fn goal_within(&self, target: Target, budget: Budget) -> Goal {
         Goal {
             budget,
@@ -178,12 +179,12 @@ impl Arm {
     }
 }
 
-/// Why a session ended.
+/// Returns the reason why a session ended.
 fn over(outcome: Outcome) -> MotionError {
     outcome.err().unwrap_or(MotionError::Disengaged)
 }
 
-/// Brakes a replay that does not come to its end, and has the session hold the arm.
+/// Brakes a replay that does not finish; the session then holds the arm.
 struct BrakeOnDrop<'a> {
     arm: &'a Arm,
     /// The goal of its chunks; `None` before the first one, and once there is nothing to brake.

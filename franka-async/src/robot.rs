@@ -31,22 +31,21 @@ use crate::states::States;
 use crate::supervisor::{Events, Supervisor};
 use crate::world::{self, Instant, Runtime, timeout_at};
 
-/// Pose of a frame in another, `[m]`. Unless said otherwise: of the end effector in the base frame,
-/// `O_T_EE`.
+/// Pose of a frame in another, `[m]`. Unless stated otherwise, the pose of the end effector in the
+/// base frame, `O_T_EE`.
 pub type Pose = nalgebra::Isometry3<f64>;
 
 /// A connected robot.
 ///
 /// A cheap handle: clones share one connection, from any task or thread. A newer motion supersedes
-/// the one that runs. Dropping the last handle brakes the arm, ends the motion and closes the
+/// the current one. Dropping the last handle brakes the arm, ends the motion and closes the
 /// connection, in the background; [`Robot::shutdown`] does the same and can be awaited. Motions in
 /// progress are handles too.
 ///
-/// A connection that is lost ends everything that belongs to it, control thread included; the
-/// handles that are left then say why, and those of a robot that is
-/// [supervised](crate::connection::Builder::supervise) go on with the next one. If the runtime ends
-/// first, the arm is not braked: the robot misses its commands and stops by itself, with a reflex.
-/// Await [`Robot::shutdown`] before the program ends.
+/// A lost connection ends everything that belongs to it, control thread included. The remaining
+/// handles then report why. Handles of a [supervised](crate::connection::Builder::supervise) robot
+/// continue with the next connection. If the runtime ends first, the arm is not braked: the robot
+/// misses its commands and stops with a reflex. Await [`Robot::shutdown`] before the program ends.
 ///
 /// Connecting needs a Tokio runtime. Everything else may be called and awaited from anywhere.
 #[derive(Clone)]
@@ -54,7 +53,7 @@ pub struct Robot {
     shared: Arc<Shared>,
 }
 
-/// What all handles of a robot share.
+/// State that all handles of a robot share.
 struct Shared {
     model: Arc<Model>,
     version: Version,
@@ -63,21 +62,21 @@ struct Shared {
     supervisor: Arc<Supervisor>,
     /// Held until a setting has its place among the requests: none is overtaken by an older one.
     setting: Arc<Mutex<()>>,
-    /// The way into the task that reconnects; `None` if there is none. Closed when it has ended.
+    /// The way into the task that reconnects; `None` without such a task. Closed when it has ended.
     shutdowns: Option<mpsc::UnboundedSender<oneshot::Sender<()>>>,
-    /// Where that task runs, and the bridges.
+    /// Runtime of that task and of the bridges.
     runtime: Runtime,
-    /// Tells that task of the end of the last handle.
+    /// Notifies that task when the last handle is dropped.
     _handles: DropGuard,
-    /// How many goals were named so far, whatever the connection.
+    /// Number of goals named so far, over all connections.
     goals: AtomicU64,
     lease: Lease,
 }
 
 impl Robot {
     /// Returns the robot of this model and version that `link` connects to. `shutdowns` leads to
-    /// the task that reconnects, if there is one; `handles` tells that task when the last handle is
-    /// dropped.
+    /// the task that reconnects, if there is one; `handles` notifies that task when the last handle
+    /// is dropped.
     ///
     /// # Panics
     /// Outside a Tokio runtime.
@@ -106,14 +105,14 @@ impl Robot {
         }
     }
 
-    /// The newest state, however old it is: [`Self::health`] tells of a robot that is silent.
+    /// The newest state, however old it is: [`Self::health`] reports a silent robot.
     pub fn state(&self) -> RobotState {
         self.link().newest.state()
     }
 
-    /// The newest state as it changes, in motion or not. Ends when the connection does; of a
-    /// supervised robot it goes on with the next one, and ends when there will be none. For every
-    /// state, see [`Self::state_stream`] and [`Self::read`].
+    /// The newest state as it changes, in motion or not. Ends when the connection does. For a
+    /// supervised robot it continues with the next connection, and ends when there will be none.
+    /// For every state, see [`Self::state_stream`] and [`Self::read`].
     ///
     /// It begins with the newest state at the call. As long as one of these exists, a task is woken
     /// for every state; drop it when it is no longer needed.
@@ -126,18 +125,19 @@ impl Robot {
         States::new(link.newest.changes(), closing.clone())
     }
 
-    /// What every cycle of the control thread saw and did, one record per state; the first ones may
-    /// be of cycles up to 50 ms ago. A listener that lags more than two seconds behind is told how
-    /// many it missed. Closes when the connection does.
+    /// Records of every cycle of the control thread, one per state, with what it saw and did. The
+    /// first ones may be of cycles up to 50 ms ago. A listener that lags more than two seconds
+    /// behind receives the number of records that it missed. Closes when the connection does.
     pub fn records(&self) -> broadcast::Receiver<Record> {
         self.link().subscriptions().records()
     }
 
     /// Every cycle of the control thread from now on, with record, whole state and time of receipt:
-    /// for a recorder, on a thread of its own. No task passes the cycles on, so a busy runtime
-    /// costs none of them. The ring holds `capacity` cycles, usually
-    /// [`CycleFeed::DEFAULT_CAPACITY`](crate::record::CycleFeed::DEFAULT_CAPACITY); what does not fit is counted ([`CycleReader::lost`]). Ends
-    /// with the connection. Takes a few milliseconds for the memory of the ring.
+    /// for a recorder, on a separate thread. No task passes the cycles on, so a busy runtime costs
+    /// none of them. The ring holds `capacity` cycles, usually
+    /// [`CycleFeed::DEFAULT_CAPACITY`](crate::record::CycleFeed::DEFAULT_CAPACITY); what does not
+    /// fit is counted ([`CycleReader::lost`]). Ends with the connection. Takes a few milliseconds
+    /// for the memory of the ring.
     ///
     /// # Errors
     /// [`AttachError`]: a capacity out of range, as many readers as there can be, no connection.
@@ -152,17 +152,18 @@ impl Robot {
     /// The measured pose of the end effector, `O_T_EE` of the newest state.
     pub fn pose(&self) -> Pose {
         let state = self.state();
-        // An invalid pose is replaced by that of the joint positions.
+        // An invalid pose is replaced by the pose at the joint positions.
         pose_of(&state).unwrap_or_else(|| pose_at(self.model(), &state, state.q))
     }
 
     /// The pose that the end effector has at the joint positions `q`, `[rad]`, with the end
-    /// effector of the newest state. One that is not a rigid transformation counts as the flange.
+    /// effector of the newest state. An end effector that is not a rigid transformation counts as
+    /// the flange.
     pub fn pose_at(&self, q: [f64; 7]) -> Pose {
         pose_at(self.model(), &self.state(), q)
     }
 
-    /// Where target control has the arm go; `None` while it moves nothing.
+    /// The reference of target control; `None` while it moves nothing.
     pub fn reference(&self) -> Option<Reference> {
         let newest = self.link().course.reference()?;
         Some(Reference {
@@ -176,18 +177,18 @@ impl Robot {
     }
 
     /// The model of the connected arm, which control computes with. A Franka Research 3 describes
-    /// itself: its masses and limits are those of the description ([`Robot::urdf`]), unless the
+    /// itself. Its masses and limits are taken from the description ([`Robot::urdf`]), unless the
     /// feature `urdf` is off or
     /// [`Builder::nominal_model`](crate::connection::Builder::nominal_model) is chosen. A Franka
-    /// Emika Robot does not: it has the constants that its own library is known to compute with,
-    /// [`Model::fer`]. Of either, the lengths of upper arm and forearm are those that the robot
-    /// computes its poses with: see [`Self::geometry_check`].
+    /// Emika Robot has no description. Its model has the constants that its own library is known to
+    /// compute with, [`Model::fer`]. In both models, the lengths of upper arm and forearm are the
+    /// lengths that the robot computes its poses with: see [`Self::geometry_check`].
     pub fn model(&self) -> &Model {
         &self.shared.model
     }
 
-    /// How the model agreed with the poses that the robot reported when this connection was made,
-    /// and the lengths that it therefore has.
+    /// Comparison of the model with the poses that the robot reported when this connection was
+    /// made, and the lengths that follow from it.
     pub fn geometry_check(&self) -> GeometryCheck {
         self.link().geometry
     }
@@ -197,9 +198,10 @@ impl Robot {
         StateModel::new(self.shared.model.clone(), self.shared.version)
     }
 
-    /// How far gains are from the first oscillation of an arm like this where it is. A motion whose
-    /// gains have less than [`Margin::WANTED`] begins with a warning (`tracing`). `None` for
-    /// gains that are out of their bounds, and if the robot's tool is no rigid body.
+    /// Returns how far gains are from the first oscillation of an arm like this in its present
+    /// state. A motion whose gains have less than [`Margin::WANTED`] begins with a warning
+    /// (`tracing`). `None` for gains that are out of their bounds, and if the robot's tool is no
+    /// rigid body.
     pub fn margin(&self, gains: &Gains) -> Option<Margin> {
         Margin::of(gains, self.model(), &self.state(), self.version())
     }
@@ -209,7 +211,7 @@ impl Robot {
         self.shared.version
     }
 
-    /// Where the robot is.
+    /// Address of the robot.
     pub fn address(&self) -> SocketAddr {
         self.link().address
     }
@@ -219,43 +221,44 @@ impl Robot {
         &self.shared.lease
     }
 
-    /// Counters and histograms of the control thread, its worst cycle and the motion that runs,
-    /// live: written by the thread itself, and to be read whatever the runtime is busy with. Each
-    /// connection has a thread and counters of its own.
+    /// Counters and histograms of the control thread, its worst cycle and the current motion, live.
+    /// The thread itself writes them, so they can be read while the runtime is busy. Each
+    /// connection has its own thread and counters.
     pub fn stats(&self) -> Arc<Stats> {
         self.link().stats.clone()
     }
 
-    /// What the operating system granted the control thread, and what it refused under
+    /// Returns what the operating system granted the control thread, and what it refused under
     /// [`Realtime::Ignore`](crate::Realtime).
     pub fn granted(&self) -> Arc<Granted> {
         self.link().granted.clone()
     }
 
-    /// Brakes whatever moves. Resolves when the motion has ended and a state shows the arm at rest
-    /// and no motion of the robot; at once if that is so already. The motion itself resolves as
-    /// [`MotionError::Stopped`] as soon as the stop is taken, while the arm still brakes.
+    /// Brakes everything that moves. Resolves when the motion has ended and a state shows the arm
+    /// at rest and no motion of the robot; at once if that is so already. The motion itself
+    /// resolves as [`MotionError::Stopped`] as soon as the stop is taken, while the arm still
+    /// brakes.
     ///
     /// Stops of several callers share one brake and its outcome. If a motion was given up and the
-    /// robot still shows it, each call tells the robot to stop once more. A stop does not hold: a
-    /// motion that another task begins after it moves the arm again, and the stop then resolves as
+    /// robot still shows it, each call sends the robot another stop request. A stop does not hold:
+    /// a motion that another task begins after it moves the arm again. The stop then resolves as
     /// [`MotionError::Superseded`] unless the arm was seen to rest before. [`Self::latch_stop`]
     /// holds.
     ///
-    /// An arm that hands keep in motion is stopped by the robot: it is told to after two seconds,
-    /// and has four to end the motion and two more to show an arm at rest. So a stop resolves within
-    /// eight seconds, mostly within half a second, while the link stays up.
+    /// An arm that hands keep in motion is stopped by the robot. It receives the stop request after
+    /// two seconds, and has four to end the motion and two more to show an arm at rest. So a stop
+    /// resolves within eight seconds, mostly within half a second, while the link stays up.
     ///
     /// If the connection to a [supervised](crate::connection::Builder::supervise) robot is lost
     /// meanwhile, the stop waits for the next one, 10 s at most, and stops there as well.
     ///
     /// # Errors
-    /// [`MotionError`] if the motion ended otherwise, for instance by a reflex;
-    /// [`MotionError::Protocol`] if the robot still shows a motion after two seconds,
-    /// [`MotionError::NotAtRest`] if it shows none and the arm moves, by a hand that guides it;
-    /// [`MotionError::Superseded`], see above; [`MotionError::LinkLost`] if the robot has been
+    /// [`MotionError`] if the motion ended otherwise, for instance by a reflex.
+    /// [`MotionError::Protocol`] if the robot still shows a motion after two seconds.
+    /// [`MotionError::NotAtRest`] if it shows none and the arm moves, by a hand that guides it.
+    /// [`MotionError::Superseded`], see above. [`MotionError::LinkLost`] if the robot has been
     /// silent for the link timeout, and [`MotionError::ConnectionClosed`] if there is no
-    /// connection: it is unknown whether the arm rests.
+    /// connection: in both cases it is unknown whether the arm rests.
     ///
     /// # Cancel safety
     /// Once polled, the arm is braked even if the future is dropped; a dropped stop does not wait
@@ -264,12 +267,12 @@ impl Robot {
         self.brake(false).await
     }
 
-    /// Stops as [`Self::stop`] does, and latches the stop: until [`Self::release_stop`] every
-    /// motion, session, control function and goal is refused as [`MotionError::NotReady`] with
-    /// [`Unready::StopLatched`](crate::error::Unready::StopLatched), whoever asks for it and by
-    /// whatever handle. A motion that waits for the robot is taken back. The latch outlives
-    /// connections, and holds whatever the stop resolves as. Parameters can be set, and the robot
-    /// recovered; neither moves anything.
+    /// Stops as [`Self::stop`] does, and latches the stop. Until [`Self::release_stop`], every
+    /// motion, session, control function and goal of any handle is refused as
+    /// [`MotionError::NotReady`] with [`Unready::StopLatched`](crate::error::Unready::StopLatched).
+    /// A motion that waits for the robot is taken back. The latch outlives connections, and holds
+    /// regardless of the outcome of the stop. Parameters can be set, and the robot recovered;
+    /// neither moves anything.
     ///
     /// It is a latch of this program, and no safety function: it is gone when the program ends.
     ///
@@ -333,11 +336,11 @@ impl Robot {
     }
 
     /// Brakes, ends the motion, ends the control thread and closes the connection. Every other
-    /// handle is then closed. Whether the arm was seen to rest is what [`Self::stop`] says, called
+    /// handle is then closed. To learn whether the arm was seen to rest, call [`Self::stop`]
     /// before.
     ///
     /// # Cancel safety
-    /// Once polled, it goes on in the background.
+    /// Once polled, it continues in the background.
     pub async fn shutdown(&self) {
         let (reply, ended) = oneshot::channel();
         match &self.shared.shutdowns {
@@ -350,7 +353,7 @@ impl Robot {
     }
 
     /// Waits until the connection has ended, and returns why. Every motion has resolved by then or
-    /// is about to. Of a supervised robot: until there is none and will be none, because the
+    /// is about to. For a supervised robot it waits until there will be no connection, because the
     /// supervisor has given up or this program has closed it.
     ///
     /// # Cancel safety
@@ -365,27 +368,27 @@ impl Robot {
         }
     }
 
-    /// What happens to the robot from now on: connections lost and made, reflexes with their
-    /// diagnosis, recoveries, user stop, guiding, brakes, motions, loads. Ends when there is no
-    /// connection and will be none. It is there for a robot that is not supervised, too. What
-    /// only a state shows is noticed within 50 ms.
+    /// Events of the robot from now on: connections lost and made, reflexes with their diagnosis,
+    /// recoveries, user stop, guiding, brakes, motions, loads. Ends when there is no connection and
+    /// will be none. A robot that is not supervised has events, too. Changes that only a state
+    /// shows are noticed within 50 ms.
     pub fn events(&self) -> Events {
         self.shared.supervisor.events()
     }
 
-    /// How the robot is, as it changes: whether it takes motions, why not, and how long
+    /// Health of the robot, as it changes: whether it takes motions, why not, and how long
     /// reconnecting and recovering took. Ends as [`Self::events`] does.
     pub fn health(&self) -> States<Health> {
         let supervisor = &self.shared.supervisor;
         States::new(supervisor.health(), supervisor.closing().clone())
     }
 
-    /// Agrees, or not, to the recovery from the reflex of this number: for a
-    /// [`Policy`](crate::supervision::Policy) that asks first. Returns whether that was awaited: it
-    /// is not if the robot has left the reflex or another error has come, and then nothing happens.
-    /// The number is that of the event, or of [`Health::reflex`].
+    /// Approves or rejects the recovery from the reflex of this number, for a
+    /// [`Policy`](crate::supervision::Policy) that asks first. Returns true if the answer was
+    /// awaited. It is not awaited if the robot has left the reflex or another error has come, and
+    /// then nothing happens. The number is in the event, and in [`Health::reflex`].
     ///
-    /// Nothing moves. A robot may be recovered by [`Self::recover`] as well, whatever the policy.
+    /// Nothing moves. [`Self::recover`] recovers a robot as well, under any policy.
     pub fn agree(&self, reflex: u64, agreed: bool) -> bool {
         self.shared.supervisor.agree(reflex, agreed)
     }
@@ -411,13 +414,13 @@ impl Robot {
         drop(before);
     }
 
-    /// What happened so far, counted.
+    /// Counts of the events so far.
     #[cfg(feature = "metrics")]
     pub(crate) fn tally(&self) -> crate::tally::Tally {
         self.shared.supervisor.tally()
     }
 
-    /// The newest connection. Whoever needs several things of the same one, asks once.
+    /// The newest connection. Ask once if you need several things of the same connection.
     pub(crate) fn link(&self) -> Arc<Link> {
         let link = self.shared.link.read();
         // Nothing can panic while it is held.
@@ -460,8 +463,9 @@ impl Robot {
     }
 }
 
-/// Waits until there is a connection to the robot with states, for a while at first so that what
-/// was just lost is shown as lost. Returns false if there is none before `end`.
+/// Waits until there is a connection to the robot with states. It waits at first, so that a
+/// connection that was just lost is shown as lost. Returns false if there is no connection before
+/// `end`.
 async fn connected(mut health: States<Health>, end: Instant) -> bool {
     world::sleep(SHOWN_WITHIN).await;
     let away = [Unready::Disconnected, Unready::Silent].map(Condition::Unready);
@@ -472,7 +476,7 @@ async fn connected(mut health: States<Health>, end: Instant) -> bool {
     }
 }
 
-/// How long a stop waits for the next connection.
+/// Time for which a stop waits for the next connection.
 const RECONNECTED_WITHIN: Duration = Duration::from_secs(10);
 
 /// Time in which the bridge shows that the robot is silent: it looks every 50 ms.

@@ -1,4 +1,4 @@
-//! What all handles of a session share.
+//! State that all handles of a session share.
 
 use std::future::Future;
 use std::sync::{Arc, OnceLock};
@@ -18,11 +18,11 @@ pub(crate) struct Session {
     robot: Robot,
     id: GoalId,
     tuning: KeptTuning,
-    /// Where it began, `[rad]`: the posture that goals without one keep.
+    /// Joint positions at the start, `[rad]`: the posture that goals without one keep.
     posture: OnceLock<[f64; 7]>,
-    /// Of the deadman that it is bound to.
+    /// Pulse of the deadman that it is bound to.
     pulse: Option<Arc<Pulse>>,
-    /// What was set without waiting.
+    /// Goal that was set without waiting.
     pub(crate) waiting: Waiting,
     ended: watch::Receiver<Option<Outcome>>,
 }
@@ -60,7 +60,7 @@ impl Session {
         self.id
     }
 
-    /// How goals to come are pursued.
+    /// Tuning of goals to come.
     pub(crate) fn tuning(&self) -> &KeptTuning {
         &self.tuning
     }
@@ -72,7 +72,7 @@ impl Session {
         }
     }
 
-    /// Where it began, `[rad]`, if that is known.
+    /// Joint positions at the start, `[rad]`, if known.
     pub(crate) fn posture(&self) -> Option<[f64; 7]> {
         self.posture.get().copied()
     }
@@ -81,7 +81,7 @@ impl Session {
         self.ended.borrow().is_some()
     }
 
-    /// What a call is answered with once the session has ended.
+    /// Returns the error for a call after the end of the session.
     pub(crate) fn check(&self) -> Result<(), MotionError> {
         match &*self.ended.borrow() {
             None => Ok(()),
@@ -105,7 +105,7 @@ impl Session {
     pub(crate) fn ended(&self) -> impl Future<Output = Outcome> + Send + 'static {
         let (mut ended, robot) = (self.ended.clone(), self.robot.clone());
         async move {
-            // Whoever waits keeps the connection.
+            // A waiting caller keeps the connection.
             let _robot = robot;
             match ended.wait_for(Option::is_some).await {
                 Ok(outcome) => outcome.clone().expect("it was waited for"),
@@ -125,9 +125,9 @@ impl Session {
         reply.map_err(|error| self.explain(error))
     }
 
-    /// Replaces [`MotionError::Disengaged`] by what ended the session: the lifecycle knows that of
-    /// the last session of its connection only. What comes after the session and its connection
-    /// have ended is answered with the end of the session, too.
+    /// Replaces [`MotionError::Disengaged`] by the cause of the end of the session: the lifecycle
+    /// knows only the last session of its connection. Calls after the end of the session and its
+    /// connection return that cause, too.
     pub(crate) fn explain(&self, error: MotionError) -> MotionError {
         match (&*self.ended.borrow(), error) {
             (Some(Err(ended)), MotionError::Disengaged | MotionError::ConnectionClosed { .. }) => {

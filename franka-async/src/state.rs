@@ -1,4 +1,4 @@
-//! States of the robot, whatever moves: the newest as it changes ([`States`]), or every one
+//! States of the robot, in motion or not: the newest as it changes ([`States`]), or every one
 //! ([`StateStream`]).
 
 pub use crate::state_stream::{Reading, StateStream};

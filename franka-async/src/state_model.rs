@@ -1,4 +1,4 @@
-//! The model at what a state says of arm, end effector and load.
+//! The model at the arm, end effector and load of a state.
 
 use std::sync::Arc;
 
@@ -87,8 +87,8 @@ mod tests {
 
     use super::*;
 
-    /// In both protocols: 2 kg of payload and 1 kg of end effector weigh what 3 kg do, in whatever
-    /// direction a state has the gravity.
+    /// In both protocols, 2 kg of payload and 1 kg of end effector weigh as much as 3 kg, for any
+    /// direction of gravity in the state.
     #[test]
     fn what_a_state_carries_weighs_in_its_terms() {
         let state = RobotState {

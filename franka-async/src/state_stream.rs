@@ -20,10 +20,10 @@ use crate::robot::Robot;
 pub struct Reading {
     /// The state.
     pub state: RobotState,
-    /// How many states the robot sent between the one that this stream gave before and this one:
-    /// they never came, were skipped for a newer one by the control thread, or came while the
-    /// reader lagged too far behind. Of the first one of a stream: how many it sent since the
-    /// stream was made, and before this one.
+    /// Number of states that the robot sent between the last state of this stream and this one.
+    /// They never came, were skipped for a newer one by the control thread, or came while the
+    /// reader lagged too far behind. For the first state of a stream, counts from the creation of
+    /// the stream.
     pub missed: u64,
 }
 
@@ -36,8 +36,8 @@ pub struct StateStream {
 }
 
 impl Robot {
-    /// Calls `each` with every state that comes, until it breaks; returns what it breaks with.
-    /// Whatever moves meanwhile.
+    /// Calls `each` with every state that comes, until it breaks; returns what it breaks with. In
+    /// motion or not.
     ///
     /// ```no_run
     /// # async fn run(robot: franka_async::Robot) -> Result<(), franka_async::error::ReadError> {
@@ -52,9 +52,9 @@ impl Robot {
     /// # }
     /// ```
     ///
-    /// `each` runs in the task that awaits, not on the control thread: it holds up whatever else
-    /// that task does, and nothing else. One that takes longer than a millisecond lags behind, and
-    /// misses states once it lags by more than a second; [`Self::state_stream`] says how many.
+    /// `each` runs in the task that awaits, not on the control thread, and delays nothing but that
+    /// task. If it takes longer than a millisecond it lags behind, and misses states once it lags
+    /// by more than a second; [`Self::state_stream`] reports how many.
     ///
     /// # Errors
     /// [`ReadError::LinkLost`] when the robot has been silent for the link timeout, at once if it
@@ -92,10 +92,9 @@ impl Robot {
         }
     }
 
-    /// Every state from now on, each once and in order, with the number of those missed before it;
-    /// whatever moves meanwhile. A reader may lag about a second behind before it misses any. Ends
-    /// when the connection does, and pauses while the robot is silent. It does not keep the
-    /// connection.
+    /// Every state from now on, each once and in order, with the number of states missed before it;
+    /// in motion or not. A reader may lag about a second behind before it misses any. Ends when the
+    /// connection does, and pauses while the robot is silent. It does not keep the connection.
     ///
     /// For the newest state whenever one looks, see [`Self::states`]; for what control made of
     /// each, [`Self::records`].
@@ -128,7 +127,7 @@ impl Stream for StateStream {
                 Some(Ok(Update::Silence(_)) | Err(BroadcastStreamRecvError::Lagged(_))) => continue,
                 None => return Poll::Ready(None),
             };
-            // What was there before the stream was made may still come.
+            // States from before the creation of the stream may still come.
             let Some(missed) = state.message_id.checked_sub(self.newest + 1) else {
                 continue;
             };

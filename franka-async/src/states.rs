@@ -14,11 +14,11 @@ use crate::error::ReadError;
 /// The newest state of a robot or an end effector as it changes: see
 /// [`Robot::states`](crate::Robot::states).
 ///
-/// As a [`Stream`] it yields each change, or the newest of those that came meanwhile, and ends when
-/// the connection does. A clone begins with the newest state of its own making.
+/// As a [`Stream`] it yields each change, or the newest of several changes since the last, and ends
+/// when the connection does. A clone begins with the newest state when it is made.
 ///
 /// States are handed out as copies. A borrow would lock out the task that publishes states and
-/// serves `stop`: one that is held across an await would keep both waiting for each other.
+/// serves `stop`. A borrow held across an await would keep both waiting for each other.
 #[derive(Debug)]
 pub struct States<S = RobotState> {
     published: watch::Receiver<S>,
@@ -27,7 +27,7 @@ pub struct States<S = RobotState> {
 }
 
 impl<S: Copy + Send + Sync + 'static> States<S> {
-    /// Yields what `published` changes to from now on; `closing` says why it ends.
+    /// Yields the changes of `published` from now on; `closing` has the reason of its end.
     pub(crate) fn new(mut published: watch::Receiver<S>, closing: Closing) -> Self {
         published.mark_unchanged();
         Self {
@@ -135,7 +135,7 @@ mod tests {
         let (publisher, published) = watch::channel(state(1));
         let mut states = States::new(published, Closing::default());
         let held = states.newest();
-        // A held borrow of the watch channel would block this thread here for ever.
+        // A held borrow of the watch channel would block this thread here indefinitely.
         publisher.send_replace(state(2));
         assert_eq!(held.message_id, 1);
         let waited = states.wait_for(|state| state.message_id == 2);

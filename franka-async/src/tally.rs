@@ -4,8 +4,7 @@ use franka_proto::RobotError;
 use franka_rt::lifecycle::{MotionError, Outcome};
 use franka_rt::supervision::EventKind;
 
-/// How often motions ended in which way, and the robot stopped itself for which errors, since it
-/// was first connected to.
+/// Counts since the first connection: motions by how they ended, and reflexes by their errors.
 #[derive(Clone, Debug)]
 pub(crate) struct Tally {
     motions: [u64; OUTCOMES.len()],

@@ -14,11 +14,11 @@ impl Robot {
     /// second of its clock, to take it off later: robots show a newton or two with nothing
     /// attached. [`Self::tare_over`] takes another time.
     ///
-    /// The arm has to rest, untouched. A tare belongs to the posture in which it was taken: an
-    /// undeclared load, cables and errors of the model pull otherwise elsewhere, and friction
-    /// sticks otherwise after each motion. [`WrenchTare::turned`] says how far the arm has turned
-    /// since; beyond [`WrenchTare::NEAR`], take a new one. Nothing is changed at the robot, whose
-    /// own contact and collision thresholds see the wrench as before.
+    /// The arm has to rest, untouched. A tare belongs to the posture in which it was taken: in
+    /// another posture, an undeclared load, cables and errors of the model pull differently, and
+    /// friction sticks differently after each motion. [`WrenchTare::turned`] reports how far the
+    /// arm has turned since; beyond [`WrenchTare::NEAR`], take a new one. Nothing is changed at the
+    /// robot, whose own contact and collision thresholds see the wrench as before.
     ///
     /// ```no_run
     /// use franka_async::condition::force_z;
@@ -66,7 +66,7 @@ impl Robot {
         Ok(tare)
     }
 
-    /// An arm that is to move may stick yet, while it is pushed against its friction.
+    /// An arm that should move may still stick, while it is pushed against its friction.
     fn check_reference(&self) -> Result<(), TareRefused> {
         let moves = |dq: &f64| dq.abs() > 1e-4;
         match self.reference() {

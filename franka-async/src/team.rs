@@ -8,9 +8,9 @@
 //!
 //! The real-time threads of the arms share one atomic word, which each looks at once in each cycle.
 //! So the arms begin within a millisecond of each other, and the fault of one brakes the others
-//! within two of their cycles after its thread has seen it, whatever the runtime is busy with. What
-//! counts as a fault says [`MemberFault`]; an arm that arrives, and one whose
-//! [condition](crate::condition) became true, have none.
+//! within two of their cycles after its thread has seen it, also while the runtime is busy.
+//! [`MemberFault`] lists the faults. An arm that arrives, or whose [condition](crate::condition)
+//! became true, has no fault.
 //!
 //! ```no_run
 //! use franka_async::team::Team;
@@ -49,15 +49,15 @@ use crate::motion::Follow;
 use crate::move_to::Motion;
 use crate::robot::Robot;
 
-/// How the motion of one member has ended.
+/// Outcome of the motion of one member.
 type Outcome = Result<MotionReport, MotionError>;
 
 /// `N` arms in one session each, with one stop. Members count from 0, in the order in which they
 /// were given.
 ///
-/// The [`arms`](Self::arms) can also be moved by themselves: such a motion waits for no other and
-/// its end concerns no other. But every motion of a member, joint or not, brakes when the session
-/// of another one ends otherwise than by [`Arm::disengage`], or when the team is stopped. A motion
+/// The [`arms`](Self::arms) can also be moved alone: such a motion waits for no other and its end
+/// concerns no other. But every motion of a member, joint or not, brakes when the session of
+/// another one ends otherwise than by [`Arm::disengage`], or when the team is stopped. A motion
 /// that comes after that begins as usual.
 ///
 /// Dropping it brakes all arms and ends their sessions, in the background, unless other handles of
@@ -67,8 +67,8 @@ type Outcome = Result<MotionReport, MotionError>;
 pub struct Team<const N: usize> {
     arms: [Arm; N],
     coordinator: Coordinator,
-    /// Held while the goals of a joint motion are sent, so that all arms get those of two motions
-    /// in the same order.
+    /// Held while the goals of a joint motion are sent, so that all arms get the goals of two
+    /// motions in the same order.
     submission: Arc<Mutex<()>>,
 }
 
@@ -76,9 +76,9 @@ pub struct Team<const N: usize> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("member {member} of the team: {error}")]
 pub struct NotEngaged {
-    /// Which.
+    /// Member whose arm could not be engaged.
     pub member: usize,
-    /// Why not.
+    /// Reason.
     #[source]
     pub error: MotionError,
 }
@@ -102,9 +102,9 @@ impl<const N: usize> Team<N> {
         Self::engage_tolerating(SILENCE, robots).await
     }
 
-    /// As [`Self::engage`], with the silence of a robot after which the others brake in place of
-    /// [`SILENCE`]: for simulators on a machine that is busy with other things. A robot stops by
-    /// itself after 20 ms without commands.
+    /// As [`Self::engage`], but the others brake after this silence of a robot instead of
+    /// [`SILENCE`]: for simulators on a machine that is busy with other things. A robot stops on
+    /// its own after 20 ms without commands.
     ///
     /// # Errors
     /// As [`Self::engage`].
@@ -147,13 +147,13 @@ impl<const N: usize> Team<N> {
         })
     }
 
-    /// A motion of all arms: `motion` gives that of each member, made by its arm. All begin
-    /// together, when the last one's goal is there; an arm that moves goes on until then. Where
+    /// A motion of all arms: `motion` returns the motion of each member, made by its arm. All begin
+    /// together, when the last one's goal is there; an arm that moves continues until then. Where
     /// some follow targets and others do not, convert each `into` a [`MemberMotion`].
     ///
     /// If one has a fault, the others brake and resolve as [`MotionError::Braked`] with
     /// [`Lapse::Team`](crate::error::Lapse::Team), which names the member. All of them hold where
-    /// they come to rest. If one is refused or taken back before the start, none begins.
+    /// they stop. If one is refused or taken back before the start, none begins.
     ///
     /// # Panics
     /// If a motion is not one of the arm that was given.
@@ -177,9 +177,9 @@ impl<const N: usize> Team<N> {
         }
     }
 
-    /// Brakes all arms, each within two of its cycles, whatever the runtime is busy with: the
-    /// real-time threads see it by themselves. Motions resolve as [`MotionError::Braked`] with
-    /// [`TeamStop::Requested`]. The sessions go on and hold the arms.
+    /// Brakes all arms, each within two of its cycles, also while the runtime is busy: the
+    /// real-time threads see the stop directly. Motions resolve as [`MotionError::Braked`] with
+    /// [`TeamStop::Requested`]. The sessions continue and hold the arms.
     ///
     /// No newer motion hides the stop. A joint motion that begins before every arm has seen it does
     /// not start, and resolves in the same way.
@@ -188,7 +188,7 @@ impl<const N: usize> Team<N> {
     }
 
     /// Brakes all arms as [`Self::stop`] does, ends their sessions and latches the stop of each
-    /// robot: see [`Robot::latch_stop`]. Until it is released, joint motions and those of single
+    /// robot: see [`Robot::latch_stop`]. Until it is released, joint motions and motions of single
     /// arms are refused. Returns what the stop of each arm came to.
     ///
     /// # Cancel safety
@@ -201,7 +201,7 @@ impl<const N: usize> Team<N> {
     }
 
     /// Releases the latched stop of each robot: see [`Robot::release_stop`]. The sessions have
-    /// ended, so the next motions are those of a new team. Returns whether one was latched.
+    /// ended, so the next motions need a new team. Returns true if a stop was latched.
     pub fn release_stop(&self) -> bool {
         let release = |released, arm: &Arm| arm.robot().release_stop() | released;
         self.arms.iter().fold(false, release)
@@ -212,16 +212,17 @@ impl<const N: usize> Team<N> {
         Stopper(self.coordinator.clone())
     }
 
-    /// Why the newest joint motion, or what came after it, has stopped; `None` if nothing has.
+    /// Reason why the newest joint motion, or what came after it, has stopped; `None` if nothing
+    /// has.
     pub fn stopped(&self) -> Option<TeamStop> {
         self.coordinator.stopped()
     }
 
-    /// Brakes all arms, lets them go and ends their sessions; resolves when all have ended, with
-    /// how each did: see [`Arm::disengage`].
+    /// Brakes and releases all arms and ends their sessions; resolves when all have ended, with how
+    /// each did: see [`Arm::disengage`].
     ///
     /// # Cancel safety
-    /// Once polled the sessions end all the same.
+    /// Once the future is polled, the sessions still end.
     pub async fn disengage(self) -> [Outcome; N] {
         let ended = join_all(self.arms.map(Arm::disengage)).await;
         ended.try_into().expect("one for each arm")
@@ -239,7 +240,7 @@ impl Stopper {
     }
 }
 
-/// What one member does in a joint motion.
+/// Motion of one member in a joint motion.
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited"]
 #[non_exhaustive]
@@ -284,12 +285,12 @@ impl MemberMotion {
 /// A motion of all arms of a team as a future. It begins with the first poll and resolves when the
 /// motions of all members have ended, with one outcome for each, in their order.
 ///
-/// A newer joint motion supersedes it: those of its motions that are under way go on until the
-/// newer one begins.
+/// A newer joint motion supersedes it. Its motions that are under way continue until the newer one
+/// begins.
 ///
 /// # Cancel safety
 /// Dropping it, at any time, brakes all arms, each within two of its cycles; they hold where they
-/// come to rest. Dropped before the first poll, nothing has happened.
+/// stop. Dropped before the first poll, nothing has happened.
 ///
 /// # Panics
 /// When polled after it has resolved, as futures may.

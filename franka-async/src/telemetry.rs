@@ -12,12 +12,12 @@ use crate::world::Instant;
 /// Watches the statistics for commands that left too late.
 pub(crate) struct Telemetry {
     stats: Arc<Stats>,
-    /// Overruns that were told.
+    /// Overruns reported so far.
     told: u64,
     warnings: Backoff,
 }
 
-/// Ever longer times between warnings of what goes on.
+/// Ever longer times between warnings of a lasting condition.
 #[derive(Default)]
 struct Backoff {
     last: Option<Instant>,
@@ -117,7 +117,7 @@ fn micros(duration: Duration) -> u64 {
 /// Time between the first two warnings.
 const INTERVAL_MIN: Duration = Duration::from_secs(1);
 
-/// And between those of a computer that is always late.
+/// Longest interval between warnings on a computer that is always late.
 const INTERVAL_MAX: Duration = Duration::from_secs(32);
 
 #[cfg(test)]

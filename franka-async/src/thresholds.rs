@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use franka_proto::CollisionBehavior;
 use franka_rt::session::ForceCap;
 
-/// What friction alone shows in the robot's estimate of external forces, at most, `[N]`: see the
-/// book, "Target control on arms that stick".
+/// Largest share of friction alone in the robot's estimate of external forces, `[N]`: see the book,
+/// "Target control on arms that stick".
 const FRICTION: f64 = 10.0;
 
 /// The thresholds that were set over one connection: robots do not tell theirs.

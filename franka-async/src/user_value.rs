@@ -13,7 +13,7 @@ use franka_rt::panic;
 pub(crate) struct UserValue<T> {
     /// `None` only while it is dropped.
     value: Option<T>,
-    /// What it is, for the log.
+    /// Name of the value, for the log.
     what: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! The vacuum gripper, which has a connection of its own.
+//! The vacuum gripper, which has its own connection.
 
 pub use crate::vacuum_gripper::VacuumGripper;
 pub use franka_proto::vacuum::{DeviceStatus, Profile, State, Vacuum};

@@ -11,8 +11,8 @@ use crate::journal::Journal;
 use crate::states::States;
 use franka_proto::vacuum::{Request, State, Vacuum, Version};
 
-/// A connected vacuum gripper. What [`Gripper`](crate::gripper::Gripper) says of handles, actions
-/// and their ends holds for it as well.
+/// A connected vacuum gripper. Handles, actions and their ends are as for the
+/// [`Gripper`](crate::gripper::Gripper).
 #[derive(Clone, Debug)]
 pub struct VacuumGripper {
     connection: DeviceConnection<Version>,
@@ -26,13 +26,13 @@ impl VacuumGripper {
     /// [`ConnectError`]; nothing is left behind.
     ///
     /// # Cancel safety
-    /// Dropping the future closes whatever was opened.
+    /// Dropping the future closes everything that was opened.
     pub async fn connect(endpoint: impl Into<Endpoint>) -> Result<Self, ConnectError<Version>> {
         let connection = DeviceConnection::connect(endpoint.into()).await?;
         Ok(Self { connection })
     }
 
-    /// Where the gripper is.
+    /// Address of the gripper.
     pub fn address(&self) -> SocketAddr {
         self.connection.address()
     }
@@ -83,7 +83,7 @@ impl VacuumGripper {
     /// [`VacuumGripperError`].
     ///
     /// # Cancel safety
-    /// Once polled, the gripper stops all the same.
+    /// Once the future is polled, the gripper still stops.
     pub async fn stop(&self) -> Result<bool, VacuumGripperError> {
         self.connection.act(Request::Stop).await
     }

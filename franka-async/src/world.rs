@@ -196,7 +196,7 @@ pub(crate) fn has_runtime() -> bool {
     runtime::Handle::try_current().is_ok()
 }
 
-/// Starts a runtime with a thread of its own.
+/// Starts a runtime with its own thread.
 #[cfg(feature = "blocking")]
 pub(crate) fn background() -> io::Result<runtime::Runtime> {
     runtime::Builder::new_multi_thread()

@@ -55,8 +55,8 @@ impl EntryQueue {
         })
     }
 
-    /// Has everything that is written to `journal` from now on go to the track `id`, and the cycles
-    /// of new connections, so many of which may wait.
+    /// Sends everything that is written to `journal` from now on to the track `id`, and the cycles
+    /// of new connections, of which `cycles` may wait.
     pub(super) fn read(&self, journal: &Journal, id: usize, cycles: Option<usize>) {
         journal.read(Reader {
             track: id,
@@ -65,9 +65,9 @@ impl EntryQueue {
         });
     }
 
-    /// Has the track `id` begin with this state, and everything that is written to `journal` from
-    /// now on go there. States may be a tenth of a second apart: what is recorded meanwhile has
-    /// one, too. Returns whether that is new.
+    /// Begins the track `id` with this state, and sends everything that is written to `journal`
+    /// from now on there. States may be a tenth of a second apart; with this state, entries before
+    /// the next one have a state, too. Returns true if the track is new.
     pub(super) fn read_device(&self, journal: &Journal, state: What, id: usize) -> bool {
         if journal.is_read(id, &self.entries) {
             return false;
@@ -82,8 +82,8 @@ impl EntryQueue {
         self.shared.with(act)
     }
 
-    /// Records `event`, after what journals have said before the call: of the robot of this name,
-    /// or of all.
+    /// Records `event`, after the journal entries from before the call: for the robot of this name,
+    /// or for all robots.
     pub(super) fn tell(&self, name: Option<&str>, event: &EventKind) {
         let wanted = |(id, recorded): (&usize, &Recorded)| {
             let is_wanted = name.is_none_or(|name| name == recorded.track.name);

@@ -22,7 +22,7 @@
 //! ```
 //!
 //! No task of a runtime is on the way of a cycle into the file, and nothing that the recorder does
-//! can delay one. What there is no room for is dropped, counted, and the count written down.
+//! can delay one. Cycles without room are dropped and counted, and the count is recorded.
 
 mod entries;
 mod words;
@@ -60,7 +60,7 @@ use entries::{EntryQueue, Recorded};
 ///
 /// It records the robots that are [attached](Self::attach), until it is finished or dropped or they
 /// are gone; a supervised robot also after it was reconnected to. Dropping it ends the recording in
-/// the background, perhaps without the newest events; a motion under way goes on.
+/// the background, perhaps without the newest events; a motion under way continues.
 #[derive(Debug)]
 pub struct Recorder {
     entries: EntryQueue,
@@ -68,7 +68,7 @@ pub struct Recorder {
     next: AtomicUsize,
 }
 
-/// How a robot is recorded.
+/// Options for the recording of a robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Track {
     /// Its name in the recording: letters, digits, `-` and `_`; empty by default, which does for
@@ -111,7 +111,7 @@ pub enum TrackError {
     /// The recorder does not take it.
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// An end effector is to be recorded with a robot that is not.
+    /// An end effector would be recorded with a robot that is not.
     #[error("no robot called {name:?} is attached to the recorder")]
     Unknown {
         /// The name that was given.
@@ -187,7 +187,7 @@ impl Recorder {
     /// # Cancel safety
     /// Nothing is recorded if the future is dropped.
     pub async fn attach(&self, robot: &Robot, track: Track) -> Result<(), TrackError> {
-        // Without a description the recording is as good, but for viewers of the arm.
+        // Without a description the recording is as good, except for viewers of the arm.
         let urdf = match robot.model().kind() {
             RobotKind::Fer => Ok(String::new()),
             _ => robot.urdf().await,
@@ -199,13 +199,13 @@ impl Recorder {
             lengths: *robot.model().lengths(),
             urdf: urdf.ok().filter(|text| !text.is_empty()),
             metadata: metadata(robot, &track),
-            // What is asked for next may come before the first cycle.
+            // The next request may come before the first cycle.
             robot_time: robot.state().message_id,
         };
         let id = self.next.fetch_add(1, Ordering::Relaxed);
         self.entries.with(|tracks| {
-            // Entries of this id wait until the lock is free. A connection that is made after this
-            // line is told by one.
+            // Entries of this id wait until the lock is free. An entry announces each connection
+            // that is made after this line.
             let capacity = Some(track.capacity);
             self.entries
                 .read(&robot.supervisor().journal(), id, capacity);
@@ -223,7 +223,7 @@ impl Recorder {
     /// Records the arms of a team, each as [`Self::attach`] does, and which member each is.
     ///
     /// # Errors
-    /// As [`Self::attach`]. Members before the one that it is about are attached.
+    /// As [`Self::attach`]. Members before the failed one are attached.
     ///
     /// # Cancel safety
     /// Dropping the future leaves members attached.
@@ -285,7 +285,7 @@ impl Recorder {
         self.entries.tell(None, &note);
     }
 
-    /// Records that an episode begins: its name, and what is to be done.
+    /// Records that an episode begins: its name, and its task.
     ///
     /// # Errors
     /// [`EpisodeError`], by [`Episode::check`]: nothing is recorded then.
@@ -301,24 +301,24 @@ impl Recorder {
         Ok(())
     }
 
-    /// Records that the episode ends, and whether the task was done, if somebody judged that.
+    /// Records that the episode ends, and whether the task was done, if known.
     pub fn end_episode(&self, success: Option<bool>) {
         self.entries.tell(None, &EventKind::EpisodeEnd { success });
     }
 
-    /// What was recorded so far, and what has failed.
+    /// Amount recorded so far, and failures.
     pub fn status(&self) -> RecordStatus {
         let mut status = self.inner.status();
         status.events_dropped += self.entries.lost();
         status
     }
 
-    /// Ends the recording and waits, 10 s at most, until all of it is on the disk: what has
-    /// happened before the call is in it. Blocks: from async code, call it by
+    /// Ends the recording and waits, 10 s at most, until all of it is on the disk, with everything
+    /// that happened before the call. Blocks: from async code, call it by
     /// [`tokio::task::spawn_blocking`] where other tasks must not wait.
     ///
     /// # Errors
-    /// [`RecordError`] if the files could not be written to their end. What was written is
+    /// [`RecordError`] if the files could not be written to their end. The part that was written is
     /// readable.
     pub fn finish(self) -> Result<RecordStatus, RecordError> {
         let Self { entries, inner, .. } = self;

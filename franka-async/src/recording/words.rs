@@ -1,4 +1,4 @@
-//! What a recording has of the entries of a journal.
+//! Recorded form of the entries of a journal.
 
 use franka_diagnosis::Diagnose;
 use franka_proto::{Request, gripper, vacuum};
@@ -26,7 +26,7 @@ pub(super) fn goal(given: &Given) -> EventKind {
         (None, Some(goal)) => place(goal.target),
         (None, None) => None,
     };
-    // Streams come at a rate of their own, with the same options each time.
+    // Streams come at their own rate, with the same options each time.
     let options = match goal {
         Some(goal) if !matches!(*kind, "set" | "chunk") => options(goal, *destination),
         _ => String::new(),
@@ -73,7 +73,7 @@ fn options(goal: &Goal, destination: Option<Destination>) -> String {
     )
 }
 
-/// How a goal, a session or a program ended.
+/// Outcome of a goal, a session or a program.
 pub(super) fn outcome(goal: GoalId, outcome: &Outcome) -> EventKind {
     let (ending, text, duration) = match outcome {
         Ok(report) => {
@@ -132,7 +132,7 @@ fn guard(lapse: Lapse) -> Option<Guard> {
     }
 }
 
-/// Why the robot ended a motion by a reflex, if it did.
+/// Reason why the robot ended a motion by a reflex, if it did.
 pub(super) fn diagnosis(goal: GoalId, outcome: &Outcome) -> Option<EventKind> {
     #[expect(
         clippy::disallowed_methods,
@@ -146,7 +146,7 @@ pub(super) fn diagnosis(goal: GoalId, outcome: &Outcome) -> Option<EventKind> {
     }))
 }
 
-/// Something that happened to the robot; `None` for what entries of their own tell.
+/// Something that happened to the robot; `None` for events with separate entries.
 pub(super) fn happening(event: &supervision::Event) -> Option<EventKind> {
     use supervision::EventKind as Kind;
     let level = match &event.kind {

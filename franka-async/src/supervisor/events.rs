@@ -1,4 +1,4 @@
-//! What happens to a robot, as a stream.
+//! Events of a robot, as a stream.
 
 use std::pin::Pin;
 use std::task::{Context, Poll, ready};
@@ -18,12 +18,12 @@ pub(crate) const CAPACITY: usize = 256;
 pub struct Notification {
     /// The event.
     pub event: Event,
-    /// How many events came between the one that this stream gave before and this one, and were
-    /// dropped because nobody took them: a listener may lag 256 behind.
+    /// Number of events that were dropped between the last event of this stream and this one,
+    /// because no reader took them: a listener may lag 256 behind.
     pub missed: u64,
 }
 
-/// What happens to a robot from now on, each event once and in order: see
+/// Events of a robot from now on, each once and in order: see
 /// [`Robot::events`](crate::Robot::events).
 #[derive(Debug)]
 pub struct Events {

@@ -1,5 +1,5 @@
-//! What watches over a robot: `franka_rt::supervision` between the handles, the bridge of the
-//! newest connection, and the task that reconnects and recovers.
+//! Supervision of a robot: `franka_rt::supervision` between the handles, the bridge of the newest
+//! connection, and the task that reconnects and recovers.
 //!
 //! Handles and bridge call it, so that it knows of a mishap before a motion resolves for it. Its
 //! lock is held for some microseconds, and never on the control thread.
@@ -47,7 +47,7 @@ pub(crate) struct Supervisor {
     is_supervised: bool,
     inner: Mutex<Inner>,
     health: watch::Receiver<Health>,
-    /// Why there will be no connection any more.
+    /// Reason why there will be no connection any more.
     closing: Closing,
     /// Notified when there is a job, or the deadline has changed.
     work: Notify,
@@ -55,7 +55,8 @@ pub(crate) struct Supervisor {
 
 struct Inner {
     core: Supervision,
-    /// Where a motion that waited begins. Weak: what waits does not keep the connection.
+    /// Connection on which a motion that waited begins. Weak, because a waiting motion does not
+    /// keep the connection.
     link: Weak<Link>,
     waiting: Option<Waiting>,
     refused: Vec<Refused>,
@@ -85,8 +86,8 @@ struct Refused {
 }
 
 impl Supervisor {
-    /// Watches over a robot that is about to be connected to, as `policy` says; only watches
-    /// without one.
+    /// Watches over a robot that is about to be connected to, by `policy`; only watches without a
+    /// policy.
     pub(crate) fn new(policy: Option<Policy>) -> Self {
         let core = Supervision::new(policy);
         let (health, shown) = watch::channel(core.health());
@@ -117,7 +118,7 @@ impl Supervisor {
         self.lock().core.health().condition == Condition::Closed
     }
 
-    /// Whether there is a connection, or one that has not yet given back what it had.
+    /// True if there is a connection, or a former one that still holds resources.
     pub(crate) fn is_connected(&self) -> bool {
         self.lock().core.has_connection()
     }
@@ -144,13 +145,13 @@ impl Supervisor {
         self.health.clone()
     }
 
-    /// Where it writes what is asked of the robot and what happens to it.
+    /// Journal of requests to the robot and of its events.
     #[cfg(feature = "record")]
     pub(crate) fn journal(&self) -> Journal {
         self.lock().journal.clone()
     }
 
-    /// What happened so far, counted.
+    /// Counts of the events so far.
     #[cfg(feature = "metrics")]
     pub(crate) fn tally(&self) -> Tally {
         self.lock().tally.clone()
@@ -267,7 +268,8 @@ impl Supervisor {
         self.lock().core.check_latch()
     }
 
-    /// When [`Self::on_time`] has to be called; `None` also for what no clock can show.
+    /// Time at which [`Self::on_time`] must be called; `None` also for events that no clock can
+    /// show.
     pub(crate) fn deadline(&self) -> Option<Instant> {
         let after = self.lock().core.deadline()?;
         self.begun.checked_add(after)
@@ -344,7 +346,7 @@ impl Inner {
                 mut motion,
                 replies,
             } => {
-                // What has no line does not wait, in the place of another one.
+                // A motion without a line does not wait, in the place of another one.
                 let unready = matches!(self.core.health().condition, Condition::Unready(_));
                 if let Some(error) = motion.refused.take_if(|_| unready) {
                     let latched = self.core.check_latch().err();
@@ -441,8 +443,8 @@ impl Inner {
         link.send(input);
     }
 
-    /// Answers what would have the arm move while a stop is latched, and returns everything else.
-    /// Motions that begin are refused where they are submitted.
+    /// Answers an input that would move the arm while a stop is latched, and returns everything
+    /// else. Motions that begin are refused where they are submitted.
     fn check_latch(&mut self, input: Input) -> Option<Input> {
         let Err(error) = self.core.check_latch() else {
             return Some(input);
@@ -462,7 +464,7 @@ impl Inner {
                 self.note_refused(goal.id, &error);
                 let _ = taken.send(Err(error));
             }
-            // The motion itself says that it was stopped.
+            // The motion itself reports that it was stopped.
             Input::Update { taken, .. } => drop(taken.send(Ok(false))),
             input => return Some(input),
         }
@@ -501,7 +503,7 @@ impl Inner {
 
     /// Carries out what the core has decided, in its order, and shows how the robot is.
     fn carry_out(&mut self, closing: &Closing, now: Duration) {
-        // Whoever is told of an event finds the robot as it is after that.
+        // A receiver of the event finds the robot as it is after that event.
         let health = self.core.health();
         if let Some(shown) = &self.health {
             shown.send_if_modified(|before| std::mem::replace(before, health) != health);
@@ -522,7 +524,7 @@ impl Inner {
                 }
             }
         }
-        // Nothing else will be told.
+        // No further events are sent.
         if self.events.is_none() {
             self.health = None;
         }
@@ -533,7 +535,7 @@ impl Inner {
             // The last handle has just been dropped, and the future with it.
             return;
         };
-        // A motion that waits begins for whoever awaits it, and not for itself.
+        // A waiting motion begins only while its caller awaits it.
         if waiting.replies.ended.is_closed() {
             return self.refuse(waiting.motion, waiting.replies, MotionError::Stopped);
         }
@@ -558,7 +560,7 @@ impl Inner {
             _ => None,
         };
         if let Some(events) = &self.events {
-            // Fails if nobody listens.
+            // Fails without listeners.
             let _ = events.send(event);
         }
         if let Some(reason) = reason {

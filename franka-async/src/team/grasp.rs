@@ -8,24 +8,24 @@ use super::{Team, TeamMotion};
 use crate::move_to::Motion;
 use crate::robot::Pose;
 
-/// An object that all arms of a team hold, each in its hand: what they are asked for is a pose of
-/// the object, and the poses of the hands relative to each other stay. Made by [`Team::grasp`].
+/// An object that all arms of a team hold, each in its hand. Motions have a pose of the object as
+/// their target, and the poses of the hands relative to each other stay. Made by [`Team::grasp`].
 ///
 /// Every real-time thread plans the same way of the object, with the same limits, and follows it
 /// with its own arm. The springs and the [force cap](Motion::force_cap) of each arm act at its
-/// hand, so what an arm presses or pulls at the object with is bounded by its cap, but for inertia,
-/// and so is what two arms pull at each other with.
+/// hand. So, except for inertia, the cap of an arm bounds the force between it and the object, and
+/// the force with which two arms pull at each other.
 ///
-/// An arm that is held back, by an obstacle or by its own limits, holds up the others: while it is
-/// 15 mm behind its reference, turns counted as 0.2 m per radian, the references of all halt on
-/// their line, with 2.5 m/s^2. A reference that is more than 2 mm ahead of another one halts until
-/// that one has followed. An arm that does not catch up within 5 s comes to rest and ends as
+/// An arm that is held back, by an obstacle or by its own limits, delays the others. While it is 15
+/// mm behind its reference, the references of all halt on their line, with 2.5 m/s^2. Turns count
+/// as 0.2 m per radian. A reference that is more than 2 mm ahead of another one halts until the
+/// other has followed. An arm that does not catch up within 5 s stops and ends as
 /// [`MotionError::TargetNotReached`], and so the motion of each ends with an error.
 ///
 /// No arm knows exactly where its hand is, so an object in several hands keeps them from their
-/// targets. One that comes to rest within 5 mm and 10 mrad of its own has arrived, with the
-/// distance in [`MotionReport::final_error`](crate::MotionReport::final_error), unless the
-/// motion has a tolerance of its own.
+/// targets. An arm that stops within 5 mm and 10 mrad of its target has arrived, with the distance
+/// in [`MotionReport::final_error`](crate::MotionReport::final_error), unless the motion sets a
+/// tolerance.
 #[derive(Clone, Copy, Debug)]
 pub struct Grasp<'a, const N: usize> {
     team: &'a Team<N>,
@@ -43,7 +43,7 @@ impl<const N: usize> Team<N> {
     /// carried by the springs: each arm's share of it, for a load that several hold.
     ///
     /// # Errors
-    /// What ended the session of an arm.
+    /// The cause of the end of the session of an arm.
     pub fn grasp(&self, bases: [Pose; N], object: Pose) -> Result<Grasp<'_, N>, MotionError> {
         let mut hands = [Pose::identity(); N];
         for ((hand, arm), base) in hands.iter_mut().zip(&self.arms).zip(&bases) {
@@ -53,8 +53,8 @@ impl<const N: usize> Team<N> {
     }
 
     /// Takes an object as held by all arms, each of whose end effectors has it at this pose in its
-    /// own frame: of an earlier [`Grasp::hands`], or one that is known from elsewhere. Nothing
-    /// moves.
+    /// own frame. The poses come from an earlier [`Grasp::hands`], or are known from elsewhere.
+    /// Nothing moves.
     pub fn grasp_at(&self, bases: [Pose; N], hands: [Pose; N]) -> Grasp<'_, N> {
         let team = self;
         Grasp { team, bases, hands }
@@ -93,8 +93,8 @@ impl<const N: usize> Grasp<'_, N> {
         })
     }
 
-    /// Where the object is by the newest state of each arm, in the frame of the bases. They differ
-    /// by what the arms and the grasps give way.
+    /// Pose of the object by the newest state of each arm, in the frame of the bases. The poses
+    /// differ by how far the arms and the grasps yield.
     pub fn measured(&self) -> [Pose; N] {
         core::array::from_fn(|member| {
             let hand = self.team.arms[member].robot().pose();
