@@ -1,12 +1,12 @@
-//! Taking motions back, and pausing them: what cancelling one, or dropping its future, does to an
-//! arm that moves.
+//! Cancelling and pausing of motions, and the effect on a moving arm. Dropping the future of a
+//! motion cancels it.
 //!
-//! A motion towards goals is braked within the robot's limits, a session likewise before it ends,
-//! and a control function or program has the robot stop. All of it is one input to the bridge,
-//! which carries it out after `cancel` or `drop` has returned. The `Drop` of a motion's future is
-//! that of `Moving`, in `motion`; handles that cancel when dropped are in `session`,
-//! `active_control` and `asynchronous_control`; what happens is decided by `Lifecycle::cancel`, in
-//! `franka_rt::lifecycle::goals`.
+//! A motion towards goals is braked within the robot's limits, and so is a session before it ends.
+//! A control function or program is ended by stopping the robot. All of it is one input to the
+//! bridge, which carries it out after `cancel` or `drop` has returned. The `Drop` of a motion's
+//! future is the `Drop` of `Moving`, in `motion`. Handles that cancel when dropped are in
+//! `session`, `active_control` and `asynchronous_control`. `Lifecycle::cancel`, in
+//! `franka_rt::lifecycle::goals`, decides what happens.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -18,15 +18,15 @@ use tokio_util::sync::CancellationToken;
 use crate::input::{Beginning, Input};
 use crate::robot::{Robot, WeakRobot};
 
-/// Takes a motion back: an arm on its way to a goal brakes, and a control function or program has
-/// the robot stop. Clones take back the same motion. None of them counts as a handle of the robot:
-/// dropping the last one of those still brakes the arm and closes the connection.
+/// Takes a motion back: an arm on its way to a goal brakes, and for a control function or program
+/// the robot is stopped. Clones take back the same motion. None of them counts as a handle of the
+/// robot: dropping the last one of those still brakes the arm and closes the connection.
 #[derive(Clone, Debug)]
 pub struct Canceller {
     robot: WeakRobot,
     id: GoalId,
     cancelled: CancellationToken,
-    /// True if it is to pause; locked while that is sent.
+    /// True if it should pause; locked while that is sent.
     paused: Arc<Mutex<bool>>,
 }
 
@@ -52,7 +52,7 @@ impl Canceller {
         }
     }
 
-    /// Pauses the motion or lets it go on. One that has not begun will begin paused.
+    /// Pauses or resumes the motion. A motion that has not begun will begin paused.
     pub(crate) fn set_paused(&self, paused: bool) {
         let mut wanted = self.lock_paused();
         *wanted = paused;

@@ -1,15 +1,15 @@
-//! Why a connection has ended, known to all of its handles.
+//! Reason for the end of a connection, known to all of its handles.
 
 use std::sync::{Arc, OnceLock};
 
 use franka_rt::lifecycle::CloseReason;
 
-/// The reason for the end of one connection. The first one noted is the one that all clones report.
+/// The reason for the end of one connection. All clones report the first reason that was noted.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Closing(Arc<OnceLock<CloseReason>>);
 
 impl Closing {
-    /// Notes the reason, unless there is one already; returns the one that counts.
+    /// Notes the reason, unless there is one already; returns the reason that counts.
     pub(crate) fn note(&self, reason: CloseReason) -> CloseReason {
         self.0.get_or_init(|| reason).clone()
     }

@@ -50,7 +50,7 @@ impl Frame {
     }
 }
 
-/// Sends a request. An error says why the connection is of no more use.
+/// Sends a request. An error is the reason why the connection can no longer be used.
 pub(crate) async fn send(
     stream: &mut Framed<Stream, MessageCodec>,
     request: Outgoing,
@@ -63,7 +63,7 @@ pub(crate) async fn send(
     }
 }
 
-/// Why a connection ends on whose sockets `what` failed.
+/// Returns the reason for the end of a connection on whose sockets `what` failed.
 pub(crate) fn failed(what: &str, error: &io::Error) -> CloseReason {
     CloseReason::Io {
         kind: error.kind(),
@@ -71,7 +71,7 @@ pub(crate) fn failed(what: &str, error: &io::Error) -> CloseReason {
     }
 }
 
-/// Why the stream is of no more use.
+/// Reason why the stream can no longer be used.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum StreamError {
     #[error(transparent)]
@@ -105,8 +105,7 @@ impl Decoder for MessageCodec {
         Ok(Some(Frame { header, payload }))
     }
 
-    /// A stream may end within a message: that is the end of the stream all the same, and no
-    /// failure to read it.
+    /// A stream that ends within a message has also ended; this is no failure to read it.
     fn decode_eof(&mut self, received: &mut BytesMut) -> Result<Option<Frame>, StreamError> {
         let frame = self.decode(received)?;
         if frame.is_none() {

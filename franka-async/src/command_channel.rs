@@ -1,10 +1,10 @@
 //! The command channel: one task that owns the TCP connection, sends requests and routes the
 //! replies.
 //!
-//! Replies match by command id. Every request has a deadline but `Move`, whose two replies belong
-//! to the lifecycle of the motion. Motions have a queue and places of their own, so that no number
-//! of other requests holds up a stop. When the connection ends, pending and later calls return the
-//! reason.
+//! Replies match by command id. Every request has a deadline except `Move`, whose two replies
+//! belong to the lifecycle of the motion. Motions have a separate queue and separate places, so
+//! that no number of other requests delays a stop. When the connection ends, pending and later
+//! calls return the reason.
 
 use std::collections::HashMap;
 use std::time::Duration;
@@ -66,7 +66,7 @@ impl Connection {
     }
 }
 
-/// What the channel tells the bridge.
+/// Report of the channel to the bridge.
 #[derive(Debug)]
 pub(crate) enum Report {
     /// A reply to the `Move` of a motion.
@@ -83,7 +83,7 @@ pub(crate) enum Report {
     Closed { reason: CloseReason },
 }
 
-/// What a request that is not a motion is answered with, if it is not refused.
+/// Answer to a request that is not a motion, if it is not refused.
 #[derive(Debug)]
 pub(crate) enum Response {
     Done,
@@ -201,8 +201,8 @@ impl Channel {
         answered.await.unwrap_or_else(|_| Err(self.closed()))
     }
 
-    /// Sends a request on behalf of a motion, past all that wait for room. Replies to a `Move` come
-    /// as [`Report`]s; a closed channel has said so in a report of its own.
+    /// Sends a request on behalf of a motion, ahead of all requests that wait for room. Replies to
+    /// a `Move` come as [`Report`]s; the end of the channel has its own report.
     pub(crate) fn send(&self, motion: MotionId, request: Request) {
         let reply_to = match request {
             Request::Move(_) => ReplyTo::Motion(motion),
@@ -217,7 +217,7 @@ impl Channel {
         }
     }
 
-    /// Why the connection has ended, once it has.
+    /// Reason for the end of the connection, once it has ended.
     pub(crate) fn closing(&self) -> &Closing {
         &self.closing
     }

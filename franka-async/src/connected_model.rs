@@ -1,4 +1,4 @@
-//! The model of the connected arm: from what the robot says of itself, where it says something.
+//! The model of the connected arm: from the robot's description, if it has one.
 
 #[cfg(feature = "urdf")]
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
@@ -97,7 +97,7 @@ mod library {
         /// Nothing is lost but the answer.
         ///
         /// # Safety
-        /// The robot must be one that may run code in this process: see [`ModelLibrary::load`].
+        /// The robot must be allowed to run code in this process: see [`ModelLibrary::load`].
         pub async unsafe fn model_library(&self) -> Result<ModelLibrary, ModelLibraryError> {
             let architecture = host_architecture().ok_or(LibraryError::Architecture)?;
             let bytes = self.load_model_library(architecture, System::Linux).await?;
@@ -106,7 +106,7 @@ mod library {
         }
     }
 
-    /// What the protocol calls the processor that this was compiled for, if it has a name for it.
+    /// Name of the processor that this was compiled for in the protocol, if it has one.
     fn host_architecture() -> Option<Architecture> {
         Some(match std::env::consts::ARCH {
             "x86_64" => Architecture::X64,

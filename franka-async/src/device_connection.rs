@@ -34,9 +34,9 @@ const DATAGRAMS: usize = 64;
 /// Bytes of the longest datagram that is read.
 const DATAGRAM_SIZE: usize = 64;
 
-/// What differs between the end effectors.
+/// Differences between the end effectors.
 pub(crate) trait Device: for<'a> Protocol<Reply<'a> = Reply> + Default {
-    /// What it says of itself.
+    /// State that the device sends.
     type State: Copy + fmt::Debug;
 
     const TCP_PORT: u16;
@@ -47,16 +47,16 @@ pub(crate) trait Device: for<'a> Protocol<Reply<'a> = Reply> + Default {
     /// The device's clock, `[ms]`.
     fn clock(state: &Self::State) -> u32;
 
-    /// Why the device cannot do it, if the request is out of the range that it gives.
+    /// Reason why the device cannot carry out the request, if the request is out of its range.
     fn out_of_range(_request: &Self::Request, _state: &Self::State) -> Option<String> {
         None
     }
 
-    /// What a journal has of an action that has ended.
+    /// Journal entry of an action that has ended.
     #[cfg(feature = "record")]
     fn ended(request: Self::Request, ended: ActionEnd) -> What;
 
-    /// What a journal has of a state.
+    /// Journal entry of a state.
     #[cfg(feature = "record")]
     fn seen(state: Self::State) -> What;
 }
@@ -141,7 +141,7 @@ impl Device for vacuum::Version {
     }
 }
 
-/// How an action ended.
+/// Result of an action.
 type ActionResult<D> = Result<bool, ActionError<<D as Protocol>::Command>>;
 
 type ActionReply<D> = oneshot::Sender<ActionResult<D>>;
@@ -242,7 +242,7 @@ where
         States::new(self.states.clone(), self.closing.clone())
     }
 
-    /// Where it writes the actions that have ended.
+    /// Journal of the actions that have ended.
     #[cfg(feature = "record")]
     pub(crate) fn journal(&self) -> &Journal {
         &self.journal
@@ -322,7 +322,7 @@ impl<D: Device> DeviceTask<D> {
         closing.note(reason);
     }
 
-    /// Serves until the connection ends; the error says why it did.
+    /// Serves until the connection ends; the error is the reason.
     async fn serve(
         &mut self,
         calls: &mut mpsc::UnboundedReceiver<QueuedAction<D>>,
@@ -360,7 +360,7 @@ impl<D: Device> DeviceTask<D> {
         &mut self,
         QueuedAction { request, answer }: QueuedAction<D>,
     ) -> Result<(), CloseReason> {
-        // Its future was dropped before it was sent. A stop is sent all the same.
+        // Its future was dropped before it was sent. A stop is still sent.
         if answer.is_closed() && request != D::STOP {
             return Ok(());
         }
@@ -396,7 +396,7 @@ impl<D: Device> DeviceTask<D> {
                 self.session.abandon(stop.id());
                 codec::send(&mut self.stream, stop).await
             }
-            // Without the connection, the device stops by itself.
+            // Without the connection, the device stops on its own.
             Err(error) => {
                 tracing::warn!(%error, "no room for a stop; closing the connection instead");
                 Err(CloseReason::ClosedByUs)
@@ -424,7 +424,7 @@ impl<D: Device> DeviceTask<D> {
 
     /// Routes one message. An error ends the connection.
     fn on_frame(&mut self, frame: &Frame) -> Result<(), Violation<D::Command>> {
-        // The states that were sent before an answer show what it says.
+        // The states that were sent before an answer show its result.
         let mut buffer = [0; DATAGRAM_SIZE];
         for _ in 0..DATAGRAMS {
             match self.socket.try_recv_from(&mut buffer) {

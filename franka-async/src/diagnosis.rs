@@ -1,4 +1,5 @@
-//! Why the robot ended a motion: the limit that was exceeded, what led up to it, what to change.
+//! Diagnosis of a motion that the robot ended: the limit that was exceeded, the cycles before it,
+//! and the remedy.
 //!
 //! ```no_run
 //! # use franka_async::{MotionError, Robot};

@@ -14,7 +14,7 @@ use crate::world::{self, Stream, timeout};
 pub(crate) const TCP_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Finds the addresses of the host within `limit`, each once, in the order in which to try them;
-/// `port` is that of the device, for an endpoint without one.
+/// `port` is the device's port, for an endpoint without one.
 pub(crate) async fn resolve<P: Protocol>(
     endpoint: &Endpoint,
     port: u16,
@@ -58,7 +58,7 @@ fn network<P: Protocol>(reason: impl Into<String>) -> ConnectError<P> {
     }
 }
 
-/// Connects to the first of `addresses` that takes a connection, and says which it is. `limit`
+/// Connects to the first of `addresses` that takes a connection, and returns that address. `limit`
 /// holds for each.
 pub(crate) async fn dial<P: Protocol>(
     addresses: &[SocketAddr],

@@ -1,4 +1,5 @@
-//! Checks of this computer, and what on it may explain a motion that ended for want of packets.
+//! Checks of this computer, and its likely faults after a motion that ended because packets were
+//! missing.
 //!
 //! ```no_run
 //! # use franka_async::{Robot, doctor};
@@ -31,15 +32,15 @@ pub use franka_doctor::{
 #[cfg(feature = "doctor-desk")]
 pub use franka_doctor::{DeskState, SelfTest, ask_desk, web};
 
-/// Why a motion ended for want of packets.
+/// Explanation of a motion that ended because packets were missing.
 ///
 /// `Display` is the diagnosis of the log, if there is one, and a line for each cause on this host.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct HostDiagnosis {
-    /// What was seen of the motion.
+    /// Evidence from the motion.
     pub evidence: Evidence,
-    /// What the log of the motion shows, if the robot stopped itself.
+    /// Diagnosis from the log of the motion, if the robot stopped itself.
     pub diagnosis: Option<Diagnosis>,
     /// The two likeliest causes on this host, or fewer if fewer are found.
     pub causes: Vec<Finding>,
@@ -71,8 +72,8 @@ impl fmt::Display for HostDiagnosis {
     }
 }
 
-/// Why a motion of the robot at this address ended for want of packets, with the two likeliest
-/// causes on this host; `None` if it ended otherwise.
+/// Explains why a motion of the robot at this address ended because packets were missing, with the
+/// two likeliest causes on this host; `None` if it ended otherwise.
 ///
 /// Reads files and asks the driver of the network card, on a thread for blocking work: some
 /// milliseconds.
@@ -93,9 +94,9 @@ pub async fn diagnose(error: &MotionError, robot: IpAddr) -> Option<HostDiagnosi
     looked.await.ok()
 }
 
-/// Warns of the two likeliest causes on this host by an event of `tracing`, some milliseconds
-/// later, if a motion of the robot at this address ended for want of packets, and warnings are
-/// listened to.
+/// Warns, by an event of `tracing`, of the two likeliest causes on this host. It does so some
+/// milliseconds later, if packets were missing in a motion of the robot at this address, and
+/// warnings are listened to.
 pub(crate) fn warn(error: &MotionError, robot: IpAddr) {
     let Some(evidence) = evidence(error).filter(|_| tracing::enabled!(tracing::Level::WARN)) else {
         return;
@@ -124,7 +125,7 @@ fn causes(host: &dyn Host, robot: IpAddr, evidence: Evidence) -> Vec<Finding> {
     likely_causes(&Readings::new(host, robot), evidence)
 }
 
-/// What the log shows.
+/// Diagnosis from the log.
 #[expect(
     clippy::disallowed_methods,
     reason = "this is a thread for blocking work, and no task"
@@ -133,7 +134,7 @@ fn diagnosis(error: &MotionError) -> Option<Diagnosis> {
     error.diagnose()
 }
 
-/// What an error shows of packets that did not come in time; `None` if nothing.
+/// Evidence in an error of packets that did not come in time; `None` without any.
 fn evidence(error: &MotionError) -> Option<Evidence> {
     match error {
         MotionError::LinkLost { .. } => Some(Evidence::LinkLost),
@@ -146,7 +147,7 @@ fn evidence(error: &MotionError) -> Option<Evidence> {
     }
 }
 
-/// What the errors of a robot show, after a motion with so many commands that left too late.
+/// Evidence in the errors of a robot, after a motion with `overruns` commands that left too late.
 fn of_errors(errors: Errors, overruns: u64) -> Option<Evidence> {
     if !errors.contains(RobotError::CommunicationConstraintsViolation) {
         return None;

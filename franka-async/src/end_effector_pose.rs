@@ -11,7 +11,8 @@ pub(crate) fn pose_of(state: &RobotState) -> Option<Isometry3<f64>> {
 }
 
 /// The pose that it has at the joint positions `q`, `[rad]`, with the end effector of `state` as
-/// the robot reports it there. One that is not a rigid transformation counts as the flange.
+/// the robot reports it there. An end effector that is not a rigid transformation counts as the
+/// flange.
 pub(crate) fn pose_at(model: &Model, state: &RobotState, q: [f64; 7]) -> Isometry3<f64> {
     let ee = reported_end_effector(model, state).unwrap_or_default();
     let pose = model.pose(Frame::EndEffector, &q.into(), &ee);

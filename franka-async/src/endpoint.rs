@@ -1,11 +1,11 @@
-//! Where a device listens: texts and addresses, and what is wrong with them.
+//! Endpoints of devices: texts and addresses, and errors in them.
 
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::str::FromStr;
 
-/// Where a device listens: a host, and a port that is the usual one of the device unless given:
-/// 1337 of a robot, 1338 of a Franka Hand, 1339 of a vacuum gripper.
+/// Endpoint of a device: a host and a port. The default port depends on the device: 1337 for a
+/// robot. A Franka Hand has 1338, a vacuum gripper 1339.
 ///
 /// Made from an [`IpAddr`], a [`SocketAddr`], or from text:
 ///
@@ -35,7 +35,7 @@ pub struct Endpoint {
     port: Option<u16>,
 }
 
-/// What to connect to, before any name is looked up.
+/// Host to connect to, before any name is looked up.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Host {
     /// An address, with the index of its interface or 0.
@@ -72,10 +72,10 @@ pub enum EndpointError {
         /// All of it.
         text: String,
     },
-    /// What stands behind the colon.
+    /// Text behind the colon.
     #[error("`{port}` is not a port: expected a number from 1 to 65535")]
     Port {
-        /// What stands there.
+        /// Text in the place of the port.
         port: String,
     },
     /// It looks like an address and is not a valid one.
@@ -84,7 +84,7 @@ pub enum EndpointError {
          port takes brackets, [fd00::2]:1337"
     )]
     Address {
-        /// What stands there.
+        /// Text in the place of the address.
         address: String,
     },
     /// Unclosed `[`, or text after `]` other than `:port`.
@@ -98,19 +98,19 @@ pub enum EndpointError {
         "`{name}` is not a host name: expected letters, digits, hyphens and dots, without a scheme, a path or blanks"
     )]
     Name {
-        /// What stands there.
+        /// Text in the place of the name.
         name: String,
     },
     /// The address belongs to a network interface that this host does not have.
     #[error("there is no network interface `{interface}`")]
     Interface {
-        /// What stands behind the percent sign.
+        /// Text behind the percent sign.
         interface: String,
     },
 }
 
 impl Endpoint {
-    /// Returns the same host at another port: that of an end effector beside a robot.
+    /// Returns the same host at another port, for an end effector besides a robot.
     #[must_use]
     pub fn at_port(mut self, port: u16) -> Self {
         self.set_port(port);

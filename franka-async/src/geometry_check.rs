@@ -13,7 +13,7 @@ use crate::error::ConnectError;
 /// hand may report a pose and joint positions of different moments.
 const STATES: usize = 10;
 
-/// How the model of a robot agrees with the poses that the robot reports, found at connect: see
+/// Agreement of a robot's model with the poses that the robot reports, found at connect: see
 /// [`Robot::geometry_check`](crate::Robot::geometry_check).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -23,8 +23,8 @@ pub struct GeometryCheck {
     /// Lengths that the model computes with. They differ from the described ones where the robot's
     /// poses have other [known](Lengths::KNOWN) lengths.
     pub used: Lengths,
-    /// Distance of the reported pose from that of the model at the same joint positions, `[m]`, or
-    /// the largest difference of an element of their rotation matrices times 0.1 m, whichever is
+    /// Distance of the reported pose from the pose of the model at the same joint positions, `[m]`,
+    /// or the largest difference of an element of their rotation matrices times 0.1 m, whichever is
     /// greater. `None` if the robot reported no pose.
     pub residual: Option<f64>,
 }

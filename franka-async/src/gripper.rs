@@ -1,4 +1,4 @@
-//! The Franka Hand, which has a connection of its own.
+//! The Franka Hand, which has its own connection.
 
 pub use crate::franka_hand::Gripper;
 pub use franka_proto::gripper::{Grasp, State};

@@ -1,5 +1,5 @@
-//! The handshake on a new command connection: sending and waiting. Its messages and verdict are
-//! those of `franka_proto::client::Session`.
+//! The handshake on a new command connection: sending and waiting. `franka_proto::client::Session`
+//! defines its messages and verdict.
 
 use franka_proto::Protocol;
 use franka_proto::client::{Event, Session};

@@ -1,4 +1,4 @@
-//! What an arm takes beside its model, measured by a minute of small motions: see
+//! Torques that an arm takes in addition to its model, measured by a minute of small motions: see
 //! [`Robot::identify`] and [`Builder::known`](crate::connection::Builder::known).
 
 use std::future::IntoFuture;
@@ -26,9 +26,9 @@ pub struct Identify {
 }
 
 impl Robot {
-    /// Plans motions from where the arm is that identify it: in each of six poses all joints go 0.2
-    /// rad to and fro twice, at 0.2 rad/s. The arm has to be free to go so far
-    /// ([`Identify::reach`]), and to carry what it is to be identified with.
+    /// Plans motions from the present position of the arm that identify it. In each of six poses
+    /// all joints go 0.2 rad to and fro twice, at 0.2 rad/s. The arm must be free to go so far
+    /// ([`Identify::reach`]), and carry the load that it should be identified with.
     ///
     /// ```no_run
     /// # async fn run(robot: franka_async::Robot) -> Result<(), franka_async::Error> {
@@ -51,8 +51,8 @@ impl Robot {
 }
 
 impl Identify {
-    /// What it will do, in this order; the last motion ends where the first one begins. `Display`
-    /// is a line for each.
+    /// Planned motions, in this order; the last one ends where the first one begins. `Display` is a
+    /// line for each.
     pub fn motions(&self) -> &[PlannedMotion] {
         self.plan.motions()
     }
@@ -62,7 +62,7 @@ impl Identify {
         self.plan.duration()
     }
 
-    /// How far the arm will go from where it is. A compliant arm is some millimetres beside its
+    /// Distance that the arm will go from where it is. A compliant arm is some millimetres off its
     /// reference.
     pub fn reach(&self) -> Reach {
         self.plan.reach()
@@ -74,8 +74,8 @@ impl Identify {
     /// [`Robot::set_load`] if you like.
     ///
     /// # Errors
-    /// [`IdentifyError`]: of a motion; if the arm is no longer where it was planned from; if
-    /// something held or pushed it.
+    /// [`IdentifyError`] if a motion fails, if the arm is no longer where it was planned from, or
+    /// if something held or pushed it.
     ///
     /// # Cancel safety
     /// Dropping the future brakes the arm, in the background, as dropping a motion does; what was
@@ -110,7 +110,7 @@ impl Identify {
                     record = records.recv(), if is_open => match record {
                         Ok(record) => fit.on_record(&record),
                         Err(RecvError::Lagged(_)) => {}
-                        // The motion says why.
+                        // The motion has the reason.
                         Err(RecvError::Closed) => is_open = false,
                     },
                     outcome = &mut moving => {
@@ -125,6 +125,6 @@ impl Identify {
     }
 }
 
-/// How far a joint may be from where the motions begin, `[rad]`: what the robot's controller lets
-/// it sink after a motion is less.
+/// Distance that a joint may be from where the motions begin, `[rad]`. The robot's controller lets
+/// it sink less than that after a motion.
 const MOVED: f64 = 0.02;

@@ -1,4 +1,4 @@
-//! What handles and motions ask of the bridge, and how it answers.
+//! Inputs of handles and motions to the bridge, and its answers.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -12,7 +12,7 @@ use crate::kept_tuning::KeptTuning;
 use crate::options::GoalOptions;
 use crate::publish::Subscriptions;
 
-/// What handles and motions ask of the bridge.
+/// Input of handles and motions to the bridge.
 #[derive(Debug)]
 pub(crate) enum Input {
     Begin {
@@ -25,13 +25,13 @@ pub(crate) enum Input {
         target: Target,
         taken: oneshot::Sender<Result<bool, GoalError>>,
     },
-    /// Begins a motion whose outcome is not awaited. The reply, as of the next two, is whether it
-    /// is accepted.
+    /// Begins a motion whose outcome is not awaited. The reply is whether it is accepted; the same
+    /// holds for the next two inputs.
     Set {
         motion: Beginning,
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
-    /// Begins the newest motion that waits in there, if one does, as `Set`; nobody waits for it.
+    /// Begins the newest waiting motion, if there is one, as `Set`; no caller waits for it.
     SetNewest {
         waiting: Waiting,
     },
@@ -45,7 +45,7 @@ pub(crate) enum Input {
     Tune {
         id: GoalId,
         tuning: Box<Tuning>,
-        /// Where it is kept for goals to come, once it is accepted.
+        /// Place to keep it for goals to come, once it is accepted.
         kept: KeptTuning,
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
@@ -84,15 +84,15 @@ pub(crate) enum Input {
     },
 }
 
-/// A motion that is to begin.
+/// A motion that should begin.
 #[derive(Debug)]
 pub(crate) struct Beginning {
     pub(crate) motion: NewMotion,
-    /// Where its goal leads, if that takes the poses of now.
+    /// Destination of its goal, if that depends on the present poses.
     pub(crate) destination: Option<Box<Destination>>,
-    /// What it goes through on the way there.
+    /// Waypoints of its path.
     pub(crate) path: Option<Arc<[Waypoint]>>,
-    /// Why it is not to begin: the arm cannot go to its target on a straight line.
+    /// Reason why it must not begin: the arm cannot go to its target on a straight line.
     pub(crate) refused: Option<GoalError>,
     /// The options of a motion of the joints that takes its place in that case.
     pub(crate) joint_fallback: Option<Box<GoalOptions>>,
@@ -136,13 +136,13 @@ impl From<NewMotion> for Beginning {
     }
 }
 
-/// The newest motion that nobody waits for and the bridge has not taken yet. However often one is
-/// put there, one input at a time is under way for it.
+/// The newest motion that no caller waits for and the bridge has not taken yet. However often one
+/// is put there, one input at a time is under way for it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Waiting(Arc<Mutex<Option<Box<Beginning>>>>);
 
 impl Waiting {
-    /// Puts a motion in the place of one that still waits. Returns whether none did.
+    /// Replaces the waiting motion. Returns true if none was waiting.
     pub(crate) fn put(&self, motion: Beginning) -> bool {
         self.lock().replace(Box::new(motion)).is_none()
     }
@@ -151,7 +151,7 @@ impl Waiting {
         self.lock().is_none()
     }
 
-    /// What `look` returns of the motion that waits, if one does.
+    /// Returns the result of `look` on the waiting motion, if there is one.
     #[cfg(feature = "record")]
     pub(crate) fn peek<T>(&self, look: impl FnOnce(&Beginning) -> T) -> Option<T> {
         self.lock().as_deref().map(look)
@@ -174,7 +174,7 @@ pub(crate) fn unserved<E>(_: E) -> Outcome {
     Err(MotionError::ConnectionClosed { reason })
 }
 
-/// Where to report on something that was begun.
+/// Receivers of reports on something that was begun.
 #[derive(Debug)]
 pub(crate) struct Replies {
     /// Receives the beginning of a program or a session.
@@ -201,7 +201,7 @@ impl EndReply {
         }
     }
 
-    /// Sends the outcome. What was dropped or detached has no receiver.
+    /// Sends the outcome. A motion that was dropped or detached has no receiver.
     pub(crate) fn send(self, outcome: Outcome) {
         match self {
             Self::One(ended) => drop(ended.send(outcome)),

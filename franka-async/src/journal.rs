@@ -1,4 +1,4 @@
-//! What is asked of a robot or an end effector, and what comes of it, for recorders.
+//! Requests to a robot or an end effector, and their results, for recorders.
 //!
 //! ```text
 //! supervisor       goals, stops, outcomes, events, connections --+
@@ -26,17 +26,17 @@ use crate::destination::Destination;
 use crate::input::{Beginning, Input};
 use crate::world;
 
-/// Where entries are written. Clones are the same journal.
+/// Journal to write entries to. Clones are the same journal.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Journal(Arc<Mutex<Vec<Reader>>>);
 
-/// Where a journal goes to.
+/// Reader of a journal.
 #[derive(Clone, Debug)]
 pub(crate) struct Reader {
-    /// Which journal this is, for a reader of several.
+    /// Number of the journal, for a reader of several.
     pub(crate) track: usize,
     pub(crate) entries: EntrySender,
-    /// How many cycles of a connection may wait for it; `None` if it takes none.
+    /// Number of cycles of a connection that may wait for it; `None` if it takes none.
     pub(crate) cycles: Option<usize>,
 }
 
@@ -57,13 +57,14 @@ pub(crate) struct EntryReceiver {
 /// Relaxed everywhere: they order no other memory.
 #[derive(Debug)]
 struct Counts {
-    /// How many more entries may wait.
+    /// Number of further entries that may wait.
     room: AtomicUsize,
     /// Entries for which there was no room.
     lost: AtomicU64,
 }
 
-/// A queue in which `room` entries may wait, and besides what [`What::needs_room`] tells.
+/// A queue in which `room` entries may wait, and in addition those for which [`What::needs_room`]
+/// is false.
 pub(crate) fn entry_queue(room: usize) -> (EntrySender, EntryReceiver) {
     let (sender, receiver) = mpsc::channel();
     let counts = Arc::new(Counts {
@@ -104,7 +105,7 @@ pub(crate) enum What {
     /// The robot has answered a request, or did not.
     Answered {
         request: Box<Request>,
-        /// Why it was not done, if it was not.
+        /// Reason why it was not done, if it was not.
         error: Option<String>,
     },
     /// An action of the Hand has ended.
@@ -121,7 +122,7 @@ pub(crate) enum What {
     VacuumState(vacuum::State),
     /// The caller changed its mind: a stop, a pause, a motion taken back.
     Remark(String),
-    /// What the recorder itself was told.
+    /// An event that the recorder itself was given.
     Told(Box<EventKind>),
     /// The reader reads no further.
     End,
@@ -135,7 +136,7 @@ impl What {
     }
 }
 
-/// Whether an action did what it was to do, or the text of its error.
+/// True if an action succeeded, or the text of its error.
 pub(crate) type ActionEnd = Result<bool, String>;
 
 /// A goal, a session or a program that was asked for.
@@ -145,7 +146,7 @@ pub(crate) struct Given {
     pub(crate) kind: &'static str,
     /// The goal; `None` of a program.
     pub(crate) goal: Option<Box<Goal>>,
-    /// Where it leads, if that takes the poses of when it begins: the goal has no target then.
+    /// Destination, if that depends on the poses at the start: the goal has no target then.
     pub(crate) destination: Option<Destination>,
 }
 
@@ -183,7 +184,7 @@ impl Journal {
     /// Writes that there is a new connection, and gives its readers the cycles from now on: they
     /// may come to read of it much later.
     pub(crate) fn connected(&self, cycles: &CycleFeed) {
-        // Attaching takes memory, for which nobody is to wait at the lock.
+        // Attaching takes memory, for which no caller should wait at the lock.
         for reader in self.with(|readers| readers.clone()) {
             if let Some(capacity) = reader.cycles {
                 let attached = cycles.attach(capacity);
@@ -281,7 +282,7 @@ impl EntryReceiver {
 }
 
 impl Given {
-    /// What is asked for by `motion`, whose outcome is not awaited if it is `set`.
+    /// The request of `motion`, whose outcome is not awaited if it is `set`.
     fn of(motion: &Beginning, set: bool) -> Self {
         let Beginning {
             motion,

@@ -1,10 +1,10 @@
-//! What a session keeps of its tuning, shared with the task that accepts changes.
+//! Tuning that a session keeps, shared with the task that accepts changes.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use franka_rt::lifecycle::Tuning;
 
-/// How the goals to come of a session are pursued. Clones are the same.
+/// Tuning for goals to come of a session. Clones are the same.
 #[derive(Clone, Debug)]
 pub(crate) struct KeptTuning(Arc<Mutex<Tuning>>);
 

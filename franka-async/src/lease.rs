@@ -44,12 +44,12 @@ pub struct Lost {
     pub silence: Duration,
 }
 
-/// What all handles of a lease share.
+/// State that all handles of a lease share.
 #[derive(Debug, Default)]
 struct State {
     /// The newest time.
     now: Option<Instant>,
-    /// How often it was taken.
+    /// Number of times it was taken.
     taken: u64,
     held: Option<Held>,
 }
@@ -65,7 +65,7 @@ struct Held {
 }
 
 impl Lease {
-    /// Takes the lease under `name`, which other clients are told. It is lost after more than
+    /// Takes the lease under `name`, which other clients receive. It is lost after more than
     /// `silence` without [`Holder::keep_alive`]; with [`Duration::MAX`], only its holder ends it.
     ///
     /// # Errors
@@ -315,7 +315,7 @@ mod tests {
     }
 
     /// Holders that come, go, speak and are silent in any order: there is never more than one, and
-    /// an arm moves only for the one that holds the lease.
+    /// an arm moves only for the holder of the lease.
     #[test]
     fn any_schedule_has_one_holder_at_most() {
         let start = Instant::now();

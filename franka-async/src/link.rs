@@ -1,4 +1,4 @@
-//! One connection to a robot: what ends with it.
+//! One connection to a robot: everything that ends with it.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use crate::world;
 /// connection, in the background.
 pub(crate) struct Link {
     pub(crate) address: SocketAddr,
-    /// Stands for what the robot says of itself, if it does.
+    /// Hash of the robot's description, if it has one.
     pub(crate) description: Option<u64>,
     pub(crate) geometry: GeometryCheck,
     pub(crate) bridge: BridgeHandle,
@@ -37,7 +37,7 @@ pub(crate) struct Link {
 }
 
 impl Link {
-    /// Sends to the bridge. One that has ended drops the input, and with it the sender of its
+    /// Sends to the bridge. A bridge that has ended drops the input, and with it the sender of its
     /// reply: the receiver sees that.
     pub(crate) fn send(&self, input: Input) {
         let _ = self.try_send(input);
@@ -67,7 +67,7 @@ impl Link {
         self.subscriptions().silence(newest)
     }
 
-    /// Waits until the link has been given up for so long and no state has come meanwhile, and
+    /// Waits until the link has been given up for `more` and no state has come meanwhile, and
     /// returns the whole silence.
     ///
     /// # Cancel safety
@@ -98,7 +98,7 @@ impl Link {
         self.channel.closing().reason()
     }
 
-    /// What is asked of a connection that has ended fails with this.
+    /// Returns the error for requests to a connection that has ended.
     pub(crate) fn closed(&self) -> MotionError {
         let reason = self.channel.closing().reason();
         MotionError::ConnectionClosed { reason }

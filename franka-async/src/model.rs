@@ -1,9 +1,9 @@
 //! The model of an arm: kinematics, dynamics, limits, inverse kinematics, distances.
 //!
-//! [`Robot::model`](crate::Robot::model) is that of the connected arm, from its own description
-//! (feature `urdf`, on by default). [`Model::fr3`] and [`Model::fer`] are there without a robot.
-//! Control functions may call what is computed here: it neither allocates nor waits. Models that
-//! are read from a description, or loaded, are made beforehand. [`StateModel`] is asked by states,
+//! [`Robot::model`](crate::Robot::model) is the model of the connected arm, from its own
+//! description (feature `urdf`, on by default). [`Model::fr3`] and [`Model::fer`] are there without
+//! a robot. Control functions may call the functions here, which neither allocate nor wait. Models
+//! that are read from a description, or loaded, are made beforehand. [`StateModel`] takes states,
 //! with the end effector and the load that they have.
 //!
 //! ```

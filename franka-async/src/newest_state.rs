@@ -13,11 +13,11 @@ use tokio::sync::watch;
 /// for every state.
 #[derive(Clone, Debug)]
 pub(crate) struct Newest {
-    /// Stays as it is, so that each of its clones finds whatever came later.
+    /// Stays as it is, so that each of its clones finds everything that came later.
     reader: StateReader,
     /// The state before those that `reader` finds.
     first: RobotState,
-    /// What the bridge has published. Without wake-ups per state it may be some states behind.
+    /// Last state published by the bridge. Without wake-ups per state it may be some states behind.
     /// Weak, so that subscribers see the end; and no receiver, as those are counted.
     publisher: Weak<watch::Sender<RobotState>>,
     state_wakeups: StateWakeups,
@@ -68,7 +68,7 @@ impl Newest {
         };
         let mut states = publisher.subscribe();
         self.state_wakeups.request();
-        // What was published without wake-ups may be some states old.
+        // A state that was published without wake-ups may be some states old.
         publish(&publisher, self.state());
         states.mark_unchanged();
         states

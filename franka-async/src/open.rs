@@ -1,5 +1,5 @@
-//! From an address to a connection. If the robot refuses the version, the older one that it names
-//! is tried.
+//! From an address to a connection. If the robot refuses the version and names an older one, that
+//! version is tried.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -39,7 +39,7 @@ pub(crate) struct Opened {
     pub(crate) bridge: Prepared,
 }
 
-/// Opens a connection, which is to publish to `states` and reports to `supervisor`.
+/// Opens a connection, which will publish to `states` and report to `supervisor`.
 pub(crate) async fn open(
     builder: &Builder,
     states: &Arc<watch::Sender<RobotState>>,

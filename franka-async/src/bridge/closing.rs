@@ -1,5 +1,5 @@
-//! The end of a connection: what moves is brought to rest, what is pending is resolved, and the
-//! control thread ends.
+//! The end of a connection: the moving arm is stopped, pending calls are resolved, and the control
+//! thread ends.
 
 use std::time::Duration;
 
@@ -11,15 +11,15 @@ use super::{Bridge, BridgePhase};
 use crate::input::Input;
 use crate::world;
 
-/// The goal of having the arm rest when the last handle is dropped. No handle uses this id: they
-/// count up from 1.
+/// The goal that stops the arm when the last handle is dropped. No handle uses this id: they count
+/// up from 1.
 pub(super) const CLOSING: GoalId = GoalId(u64::MAX);
 
 /// Time that a motion gets to brake and finish when the last handle is dropped.
 const CLOSING_TIMEOUT: Duration = Duration::from_secs(15);
 
-/// Time that an arm on its way to a goal gets to come to rest when the connection is lost, before
-/// the thread that brakes it ends.
+/// Time that an arm on its way to a goal has to stop when the connection is lost, before the thread
+/// that brakes it ends.
 const BRAKING_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// Time that the control thread gets to end, which takes it a cycle.
@@ -36,11 +36,11 @@ impl Bridge {
     }
 
     /// Takes note that robot or thread is out of reach. Everything else ends with it, after an arm
-    /// on its way to a goal has been braked: a thread without a connection would go on towards a
+    /// on its way to a goal has been braked: a thread without a connection would continue towards a
     /// goal that can no longer be taken back.
     pub(super) fn lose(&mut self, reason: CloseReason) {
         let reason = self.channel.closing().note(reason);
-        // Before the motions resolve: what comes next finds a connection that is lost.
+        // Before the motions resolve, so that the next call finds a lost connection.
         self.supervisor.on_lost(reason.clone());
         self.lifecycle.on_connection_closed(reason.clone());
         self.drop_plans(MotionError::ConnectionClosed { reason });
@@ -81,7 +81,7 @@ impl Bridge {
             connection.close().await;
         }
         if !self.ends().await {
-            // It goes on without this connection: a thread cannot be ended from outside.
+            // It continues without this connection: a thread cannot be ended from outside.
             tracing::error!("the control thread does not end: its function has not returned");
         } else if let Some(thread) = self.thread.take() {
             match world::spawn_blocking(move || thread.join()).await {
@@ -92,7 +92,7 @@ impl Bridge {
         }
     }
 
-    /// Has the thread stop, and returns whether it has ended within [`ENDING_TIMEOUT`].
+    /// Stops the thread, and returns true if it has ended within [`ENDING_TIMEOUT`].
     async fn ends(&mut self) -> bool {
         if let Some(thread) = &self.thread {
             thread.stop();

@@ -1,4 +1,4 @@
-//! What handles and motions ask of the bridge: goals to begin, to change and to end.
+//! Inputs of handles and motions to the bridge: goals to begin, to change and to end.
 
 use franka_rt::lifecycle::{MotionError, NewMotion};
 use franka_rt::session::{Chunk, GoalId};
@@ -106,7 +106,7 @@ impl Bridge {
                     let span = tracing::info_span!("stop", goal = goal.0);
                     self.await_end(goal, Replies { began: None, ended }, span);
                 }
-                // Otherwise the arm rests already, and dropping `ended` says so.
+                // Otherwise the arm rests already, and dropping `ended` reports it.
             }
             Input::Lose { reason } => self.lose(reason),
             Input::Shutdown { .. } => unreachable!("taken where the loop decides to close"),

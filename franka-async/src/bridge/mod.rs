@@ -1,7 +1,7 @@
 //! The bridge: one task between the async world, the command channel and the real-time thread.
 //!
-//! It drives the lifecycle of motions and is the only one that touches the thread's queues and
-//! slots. Waking other tasks takes locks; that is why it happens here and never on the thread.
+//! It drives the lifecycle of motions and alone touches the thread's queues and slots. Waking other
+//! tasks takes locks, so it happens here and never on the thread.
 
 mod closing;
 mod inputs;
@@ -57,14 +57,14 @@ pub(crate) struct Bridge {
     supervisor: Arc<Supervisor>,
     /// The motions whose paths are being planned, the newest last.
     planning: Vec<Planning>,
-    /// What the supervisor was last shown.
+    /// State that the supervisor was last shown.
     seen: Option<Seen>,
     /// `message_id` of the newest state when a silence was noticed, until one comes.
     silent_since: Option<u64>,
     awaited: Option<Awaited>,
 }
 
-/// How far the bridge is on its way to its end.
+/// Phases of the bridge on its way to its end.
 #[derive(Clone, Copy)]
 enum BridgePhase {
     /// It takes inputs.
@@ -79,7 +79,7 @@ enum BridgePhase {
 struct Caller {
     replies: Replies,
     span: Span,
-    /// Why a target was refused for which the goal is taken back.
+    /// Reason why a target was refused, for which the goal is taken back.
     refused: Option<GoalError>,
 }
 
@@ -102,7 +102,7 @@ pub(crate) struct Prepared {
 
 impl Prepared {
     /// Runs the bridge as a task until all ways into it are gone, the connection is lost, or it is
-    /// told to end: by an input, or by `cancellation`.
+    /// ended: by an input, or by `cancellation`.
     pub(crate) fn start(self, cancellation: CancellationToken) {
         let Self {
             bridge,
@@ -255,7 +255,7 @@ impl Bridge {
         });
     }
 
-    /// Why no state could show what is awaited, if none has come since.
+    /// Reason why no state could show what is awaited, if none has come since.
     fn unseen(&self) -> Option<MotionError> {
         let awaited = self.awaited.as_ref()?;
         if self.publisher.state().message_id != awaited.newest {
@@ -293,7 +293,7 @@ impl Bridge {
                         result = Err(error.into());
                     }
                     if let Err(MotionError::Hung { silence }) = &result {
-                        // No state is read until the control thread goes on.
+                        // No state is read until the control thread continues.
                         self.publisher.tell_silence(*silence);
                     }
                     self.supervisor.on_ended(goal, &result);

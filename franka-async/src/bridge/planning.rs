@@ -133,7 +133,7 @@ impl Bridge {
         }
     }
 
-    /// Where a path that begins now starts: joint positions, `[rad]`.
+    /// Start of a path that begins now: joint positions, `[rad]`.
     fn start_of_a_path(&self) -> [f64; 7] {
         let reference = self.course.reference().map(|reference| reference.q);
         reference.unwrap_or_else(|| self.publisher.state().q)
@@ -179,7 +179,7 @@ impl Bridge {
         any
     }
 
-    /// Pauses the path of this goal, which then begins paused, or lets it go on.
+    /// Pauses the path of this goal, which then begins paused, or resumes it.
     pub(super) fn pause_plan(&mut self, id: GoalId, paused: bool) {
         for planning in &mut self.planning {
             if let NewMotion::Goal { goal, .. } = &mut planning.motion.motion

@@ -1,4 +1,4 @@
-//! What the control thread has published since the last wake-up: states, records and events.
+//! Values that the control thread has published since the last wake-up: states, records and events.
 
 use franka_proto::RobotMode;
 use franka_rt::driver::Event;
@@ -13,7 +13,7 @@ impl Bridge {
     /// Takes everything that the thread has published.
     pub(super) fn on_wakeup(&mut self) {
         self.publisher.publish();
-        // Before a motion resolves: what comes next finds a robot that is in a reflex.
+        // Before a motion resolves, so that the next call finds a robot that is in a reflex.
         self.observe();
         self.telemetry.watch(world::now());
         self.take_notices();

@@ -1,4 +1,4 @@
-//! Warnings about goals that are accepted: what may go wrong under their options.
+//! Warnings about accepted goals with risky options.
 
 use franka_proto::RobotState;
 use franka_rt::law::Gains;
@@ -7,7 +7,7 @@ use franka_rt::session::{ForceCap, GoalId, Margin};
 use super::Bridge;
 
 impl Bridge {
-    /// Says so if an arm may oscillate under these gains.
+    /// Warns if an arm may oscillate under these gains.
     pub(super) fn warn_of_margin(&self, goal: GoalId, gains: Option<Gains>, state: &RobotState) {
         let margin = gains.and_then(|gains| self.lifecycle.margin(&gains, state));
         if let Some(Margin { damping, stiffness }) = margin.filter(|margin| !margin.is_wanted()) {

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! A service that passes a robot on to clients takes the lease of [`Robot::lease`] for each client
-//! that is to move the arm, and binds the client's session to it by [`Holder::deadman`]. All
+//! that should move the arm. It binds the client's session to the lease by [`Holder::deadman`]. All
 //! services of a process that share the robot share its lease: a dashboard, a teleoperation. A
 //! second client is refused with the name of the first.
 //!

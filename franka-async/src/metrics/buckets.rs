@@ -7,9 +7,9 @@ use franka_rt::stats::Histogram;
 /// A histogram of the thread in the buckets of the text, in seconds.
 #[derive(Debug, PartialEq)]
 pub(super) struct Buckets {
-    /// The bound of each bucket, and how many durations lie between it and the one before.
+    /// The bound of each bucket, and the number of durations between it and the previous bound.
     pub(super) counts: Vec<(f64, u64)>,
-    /// Of all durations, `[s]`.
+    /// Sum of all durations, `[s]`.
     pub(super) sum: f64,
 }
 

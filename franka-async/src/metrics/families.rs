@@ -67,7 +67,7 @@ impl<'a, 'e> Families<'a, 'e> {
         self.thread()
     }
 
-    /// How the robot is.
+    /// Health of the robot.
     fn robot(&mut self) -> fmt::Result {
         let help = "Whether there is a connection.";
         self.gauges("franka_connected", help, None, |scrape| {
@@ -100,7 +100,7 @@ impl<'a, 'e> Families<'a, 'e> {
         })
     }
 
-    /// What happened to the robot.
+    /// Mishaps of the robot.
     fn mishaps(&mut self) -> fmt::Result {
         let help = "Motions that have ended.";
         self.counters("franka_motions", help, |scrape| {
@@ -132,7 +132,7 @@ impl<'a, 'e> Families<'a, 'e> {
         })
     }
 
-    /// How punctual control is.
+    /// Punctuality of control.
     fn thread(&mut self) -> fmt::Result {
         let help = "What the operating system granted the control thread.";
         self.gauges("franka_rt_granted", help, None, |scrape| {
@@ -174,7 +174,8 @@ impl<'a, 'e> Families<'a, 'e> {
         })
     }
 
-    /// A family of gauges: of each robot, some samples with labels beside that of the robot.
+    /// A family of gauges: for each robot, some samples with labels in addition to the robot's
+    /// label.
     fn gauges<L, V, S>(
         &mut self,
         name: &str,
@@ -255,7 +256,7 @@ fn labelled(
     encode(&mut family.encode_family(&([("robot", scrape.label)], labels))?)
 }
 
-/// No labels beside that of the robot.
+/// No labels in addition to the robot's label.
 const ALONE: [(&str, &str); 0] = [];
 
 const SECONDS: Option<&Unit> = Some(&Unit::Seconds);

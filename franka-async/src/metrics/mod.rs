@@ -1,11 +1,11 @@
-//! What connections have counted and measured, as [OpenMetrics] text: for Prometheus and whatever
-//! else reads its format.
+//! Counts and measurements of connections, as [OpenMetrics] text: for Prometheus and any other
+//! reader of its format.
 //!
-//! [`Robot::metrics`] is one robot's text. [`Exporter`] is that of several, or a collector for a
-//! registry of the program's own. Both read the counters that the control thread keeps anyway
-//! ([`Robot::stats`]), the newest state, [`Robot::health`] and [`Robot::granted`], when they are
-//! called, and how motions ended: the thread does nothing for them. The thread's counts begin anew
-//! with each connection of a supervised robot.
+//! [`Robot::metrics`] is one robot's text. [`Exporter`] is the text of several robots, or a
+//! collector for the program's own registry. When called, both read the counters that the control
+//! thread keeps anyway ([`Robot::stats`]), the newest state, [`Robot::health`], [`Robot::granted`],
+//! and how motions ended. The thread does nothing for them. The thread's counts begin anew with
+//! each connection of a supervised robot.
 //!
 //! | metric | type | labels beside `robot` |
 //! |---|---|---|
@@ -28,9 +28,9 @@
 //! | `franka_state_interval_seconds`, `franka_cycle_turnaround_seconds` | histogram | |
 //! | `franka_cycle_slack_seconds` | gauge, the least so far; negative for an overrun | |
 //!
-//! The thread's buckets are finer than these histograms' and do not end where theirs do: a bucket
-//! counts all durations up to 15/16 of its bound, some of those up to the bound, and none above.
-//! The sum is that of the middles of the thread's buckets, within 1/32.
+//! The thread's buckets are finer than these histograms' and do not end where theirs do. A bucket
+//! counts all durations up to 15/16 of its bound, some of the durations up to the bound, and none
+//! above. The sum is computed from the middles of the thread's buckets, within 1/32.
 //!
 //! [OpenMetrics]: https://prometheus.io/docs/specs/om/open_metrics_spec/
 

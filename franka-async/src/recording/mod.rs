@@ -111,7 +111,7 @@ pub enum TrackError {
     /// The recorder does not take it.
     #[error(transparent)]
     Record(#[from] RecordError),
-    /// An end effector would be recorded with a robot that is not.
+    /// An end effector belongs to a robot that is not attached.
     #[error("no robot called {name:?} is attached to the recorder")]
     Unknown {
         /// The name that was given.

@@ -112,7 +112,7 @@ pub struct NoToken {
 }
 
 impl Refused {
-    /// Returns the status of an answer over HTTP: 400, 401 or 403.
+    /// Returns the HTTP status of the answer: bad request, unauthorized or forbidden.
     pub fn status(&self) -> StatusCode {
         match self {
             Self::NoHost => StatusCode::BAD_REQUEST,

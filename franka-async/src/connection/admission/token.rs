@@ -99,7 +99,8 @@ impl Token {
     /// user of the computer can read the arguments of its programs.
     ///
     /// # Errors
-    /// Those of [`Self::from_file`] and [`TokenError::Variable`]. An empty variable is an error.
+    /// The errors of [`Self::from_file`] and [`TokenError::Variable`]. An empty variable is an
+    /// error.
     pub fn configured(file: Option<&Path>) -> Result<Option<Self>, TokenError> {
         Self::given(file, env::var(TOKEN_VARIABLE))
     }
