@@ -1,11 +1,11 @@
 //! The UDP side of a connection: the robot's newest state in (those that a newer one has overtaken
 //! and duplicates are dropped and counted), one command back to where that state came from.
 //!
-//! The robot sends one state per millisecond, and a host that was held up finds several of them
-//! waiting. The newest one wins: [`Exchange::receive`] waits for a datagram, then takes all that
-//! are there and keeps the one with the highest `message_id`, if that is above the last one kept
-//! and not impossibly far ahead of it. What did not come from the robot's address is dropped and
-//! counted. Nothing here allocates after [`Exchange::new`].
+//! The robot sends one state per millisecond, and a host that was delayed finds several of them
+//! waiting. The newest one wins. [`Exchange::receive`] waits for a datagram, then takes all that
+//! are there. It keeps the state with the highest `message_id`, if that is above the last one kept
+//! and not impossibly far ahead of it. Datagrams from other addresses than the robot's are dropped
+//! and counted. Nothing here allocates after [`Exchange::new`].
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
@@ -33,8 +33,8 @@ pub fn bind(robot: IpAddr) -> io::Result<UdpSocket> {
 /// sees an order, or the wish that it stop, while the robot is silent.
 pub const TICK: Duration = Duration::from_millis(20);
 
-/// How long to wait for a state where silences of `link_timeout` have to be noticed: a quarter of
-/// it, a [`TICK`] at most.
+/// Time to wait for a state where silences of `link_timeout` must be noticed: a quarter of it, a
+/// [`TICK`] at most.
 ///
 /// So a loss shows late by a quarter, and by two of the kernel's clock ticks (4 ms at 250 Hz), in
 /// which it counts such waits.
@@ -42,7 +42,7 @@ pub fn wait_for(link_timeout: Duration) -> Duration {
     (link_timeout / 4).clamp(MIN_WAIT, TICK)
 }
 
-/// The shortest wait: one that rounds to zero would be no wait, or last forever.
+/// The shortest wait: a wait that rounds to zero would be no wait, or last forever.
 const MIN_WAIT: Duration = Duration::from_millis(1);
 
 /// Receives states and sends commands.
@@ -52,24 +52,24 @@ pub struct Exchange {
     robot: IpAddr,
     /// The newest state, in its first `state_size` bytes.
     newest: Box<[u8]>,
-    /// Where the next datagram goes; changes places with `newest` if it is newer.
+    /// Buffer of the next datagram; changes places with `newest` if it is newer.
     incoming: Box<[u8]>,
     /// `message_id` of `newest`.
     message_id: Option<u64>,
     /// Sender of `newest`, to which a command is sent.
     reply_to: Option<SockAddr>,
-    /// How long each receive waits for a datagram.
+    /// Time that each receive waits for a datagram.
     wait: Duration,
     /// True if the last receive failed, rather than found nothing.
     failed: bool,
 }
 
-/// What one call of [`Exchange::receive`] found.
+/// Result of one call of [`Exchange::receive`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reception {
     /// True if there is a newer state than before; [`Exchange::state`] has it.
     pub fresh: bool,
-    /// States that were newer than before and gave way to a still newer one.
+    /// States that were newer than before and were skipped for a still newer one.
     pub skipped: u64,
     /// States not newer than the newest: overtaken or duplicate ones.
     pub stale: u64,
@@ -129,7 +129,7 @@ impl Exchange {
         Ok(self)
     }
 
-    /// Where states come from, for its options.
+    /// Socket from which states come, for its options.
     pub(crate) fn socket(&self) -> &Socket {
         &self.socket
     }
@@ -147,8 +147,8 @@ impl Exchange {
     /// Waits for a datagram, up to [`TICK`] or what [`with_wait`](Self::with_wait) was given, then
     /// takes those that are there, up to [`DRAIN_MAX`] in all.
     ///
-    /// A receive that fails does not wait. After one that did, this sleeps for a millisecond first,
-    /// so that an error that lasts does not keep the processor busy.
+    /// A receive that fails does not wait. After a failed receive, this sleeps for a millisecond
+    /// first, so that a lasting error does not keep the processor busy.
     pub fn receive(&mut self) -> Reception {
         if self.failed {
             sys::sleep_a_millisecond();
@@ -236,7 +236,7 @@ impl Exchange {
     }
 }
 
-/// Why a command did not leave.
+/// Reason why a command did not leave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SendError {
@@ -256,8 +256,8 @@ pub enum SendError {
     Refused(i32),
 }
 
-/// Datagrams taken in one call at most, so that a flood cannot hold the cycle up. The default
-/// receive buffer of Linux (212992 bytes) holds fewer states than that.
+/// Datagrams taken in one call at most, so that a flood cannot delay the cycle. The default receive
+/// buffer of Linux (212992 bytes) holds fewer states than that.
 pub const DRAIN_MAX: usize = 256;
 
 /// The most that a state's `message_id` may be above the newest one, `[ms]` of the robot's clock:

@@ -6,7 +6,7 @@
 //!         orders, goal slot --+        +--> newest state, records, events -> eventfd
 //! ```
 //!
-//! * [`driver`]: what one robot state calls for; phases from watching to finishing. No clock, no
+//! * [`driver`]: the answer to one robot state; phases from watching to finishing. No clock, no
 //!   socket.
 //! * [`session`]: target control: goals in, one continuous joint-space reference out.
 //! * [`control`]: commands, and control at 1 kHz by the user's own functions.
@@ -19,16 +19,16 @@
 //! * [`together`]: motions of several robots that begin at the same time. [`team`]: sessions of
 //!   several robots whose motions begin together, and brake together for a fault of one.
 //! * [`thread`]: the only loop; the only place with a socket and a clock.
-//! * [`slot`], [`queue`], [`event_fd`], [`state_wakeups`], [`exchange`], [`sched`], [`stats`]: what
-//!   the loop is built of. [`stats`] says when a state is late.
+//! * [`slot`], [`queue`], [`event_fd`], [`state_wakeups`], [`exchange`], [`sched`], [`stats`]: the
+//!   parts of the loop. [`stats`] defines when a state is late.
 //!
-//! What has a socket or a thread is for Unix; all else builds everywhere, also for WebAssembly.
+//! Modules with a socket or a thread need Unix; all else builds everywhere, also for WebAssembly.
 //!
 //! This crate knows no async runtime, opens no TCP connection and reads no file but those that tell
 //! of a real-time kernel.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// What only the thread uses.
+// Items that only the thread uses.
 #![cfg_attr(not(unix), allow(dead_code, unused_imports))]
 
 pub mod control;

@@ -10,7 +10,7 @@ use crate::shaping::{InvalidCommand, check};
 #[derive(Clone, Copy, Debug)]
 pub struct ActiveControl;
 
-/// Why a command was not sent. Texts begin as those of libfranka 0.21, `active_control*.h` and
+/// Reason why a command was not sent. Texts begin as in libfranka 0.21, `active_control*.h` and
 /// `robot_impl.cpp`.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -21,7 +21,7 @@ pub enum WriteError {
     /// Torques beside a motion command, under the robot's own controller.
     #[error("Torques can only be commanded in kExternalController mode.")]
     TorquesUnwanted,
-    /// A motion command without the torques that the motion wants with it.
+    /// A motion command without the torques that the motion requires with it.
     #[error(
         "Torque command missing, please use writeOnce(const MotionGeneratorType& motion_generator_input, const Torques& \
          control_input) for external controllers. (here `write_motion_and_torques`)"
@@ -137,7 +137,8 @@ mod tests {
                 Err(E::TorquesUnwanted),
             ),
             (EXTERNAL, Some(bad), None, true, Err(E::TorquesMissing)),
-            // Last torques alone are told of the generator, others of the misfit.
+            // For last torques alone, the error names the generator; for other commands, the
+            // misfit.
             (
                 INTERNAL,
                 None,
@@ -180,7 +181,7 @@ mod tests {
                 true,
                 Err(Misfit::NoGenerator.into()),
             ),
-            // Numbers last, those of the motion first.
+            // Numbers are checked last, the motion's before the torques'.
             (
                 INTERNAL,
                 Some(bad),

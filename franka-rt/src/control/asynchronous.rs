@@ -15,7 +15,7 @@ pub struct AsynchronousPositions {
 /// A target as it crosses in the slot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AsynchronousTarget {
-    /// Where to go, and to stay, `[rad]`.
+    /// Positions to go to and hold, `[rad]`.
     pub q: [f64; 7],
     /// True if this ends the motion.
     pub finished: bool,
@@ -86,7 +86,7 @@ pub enum TargetStatus {
     Aborted(AbortReason),
 }
 
-/// Why targets are followed no more. Texts are those of libfranka 0.21,
+/// Reason why targets are no longer followed. Texts are taken from libfranka 0.21,
 /// `async_position_control_handler.cpp`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

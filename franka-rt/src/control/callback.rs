@@ -15,11 +15,11 @@ type Function<T> = Box<dyn FnMut(&RobotState, Duration) -> Next<T> + Send>;
 /// One or two control functions, called with every state of a motion.
 ///
 /// As in libfranka's control loops: a function gets a state and the robot's time since the state
-/// before, which is zero at first and more than a millisecond after a loss. What it returns passes
-/// the low-pass filter, the limiter and the checks. Two functions see the same state and step; once
-/// one finishes, the other is not called any more, and its command of the cycle before goes out
-/// with the last one. In protocol 10 the torque function is called first, in protocol 5 the motion
-/// function. Source: libfranka 0.21 and 0.9, `control_loop.cpp`.
+/// before, which is zero at first and more than a millisecond after a loss. The returned command
+/// passes the low-pass filter, the limiter and the checks. Two functions see the same state and
+/// step. Once one finishes, the other is not called any more, and its command of the previous cycle
+/// leaves with the last command. In protocol 10 the torque function is called first, in protocol 5
+/// the motion function. Source: libfranka 0.21 and 0.9, `control_loop.cpp`.
 pub struct Callback {
     shaper: Shaper,
     generator_first: bool,
@@ -27,7 +27,7 @@ pub struct Callback {
     torques: Option<Source<Torques>>,
     /// `message_id` of the state before.
     previous: Option<u64>,
-    /// True if the arm has been held, so that the newest command is the one that holds it.
+    /// True if the arm has been held, so that the newest command holds it.
     held: bool,
 }
 
@@ -38,8 +38,8 @@ struct Source<T> {
 }
 
 impl Callback {
-    /// Torques alone, shaped as by default. A version without such motions runs a generator beside
-    /// that is told to stand still.
+    /// Torques alone, shaped as by default. In a version without such motions, a motion generator
+    /// runs too, with commands to stand still.
     pub fn torques<R: Into<Next<Torques>>>(
         version: Version,
         torques: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -125,8 +125,8 @@ impl Callback {
         Ok((self.newest(), finished))
     }
 
-    /// The command that holds the arm at this state, or at the first one that it held it at: what
-    /// the robot desires there, no velocity, no torque. No function is called, and the first call
+    /// The command that holds the arm at this state, or at the first one that it held it at: the
+    /// robot's desired position, no velocity, no torque. No function is called, and the first call
     /// afterwards is still the first.
     pub(crate) fn hold(&mut self, state: &RobotState) -> Command {
         if let Some(source) = &mut self.motion

@@ -1,4 +1,4 @@
-//! What a program commands in a cycle, in the robot's own terms.
+//! Commands of a program in a cycle, in the robot's own terms.
 
 use franka_proto::{MoveGeneratorMode, RobotCommand, RobotState};
 
@@ -23,8 +23,8 @@ pub struct JointVelocities(pub [f64; 7]);
 pub struct CartesianPose {
     /// The pose, column-major, `[m]`.
     pub O_T_EE: [f64; 16],
-    /// Position of joint 3, `[rad]`, and sign of joint 4, -1 or +1; `None` leaves the elbow to the
-    /// robot.
+    /// Position of joint 3, `[rad]`, and sign of joint 4, plus or minus 1; `None` leaves the elbow
+    /// to the robot.
     pub elbow: Option<[f64; 2]>,
 }
 
@@ -135,7 +135,7 @@ impl MotionCommand {
 
 /// Commands of one kind, for one motion generator.
 pub trait GeneratorCommand: Into<MotionCommand> + Copy + Send + private::Sealed + 'static {
-    /// All numbers zero, without an elbow: what is sent while there is no command.
+    /// All numbers zero, without an elbow; sent while there is no command.
     const ZERO: Self;
 }
 

@@ -6,8 +6,8 @@ use super::{GeneratorCommand, JointVelocities, MotionCommand, Torques};
 use crate::control::Modes;
 use crate::shaping::{InvalidCommand, check};
 
-/// What is sent in a cycle: a command to the motion generator, torques, or both, as the motion
-/// wants.
+/// Content of one cycle's datagram: a command to the motion generator, torques, or both, as the
+/// motion requires.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Command {
     /// For the motion generator.
@@ -16,7 +16,7 @@ pub struct Command {
     pub torques: Option<Torques>,
 }
 
-/// A command that does not fit the motion that runs. Texts are those of libfranka 0.21,
+/// A command that does not fit the current motion. Texts are taken from libfranka 0.21,
 /// `robot_impl.cpp`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
@@ -27,14 +27,14 @@ pub enum Misfit {
     /// Torques, and the robot's own controller runs.
     #[error("libfranka robot: Trying to send control command, but no controller running!")]
     NoController,
-    /// One of two commands that the motion wants together.
+    /// One of two commands that the motion requires together.
     #[error("libfranka robot: Trying to send partial robot command!")]
     Partial,
 }
 
 impl Command {
-    /// Torques of a motion without commands to a generator. A version without such motions runs a
-    /// generator beside, which is told to stand still.
+    /// Torques of a motion without commands to a generator. In a version without such motions, a
+    /// motion generator runs too, with commands to stand still.
     pub fn torques(version: Version, torques: Torques) -> Self {
         let idle = JointVelocities::ZERO.into();
         Self {
@@ -65,11 +65,11 @@ impl Command {
         }
     }
 
-    /// The datagram that answers the state `message_id`. What is not commanded is zero. The
-    /// finishing flag is that of the motion generator where there is a command to it, and that of
-    /// the torques otherwise.
+    /// The datagram that answers the state `message_id`. Values that are not commanded are zero.
+    /// The finishing flag is the flag of the motion generator where there is a command to it, and
+    /// the flag of the torques otherwise.
     ///
-    /// Every command that leaves is made here, whatever program commands it.
+    /// Every command that leaves is made here, for all kinds of programs.
     ///
     /// # Errors
     /// [`InvalidCommand::NotFinite`] if any of its values is non-finite.

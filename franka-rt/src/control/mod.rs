@@ -1,7 +1,7 @@
 //! Control at 1 kHz by the user's own code.
 //!
-//! * [`Torques`] and the four [`MotionCommand`]s: what is commanded, in the robot's own terms.
-//! * [`Next`]: what a control function answers a state with.
+//! * [`Torques`] and the four [`MotionCommand`]s: commands in the robot's own terms.
+//! * [`Next`]: the answer of a control function to a state.
 //! * [`Callback`]: control functions as the program of a motion, with the order, filter and limiter
 //!   of the reference client.
 //! * [`Shaper`]: filter, limiter and check of each kind of command, as libfranka's control loops
@@ -9,8 +9,9 @@
 //! * [`ActiveControl`]: a motion whose commands are written from outside.
 //! * [`AsynchronousPositions`]: sparse joint targets between which the robot plans, and what became
 //!   of them.
-//! * [`Command`]: what goes into one datagram, and whether a motion in given [`Modes`] takes it.
-//! * [`Failure`]: why a program could not go on.
+//! * [`Command`]: content of one datagram, which knows whether a motion in given [`Modes`] takes
+//!   it.
+//! * [`Failure`]: the reason why a program could not continue.
 
 mod active;
 mod asynchronous;

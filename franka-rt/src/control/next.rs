@@ -1,10 +1,10 @@
-//! What a control function answers a state with.
+//! Answer of a control function to a state.
 
 use super::{CartesianPose, CartesianVelocities, JointPositions, JointVelocities, Torques};
 
 /// A command, and whether it is the last one.
 ///
-/// Control functions may return the bare command for one that goes on.
+/// Control functions may return the bare command to continue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Next<T> {
     /// Send it; the function is called again with the next state.
@@ -12,7 +12,7 @@ pub enum Next<T> {
     /// Send it, repeated until the robot has ended the motion; the function is not called again.
     /// The robot refuses to end a motion that still moves.
     Finish(T),
-    /// Send nothing more, and have the robot stop: the motion fails with this code, which is the
+    /// Send nothing more, and stop the robot: the motion fails with this code, which is the
     /// function's own.
     GiveUp(i32),
 }

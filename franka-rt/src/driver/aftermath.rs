@@ -1,4 +1,4 @@
-//! What the driver does once a command has left.
+//! Work of the driver once a command has left.
 
 use franka_proto::RobotState;
 
@@ -7,9 +7,8 @@ use super::{Driver, Event};
 use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 
 impl Driver {
-    /// Does for a state, once [`Self::on_state`] has taken it and the command has left (or none was
-    /// due), what need not be done before. `sent` has the times of the command, if one left, as far
-    /// as they are known.
+    /// Does the rest of the work for a state, once [`Self::on_state`] has taken it and the command
+    /// has left (or none was due). `sent` has the known times of the command, if one left.
     pub fn after_send(&mut self, state: &RobotState, arrival: &Arrival, sent: Option<&CycleTimes>) {
         self.references.write(&self.record);
         self.record.late = arrival.late;

@@ -1,4 +1,4 @@
-//! The table of what can be told of a cycle by name: names, units and shapes, for every recording.
+//! The table of the columns of a cycle: names, units and shapes, for every recording.
 
 use franka_proto::{RobotError, RobotMode, RobotState};
 
@@ -9,19 +9,19 @@ use crate::session::Guard;
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Column {
-    /// Its name: that of the field of the state or record, in most cases.
+    /// Its name, in most cases the name of the field of the state or record.
     pub name: &'static str,
     /// Its unit; what its numbers are where it has none.
     pub unit: &'static str,
     /// The shape of it in one cycle: empty for one number, `[4, 4]` for a pose, row-major.
     pub shape: &'static [usize],
-    /// What its numbers mean.
+    /// Meaning of its numbers.
     pub kind: ColumnKind,
-    /// Where it comes from.
+    /// Source of its numbers.
     pub source: ColumnSource,
 }
 
-/// What the numbers of a column mean.
+/// Meaning of the numbers of a column.
 #[derive(Clone, Copy, Debug)]
 pub enum ColumnKind {
     /// A measure.
@@ -34,7 +34,7 @@ pub enum ColumnKind {
     Name(&'static [&'static str]),
 }
 
-/// Where a column comes from: appends its numbers in a cycle to a row.
+/// Source of a column: appends its numbers in a cycle to a row.
 #[derive(Clone, Copy, Debug)]
 pub enum ColumnSource {
     /// The robot's state.
@@ -55,7 +55,7 @@ impl Column {
         COLUMNS.iter().find(|column| column.name == name)
     }
 
-    /// How many numbers it has in one cycle.
+    /// Count of its numbers in one cycle.
     pub fn width(&self) -> usize {
         self.shape.iter().product()
     }
@@ -149,7 +149,7 @@ macro_rules! cycle {
     };
 }
 
-/// Of the reference, which is zero throughout where there is none.
+/// Column of the reference, which is zero throughout without one.
 macro_rules! reference {
     ($name:ident, $unit:literal) => {
         cycle!(
@@ -165,7 +165,7 @@ macro_rules! reference {
     };
 }
 
-/// Whether a guard binds.
+/// Column that is true while a guard binds.
 macro_rules! binds {
     ($name:literal, $guard:ident) => {
         cycle!($name, &[], "", ColumnKind::Flag, |cycle, row| {

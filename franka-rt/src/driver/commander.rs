@@ -1,9 +1,9 @@
-//! What commanded a motion.
+//! Source of the commands of a motion.
 
 use super::Program;
 
-/// What commanded a motion, which decides what its commands mean and which settings there are to
-/// change.
+/// Source of the commands of a motion. It decides the meaning of the commands and which settings
+/// there are to change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Commander {
@@ -18,9 +18,9 @@ pub enum Commander {
 }
 
 impl Commander {
-    /// True if a command says where to be a cycle later, so that differences of commands are what
-    /// the joints are to do. A target that the robot plans to is not that, and only new targets are
-    /// sent.
+    /// True if a command is the position one cycle later, so that differences of commands are the
+    /// motion that the joints should make. Targets between which the robot plans are not such
+    /// commands, and only new targets are sent.
     pub fn commands_every_cycle(self) -> bool {
         self != Self::Asynchronous
     }

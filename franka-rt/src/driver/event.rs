@@ -25,7 +25,7 @@ pub enum Event {
     Program {
         /// The motion.
         motion: MotionId,
-        /// What it reports.
+        /// Report of the session.
         event: SessionEvent,
         /// Counts so far.
         statistics: MotionStatistics,
@@ -36,12 +36,12 @@ pub enum Event {
         /// The motion.
         motion: MotionId,
     },
-    /// The motion's program could not go on. No command leaves any more; the robot has to be told
-    /// to stop.
+    /// The motion's program could not continue. No command leaves any more; the robot must be
+    /// stopped.
     Failed {
         /// The motion.
         motion: MotionId,
-        /// What went wrong.
+        /// Cause.
         failure: Failure,
     },
     /// The motion's observer has panicked, and sees no more of it.
@@ -51,54 +51,55 @@ pub enum Event {
     },
     /// The motion is over for the thread. Its program comes along to be freed.
     Ended(Ended),
-    /// No state has come for so long that the link counts as lost. A later state revives it.
+    /// No state has come for the link timeout, so that the link counts as lost. A later state
+    /// revives it.
     LinkLost {
         /// The silence so far.
         silence: Duration,
     },
 }
 
-/// How a motion ended, with what the state of that moment said.
+/// End of a motion, with the data of the state at that moment.
 #[derive(Debug)]
 pub struct Ended {
     /// The motion.
     pub motion: MotionId,
-    /// How it ended.
+    /// Kind of end.
     pub ending: Ending,
     /// `robot_mode` of the newest state.
     pub robot_mode: RobotMode,
     /// Errors that hold now.
     pub errors: Errors,
-    /// What aborted the motion, if the robot did.
+    /// Errors that aborted the motion, if the robot did.
     pub reflex_reason: Errors,
     /// Counts over the motion.
     pub statistics: MotionStatistics,
     /// Times of its cycles.
     pub times: Arc<MotionTimes>,
-    /// The program, with whatever it learned.
+    /// The program, with everything that it learned.
     pub program: Program,
     /// Its last cycles.
     pub log: ControlLog,
-    /// Its ticket, if it was to begin together with others.
+    /// Its ticket, if it was part of a common start.
     pub ticket: Option<StartTicket>,
     /// The observer of its cycles.
     pub observer: Option<Observer>,
 }
 
 impl Ended {
-    /// Why the motion did not begin, if that was for want of the others that it was to begin with.
+    /// Returns the reason why the motion did not begin, if its common start failed.
     pub fn start_fault(&self) -> Option<StartFault> {
         self.ticket.as_ref().and_then(StartTicket::refusal)
     }
 }
 
-/// How a motion ended, as the thread saw it. The robot's own word on it is its last reply to the
+/// End of a motion, as the thread saw it. The robot's own word on it is its last reply to the
 /// `Move`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
     /// The finishing command was sent and the robot left the motion's modes.
     Finished,
-    /// The robot left the motion's modes by itself: a reflex, a stop, a preemption.
+    /// The robot left the motion's modes on its own: a reflex, a stop, a preemption.
     Aborted,
     /// Disarmed before it ran.
     Disarmed,
@@ -114,7 +115,7 @@ pub enum Ending {
 /// Events that wait for the thread to carry them out.
 ///
 /// A motion causes at most `Started`, a report per goal, `Failed` or `Finishing`, `Ended` and
-/// `LinkLost`, and needs orders from outside; the thread empties the queue every cycle unless the
+/// `LinkLost`, and needs orders from outside. The thread empties the queue every cycle unless the
 /// world outside has stopped listening altogether. A link that comes and goes meanwhile fills one
 /// slot and no more, so that there is room for the end of a motion.
 #[derive(Debug, Default)]
@@ -127,8 +128,8 @@ pub(super) struct EventQueue {
 impl EventQueue {
     const CAPACITY: usize = 16;
 
-    /// Appends. A full queue leaks the event: what it carries must not be freed on the thread, and
-    /// no motion can start without a listener outside.
+    /// Appends. A full queue leaks the event, because its memory must not be freed on the thread,
+    /// and no motion can start without a listener outside.
     pub(super) fn push(&mut self, event: Event) {
         let newest = (self.first + self.count + Self::CAPACITY - 1) % Self::CAPACITY;
         if let (Event::LinkLost { silence }, Some(Event::LinkLost { silence: told })) =

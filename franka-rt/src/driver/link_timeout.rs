@@ -1,5 +1,5 @@
-//! How long a robot may be silent; `Driver::on_silence` then ends the motion. Where late states go:
-//! `exchange` (overtaken ones) and `stats::arrivals`.
+//! Longest silence of a robot; `Driver::on_silence` then ends the motion. Late states are handled
+//! in `exchange` (overtaken ones) and `stats::arrivals`.
 
 use core::time::Duration;
 
@@ -14,12 +14,12 @@ pub const LINK_TIMEOUT: Duration = Duration::from_secs(1);
 pub struct LinkTimeout(Duration);
 
 impl LinkTimeout {
-    /// 20 ms: a robot that misses as many commands in a row stops by itself, and before that it
+    /// 20 ms: a robot that misses as many commands in a row stops on its own, and before that it
     /// bridges the gap.
     pub const MIN: Duration = Duration::from_millis(20);
 
-    /// 10 s: more than [`LINK_TIMEOUT`] is for a simulated robot on a busy host, which holds it up
-    /// for longer. A robot that is silent has stopped by itself long before.
+    /// 10 s: more than [`LINK_TIMEOUT`] is for a simulated robot on a busy host, which delays it
+    /// for longer. A silent robot has stopped on its own long before.
     pub const MAX: Duration = Duration::from_secs(10);
 
     /// A timeout.
@@ -55,7 +55,7 @@ impl Default for LinkTimeout {
     LinkTimeout::MAX
 )]
 pub struct LinkTimeoutError {
-    /// What was asked for.
+    /// Timeout that was given.
     pub got: Duration,
 }
 

@@ -43,8 +43,8 @@ impl ControlLog {
     /// Cycles kept unless asked otherwise. Source: `log_size` of libfranka 0.21, `robot.h`.
     pub const DEFAULT_CAPACITY: usize = 50;
 
-    /// The most cycles that a motion of a connected robot may ask for: ten seconds. A log of so
-    /// many takes 30 MB, and is laid out anew for each motion.
+    /// Most cycles that a motion of a connected robot may ask for: ten seconds. Such a log takes 30
+    /// MB, and is laid out anew for each motion.
     pub const CAPACITY_MAX: usize = 10_000;
 
     /// An empty log of the newest `capacity` cycles; 0 keeps none.
@@ -73,12 +73,12 @@ impl ControlLog {
         self.rounded
     }
 
-    /// How many cycles it keeps.
+    /// Number of cycles that it keeps.
     pub fn capacity(&self) -> usize {
         self.entries.len().saturating_sub(1)
     }
 
-    /// How many cycles it holds.
+    /// Number of cycles that it holds.
     pub fn len(&self) -> usize {
         self.len
     }
@@ -100,8 +100,8 @@ impl ControlLog {
         older.iter().chain(newer)
     }
 
-    /// The success rate at the end, as libfranka 0.21 reports it: the last state always shows 0, so
-    /// it is that of the state before. `None` with fewer than two entries.
+    /// The success rate at the end, as libfranka 0.21 reports it. The last state always shows 0, so
+    /// the previous state is taken. `None` with fewer than two entries.
     pub fn success_rate(&self) -> Option<SuccessRate> {
         let mut newest = self.iter().rev();
         let (last, before) = (newest.next()?, newest.next()?);

@@ -23,12 +23,11 @@
 //! the states show that the robot did not begin it.
 //!
 //! Inputs are [`Driver::on_order`], [`Driver::on_state`] and [`Driver::on_silence`]; outputs are
-//! the command that `on_state` returns, [`Driver::record`] and [`Driver::take_event`]. What can
-//! wait until the command has left is done in [`Driver::after_send`], once for each state, and
-//! [`Driver::note_cycle`]; what can be done before the next state comes, in [`Driver::prepare`]. No
-//! clock, socket, allocation or log: the thread, and the lockstep tests, supply time and carry the
-//! effects out. A program that has ended leaves inside an [`Event`], so that its memory is freed
-//! elsewhere.
+//! the command that `on_state` returns, [`Driver::record`] and [`Driver::take_event`]. Work that
+//! can wait until the command has left is done in [`Driver::after_send`], once for each state, and
+//! [`Driver::note_cycle`]; work that needs no new state, in [`Driver::prepare`]. No clock, socket,
+//! allocation or log: the thread, and the lockstep tests, supply time and carry the effects out. A
+//! program that has ended leaves inside an [`Event`], so that its memory is freed elsewhere.
 
 mod aftermath;
 mod columns;
@@ -81,7 +80,7 @@ pub struct Driver {
     /// The silence at which the link was given up, until a state revives it.
     lost: Option<Duration>,
     link_timeout: LinkTimeout,
-    /// How many states gave way to the one that comes next.
+    /// Number of states that were skipped for the next one.
     skipped: u64,
     /// Counts of the present motion, from arming on.
     statistics: MotionStatistics,
@@ -127,7 +126,7 @@ impl Driver {
         self.motion.is_none()
     }
 
-    /// What the last cycle saw and did.
+    /// Record of the last cycle.
     pub fn record(&self) -> &Record {
         &self.record
     }
@@ -142,7 +141,8 @@ impl Driver {
         self.events.pop()
     }
 
-    /// Takes an order. One that does not fit the phase is answered with an event, never ignored.
+    /// Takes an order. An order that does not fit the phase is answered with an event, never
+    /// ignored.
     pub fn on_order(&mut self, order: Order) {
         match order {
             Order::Arm {
@@ -177,7 +177,7 @@ impl Driver {
                     }
                 }
             }
-            // Else the motion has ended by itself, and has said so; or another one is under way.
+            // Otherwise the motion has ended and has reported it, or another motion is under way.
             Order::Disarm { motion } => {
                 let armed = |it: &mut Execution| it.id == motion && it.phase == Phase::Armed;
                 if let Some(armed) = self.motion.take_if(armed) {
@@ -202,7 +202,7 @@ impl Driver {
     /// Bounded work: at most one step of the program. A state that is not newer than the newest so
     /// far is ignored, as the robot numbers its cycles strictly upwards. A motion does not answer a
     /// state in which a value that its program computes with is non-finite: the robot bridges the
-    /// gap, or stops by itself if more of them follow.
+    /// gap, or stops on its own if more of them follow.
     pub fn on_state(&mut self, state: &RobotState) -> Option<RobotCommand> {
         let missing = match self.newest {
             Some(newest) if state.message_id <= newest => return None,
@@ -279,7 +279,7 @@ impl Driver {
     /// the motion's modes.
     ///
     /// # Errors
-    /// [`WriteError`]; nothing is to be sent then, and the motion goes on.
+    /// [`WriteError`]; nothing must be sent then, and the motion continues.
     pub fn write(&mut self, command: &Command, finished: bool) -> Result<RobotCommand, WriteError> {
         let (Some(motion), Some(newest)) = (self.motion.as_mut(), self.newest) else {
             return Err(WriteError::NotRunning);
@@ -299,7 +299,7 @@ impl Driver {
         Ok(sent)
     }
 
-    /// Tells that no state has come for `silence`. After [`team::SILENCE`](crate::team::SILENCE)
+    /// Reports that no state has come for `silence`. After [`team::SILENCE`](crate::team::SILENCE)
     /// the others of a team brake, and at the link timeout a motion ends with [`Ending::LinkLost`].
     pub fn on_silence(&mut self, silence: Duration) {
         if let Some(begun) = self.motion.as_mut().filter(|motion| motion.has_begun()) {
@@ -349,7 +349,7 @@ impl Driver {
         }
     }
 
-    /// Leaves the motion without commands from now on, as its program cannot go on.
+    /// Leaves the motion without commands from now on, as its program cannot continue.
     fn fail(&mut self, failure: Failure) -> Option<RobotCommand> {
         let motion = self.motion.as_mut()?;
         motion.program.fail_team(MemberFault::Failed);

@@ -10,13 +10,13 @@ use crate::stats::MotionTimes;
 use crate::team::MemberFault;
 use crate::together::{Gate, StartTicket};
 
-/// How far a motion has come.
+/// Phase of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Phase {
     /// Asked for; the robot has not shown it yet.
     Armed,
-    /// Abandoned while it was armed, and the number of states in a row since then that show no
-    /// motion: the robot may begin it all the same. Nothing is sent.
+    /// Abandoned while it was armed, with the number of states in a row since then that show no
+    /// motion. The robot may still begin it. Nothing is sent.
     Unwanted(u32),
     Running,
     /// The finishing command is repeated until the robot leaves the motion's modes.
@@ -26,11 +26,11 @@ pub(super) enum Phase {
     Silent,
 }
 
-/// States in a row without a motion after which a robot that was told to stop is taken not to begin
-/// it any more. A reply and a state that cross on their way are apart by less than that.
+/// States in a row without a motion, after a stop request, from which the robot is taken not to
+/// begin it any more. A reply and a state that cross on their way are apart by less than that.
 pub(super) const UNWANTED_STATES: u32 = 20;
 
-/// What a motion owns from arming to its end.
+/// State of a motion from arming to its end.
 #[derive(Debug)]
 pub(super) struct Execution {
     pub(super) id: MotionId,
@@ -46,7 +46,7 @@ pub(super) struct Execution {
 }
 
 impl Execution {
-    /// Whether it may begin, or has begun, at this state.
+    /// Returns whether it may begin, or has begun, at this state.
     pub(super) fn gate(&mut self, state: &RobotState) -> Gate {
         let Some(ticket) = &mut self.ticket else {
             return Gate::Open;
@@ -65,8 +65,8 @@ impl Execution {
         )
     }
 
-    /// Nobody answers for it any more: it ends once the robot has left it. A program that brakes by
-    /// itself goes on until then.
+    /// Gives the motion up: it ends once the robot has left it. A program that brakes alone
+    /// continues until then.
     pub(super) fn abandon(&mut self) {
         self.phase = match self.phase {
             Phase::Armed => Phase::Unwanted(0),
@@ -76,7 +76,7 @@ impl Execution {
         self.leave();
     }
 
-    /// Lets those go that it was to begin with.
+    /// Leaves the common start, so that the others do not wait.
     pub(super) fn leave(&mut self) {
         if let Some(ticket) = &mut self.ticket {
             ticket.end();

@@ -6,7 +6,7 @@ use super::Record;
 use crate::session::{Bindings, GoalId};
 use crate::slot::{Read, SlotReader, SlotWriter, Words, slot};
 
-/// Where target control has the joints go, and how far its goal has come, in one cycle.
+/// Reference of target control, and the progress of its goal, in one cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceState {
     /// `message_id` of the state that it answers, `[ms]` of the robot's clock.
@@ -29,8 +29,8 @@ pub struct ReferenceState {
 }
 
 impl ReferenceState {
-    /// How long a guard that has bound counts, `[ms]` of the robot's clock: readers look a few
-    /// dozen times per second.
+    /// Time for which a guard that has bound counts, `[ms]` of the robot's clock: readers look a
+    /// few dozen times per second.
     pub const GUARDS_MS: u64 = 100;
 
     fn of(record: &Record, guards: Bindings) -> Self {
@@ -51,7 +51,7 @@ impl ReferenceState {
 #[derive(Debug)]
 pub(super) struct ReferenceWriter {
     newest: SlotWriter<ReferenceState>,
-    /// The guards that have bound since `begin`, and those of the time before it.
+    /// The guards that have bound since `begin`, and the guards of the period before.
     guards: [Bindings; 2],
     begin: u64,
 }
@@ -117,7 +117,7 @@ impl Words for ReferenceState {
     }
 }
 
-/// Attempts to read. One fails if this thread is held up until the value has been replaced twice.
+/// Attempts to read. One fails if this thread is delayed until the value has been replaced twice.
 const ATTEMPTS: usize = 16;
 
 /// Reads the newest reference. Clones read independently of each other.
@@ -183,7 +183,7 @@ mod tests {
         assert_eq!(at(begin + 199, &[]), both);
         assert_eq!(at(begin + 200, &[]), Bindings::of(&[Guard::Clearance]));
         assert!(at(begin + 300, &[]).is_empty());
-        // What bound before a gap in the states is long over.
+        // A guard that bound before a gap in the states is long over.
         at(begin + 399, &[Guard::Leash]);
         assert!(at(begin + 700, &[]).is_empty());
     }

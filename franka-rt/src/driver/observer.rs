@@ -15,10 +15,10 @@ type Function = dyn FnMut(&Record, &RobotState) + Send;
 /// cycle and its state.
 ///
 /// It has some 300 us and must not lock, allocate, print or wait. If it panics it is not called
-/// again; the motion goes on.
+/// again; the motion continues.
 pub struct Observer {
     function: Box<Function>,
-    /// What it panicked with, kept to be freed elsewhere.
+    /// Payload of its panic, kept to be freed elsewhere.
     panicked: Option<Box<dyn Any + Send>>,
 }
 
@@ -36,7 +36,8 @@ impl Observer {
         if self.panicked.is_some() {
             return false;
         }
-        // One that has panicked is never called again, so no caller sees what it left half done.
+        // A function that has panicked is never called again, so no caller sees its half-finished
+        // state.
         let seen = catch_unwind(AssertUnwindSafe(|| (self.function)(record, state)));
         self.panicked = seen.err();
         self.panicked.is_some()
@@ -46,7 +47,7 @@ impl Observer {
 /// Elsewhere: see [`Event::Ended`](super::Event::Ended).
 impl Drop for Observer {
     fn drop(&mut self) {
-        // That it panicked was told.
+        // The panic has been reported.
         let _ = panic::free(self.panicked.take());
     }
 }

@@ -21,14 +21,14 @@ pub enum Order {
         motion: MotionId,
         /// The modes in which the robot runs it.
         modes: Modes,
-        /// What answers the states.
+        /// Program that answers the states.
         program: Program,
-        /// Where its last cycles are noted; empty.
+        /// Log of its last cycles; empty.
         log: ControlLog,
-        /// Of a motion that begins together with others. Until they are all there the driver holds
-        /// the arm, by goals or a control function; other programs do not wait.
+        /// Ticket of a motion that begins together with others. Until they are all there the driver
+        /// holds the arm, by goals or a control function; other programs do not wait.
         ticket: Option<StartTicket>,
-        /// Where the times of its cycles are counted; empty.
+        /// Counts of the times of its cycles; empty.
         times: Arc<MotionTimes>,
         /// The observer of its cycles.
         observer: Option<Observer>,
@@ -38,8 +38,8 @@ pub enum Order {
         /// The motion to forget.
         motion: MotionId,
     },
-    /// End the motion: no caller waits for it any more. Goals brake by themselves, as the newest
-    /// one says. Any other program gets no more states, and the robot stops by itself when its
+    /// End the motion: no caller waits for it any more. Goals brake alone, as the newest one
+    /// requires. Any other program gets no more states, and the robot stops on its own when its
     /// commands stay away. An armed motion ends once the robot has shown no motion for 20 states in
     /// a row.
     Abandon {

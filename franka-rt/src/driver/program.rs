@@ -1,4 +1,4 @@
-//! What answers the states of a running motion.
+//! Program of a running motion, which answers its states.
 
 use core::time::Duration;
 
@@ -10,7 +10,8 @@ use crate::session::{SessionCommand, SessionEvent, Target, TargetSession, Trace}
 use crate::team::MemberFault;
 use crate::together::Gate;
 
-/// What answers the states of a running motion. Built outside the thread and freed outside it.
+/// Program that answers the states of a running motion. Built outside the thread and freed outside
+/// it.
 #[derive(Debug)]
 pub enum Program {
     /// Goals from a slot, turned into torques.
@@ -23,9 +24,9 @@ pub enum Program {
     Asynchronous(AsynchronousPositions),
 }
 
-/// What is sent in answer to a state.
+/// Answer to a state.
 pub(super) enum CycleOutcome {
-    /// This command; the last one if it says so.
+    /// This command; the last one if `finished`.
     Command { command: Command, finished: bool },
     /// Nothing now, but perhaps something is written before the next state.
     Open,
@@ -76,14 +77,14 @@ impl Program {
         }
     }
 
-    /// True if it brings an arm that it moves to rest by itself once its goal asks for that.
+    /// True if it stops an arm that it moves, without the robot, once its goal asks for that.
     pub(super) fn brakes(&self) -> bool {
         matches!(self, Self::Target(_))
     }
 
     /// Answers a state: holds the arm while the gate is closed, and finishes where the arm is if
-    /// the gate is broken. [`Command::datagram`] checks that the command is finite. What the
-    /// program reports is left in `event`.
+    /// the gate is broken. [`Command::datagram`] checks that the command is finite. A report of the
+    /// program is left in `event`.
     pub(super) fn step(
         &mut self,
         gate: Gate,

@@ -1,4 +1,4 @@
-//! What one cycle saw and did, as plain numbers for recording and telemetry.
+//! Record of one cycle, as plain numbers for recording and telemetry.
 
 use core::time::Duration;
 
@@ -17,13 +17,13 @@ pub struct Record {
     pub time: u64,
     /// States lost or skipped just before it.
     pub skipped: u64,
-    /// What the driver was doing.
+    /// Activity of the driver.
     pub activity: Activity,
     /// The robot's mode.
     pub robot_mode: RobotMode,
     /// Errors that hold.
     pub errors: Errors,
-    /// What aborted the previous motion.
+    /// Errors that aborted the previous motion.
     pub reflex_reason: Errors,
     /// The robot's success rate.
     pub success_rate: f64,
@@ -44,8 +44,8 @@ pub struct Record {
     /// rest or where a hand guides the arm, and outside target control. A target that moves: where
     /// it is now.
     pub q_target: Option<[f64; 7]>,
-    /// Pose that the reference heads for, as [`Self::q_target`]: of the end effector in the base
-    /// frame, or of the object that the hand holds, `[m]`.
+    /// Pose that the reference heads for, as [`Self::q_target`]. It is the pose of the end effector
+    /// in the base frame, or of the object that the hand holds, `[m]`.
     pub pose_target: Option<Isometry3<f64>>,
     /// Time since the goal was first seen.
     pub elapsed: Duration,
@@ -58,7 +58,7 @@ pub struct Record {
     /// Part of it that compensates friction and bias, before the guards, `[N m]`; zero outside
     /// target control.
     pub compensation: [f64; 7],
-    /// Which guards bound the command.
+    /// Guards that bound the command.
     pub bindings: Bindings,
     /// From when the state was due to when the thread had it: see
     /// [`CycleTimes::late`](crate::stats::CycleTimes::late).
@@ -66,12 +66,12 @@ pub struct Record {
     /// Time from the receipt of the state to the departure of its command; zero where none left,
     /// and under active control, where the command leaves after the record is made.
     pub turnaround: Duration,
-    /// What was left until the next state was due when the command left; `None` where none left, as
+    /// Time left until the next state was due when the command left; `None` where none left, as
     /// above.
     pub slack: Option<Slack>,
 }
 
-/// What the driver was doing in a cycle.
+/// Activity of the driver in a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -81,8 +81,8 @@ pub enum Activity {
     Watching,
     /// A motion is armed; the robot does not show its modes yet.
     Armed,
-    /// The robot is ready for a motion that is to begin together with others; the arm is held until
-    /// they all are.
+    /// The robot is ready for a motion of a common start; the arm is held until all robots are
+    /// ready.
     Waiting,
     /// A motion runs.
     Running,

@@ -12,9 +12,9 @@ use crate::session::Guard;
 #[derive(Clone, Debug)]
 pub struct Fit {
     model: Model,
-    /// What the robot was told of load and end effector together.
+    /// Load and end effector together, as set at the robot.
     total: Load,
-    /// What it was told of the load: mass and moment.
+    /// Load as set at the robot: mass and moment.
     declared: Vector4<f64>,
     /// Acceleration of gravity in the base frame, `[m/s²]`.
     gravity: Vector3<f64>,
@@ -31,7 +31,7 @@ struct Steady {
     time: u64,
     /// Cycles of it.
     cycles: u32,
-    /// Of those, the ones that are summed up, and sums over them.
+    /// Those of its cycles that are summed up, and sums over them.
     summed: u32,
     q: JointVector,
     dq: JointVector,
@@ -44,14 +44,14 @@ struct Steady {
 #[derive(Clone, Copy, Debug)]
 struct Window {
     signs: JointVector,
-    /// What the joints take beside the model, `[N m]`.
+    /// Torques of the joints in addition to the model, `[N m]`.
     takes: JointVector,
-    /// What they take per mass and moment of a load.
+    /// Torques of the joints per mass and moment of a load.
     gravity: SMatrix<f64, 7, 4>,
     stroke: u32,
 }
 
-/// Why the records do not tell what the arm is like.
+/// Reason why the records do not show the properties of the arm.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FitError {
@@ -252,7 +252,7 @@ impl Fit {
 }
 
 impl Window {
-    /// What a joint takes per unknown; `None` for one that was too slow.
+    /// Torque of a joint per unknown; `None` for a joint that was too slow.
     fn row(&self, joint: usize) -> Option<Unknowns> {
         let sign = self.signs[joint];
         (sign != 0.0).then(|| {
@@ -265,7 +265,7 @@ impl Window {
     }
 }
 
-/// What is known of any arm before: the inverse of the variances of the unknowns.
+/// Prior knowledge of any arm: the inverse of the variances of the unknowns.
 fn prior() -> Unknowns {
     Unknowns::from_fn(|i, _| {
         let deviation: f64 = match i {
@@ -306,7 +306,7 @@ const GAP: u64 = 20;
 /// Windows that each joint needs, one way and the other.
 const INTERVALS: usize = 12;
 
-/// How often the weights of the joints are taken from the residuals.
+/// Number of times that the weights of the joints are taken from the residuals.
 const REWEIGHTED: usize = 3;
 
 /// Least deviation of a joint's windows, `[N m]`: the resolution of its sensor.
@@ -318,6 +318,6 @@ const ABSURD: f64 = 1e3;
 /// Greatest deviation of a joint's windows on an arm that nothing has pushed, `[N m]`.
 const RESIDUAL_MAX: f64 = 0.5;
 
-/// What an error of the robot's own masses looks like, `[kg]` and `[kg m]`.
+/// Effect of an error of the robot's own masses, `[kg]` and `[kg m]`.
 const MODEL_MASS: f64 = 0.05;
 const MODEL_MOMENT: f64 = 0.01;

@@ -6,11 +6,11 @@
 //!                                   later connections: Lifecycle::knowing <---'
 //! ```
 //!
-//! A `Plan` says what would move. While its motions run, a `Fit` takes the record of every
-//! cycle. In steady motion a joint takes `direction * friction + bias + G(q) load`: a bias that
-//! changes with the pose as the gravity of a load does is a load, the rest belongs to the joint.
-//! What the robot was told of a load counts as part of it. Gravity points where the state has it,
-//! `O_ddP_O`. Nothing here is sent to a robot.
+//! A `Plan` lists the motions. While its motions run, a `Fit` takes the record of every cycle. In
+//! steady motion a joint takes `direction * friction + bias + G(q) load`: a bias that changes with
+//! the pose as the gravity of a load does is a load, the rest belongs to the joint. The load that
+//! is set at the robot counts as part of it. Gravity has the direction in the state, `O_ddP_O`.
+//! Nothing here is sent to a robot.
 
 mod fit;
 mod plan;
@@ -37,14 +37,14 @@ pub struct Estimate {
 }
 
 impl fmt::Display for Estimate {
-    /// `0.842 ± 0.031`; with a precision, to so many digits.
+    /// `0.842 ± 0.031`; with a precision, to that number of digits.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let digits = f.precision().unwrap_or(3);
         write!(f, "{:.digits$} ± {:.digits$}", self.value, self.deviation)
     }
 }
 
-/// What one joint takes beside the robot's model.
+/// Torques of one joint in addition to the robot's model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IdentifiedJoint {
@@ -56,8 +56,9 @@ pub struct IdentifiedJoint {
     pub bias: Estimate,
 }
 
-/// What the flange carries beside the end effector that the robot is configured with (`m_ee`). A
-/// declared load is part of it, and so is what a real end effector weighs more than configured.
+/// Load of the flange in addition to the end effector that the robot is configured with (`m_ee`). A
+/// declared load is part of it, and so is the weight by which a real end effector exceeds the
+/// configured one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IdentifiedLoad {
@@ -85,7 +86,7 @@ impl IdentifiedLoad {
     }
 }
 
-/// What the motions of a `Plan` have shown of an arm.
+/// Properties of an arm, found by the motions of a `Plan`.
 ///
 /// `Display` is a table to read. With the feature `serde` it can be stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,11 +96,11 @@ pub struct Identified {
     pub kind: RobotKind,
     /// Its joints, base to flange.
     pub joints: [IdentifiedJoint; 7],
-    /// What its flange carries.
+    /// Load of its flange.
     pub load: IdentifiedLoad,
 }
 
-/// Why an [`Identified`] is not used.
+/// Reason why an [`Identified`] is not used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KnownError {
@@ -114,7 +115,7 @@ pub enum KnownError {
     /// A number that no arm has.
     #[error("what is known has an implausible {name}: got {got}, expected {least} to {most}")]
     Number {
-        /// Which one, with its unit.
+        /// Name of the number, with its unit.
         name: &'static str,
         /// The number.
         got: f64,
@@ -163,8 +164,8 @@ impl Identified {
         Ok(())
     }
 
-    /// What the law begins with where the robot is: the part of the load that is not declared there
-    /// is bias.
+    /// Initial values of the law at the robot's present state: the part of the load that is not
+    /// declared there is bias.
     pub(crate) fn learned(&self, model: &Model, state: &RobotState) -> Learned {
         let IdentifiedLoad { mass, moment } = self.load;
         let [x, y, z] = moment.map(|of| of.value);
@@ -215,7 +216,7 @@ fn load_gravity(model: &Model, q: &JointVector, gravity: &Vector3<f64>) -> SMatr
     SMatrix::from_columns(&[mass, x, y, z])
 }
 
-/// Mass and moment of the load that the robot was told of, `[kg]` and `[kg m]`.
+/// Mass and moment of the load that is set at the robot, `[kg]` and `[kg m]`.
 fn declared(state: &RobotState) -> Vector4<f64> {
     let (mass, [x, y, z]) = (state.m_load, state.F_x_Cload);
     Vector4::new(1.0, x, y, z) * mass

@@ -27,7 +27,7 @@ pub struct PlannedMotion {
     pub from: [f64; 7],
     /// Joint positions after it, `[rad]`.
     pub to: [f64; 7],
-    /// How long it takes, arrival included.
+    /// Its duration, arrival included.
     pub duration: Duration,
 }
 
@@ -41,7 +41,7 @@ impl fmt::Display for PlannedMotion {
     }
 }
 
-/// How far the arm goes from where it is, as its references do.
+/// Distances that the arm goes from where it is, as its references do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reach {
     /// Farthest that each joint goes, either way, `[rad]`.
@@ -56,8 +56,7 @@ impl Plan {
     /// Velocity of the joints in steady motion, `[rad/s]`.
     pub const SPEED: f64 = 0.2;
 
-    /// How near to a target counts as arrived: an arm of which nothing is known need not be
-    /// accurate.
+    /// Tolerance of an arrival: an arm without identified values need not be accurate.
     pub const TOLERANCE: Tolerance = Tolerance {
         translation: 0.02,
         rotation: 0.05,
@@ -110,12 +109,12 @@ impl Plan {
         &self.motions
     }
 
-    /// How fast they are.
+    /// Budget of the motions.
     pub fn budget(&self) -> Budget {
         self.budget
     }
 
-    /// How far they go.
+    /// Reach of the motions.
     pub fn reach(&self) -> Reach {
         self.reach
     }
@@ -174,15 +173,15 @@ impl Reach {
     }
 }
 
-/// How far a joint goes to and fro, `[rad]`: almost a second of steady motion, in which a torque
-/// ripple passes through several periods.
+/// Distance that a joint goes to and fro, `[rad]`: almost a second of steady motion, in which a
+/// torque ripple passes through several periods.
 const STROKE: f64 = 0.2;
 
-/// The ways of the joints on a stroke. Each is measured by itself; the end effector goes less far
+/// The ways of the joints on a stroke. Each is measured separately; the end effector goes less far
 /// than if all went the same way.
 const WAY: [f64; 7] = [1.0, 1.0, -1.0, 1.0, 1.0, 1.0, 1.0];
 
-/// How far the middle of the strokes is from the start in a pose, `[rad]`. A load is seen by how
+/// Distance of the middle of the strokes from the start in a pose, `[rad]`. A load is seen by how
 /// its gravity changes between poses, which joint 1 does not change.
 const SHIFT: [f64; 7] = [0.0, 0.12, 0.1, 0.15, 0.25, 0.25, 0.25];
 
@@ -199,8 +198,8 @@ const POSES: [[f64; 7]; 6] = [
 /// Least distance from the joint limits, `[rad]`.
 const MARGIN: f64 = 0.1;
 
-/// Time of an arrival beyond that of the reference, `[s]`: rest for a quarter of a second, after
-/// the arm has swung in.
+/// Time from the arrival of the reference to the arrival of the arm, `[s]`: rest for a quarter of a
+/// second, after the arm has swung in.
 const ARRIVAL: f64 = 0.45;
 
 /// Points of a motion at which its reach is evaluated.

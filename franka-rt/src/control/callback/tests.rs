@@ -20,9 +20,8 @@ fn plain(version: Version) -> Shaper {
     Shaper::new(version, false, 1000.0)
 }
 
-/// Two functions that note each call by name, step in milliseconds and cycle, and finish in the
-/// cycles given, counted from
-/// 1. What they command is ten times the cycle, and the cycle.
+/// Two functions that note each call by name, step in milliseconds and cycle. They finish in
+/// the given cycles, counted from one. They command ten times the cycle, and the cycle.
 fn both(
     version: Version,
     motion_ends: u32,
@@ -57,7 +56,8 @@ fn both(
     (callback, called)
 }
 
-/// What goes out: `dq_c` and `tau_J_d` of the first joint, and whether it is the last.
+/// Returns the command that leaves: `dq_c` and `tau_J_d` of the first joint, and whether it is the
+/// last.
 fn step(callback: &mut Callback, message_id: u64) -> (f64, f64, bool) {
     let (command, finished) = callback.step(&at(message_id)).expect("good commands");
     let sent = command
@@ -85,8 +85,8 @@ fn the_order_of_two_functions_is_that_of_the_versions_client() {
 
 #[test]
 fn whoever_finishes_first_keeps_the_other_from_its_call() {
-    // In the third cycle one of them finishes; the command of the other is that of the second, if
-    // it was to be called after.
+    // In the third cycle one function finishes. If the other would have been called after it, its
+    // command of the second cycle is sent.
     for (version, motion_ends, torques_end, last) in [
         (Version::V5, 3, 0, (3.0, 20.0, true)),
         (Version::V5, 0, 3, (3.0, 30.0, true)),

@@ -31,7 +31,7 @@ use crate::shaping::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shaper {
     bounds: Bounds,
-    /// Of the robot, for bounds that depend on position.
+    /// Limits of the robot, for bounds that depend on position.
     limits: Option<JointLimits>,
     limit_rate: bool,
     cutoff_frequency: f64,
@@ -39,7 +39,7 @@ pub struct Shaper {
     echo: Echo,
 }
 
-/// What the first position or pose of a motion is filtered and limited against.
+/// Reference for filtering and limiting the first position or pose of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum FirstReference {
     /// Itself: it passes as it is if the state is at rest (libfranka 0.21).
@@ -48,7 +48,7 @@ enum FirstReference {
     State,
 }
 
-/// How precisely the state contains the last torques.
+/// Precision of the last torques in the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Echo {
     /// As they were sent, or taken for that.
@@ -57,7 +57,7 @@ enum Echo {
     Rounded,
 }
 
-/// What the control loops of libfranka 0.9 and 0.21 do differently.
+/// Differences between the control loops of libfranka 0.9 and 0.21.
 struct Conventions {
     bounds: Bounds,
     limit_rate: bool,
@@ -88,8 +88,8 @@ impl Shaper {
     /// The shaper of a robot that speaks `version`: with or without limiter, and with a filter if
     /// `cutoff_frequency`, `[Hz]`, is below [`MAX_CUTOFF_FREQUENCY`].
     ///
-    /// A cutoff frequency that is not positive is reported with the first command, as libfranka
-    /// does, and so is one that is not a number, of which libfranka makes no filter.
+    /// A cutoff frequency that is not positive is reported with the first command, as in libfranka.
+    /// So is a cutoff frequency that is not a number, of which libfranka makes no filter.
     pub fn new(version: Version, limit_rate: bool, cutoff_frequency: f64) -> Self {
         let Conventions {
             bounds,
@@ -108,7 +108,7 @@ impl Shaper {
     }
 
     /// The shaper that libfranka's control loops use by default: [`DEFAULT_CUTOFF_FREQUENCY`], and
-    /// a limiter where [`limits_by_default`](Self::limits_by_default) says so.
+    /// a limiter if [`limits_by_default`](Self::limits_by_default) is true.
     pub fn by_default(version: Version) -> Self {
         let limit_rate = Self::limits_by_default(version);
         Self::new(version, limit_rate, DEFAULT_CUTOFF_FREQUENCY)
@@ -120,17 +120,16 @@ impl Shaper {
         Conventions::of(version).limit_rate
     }
 
-    /// Replaces the bounds, those of the robot that speaks the version by default.
+    /// Replaces the bounds; by default the bounds of the robot that speaks the version.
     #[must_use]
     pub fn with_bounds(mut self, bounds: Bounds) -> Self {
         self.bounds = bounds;
         self.limited()
     }
 
-    /// Replaces the velocities of the joints where the robot's depend on position and it says
-    /// itself how: those of `joints`, from its description, also with other
-    /// [bounds](Self::with_bounds). Without effect on a robot whose
-    /// velocities are the same everywhere.
+    /// Replaces the velocity limits of the joints by those of `joints`, from the robot's
+    /// description, also with other [bounds](Self::with_bounds). Without effect on a robot whose
+    /// velocity limits do not depend on position.
     #[must_use]
     pub fn with_limits_of(mut self, joints: &JointLimits) -> Self {
         self.limits = Some(*joints);
@@ -182,7 +181,7 @@ impl Shaper {
     /// `first` is whether no command of the motion came before.
     ///
     /// # Errors
-    /// As of [`torques`](Self::torques).
+    /// Those of [`torques`](Self::torques).
     pub fn joint_positions(
         &self,
         command: &JointPositions,
@@ -206,7 +205,7 @@ impl Shaper {
     /// Shapes joint velocities against the last ones, `dq_d` of the state and their derivatives.
     ///
     /// # Errors
-    /// As of [`torques`](Self::torques).
+    /// Those of [`torques`](Self::torques).
     pub fn joint_velocities(
         &self,
         command: &JointVelocities,
@@ -226,8 +225,8 @@ impl Shaper {
     /// motion came before.
     ///
     /// # Errors
-    /// As of [`torques`](Self::torques); also if the pose is not a transformation, or the elbow has
-    /// no sign.
+    /// Those of [`torques`](Self::torques); also if the pose is not a transformation, or the elbow
+    /// has no sign.
     pub fn cartesian_pose(
         &self,
         command: &CartesianPose,
@@ -256,7 +255,7 @@ impl Shaper {
     /// elbow against [`RobotState::commanded_elbow`].
     ///
     /// # Errors
-    /// As of [`torques`](Self::torques); also if the elbow has no sign.
+    /// Those of [`torques`](Self::torques); also if the elbow has no sign.
     pub fn cartesian_velocities(
         &self,
         command: &CartesianVelocities,
@@ -279,7 +278,7 @@ impl Shaper {
     }
 
     /// Filters and limits a pose. Both steps need the nearest rotations of their poses, a fair
-    /// share of the work: what one has found, the other takes over.
+    /// share of the work, so the second step reuses the rotations of the first.
     fn pose(
         &self,
         command: &[f64; 16],
@@ -340,7 +339,7 @@ impl Shaper {
     }
 
     fn filters(&self) -> bool {
-        // One that is not a number reaches the filter, which refuses it.
+        // A frequency that is not a number reaches the filter, which refuses it.
         self.cutoff_frequency < MAX_CUTOFF_FREQUENCY || self.cutoff_frequency.is_nan()
     }
 

@@ -170,7 +170,7 @@ fn the_envelope_of_a_first_position_is_that_of_the_position_itself() {
     let mut q = JointPositions(state.q_d);
     q.0[0] = 2.75;
     let first = Shaper::new(Version::V10, true, OFF).joint_positions(&q, &state, true);
-    // At 2.75 rad joint 1 has to turn back, at 0.1 rad nothing holds it.
+    // The joint must turn back at 2.75 rad; at 0.1 rad nothing holds it.
     assert!(first.expect("finite").0[0] < 2.75);
 }
 
@@ -186,7 +186,7 @@ fn room_for_the_echo_is_left_in_protocol_10_unless_it_is_trusted() {
     };
     let v10 = Shaper::new(Version::V10, true, OFF);
     assert!((step(v10.trusting_the_echo()) - 0.999_999).abs() < 1e-13);
-    // Half of the step of an f32 below 128 is 2^-18, and eps / 2 of 80 is a little more.
+    // Half of the step of an f32 below 128 is 2^-18. The value of eps / 2 of 80 is a little more.
     let room = 0.999_999 - step(v10);
     assert!((2.0_f64.powi(-18)..5e-6).contains(&room), "{room}");
     assert!((step(Shaper::new(Version::V5, true, OFF)) - 0.999_999).abs() < 1e-13);
@@ -368,8 +368,8 @@ fn any_pose() -> impl Strategy<Value = [f64; 16]> {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(500) })]
 
-    /// Whatever the program and the robot say: no panic, and what passes is finite and a valid
-    /// command.
+    /// For any input of the program and the robot there is no panic, and a passed command is finite
+    /// and valid.
     #[test]
     fn no_input_at_all_gives_an_invalid_command_or_a_panic(
         numbers in prop::collection::vec(any_number(), 7 * 4 + 6 * 3),
