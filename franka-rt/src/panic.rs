@@ -1,4 +1,4 @@
-//! Panics of the user's code: what they said, and destructors that panic.
+//! Panics of the user's code: their messages, and destructors that panic.
 
 use core::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -13,10 +13,10 @@
 //! # Ok::<(), Full<i32>>(())
 //! ```
 //!
-//! The ring is rtrb's: neither end ever waits for the other. Not crossbeam's `ArrayQueue`: there,
-//! an end that finds the other in the middle of an operation spins until that is done, and if the
-//! other was preempted by the control thread, on the one processor that it may run on, that never
-//! happens.
+//! The ring is rtrb's: neither end ever waits for the other. Crossbeam's `ArrayQueue` does not
+//! suit: there, an end that finds the other in the middle of an operation spins until that is done.
+//! If the control thread has preempted the other end, on the only processor that it may run on,
+//! that never happens.
 
 use core::hint::black_box;
 use core::mem::MaybeUninit;
@@ -48,7 +48,7 @@ pub struct Receiver<T>(rtrb::Consumer<T>);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the queue is full")]
 pub struct Full<T>(
-    /// The value that was to be sent.
+    /// The value that could not be sent.
     pub T,
 );
 
@@ -63,8 +63,8 @@ impl<T> Sender<T> {
             .map_err(|rtrb::PushError::Full(value)| Full(value))
     }
 
-    /// Appends what `next` returns, up to `count` values, as far as there is room. `next` is not
-    /// called without room for what it returns. Returns how many came.
+    /// Appends the results of `next`, up to `count` values, while there is room. `next` is not
+    /// called without room for its result. Returns how many came.
     pub fn push_from(&mut self, count: usize, next: impl FnMut() -> Option<T>) -> usize {
         let count = count.min(self.free());
         match self.0.write_chunk_uninit(count) {
@@ -78,7 +78,7 @@ impl<T> Sender<T> {
         self.0.is_abandoned()
     }
 
-    /// How many values there is room for, at least.
+    /// Number of values that there is room for, at least.
     pub fn free(&self) -> usize {
         self.0.slots()
     }
@@ -90,7 +90,7 @@ impl<T> Receiver<T> {
         self.0.pop().ok()
     }
 
-    /// How many values are waiting, at least.
+    /// Number of values that are waiting, at least.
     pub fn waiting(&self) -> usize {
         self.0.slots()
     }

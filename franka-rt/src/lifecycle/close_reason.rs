@@ -1,12 +1,12 @@
-//! Why a connection has ended.
+//! Reasons for the end of a connection.
 
 use core::time::Duration;
 use std::io;
 
 use super::Party;
 
-/// Why a connection to a robot or an end effector has ended. `Display` is the text of the reference
-/// client where it has one.
+/// Reason why a connection to a robot or an end effector has ended. `Display` is the text of the
+/// reference client where it has one.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CloseReason {
@@ -21,19 +21,19 @@ pub enum CloseReason {
     Io {
         /// The class of the failure.
         kind: io::ErrorKind,
-        /// What failed, in the words of the reference client.
+        /// Failed operation, in the words of the reference client.
         text: String,
     },
     /// Peer: it left the protocol in a way that no later message can mend.
     #[error("{text}")]
     Protocol {
-        /// What was expected and what came.
+        /// Expected and received values.
         text: String,
     },
     /// Host: the control thread has ended or does not respond.
     #[error("the control thread is gone: {text}")]
     ThreadEnded {
-        /// What showed that.
+        /// Evidence of that.
         text: String,
     },
     /// Link: the robot sent no states, on a connection that looked alive. Its supervisor closed it.
@@ -49,14 +49,14 @@ pub enum CloseReason {
         attempts: u32,
         /// Time since the connection was lost.
         after: Duration,
-        /// What went wrong in the last one.
+        /// Error of the last one.
         text: String,
     },
     /// Robot: after the connection was lost, another robot answered. Models and goals are made for
-    /// the one before.
+    /// the previous robot.
     #[error("another robot answers: {text}")]
     AnotherRobot {
-        /// What differs.
+        /// Difference.
         text: String,
     },
     /// Caller: the runtime that served the connection was shut down.
@@ -65,7 +65,7 @@ pub enum CloseReason {
 }
 
 impl CloseReason {
-    /// Whether this program has closed it, or its runtime: nothing was lost.
+    /// True if this program, or its runtime, has closed it: nothing was lost.
     pub fn is_ours(&self) -> bool {
         matches!(self, Self::ClosedByUs | Self::RuntimeEnded)
     }

@@ -1,4 +1,4 @@
-//! One motion: what the two sides have said of it, and what that makes of its outcome.
+//! One motion: the reports of the two sides, and the outcome that follows from them.
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -15,10 +15,10 @@ use crate::driver::{Ended, Ending, MotionId, Order};
 use crate::panic;
 use crate::stats::MotionTimes;
 
-/// What a robot does that starts a motion and shows no state of it.
+/// Fault of a robot that starts a motion and shows no state of it.
 pub(super) const NEVER_SHOWN: &str = "the robot never showed the modes of the motion";
 
-/// One motion: what the two sides have said so far.
+/// One motion, with the reports of the two sides so far.
 #[derive(Debug)]
 pub(super) struct CurrentMotion {
     pub(super) motion: MotionId,
@@ -26,20 +26,20 @@ pub(super) struct CurrentMotion {
     pub(super) command: CommandSide,
     pub(super) thread: ThreadSide,
     pub(super) deadline: Option<Duration>,
-    /// What the robot had not done by a deadline, so that it was told to stop.
+    /// Step that the robot had not taken by a deadline, so that it was asked to stop.
     pub(super) given_up: Option<&'static str>,
     /// Since when its last command is out.
     pub(super) finishing: Option<Duration>,
-    /// Why its program could not go on.
+    /// Reason why its program could not continue.
     pub(super) failure: Option<MotionError>,
-    /// Since when a `StopMove` is out, or about to be, because a stop was asked for, the program
-    /// failed, or the arm does not come to rest.
+    /// Time since which a `StopMove` is out, or about to be, because a stop was asked for, the
+    /// program failed, or the arm does not stop.
     pub(super) stopped: Option<Duration>,
-    /// Where the thread counts the times of its cycles.
+    /// Counts of the times of its cycles, written by the thread.
     pub(super) times: Arc<MotionTimes>,
 }
 
-/// What the motion is for.
+/// Purpose of the motion.
 #[derive(Debug)]
 #[expect(
     clippy::large_enum_variant,
@@ -76,13 +76,13 @@ pub(super) enum ThreadSide {
 }
 
 impl CurrentMotion {
-    /// How the motion turned out with a robot of this model, once both sides have ended. The log
-    /// moves into the error, if that holds one.
+    /// Returns the outcome of the motion with a robot of this model, once both sides have ended. If
+    /// the outcome is an error with a log, the log moves into it.
     pub(super) fn verdict(&mut self, model: &Arc<Model>) -> Outcome {
         let ThreadSide::Ended(ended) = &mut self.thread else {
             unreachable!("a motion concludes when its thread side has ended")
         };
-        // What came after a failure is its consequence.
+        // Events after a failure are its consequences.
         if let Some(failure) = &self.failure {
             return Err(failure.clone());
         }
@@ -140,7 +140,7 @@ impl CurrentMotion {
             || matches!(self.command, CommandSide::Ended(_) | CommandSide::Cancelled)
     }
 
-    /// True if it is coming to its end, and no caller wants it to go on.
+    /// True if it is coming to its end, and no caller needs it to continue.
     pub(super) fn is_letting_go(&self) -> bool {
         self.is_ending()
             || match &self.work {
@@ -150,15 +150,14 @@ impl CurrentMotion {
             }
     }
 
-    /// Until when a motion under way may go on: without end, unless its last command is out or a
-    /// stop was asked for.
+    /// Deadline of a motion under way; none unless its last command is out or a stop was asked for.
     pub(super) fn running_deadline(&self) -> Option<Duration> {
         let since = self.finishing.or(self.stopped);
         since.map(|since| since + END_TIMEOUT)
     }
 
-    /// True if it takes goals from callers outside a session: it is neither a program nor a session
-    /// that goes on.
+    /// True if it takes goals from callers outside a session: it is neither a program nor a lasting
+    /// session.
     pub(super) fn takes_goals(&self) -> bool {
         match &self.work {
             Work::Goals(goals) => goals.owner == Owner::Goal || !goals.goes_on(),
@@ -171,9 +170,9 @@ impl CurrentMotion {
         matches!(self.command, CommandSide::Requested | CommandSide::Started)
     }
 
-    /// Has the thread end the motion, and returns the order that this takes, unless it has: no
-    /// caller waits for it any more. An arm on its way to a goal brakes; a program gets no more
-    /// states, and the robot stops for want of commands.
+    /// Makes the thread end the motion, and returns the order that this takes, unless it was sent
+    /// before: no caller waits for the motion any more. An arm on its way to a goal brakes; a
+    /// program gets no more states, and the robot stops without commands.
     pub(super) fn abandon(&mut self) -> Option<Order> {
         if let Work::Goals(goals) = &mut self.work {
             goals.brake();
@@ -184,7 +183,7 @@ impl CurrentMotion {
     }
 }
 
-/// How the motion of a program turned out that finished well or was stopped as asked.
+/// Returns the outcome of a motion of a program that finished well or was stopped as asked.
 fn outcome_of_program(ended: &Ended, is_stopped: bool) -> Option<Outcome> {
     match ended.ending {
         Ending::Finished => {
@@ -203,7 +202,7 @@ fn outcome_of_program(ended: &Ended, is_stopped: bool) -> Option<Outcome> {
     }
 }
 
-/// Why a program could not go on, in words that can cross tasks.
+/// Reason why a program could not continue, in words that can cross tasks.
 impl From<Failure> for MotionError {
     fn from(failure: Failure) -> Self {
         match failure {
@@ -211,7 +210,7 @@ impl From<Failure> for MotionError {
             Failure::GivenUp(code) => Self::GivenUp { code },
             Failure::Panicked(payload) => {
                 let message = panic::message(&*payload);
-                // What is told is the panic itself, not one of its payload.
+                // The panic itself is reported, not a panic of its payload.
                 let _ = panic::free(payload);
                 Self::Panicked { message }
             }

@@ -1,8 +1,8 @@
-//! What differs in a robot that answers after a lost connection.
+//! Differences of a robot that answers after a lost connection.
 
 use core::fmt;
 
-/// What differs in the robot that answers after a lost connection from the one of before.
+/// Differences between the robot that answers after a lost connection and the robot before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -12,7 +12,7 @@ pub struct Differences {
     /// A frame of its end effector (`F_T_NE`, `NE_T_EE`, `EE_T_K`), or the end effector's mass,
     /// centre of mass or inertia.
     pub frames: bool,
-    /// Its clock went on by another time than has passed: it was restarted, or is another robot.
+    /// Its clock advanced by another time than has passed: it was restarted, or is another robot.
     pub clock: bool,
     /// The first joint, from 1, that is more than 5 mrad from where it was. A joint that moved may
     /// also have run on for as long as braking takes.

@@ -10,7 +10,7 @@ use super::{Lifecycle, LifecyclePhase, MotionError, MotionReport, NewMotion, Out
 use crate::driver::{Ended, Ending, Program};
 use crate::session::{GoalId, OnArrival, Target};
 
-/// Why no motion begins: the one before was given up, and does not end.
+/// Reason why no motion begins: the previous motion was given up, and does not end.
 pub(super) const STILL_SHOWN: MotionError = MotionError::Protocol {
     what: "no state has shown the end of the motion before, which the robot was told to stop",
 };
@@ -66,8 +66,8 @@ impl Lifecycle {
         }
     }
 
-    /// Ends the motion, both of whose sides have ended, by what they have said. A robot that has
-    /// not said that the motion is over is told to stop it.
+    /// Ends the motion, both of whose sides have ended, by their reports. If the robot has not
+    /// reported the end of the motion, it is asked to stop it.
     fn finish(&mut self, now: Duration) {
         let Some(mut current) = self.take_current() else {
             return;
@@ -80,7 +80,7 @@ impl Lifecycle {
         if let Work::Goals(goals) = &current.work
             && goals.came_too_late(current.command, told, ended)
         {
-            // The session had ended before it saw this goal: the goal gets a motion of its own.
+            // The session had ended before it saw this goal: the goal gets its own motion.
             let unseen = goals.current;
             let end = goals.end_of_engagement(&Ok(MotionReport::new(&counted, 0, None)));
             // If the unseen goal is the session's own, its end is resolved below.
@@ -160,7 +160,7 @@ impl Lifecycle {
     }
 
     /// Begins `motion` after another one, which has ended with `before`. If it only asks the arm to
-    /// come to rest, it is resolved at once from that end, and no motion is started.
+    /// stop, it is resolved at once from that end, and no motion is started.
     fn take_up(
         &mut self,
         motion: NewMotion,

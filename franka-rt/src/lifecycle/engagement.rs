@@ -1,4 +1,4 @@
-//! A session that goes on from goal to goal.
+//! Sessions that last from goal to goal.
 
 use core::time::Duration;
 
@@ -16,20 +16,20 @@ use crate::session::{
 };
 use crate::team::Member;
 
-/// What a session that goes from goal to goal has beside its goals.
+/// Options of a session that goes from goal to goal, in addition to its goals.
 #[derive(Debug, Default)]
 pub struct Engagement {
     /// The deadman that it is bound to.
     pub deadman: Option<DeadmanMonitor>,
     /// Its part in a team.
     pub team: Option<Member>,
-    /// What the arm keeps out of, in the place of the regions of [`Lifecycle::keep_out_of`]; up to
-    /// [`KEEP_OUT_MAX`](crate::session::KEEP_OUT_MAX), base frame.
+    /// Keep-out regions of the arm, in the place of the regions of [`Lifecycle::keep_out_of`]; up
+    /// to [`KEEP_OUT_MAX`](crate::session::KEEP_OUT_MAX), base frame.
     pub keep_out: Option<Vec<Obstacle>>,
     /// The greatest speed of any joint, the flange and the end effector, `[m/s]`: see
     /// [`Guard::SpeedCap`](crate::session::Guard::SpeedCap).
     pub speed_cap: Option<f64>,
-    /// What turns setpoints into torques.
+    /// Backend that turns setpoints into torques.
     pub backend: Backend,
     /// The observer of its cycles.
     pub observer: Option<Observer>,
@@ -56,23 +56,23 @@ impl Engagement {
 /// Changes to the goal under way, and nothing to where it goes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tuning {
-    /// How stiff; the gains fade over 0.3 s.
+    /// Stiffness and damping; the gains fade over 0.3 s.
     pub gains: Option<Gains>,
-    /// How fast.
+    /// Limits of the motion.
     pub budget: Option<Budget>,
     /// With how much force springs and dampers may press. It fades as the gains do.
     pub force_cap: Option<ForceCap>,
-    /// How far the reference may be ahead of the arm. It fades as the gains do.
+    /// Largest distance of the reference ahead of the arm. It fades as the gains do.
     pub leash: Option<Leash>,
-    /// How far the arm may be pushed off its way.
+    /// Distance that the arm may be pushed off its way.
     pub deviation: Option<Deviation>,
-    /// Where the arm's free direction goes, joint positions in `[rad]`: as the `posture` of a goal
-    /// says it.
+    /// Posture for the arm's free direction, joint positions in `[rad]`, like the `posture` of a
+    /// goal.
     pub posture: Option<[f64; 7]>,
 }
 
 impl Tuning {
-    /// These changes, and those of `before` where there are none.
+    /// Returns these changes, completed by the changes of `before`.
     #[must_use]
     pub fn or(self, before: Self) -> Self {
         let Self {
@@ -93,8 +93,8 @@ impl Tuning {
         }
     }
 
-    /// The goal with these changes. One that guides keeps its gains: the axes that are free are
-    /// free of springs.
+    /// Returns the goal with these changes. A goal that guides keeps its gains: its free axes have
+    /// no springs.
     #[must_use]
     pub fn apply(&self, goal: Goal) -> Goal {
         Goal {
@@ -138,16 +138,16 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Hands a chunk to the session `engaged`. It takes the place of the chunk before it, as it
-    /// says itself; any other goal is superseded by `goal`, which names the chunks until another
-    /// goal comes, and says how fast and how stiff. The arm rests at the last point.
+    /// Hands a chunk to the session `engaged`. It replaces the previous chunk, from the point that
+    /// it defines itself. Any other goal is superseded by `goal`, which names the chunks until
+    /// another goal comes, and has their speed and stiffness. The arm rests at the last point.
     ///
     /// # Errors
-    /// As [`Self::begin`]; [`MotionError::Held`] while a deadman holds the arm; once, why the chunk
-    /// before was given up, as [`MotionError::Held`] or [`MotionError::Braked`];
-    /// [`GoalError::Late`] for a chunk whose points have all passed, [`GoalError::Ahead`] for one
-    /// of another clock, [`GoalError::Outdated`] for one that was observed before the one before,
-    /// [`GoalError::Chunks`] if too many are under way.
+    /// As [`Self::begin`]. [`MotionError::Held`] while a deadman holds the arm. Once, the reason
+    /// why the previous chunk was given up, as [`MotionError::Held`] or [`MotionError::Braked`].
+    /// [`GoalError::Late`] for a chunk whose points have all passed, [`GoalError::Ahead`] for a
+    /// chunk of another clock. [`GoalError::Outdated`] for a chunk with an older observation than
+    /// the previous one, and [`GoalError::Chunks`] if too many are under way.
     pub fn chunk(
         &mut self,
         engaged: GoalId,
@@ -189,11 +189,11 @@ impl Lifecycle {
             ..goal
         })?;
         if ending {
-            // The session has ended, and says so when it is known how.
+            // The session has ended, and reports it when it is known how.
             goals.after_end.push(goal.id);
             return Ok(());
         }
-        // One that was taken back is on its way to rest, and belongs to no caller any more.
+        // A goal that was taken back is on its way to rest, and belongs to no caller any more.
         let (current, cancelled) = (goals.current.id, goals.cancelled);
         let goes_on = match goals.stream {
             ChunkStream::Of { goal, observed_at } if goal == current && !cancelled => {
@@ -254,18 +254,18 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Ends the session `engaged` as asked: brakes, lets the arm go, ends the motion. Its goal
-    /// resolves as [`MotionError::Stopped`], the session itself well. Without effect on one that is
-    /// ending or has ended.
+    /// Ends the session `engaged` as asked: brakes, releases the arm, ends the motion. Its goal
+    /// resolves as [`MotionError::Stopped`], the session itself well. Without effect on a session
+    /// that is ending or has ended.
     pub fn disengage(&mut self, engaged: GoalId) {
         if self.check_engaged(engaged).is_ok() {
             self.release(engaged);
         }
     }
 
-    /// What follows the end of a goal: more goals, if it is one of a session that goes from goal to
-    /// goal. A session that is to end ends, also if the goal that ends it is taken back: its owner
-    /// may have been told that it takes no more goals.
+    /// Returns what follows the end of a goal: more goals, if its session goes from goal to goal. A
+    /// session that is asked to end does end, also if the goal that ends it is taken back: its
+    /// owner may already know that it takes no more goals.
     pub(super) fn end_of(&self, id: GoalId) -> OnArrival {
         let waits = self.next.as_ref().is_some_and(|next| next.id() == id);
         let of_session = |goals: &Goals| goals.owner != Owner::Goal && goals.goes_on();

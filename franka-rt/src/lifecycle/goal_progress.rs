@@ -22,12 +22,12 @@ pub(super) struct Goals {
     pub(super) current: Goal,
     /// True if its owner has taken it back.
     pub(super) cancelled: bool,
-    /// What the motion comes to, by what its session has said.
+    /// Result of the motion, by the reports of its session.
     pub(super) verdict: Verdict,
     pub(super) owner: Owner,
-    /// That of the deadman that the session is bound to.
+    /// Pulse of the deadman that the session is bound to.
     pub(super) pulse: Option<Arc<Pulse>>,
-    /// What turns setpoints into torques.
+    /// Backend that turns setpoints into torques.
     pub(super) backend: Backend,
     /// The way of chunks to the session.
     pub(super) chunks: ChunkWriter,
@@ -36,13 +36,13 @@ pub(super) struct Goals {
     pub(super) after_end: Vec<GoalId>,
 }
 
-/// Whom the end of a motion is told.
+/// Receiver of the end of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Owner {
     /// The caller of its goal: the motion ends with it.
     Goal,
-    /// A session that goes on from goal to goal. The name is of the caller that awaits its end, and
-    /// between goals of the goal that the arm holds.
+    /// A session that lasts from goal to goal. The name belongs to the caller that awaits its end,
+    /// and between goals to the goal that the arm holds.
     Engaged(GoalId),
     /// Such a session, whose end was asked for.
     Disengaged(GoalId),
@@ -58,7 +58,7 @@ impl Owner {
     }
 }
 
-/// What the session of a motion has said of its end.
+/// Reports of the session of a motion on its end.
 #[derive(Clone, Debug)]
 #[expect(
     clippy::large_enum_variant,
@@ -75,21 +75,21 @@ pub(super) enum Verdict {
 /// The chunks of a session, which have one goal until another comes.
 #[derive(Clone, Debug)]
 pub(super) enum ChunkStream {
-    /// The next chunk begins with a goal of its own.
+    /// The next chunk begins with its own goal.
     None,
-    /// The newest chunk belongs to this goal, and the next one goes on with it while that is the
-    /// current goal. The path of a goal is no such chunk: what comes next supersedes it.
+    /// The newest chunk belongs to this goal, and the next one continues it while that is the
+    /// current goal. The path of a goal is no such chunk; the next goal or chunk supersedes it.
     Of {
         goal: GoalId,
         /// The observation that the newest chunk names, `message_id`.
         observed_at: Option<u64>,
     },
-    /// Why its goal was given up, which the next chunk is told: chunks have no caller that awaits
-    /// their end.
+    /// Reason why its goal was given up, which the next chunk returns: chunks have no caller that
+    /// awaits their end.
     GivenUp(MotionError),
 }
 
-/// What the session said of the goal it settled.
+/// Report of the session on the goal it settled.
 #[derive(Clone, Debug)]
 pub(super) struct Settled {
     pub(super) goal: GoalId,
@@ -97,12 +97,12 @@ pub(super) struct Settled {
     pub(super) duration_ms: u64,
     pub(super) compensation: Option<[f64; 7]>,
     pub(super) reacted: Option<Reacted>,
-    /// What the motion had come to by then.
+    /// Counts of the motion by then.
     pub(super) counted: Counted,
 }
 
 impl Goals {
-    /// A motion of its own to `goal`, which `slot` holds already.
+    /// A separate motion to `goal`, which `slot` holds already.
     pub(super) fn new(goal: Goal, slot: SlotWriter<Goal>, chunks: ChunkWriter) -> Self {
         Self {
             slot,
@@ -151,8 +151,8 @@ impl Goals {
         });
     }
 
-    /// Goes on with `goal`. Returns how the one before it turned out, for `reason` if it was not
-    /// reached, unless it was the session that holds the arm.
+    /// Continues with `goal`. Returns the outcome of the previous goal, with `reason` if it was not
+    /// reached, unless the session held the arm there.
     pub(super) fn supersede(
         &mut self,
         goal: Goal,
@@ -163,7 +163,7 @@ impl Goals {
         let previous = core::mem::replace(&mut self.current, goal).id;
         let cancelled = core::mem::take(&mut self.cancelled);
         let result = match &self.verdict {
-            // A goal that has settled was reached, whatever comes after it.
+            // A goal that has settled was reached, regardless of what comes after it.
             Verdict::Settled(settled) if settled.goal == previous => {
                 settled.result(&settled.counted, cancelled)
             }
@@ -178,7 +178,7 @@ impl Goals {
     }
 
     /// Takes note that a goal of the session `engaged` has come to its end, and is held from now
-    /// on. Returns how it turned out, unless a caller has been told of its end before.
+    /// on. Returns its outcome, unless a caller has received it before.
     pub(super) fn reach(&mut self, engaged: GoalId, settled: &Settled) -> Option<Outcome> {
         let goal = self.current;
         if goal.id == engaged {
@@ -200,7 +200,7 @@ impl Goals {
                 reaction: None,
                 ..goal
             },
-            // One that did not arrive is not what the arm is held at.
+            // The arm is not held at a goal that was not reached.
             _ => goal.at_rest(OnArrival::Hold),
         };
         self.current = Goal {
@@ -236,7 +236,7 @@ impl Goals {
         }
     }
 
-    /// How the session turned out whose last goal turned out like this.
+    /// Returns the outcome of a session whose last goal had this outcome.
     pub(super) fn end_of_engagement(&self, result: &Outcome) -> Option<(GoalId, Outcome)> {
         match (self.owner, result) {
             (Owner::Goal, _) => None,
@@ -260,7 +260,8 @@ impl Goals {
                 .is_some_and(|last| last != self.current.id)
     }
 
-    /// How the current goal turned out in a motion that finished well, if the session said so.
+    /// Returns the outcome of the current goal in a motion that finished well, if the session
+    /// reported one.
     pub(super) fn outcome(&self, ended: &Ended) -> Option<Outcome> {
         let settled = match &self.verdict {
             Verdict::Open => return None,
@@ -280,9 +281,9 @@ impl Goals {
         })
     }
 
-    /// How the current goal turned out in a motion that the robot was told to stop, since the arm
-    /// did not come to rest: as the session said before; otherwise a brake was all that was asked
-    /// for, or it was stopped.
+    /// Returns the outcome of the current goal in a motion that was stopped by a request to the
+    /// robot, since the arm did not stop. It is the outcome that the session reported before.
+    /// Otherwise a brake was all that was asked for, or the goal was stopped.
     pub(super) fn outcome_of_stop(&self, ended: &Ended) -> Outcome {
         let brakes = self.current.target == Target::Rest && !self.goes_on() && !self.cancelled;
         self.outcome(ended).unwrap_or_else(|| {
@@ -296,7 +297,7 @@ impl Goals {
 }
 
 impl Settled {
-    /// How the goal turned out, in a motion whose cycles came to what was `counted`.
+    /// Returns the outcome of the goal, in a motion whose cycles were `counted`.
     pub(super) fn result(&self, counted: &Counted, cancelled: bool) -> Outcome {
         let failed = |error: MotionError| match self.reacted {
             Some(reacted) => Err(error.after(reacted)),

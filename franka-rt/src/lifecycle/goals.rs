@@ -11,9 +11,9 @@ use super::{Lifecycle, LifecyclePhase, MotionError, NewMotion};
 use crate::session::{Backend, Chunk, Goal, GoalError, GoalId, OnArrival, Target};
 
 impl Lifecycle {
-    /// Moves the target of a goal under way, for a goal that follows a stream. Returns whether the
-    /// goal is still the one being followed: one that was taken back is not, whatever was still on
-    /// its way for it, and neither is the brake of a stop or of a session that ends.
+    /// Moves the target of a goal under way, for a goal that follows a stream. Returns true if the
+    /// goal is still being followed. A goal that was taken back is not, even if targets were still
+    /// on their way to it. The brake of a stop or of a session that ends is not, either.
     ///
     /// # Errors
     /// [`GoalError`] for a target that is not accepted; the previous one stays.
@@ -39,7 +39,7 @@ impl Lifecycle {
     }
 
     /// Lets a goal that is held come to its end: the motion settles at the newest target and
-    /// finishes, unless its session goes on from goal to goal. A path has its end anyway.
+    /// finishes, unless its session lasts from goal to goal. A path has its end anyway.
     pub fn close(&mut self, id: GoalId) {
         let current = self.goals().map(|goals| &goals.current);
         if current.is_some_and(|goal| goal.id == id && goal.along_path) {
@@ -59,8 +59,8 @@ impl Lifecycle {
         debug_assert!(amended.is_ok(), "only targets are checked");
     }
 
-    /// Halts a motion on its way, within its budget, or lets it go on. Without effect on a goal
-    /// that is no longer the newest, and on chunks, whose points have their times.
+    /// Halts a motion on its way, within its budget, or resumes it. Without effect on a goal that
+    /// is no longer the newest, and on chunks, whose points have their times.
     pub fn pause(&mut self, id: GoalId, paused: bool) {
         let goal = match &mut self.next {
             Some(NewMotion::Goal { goal, .. }) if goal.id == id => &mut **goal,
@@ -78,7 +78,7 @@ impl Lifecycle {
 
     /// Takes back a goal: an arm on its way to it is braked as by a stop, and the goal resolves as
     /// [`MotionError::Stopped`]. Without effect on a goal that is no longer the newest. A program
-    /// is taken back in the same way, by having the robot stop.
+    /// is taken back in the same way, by stopping the robot.
     pub fn cancel(&mut self, id: GoalId, now: Duration) {
         if self.next.take_if(|next| next.id() == id).is_some() {
             return self.resolve(id, Err(MotionError::Stopped));
@@ -96,8 +96,8 @@ impl Lifecycle {
         }
     }
 
-    /// What target control heads for, and the name of that goal: what was taken last, whether or
-    /// not the thread has it by now. `None` if target control moves nothing.
+    /// Returns the target of target control, and the name of that goal. It is the last target
+    /// taken, whether or not the thread has it by now. `None` if target control moves nothing.
     pub fn heading(&self) -> Option<(GoalId, Target)> {
         let goal = self.newest()?;
         Some((goal.id, goal.hand_target()))
@@ -133,8 +133,8 @@ impl Lifecycle {
         }
     }
 
-    /// Puts a goal in the place of all others, which resolve with `reason`: in the motion under
-    /// way if that takes goals, or else in one that waits for its end.
+    /// Puts a goal in the place of all others, which resolve with `reason`. The goal joins the
+    /// motion under way if that takes goals, or else a motion that waits for its end.
     pub(super) fn replace(&mut self, goal: Goal, path: Option<Box<Chunk>>, reason: MotionError) {
         let is_ending = self.is_ending();
         let previous = match self.goals_mut() {

@@ -11,15 +11,15 @@
 //!                         +-----------> Abandoned ------------------> Idle (or the next motion)
 //! ```
 //!
-//! The thread is told to arm before the `Move` goes out, so the first state of the motion finds it
-//! ready. The two sides then report in any order; the motion is over when both have. Goals come and
-//! go meanwhile: a newer one supersedes the older within the same motion, one that came too late
-//! for it gets a motion of its own. A program of the user's has the motion for itself. A motion
-//! that is given up, because a reply cannot be read or a deadline has passed, resolves at once; the
-//! next one waits until the thread has seen the robot leave it. The phases `Stalled` and `Closed`
-//! can follow on any other. A stop outlives the motion that it brakes: it waits until a state shows
-//! an arm at rest. An arm that its own law does not bring to rest, because a hand moves it, is
-//! stopped by the robot: a motion that finished with it would end in a reflex.
+//! The thread is armed before the `Move` goes out, so the first state of the motion finds it ready.
+//! The two sides then report in any order; the motion is over when both have. Goals come and go
+//! meanwhile: a newer one supersedes the older within the same motion, a goal that came too late
+//! for it gets its own motion. A program of the user's has the motion for itself. A motion that is
+//! given up, because a reply cannot be read or a deadline has passed, resolves at once; the next
+//! one waits until the thread has seen the robot leave it. The phases `Stalled` and `Closed` can
+//! follow on any other. A stop outlives the motion that it brakes: it waits until a state shows an
+//! arm at rest. An arm that its own law does not bring to rest, because a hand moves it, is stopped
+//! by the robot: a motion that finished with it would end in a reflex.
 //!
 //! Inputs are [`Lifecycle::begin`], `update`, `close`, `cancel`, `stop`, `chunk`, `tune` and
 //! `disengage` (from users), the `on_*` methods (from the command connection, the thread and the
@@ -72,8 +72,9 @@ pub const START_TIMEOUT: Duration = Duration::from_secs(5);
 /// Time for the second of the two sides to end after the first has.
 pub const END_TIMEOUT: Duration = Duration::from_secs(2);
 
-/// Time for a stop to bring an arm that target control moves to rest. The robot is told to stop it
-/// after that, and then has [`END_TIMEOUT`] to end the motion, and as long to show an arm at rest.
+/// Time for a stop to bring an arm that target control moves to rest. After that, the robot is
+/// asked to stop it. It then has [`END_TIMEOUT`] to end the motion, and as long to show an arm at
+/// rest.
 pub const BRAKE_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// Something to carry out, in the order given.
@@ -94,11 +95,12 @@ pub enum Output {
         /// Its name.
         id: GoalId,
     },
-    /// Tell the caller that awaits this goal. Each goal that was taken is told exactly once.
+    /// Send the outcome to the caller that awaits this goal. Each goal that was taken gets exactly
+    /// one outcome.
     Resolve {
         /// The goal.
         goal: GoalId,
-        /// How it turned out.
+        /// Outcome of the goal.
         result: Outcome,
     },
 }
@@ -109,7 +111,7 @@ pub struct Lifecycle {
     model: Arc<Model>,
     version: Version,
     phase: LifecyclePhase,
-    /// What waits for the motion under way, or an abandoned one, to end.
+    /// Motion that waits for the motion under way, or an abandoned one, to end.
     next: Option<NewMotion>,
     /// The last session that goes from goal to goal, if it did not end as asked, and how it ended.
     ended: Option<(GoalId, MotionError)>,
@@ -122,23 +124,24 @@ pub struct Lifecycle {
     link_timeout: Duration,
     /// Regions that the arm keeps out of under target control.
     keep_out: KeepOut,
-    /// What was known of the arm before, until a session begins with it.
+    /// Earlier knowledge of the arm, until a session begins with it.
     known: Option<Box<Identified>>,
-    /// What sessions have learned of the arm.
+    /// Values that sessions have learned of the arm.
     learned: Learned,
     outputs: VecDeque<Output>,
 }
 
-/// What moves, as far as the lifecycle knows.
+/// Known state of the motion.
 #[derive(Debug)]
 enum LifecyclePhase {
     Idle,
     UnderWay(Box<CurrentMotion>),
-    /// A motion was given up and has resolved, and the thread has not seen the robot end it. What
-    /// comes waits for that.
+    /// A motion was given up and has resolved, and the thread has not seen the robot end it. The
+    /// next motion waits for that.
     Abandoned {
         motion: MotionId,
-        /// Until when the next motion waits; after that, what new ones are refused with.
+        /// Deadline until which the next motion waits; after that, the error with which new ones
+        /// are refused.
         deadline: Result<Duration, MotionError>,
     },
     /// A thread that has borrowed the cycle does not run it, so that no motion can run.
@@ -210,7 +213,8 @@ impl Lifecycle {
         motion.compliant_goal().filter(|_| compliant)
     }
 
-    /// How far these gains are from the first oscillation of an arm in `state`: see [`Margin::of`].
+    /// Returns how far these gains are from the first oscillation of an arm in `state`: see
+    /// [`Margin::of`].
     pub fn margin(&self, gains: &Gains, state: &RobotState) -> Option<Margin> {
         Margin::of(gains, &self.model, state, self.version)
     }
@@ -238,7 +242,7 @@ impl Lifecycle {
             LifecyclePhase::Idle
             | LifecyclePhase::Stalled { .. }
             | LifecyclePhase::Closed { .. } => true,
-            // One that has passed its deadline is not waited for.
+            // A motion that has passed its deadline is not waited for.
             LifecyclePhase::Abandoned { deadline, .. } => deadline.is_err(),
             LifecyclePhase::UnderWay(_) => false,
         }

@@ -19,7 +19,7 @@ use crate::slot;
 use crate::stats::MotionTimes;
 use crate::together::StartTicket;
 
-/// A motion to begin. Its name, a goal's or its own, has to be one that was never used before.
+/// A motion to begin. Its name, a goal's or its own, must be a name that was never used before.
 #[derive(Debug)]
 pub enum NewMotion {
     /// A motion to a goal. It supersedes every goal before it.
@@ -32,7 +32,7 @@ pub enum NewMotion {
         /// ready. Such a goal supersedes nothing. A later goal supersedes it as usual, and takes it
         /// out of the common start.
         ticket: Option<StartTicket>,
-        /// The session that the goal is for; `None` begins a motion of its own.
+        /// The session that the goal is for; `None` begins a separate motion.
         session: Option<GoalId>,
     },
     /// A session that holds the arm where it is and then goes from goal to goal. It resolves when
@@ -40,14 +40,14 @@ pub enum NewMotion {
     Session {
         /// Gains and budget to hold with; its `id` names the session.
         goal: Box<Goal>,
-        /// What it has beside its goals.
+        /// Its options in addition to its goals.
         engagement: Engagement,
     },
     /// A motion under a program of the user's. It supersedes nothing and is not superseded.
     Program {
         /// Names the motion.
         id: GoalId,
-        /// What answers the states.
+        /// Program that answers the states.
         program: Program,
         /// The motion to ask the robot for.
         request: Box<MoveRequest>,
@@ -58,7 +58,7 @@ pub enum NewMotion {
 }
 
 impl NewMotion {
-    /// A motion of its own to `goal`.
+    /// A separate motion to `goal`.
     pub fn to(goal: Goal) -> Self {
         Self::Goal {
             goal: Box::new(goal),
@@ -97,7 +97,7 @@ impl NewMotion {
         )
     }
 
-    /// True if it begins together with those of other robots.
+    /// True if it begins together with motions of other robots.
     pub(crate) fn has_ticket(&self) -> bool {
         match self {
             Self::Goal { ticket, .. } | Self::Program { ticket, .. } => ticket.is_some(),
@@ -105,7 +105,7 @@ impl NewMotion {
         }
     }
 
-    /// True if it gives way to a newer goal.
+    /// True if it yields to a newer goal.
     pub(crate) fn is_superseded_by_goals(&self) -> bool {
         matches!(self, Self::Goal { .. })
     }
@@ -124,13 +124,13 @@ impl Lifecycle {
     /// Nothing is resolved then, everything stays as it was, and a ticket is dropped.
     /// - [`MotionError::Goal`] for goals, regions or a posture that are not accepted, and for a
     ///   path while as many chunks are under way as there can be.
-    /// - [`MotionError::Busy`] while another motion runs or waits and does not give way. One that
-    ///   runs gives way when it is ending, stopped or cancelled. Goals outside a session also give
-    ///   way to a new goal without a ticket.
-    /// - [`MotionError::Start`] if the others that it is to begin with are not to come.
+    /// - [`MotionError::Busy`] while another motion runs or waits and does not yield. A running
+    ///   motion yields when it is ending, stopped or cancelled. Goals outside a session also yield
+    ///   to a new goal without a ticket.
+    /// - [`MotionError::Start`] if the others of its common start will not come.
     /// - For a goal of a session that has ended: [`MotionError::Disengaged`] if that was asked for,
     ///   otherwise the error that ended it.
-    /// - [`MotionError::Protocol`] if the robot goes on with the motion before, which was given up.
+    /// - [`MotionError::Protocol`] if the robot continues the previous motion, which was given up.
     /// - [`MotionError::ConnectionClosed`] after the connection was lost.
     pub fn begin(
         &mut self,
@@ -172,7 +172,7 @@ impl Lifecycle {
         }
         match (&self.phase, motion) {
             (LifecyclePhase::Idle, motion) => self.start(motion, now),
-            // A session that has the arm is about to let it go.
+            // A session that has the arm is about to release it.
             (
                 LifecyclePhase::UnderWay(_),
                 NewMotion::Goal {
@@ -195,7 +195,7 @@ impl Lifecycle {
         }
     }
 
-    /// Checks that what moves, or waits to, gives way to `motion`.
+    /// Checks that the motion under way, or waiting, yields to `motion`.
     fn check_turn(&self, motion: &NewMotion) -> Result<(), MotionError> {
         let current_gives_way = match &self.phase {
             LifecyclePhase::UnderWay(current) => {
@@ -229,8 +229,8 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Has a motion wait until the one before it has ended. One that waited before resolves with
-    /// `reason`.
+    /// Makes a motion wait until the previous motion has ended. A motion that waited before
+    /// resolves with `reason`.
     pub(super) fn wait(&mut self, motion: NewMotion, reason: MotionError) {
         if let Some(before) = self.next.replace(motion) {
             self.resolve(before.id(), Err(reason));
@@ -259,8 +259,8 @@ impl Lifecycle {
         }
     }
 
-    /// Starts a motion towards a goal; of a session that goes on from goal to goal if `engagement`
-    /// tells of one.
+    /// Starts a motion towards a goal; of a session that lasts from goal to goal if there is an
+    /// `engagement`.
     fn start_goal(
         &mut self,
         goal: Goal,

@@ -1,5 +1,5 @@
-//! How a motion ended: the value that its future resolves with. Why the robot ended it:
-//! `franka_diagnosis`.
+//! Outcome of a motion: the value that its future resolves with. `franka_diagnosis` finds why the
+//! robot ended it.
 
 use core::fmt;
 use core::time::Duration;
@@ -17,7 +17,7 @@ use crate::shaping::InvalidCommand;
 use crate::stats::{CycleTimes, MotionStatistics, MotionTimes, Quantiles, Slack};
 use crate::together::StartFault;
 
-/// How a motion ended.
+/// Outcome of a motion.
 pub type Outcome = Result<MotionReport, MotionError>;
 
 /// A motion that came to its end as asked.
@@ -25,8 +25,8 @@ pub type Outcome = Result<MotionReport, MotionError>;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct MotionReport {
-    /// From the first state that the goal answered to the arrival, in the robot's time, pauses and
-    /// all that held the arm up included; of a control function, to the end of the motion.
+    /// From the first state that the goal answered to the arrival, in the robot's time, with all
+    /// pauses and delays; for a control function, to the end of the motion.
     ///
     /// It does not include the time for which the arm then has to rest there,
     /// [`Settling::hold`](crate::session::Settling::hold), after which the motion resolves; what is
@@ -34,17 +34,17 @@ pub struct MotionReport {
     pub duration: Duration,
     /// Distance of the measured end effector from its target; `None` for a motion without one.
     pub final_error: Option<PoseError>,
-    /// The same when the arm had been let go at the end of the motion, before the robot's own
-    /// controller took it, which knows nothing of what was compensated. `None` without a target,
-    /// where the arm is held on, and where the robot's controller had it all the time.
+    /// The same after the arm was released at the end of the motion, before the robot's own
+    /// controller took it, which ignores the compensation. `None` without a target, where the arm
+    /// stays held, and where the robot's controller had it all the time.
     pub released_error: Option<PoseError>,
-    /// What friction and bias of each joint were compensated by at the arrival, `[N m]`: what the
-    /// springs could not do. `None` without our law: under the robot's controller, and of a control
-    /// function.
+    /// Torques that compensated the friction and bias of each joint at the arrival, `[N m]`, in
+    /// addition to the springs. `None` without our law: under the robot's controller, and for a
+    /// control function.
     pub compensation: Option<[f64; 7]>,
-    /// What the motion saw when the condition became true that it was to go on until, and did
-    /// something else for: see [`Reaction`](crate::session::Reaction). `None` if it has arrived
-    /// without, and for a motion without a condition.
+    /// Values at the time when the condition of the motion became true and another reaction
+    /// followed: see [`Reaction`](crate::session::Reaction). `None` if it has arrived without, and
+    /// for a motion without a condition.
     pub reacted: Option<Reacted>,
     /// States that never arrived while the motion ran.
     pub lost_states: u64,
@@ -61,7 +61,7 @@ pub struct MotionReport {
     /// as below, if no command left.
     pub slack_min: Option<Slack>,
     /// Commands that left only after the next state was due. No cause for alarm on a simulator that
-    /// waits for commands, which has them in time all the same.
+    /// waits for commands, which still has them in time.
     pub overruns: u64,
     /// The cycle that took longest, and in what.
     pub worst_cycle: Option<CycleTimes>,
@@ -94,7 +94,7 @@ impl MotionReport {
     }
 }
 
-/// What the cycles of a motion came to.
+/// Counts over the cycles of a motion.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Counted {
     pub(super) statistics: MotionStatistics,
@@ -110,7 +110,7 @@ impl Counted {
     }
 }
 
-/// Why a motion ended short of its goal. Grouped by the party that can act on it.
+/// Reason why a motion ended short of its goal. Grouped by the party that can act on it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MotionError {
@@ -126,11 +126,10 @@ pub enum MotionError {
     /// Caller: a stop was asked for; the arm was braked and rests.
     #[error("stopped on request")]
     Stopped,
-    /// Caller: the goal was given up, and the arm holds: at the last target, or where it came to
-    /// rest.
+    /// Caller: the goal was given up, and the arm holds: at the last target, or where it stopped.
     #[error("held: {0}")]
     Held(Lapse),
-    /// The goal was given up and the arm braked, for this reason. It holds where it came to rest.
+    /// The goal was given up and the arm braked, for this reason. It holds where it stopped.
     /// Caller: its targets stopped coming, or lead too near to the arm itself or to a region to
     /// keep out of; or the arm was pushed off its way.
     #[error("braked: {0}")]
@@ -138,36 +137,36 @@ pub enum MotionError {
     /// Caller: the session that the goal is for has ended, or is about to. Nothing was sent.
     #[error("the arm is not engaged any more")]
     Disengaged,
-    /// Caller: something else controls the arm, and does not give way.
+    /// Caller: something else controls the arm, and does not yield.
     #[error(
         "libfranka robot: Cannot perform this operation while another control or read operation is running."
     )]
     Busy,
-    /// Caller: it was to begin together with others, and they did not all come. The arm was held,
-    /// or never moved.
+    /// Caller: the other motions of a common start did not all come. The arm was held, or never
+    /// moved.
     #[error(transparent)]
     Start(#[from] StartFault),
     /// Caller: the protocol version has no such motion. Nothing was sent.
     #[error(transparent)]
     Unsupported(#[from] RequestError),
-    /// Caller: a command cannot be sent: what a control function returned, or what was computed
-    /// from a state or a goal with non-finite numbers. The robot was told to stop.
+    /// Caller: a command cannot be sent. A control function returned it, or it was computed from a
+    /// state or a goal with non-finite numbers. The robot was asked to stop.
     #[error(transparent)]
     Invalid(#[from] InvalidCommand),
-    /// Caller: a control function gave up. The robot was told to stop.
+    /// Caller: a control function gave up. The robot was asked to stop.
     #[error("the control function gave up with code {code}")]
     GivenUp {
         /// The function's own code.
         code: i32,
     },
-    /// Caller: a control function panicked. The robot was told to stop.
+    /// Caller: a control function panicked. The robot was asked to stop.
     #[error("the control function panicked: {message}")]
     Panicked {
-        /// What the panic said, if it was text.
+        /// Message of the panic, if it was text.
         message: String,
     },
-    /// Caller: the thread that runs active control has read no state for so long. The robot was
-    /// told to stop.
+    /// Caller: the thread that runs active control has read no state for this long. The robot was
+    /// asked to stop.
     #[error(
         "active control has read no state for {} ms: its thread has to call `read_once` for each",
         .silence.as_millis()
@@ -176,8 +175,9 @@ pub enum MotionError {
         /// For how long, when it was given up.
         silence: Duration,
     },
-    /// Caller: the control thread has run no cycle for so long, and the robot has ended the motion
-    /// for want of commands. A control function has not returned, or this computer is held up.
+    /// Caller: the control thread has run no cycle for this long, and the robot has ended the
+    /// motion because commands were missing. A control function has not returned, or the thread was
+    /// not scheduled.
     #[error(
         "the control thread has run no cycle for {} ms: its function has not returned, or this \
          computer holds it up",
@@ -198,15 +198,15 @@ pub enum MotionError {
     /// any longer. It has not begun. The party that can act on it depends on the reason.
     #[error("{}", not_ready(*.why, *.waited))]
     NotReady {
-        /// Why not.
+        /// Reason.
         why: Unready,
-        /// How long it waited.
+        /// Time that it waited.
         waited: Duration,
     },
     /// Robot or surroundings: the reference reached the target and the arm did not follow. It rests
     /// where it is.
     ///
-    /// Caller: if a torque limit of its gains is what kept it, [`Shortfall::limited`].
+    /// Caller: if a torque limit of its gains kept it, [`Shortfall::limited`].
     #[error("the arm came to rest {0}")]
     TargetNotReached(Shortfall),
     /// Robot or surroundings: no motion runs, and the arm was not seen to rest after a stop. A hand
@@ -220,14 +220,14 @@ pub enum MotionError {
         /// Its velocity, `[rad/s]`.
         velocity: f64,
     },
-    /// The condition of the motion was true, and the arm did not come to where it was to go then,
-    /// for `error`: [`Self::Held`], [`Self::Braked`] or [`Self::TargetNotReached`]. The party that
-    /// can act on it is that of the error.
+    /// The condition of the motion was true, and the arm did not reach its new target, for `error`:
+    /// [`Self::Held`], [`Self::Braked`] or [`Self::TargetNotReached`]. The party of the error can
+    /// act on it.
     #[error("{error}, after its condition was true at {} ms", .reacted.after.as_millis())]
     AfterReaction {
-        /// What the motion saw when the condition became true.
+        /// Values at the time when the condition became true.
         reacted: Box<Reacted>,
-        /// Why it did not come to the other target.
+        /// Reason why it did not reach the other target.
         error: Box<Self>,
     },
     /// Link: the robot fell silent.
@@ -239,7 +239,7 @@ pub enum MotionError {
     /// The command connection has ended. The party that can act on it depends on the reason.
     #[error("{reason}")]
     ConnectionClosed {
-        /// What ended it.
+        /// Cause of the end.
         reason: CloseReason,
     },
     /// Peer: a reply of its cannot be read.
@@ -248,7 +248,7 @@ pub enum MotionError {
     /// Peer: it left the protocol. Please report it.
     #[error("{what}")]
     Protocol {
-        /// What it did.
+        /// Act of the peer.
         what: &'static str,
     },
 }
@@ -277,9 +277,9 @@ impl MotionError {
         )
     }
 
-    /// What the motion saw when its condition became true, if it failed after that. Of a motion
-    /// that the robot ended, the log says so: [`Guard::Reaction`](crate::session::Guard::Reaction)
-    /// in its records.
+    /// Returns the values at the time when its condition became true, if the motion failed after
+    /// that. For a motion that the robot ended, see
+    /// [`Guard::Reaction`](crate::session::Guard::Reaction) in the records of the log.
     pub fn reacted(&self) -> Option<&Reacted> {
         match self {
             Self::AfterReaction { reacted, .. } => Some(reacted),
@@ -295,7 +295,7 @@ impl MotionError {
         }
     }
 
-    /// What the robot said and did when it ended the motion, if that is what happened.
+    /// Returns the robot's report if the robot ended the motion.
     pub fn control(&self) -> Option<&ControlError> {
         match self {
             Self::Control(error) => Some(error),
@@ -369,7 +369,7 @@ impl MotionError {
     }
 }
 
-/// What to do about a robot that refuses in the mode "Reflex".
+/// Advice for a robot that refuses in the mode "Reflex".
 fn recover_first(refusal: &Refusal) -> &'static str {
     let not_possible = Status::Move(MoveStatus::CommandNotPossibleRejected);
     match (refusal.status() == not_possible, refusal.mode()) {
@@ -385,7 +385,7 @@ fn not_ready(why: Unready, waited: Duration) -> String {
     }
 }
 
-/// Where an error can be acted on.
+/// Party that can act on an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -416,7 +416,7 @@ impl fmt::Display for Party {
     }
 }
 
-/// How far a motion had come when the robot ended it.
+/// Progress of a motion when the robot ended it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -431,23 +431,23 @@ pub enum Stage {
 
 /// The robot ended a motion.
 ///
-/// `Display` is the message of libfranka's `ControlException` for the same event; also that of a
-/// reflex before the first cycle names the errors.
+/// `Display` is the message of libfranka's `ControlException` for the same event. The message of a
+/// reflex before the first cycle names the errors, too.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct ControlError {
-    /// What the robot answered, what stopped it (`reflex_reason` of the state that ended the
+    /// The robot's answer, the errors that stopped it (`reflex_reason` of the state that ended the
     /// motion) and the success rate before it.
     pub failure: ControlFailure,
-    /// Errors that hold, as far as the last state told.
+    /// Errors that hold, by the last state.
     pub errors: Errors,
-    /// How far the motion had come.
+    /// Progress of the motion.
     pub stage: Stage,
     /// The last cycles of the motion, the newest of which shows its end. How many is an option of
     /// the connection.
     pub log: Arc<ControlLog>,
-    /// What commanded the motion.
+    /// Source of the motion's commands.
     pub commander: Commander,
     /// Counts over the motion.
     pub statistics: MotionStatistics,
@@ -462,8 +462,8 @@ impl ControlError {
         self.failure.refusal
     }
 
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`: of the first error
-    /// that stopped the robot, or of the robot's answer.
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`. The row is that of
+    /// the first error that stopped the robot, or of the robot's answer.
     pub fn entry(&self) -> &'static str {
         let first = self.failure.reflex_reason.iter().next();
         match first.filter(|_| self.is_reflex()) {

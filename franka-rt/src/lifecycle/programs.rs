@@ -18,7 +18,8 @@ pub(super) struct UserProgram {
 }
 
 impl Lifecycle {
-    /// Has the robot stop the program of that name. Returns whether it is the one that runs.
+    /// Stops the robot that runs the program of that name. Returns true if it is the current
+    /// program.
     pub(super) fn cancel_program(&mut self, id: GoalId, now: Duration) -> bool {
         let named = self.program().is_some_and(|program| program.id == id);
         if named {
@@ -27,8 +28,8 @@ impl Lifecycle {
         named
     }
 
-    /// Has the robot stop the program that runs, and `id` resolve when it has. Returns whether
-    /// there is one.
+    /// Stops the robot that runs the current program; `id` resolves when it has stopped. Returns
+    /// true if there is one.
     pub(super) fn stop_program(&mut self, id: GoalId, now: Duration) -> bool {
         let Some(program) = self.program() else {
             return false;
@@ -49,8 +50,8 @@ impl Lifecycle {
     }
 
     /// Asks the robot to stop the motion under way, unless it has been asked or the motion is over
-    /// for it. Its answer is not awaited: that the motion has ended is what counts, and a robot
-    /// that goes on is told once more, then given up.
+    /// for it. Its answer is not awaited; only the end of the motion counts. A robot that continues
+    /// is asked once more, then given up.
     pub(super) fn send_stop(&mut self, now: Duration) {
         let LifecyclePhase::UnderWay(current) = &mut self.phase else {
             return;

@@ -1,4 +1,4 @@
-//! What the command connection, the thread and the clock report.
+//! Reports of the command connection, the thread and the clock.
 
 use core::time::Duration;
 
@@ -43,9 +43,9 @@ impl Lifecycle {
         self.conclude(now);
     }
 
-    /// Takes note that a reply to the `Move` of `motion` could not be read: it is unknown what the
-    /// robot is doing, so the arm is braked, the robot told to stop, and the goal resolves. New
-    /// motions wait until states show that this one has ended.
+    /// Takes note that a reply to the `Move` of `motion` could not be read. It is then unknown what
+    /// the robot is doing, so the arm is braked, the robot asked to stop, and the goal resolves.
+    /// New motions wait until states show that this one has ended.
     pub fn on_move_violation(&mut self, motion: MotionId, violation: Violation, now: Duration) {
         if self.current(motion).is_some() {
             self.give_up(MotionError::Violation(violation), now);
@@ -89,8 +89,8 @@ impl Lifecycle {
                 }
             }
             Event::Ended(ended) => self.on_ended(ended, now),
-            // A motion that the silence ended has an event of its own; one without an observer goes
-            // on.
+            // A motion that the silence ended has its own event; a motion without an observer
+            // continues.
             Event::LinkLost { .. } | Event::Unobserved { .. } => {}
         }
     }
@@ -145,9 +145,9 @@ impl Lifecycle {
     /// Closes the lifecycle, since the command connection is gone: every goal resolves with an
     /// error, and no motion starts any more.
     ///
-    /// An arm on its way to a goal is braked, for as long as the thread goes on: see
-    /// [`Self::is_braking`]. If a program of the user's moves the arm, no more commands are
-    /// sent, and the robot stops it.
+    /// An arm on its way to a goal is braked, for as long as the thread runs: see
+    /// [`Self::is_braking`]. If a program of the user's moves the arm, no more commands are sent,
+    /// and the robot stops it.
     pub fn on_connection_closed(&mut self, reason: CloseReason) {
         let closed = LifecyclePhase::Closed {
             reason: reason.clone(),
@@ -177,8 +177,9 @@ impl Lifecycle {
     }
 
     /// Takes note that a thread that has borrowed the cycle has not run it for `silence`, or that
-    /// it does again (`None`). Meanwhile no state arrives and no motion can run: the one under way
-    /// is given up and resolves as [`MotionError::Stalled`], and so does one that waits for it.
+    /// it does again (`None`). Meanwhile no state arrives and no motion can run. The motion under
+    /// way is given up and resolves as [`MotionError::Stalled`], and so does a motion that waits
+    /// for it.
     pub fn on_stall(&mut self, silence: Option<Duration>, now: Duration) {
         match (&self.phase, silence) {
             (
@@ -206,7 +207,7 @@ impl Lifecycle {
         }
     }
 
-    /// When [`Self::on_time`] has to be called, if nothing else happens before.
+    /// Time at which [`Self::on_time`] must be called, if nothing else happens before.
     pub fn deadline(&self) -> Option<Duration> {
         let deadlines = [self.phase_deadline(), self.deadline_of_stops()];
         deadlines.into_iter().flatten().min()
@@ -222,9 +223,8 @@ impl Lifecycle {
         }
     }
 
-    /// What to say of a motion whose end was not seen, if no state has come for `silence`: `None`
-    /// if that is too short to matter. `turning` is whether the control thread has gone on
-    /// meanwhile.
+    /// Error of a motion whose end was not seen, if no state has come for `silence`: `None` if that
+    /// is too short to matter. `turning` is whether the control thread has run meanwhile.
     pub fn unseen(silence: Duration, turning: bool) -> Option<MotionError> {
         (silence >= END_TIMEOUT / 2).then_some(match turning {
             true => MotionError::LinkLost { silence },
@@ -232,8 +232,8 @@ impl Lifecycle {
         })
     }
 
-    /// Moves the deadlines that are over by `now`: of the motion under way or the one that was
-    /// given up, and of stops.
+    /// Moves the deadlines that are over by `now`: the deadlines of the motion under way or given
+    /// up, and of stops.
     fn postpone(&mut self, now: Duration, until: Duration) {
         self.postpone_stops(now, until);
         if self.phase_deadline().is_none_or(|deadline| now < deadline) {
@@ -249,8 +249,8 @@ impl Lifecycle {
     }
 
     /// Checks the deadline at `now`. If neither side of the motion has ended by then, the robot is
-    /// told to stop and has [`END_TIMEOUT`] more; otherwise the motion is given up. If no state was
-    /// seen, it resolves as [`unseen`](Self::unseen) says, but not before the link counts as lost.
+    /// asked to stop and has [`END_TIMEOUT`] more; otherwise the motion is given up. If no state
+    /// was seen, it resolves as [`unseen`](Self::unseen), but not before the link counts as lost.
     pub fn on_time(&mut self, now: Duration, unseen: Option<MotionError>) {
         if self.deadline().is_none_or(|deadline| now < deadline) {
             return;

@@ -1,4 +1,4 @@
-//! Stops: what moves is braked, and then the states have to show that the arm rests.
+//! Stops: the moving arm is braked, and then the states must show that the arm rests.
 
 use core::mem;
 use core::time::Duration;
@@ -26,14 +26,14 @@ enum StopStage {
     Braking {
         /// The outcome of this goal decides, which several stops may share.
         goal: GoalId,
-        /// When the robot is told to stop. `None` once it was.
+        /// Deadline after which the robot is asked to stop. `None` once it was.
         until: Option<Duration>,
     },
     /// Nothing of this program moves. The states have to show it.
     Showing {
-        /// Of the motion that was stopped.
+        /// Report on the motion that was stopped.
         report: Box<MotionReport>,
-        /// How long the states have for that. `None` until the first of them.
+        /// Deadline for the states to show that. `None` until the first of them.
         until: Option<Duration>,
         /// Error that the newest state amounts to.
         why: MotionError,
@@ -61,10 +61,10 @@ impl StopStage {
 }
 
 impl Lifecycle {
-    /// Brakes whatever moves. Goals before the stop resolve as [`MotionError::Stopped`]. The stop
-    /// resolves under the name `id` when the motion has ended and a state shows an arm at rest and
-    /// a robot without a motion. Returns false, and does nothing, if that is so already, and after
-    /// the end of the connection.
+    /// Brakes everything that moves. Goals before the stop resolve as [`MotionError::Stopped`]. The
+    /// stop resolves under the name `id` when the motion has ended and a state shows an arm at rest
+    /// and a robot without a motion. Returns false, and does nothing, if that is so already, and
+    /// after the end of the connection.
     ///
     /// If a motion was given up and the robot may still run it, `StopMove` is sent again. It is also
     /// sent if the motion under way has not ended after [`BRAKE_TIMEOUT`]. Stops that are asked for
@@ -124,15 +124,15 @@ impl Lifecycle {
         self.stops.iter().any(brakes).then_some(newest)
     }
 
-    /// Takes the newest state, for stops that wait until it shows an arm at rest. Without effect
-    /// while there are none.
+    /// Takes the newest state, for stops that wait until it shows an arm at rest. Without such
+    /// stops it has no effect.
     pub fn on_state(&mut self, state: &RobotState, now: Duration) {
         if self.stops.is_empty() {
             return;
         }
         let unrest = match &self.phase {
             LifecyclePhase::Idle => unrest(state),
-            // Another motion has begun, or a goal that goes on within the one that was stopped.
+            // Another motion has begun, or a goal that continues within the stopped motion.
             LifecyclePhase::UnderWay(_) => return self.fail_stops(&MotionError::Superseded),
             // The thread has not seen the end of the motion.
             _ => Some(STILL_SHOWN),
@@ -155,8 +155,8 @@ impl Lifecycle {
         }
     }
 
-    /// Takes note of the end of a goal, for the stops that brake by it. Returns the outcome if
-    /// there are none.
+    /// Takes note of the end of a goal, for the stops that brake by it. Returns the outcome if no
+    /// stop does.
     pub(super) fn share_with_stops(&mut self, goal: GoalId, result: Outcome) -> Option<Outcome> {
         let brakes = |stop: &Stop| stop.stage.is_braking_by(goal);
         if !self.stops.iter().any(brakes) {
@@ -175,9 +175,9 @@ impl Lifecycle {
         None
     }
 
-    /// Sees to stops whose time is over. The robot is told to stop what still brakes. One that waits
-    /// for a state resolves: with `unseen` if none came, otherwise with the reason that the newest
-    /// one gives.
+    /// Handles stops whose time is over. If a motion still brakes, the robot is asked to stop it. A
+    /// stop that waits for a state resolves: with `unseen` if none came, otherwise with the reason
+    /// from the newest state.
     pub(super) fn give_up_stops(&mut self, now: Duration, unseen: Option<&MotionError>) {
         for mut stop in mem::take(&mut self.stops) {
             let is_over = stop.stage.until().is_some_and(|until| until <= now);
@@ -207,7 +207,7 @@ impl Lifecycle {
         }
     }
 
-    /// When the time of the first of the stops is over.
+    /// Earliest deadline of the stops.
     pub(super) fn deadline_of_stops(&self) -> Option<Duration> {
         let until = self.stops.iter().map(|stop| stop.stage.until());
         until.flatten().min()
@@ -234,7 +234,7 @@ impl Lifecycle {
     }
 }
 
-/// Why `state` does not show an arm at rest and a robot without a motion; `None` if it does.
+/// Reason why `state` does not show an arm at rest and a robot without a motion; `None` if it does.
 fn unrest(state: &RobotState) -> Option<MotionError> {
     // The modes of a motion show before the robot's mode does.
     let begins = state.robot_mode == RobotMode::Idle

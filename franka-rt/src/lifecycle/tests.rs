@@ -41,7 +41,7 @@ impl LifecycleAndDriver {
     }
 
     /// Passes outputs of the lifecycle to the driver and events of the driver to the lifecycle,
-    /// until there are none.
+    /// until none are left.
     fn settle(&mut self) {
         loop {
             self.lifecycle.on_state(&self.state, NOW);
@@ -171,7 +171,7 @@ fn a_borrower_that_stalls_ends_the_motion_and_none_is_taken_until_it_goes_on() {
     assert!(matches!(pair.sent.last(), Some(Request::Move(_))));
 }
 
-/// The robot is told to stop the first motion, and goes on showing it.
+/// The robot is asked to stop the first motion, and continues to show it.
 #[test]
 fn a_motion_waits_for_the_end_of_one_that_was_given_up_and_says_so_if_that_does_not_come() {
     let (mut pair, motion, first) = LifecycleAndDriver::moving();
@@ -212,8 +212,8 @@ fn a_motion_waits_for_the_end_of_one_that_was_given_up_and_says_so_if_that_does_
     assert_eq!(moves(&pair), 2);
 }
 
-/// A session ends, and nobody knows how yet: a path of its own waits for that, and one that comes
-/// for the session is told of it.
+/// A session ends, and it is not yet known how. A separate path waits for that, and a path for the
+/// session receives it.
 #[test]
 fn two_paths_that_wait_for_the_same_end_do_not_change_places() {
     let mut pair = LifecycleAndDriver::new();

@@ -1,11 +1,11 @@
-//! Why a robot takes no motion.
+//! Reasons why a robot takes no motion.
 
 use franka_proto::Command;
 
 use super::{Differences, Party};
 
-/// Why a robot takes no motion now. One that is not supervised refuses motions itself, but for a
-/// stop that is latched.
+/// Reason why a robot takes no motion now. A robot that is not supervised refuses motions itself,
+/// except for a stop that is latched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -19,11 +19,11 @@ pub enum Unready {
     /// Robot: a reflex, from which it is being recovered.
     #[error("the robot is being recovered from a reflex")]
     Recovering,
-    /// Robot: a reflex. Its recovery waits for somebody to agree.
+    /// Robot: a reflex. Its recovery waits for someone to agree.
     #[error("somebody has to agree to the recovery from a reflex")]
     AgreementAwaited,
-    /// Robot: what answers after a lost connection differs from the robot of before. Its recovery
-    /// from a reflex waits for somebody to agree, and a motion that waited does not begin.
+    /// Robot: after a lost connection, the robot differs from before. Its recovery from a reflex
+    /// waits for someone to agree, and a motion that waited does not begin.
     #[error("the robot is not recognised: {0}")]
     Unrecognised(Differences),
     /// Robot: the settings of this program are being sent to it again after a reconnect.
@@ -32,7 +32,7 @@ pub enum Unready {
     /// Robot: a setting of this program could not be restored after a reconnect.
     #[error("the setting \"{0}\" of this program could not be restored after a reconnect")]
     NotConfigured(Command),
-    /// Robot: a reflex, which somebody has to recover it from.
+    /// Robot: a reflex, which someone must recover it from.
     #[error("a reflex holds the robot")]
     Reflex,
     /// Robot: the user stop is pressed, or a safety function holds the robot.

@@ -7,7 +7,7 @@ use super::*;
 use crate::lifecycle::{Engagement, Tuning};
 use crate::session::Budget;
 
-/// What callers, the robot, the thread and the connection do. A goal is named by the newest one.
+/// Steps of callers, the robot, the thread and the connection. A goal is named by the newest one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Step {
     Begin,
@@ -64,7 +64,7 @@ const STEPS: [Step; 22] = [
     Disconnects,
 ];
 
-/// Ways into the states: of the motion, of its goals, of its session, of stops.
+/// Ways into the states: of the motion, its goals, its session and stops.
 const STATES: [&[Step]; 24] = [
     &[],
     &[Begin],
@@ -97,7 +97,7 @@ const STATES: [&[Step]; 24] = [
 struct Accepted {
     /// It goes along a path.
     path: bool,
-    /// It was given another target, or its motion was to end.
+    /// It was given another target, or its motion was asked to end.
     redirected: bool,
     /// It was taken back, or a stop came after it.
     over: bool,
@@ -105,7 +105,8 @@ struct Accepted {
 
 struct Bench {
     pair: LifecycleAndDriver,
-    /// What the robot was asked to run, until it does, and then runs until it ends.
+    /// Motion that the robot was asked to run, until it runs; then the motion that it runs, until
+    /// it ends.
     robot: Robot,
     motions: u64,
     ids: u64,
@@ -115,7 +116,7 @@ struct Bench {
     stops: Vec<GoalId>,
     seen: usize,
     way: Vec<Step>,
-    /// What was not as it has to be.
+    /// Violations so far.
     faults: Vec<String>,
 }
 
@@ -237,7 +238,7 @@ impl Bench {
                 let taken = self.pair.lifecycle.chunk(session, goal, chunk, &state);
                 let after = self.pair.lifecycle.heading().map(|(id, _)| id);
                 if taken.is_ok() && (after == Some(id) || before == after) {
-                    // It has a name of its own only if it is the first, or comes too late.
+                    // It has its own name only if it is the first, or comes too late.
                     self.accept(id, Accepted::default());
                     if after != Some(id) && !self.pair.lifecycle.is_ending() {
                         self.goals.remove(&id);
@@ -333,7 +334,7 @@ impl Bench {
         self.look();
     }
 
-    /// The robot says how its motion has ended, if it has one.
+    /// The robot reports how its motion has ended, if it has one.
     fn ends(&mut self, status: MoveStatus) {
         let (motion, shows) = match self.robot {
             Robot::Asked(motion, _) | Robot::Left(motion) => (motion, false),

@@ -37,7 +37,7 @@ impl LifecycleAndDriver {
     }
 }
 
-/// The robot was told to stop, and shows the motion beyond the deadline.
+/// The robot was asked to stop, and shows the motion beyond the deadline.
 fn given_up() -> LifecycleAndDriver {
     let (mut pair, motion, _) = LifecycleAndDriver::moving();
     let violation = Violation::SecondMotionStarted { id: CommandId(1) };
@@ -175,7 +175,7 @@ fn stop_of_an_arm_that_does_not_rest_has_the_robot_stop_it() {
     assert_eq!(pair.stop_requests(), 0);
     pair.time_passes(None);
     assert_eq!(pair.stop_requests(), 1);
-    // What comes now waits, and is not stopped with the motion.
+    // A new motion waits, and is not stopped with the first one.
     let limits = Model::fr3().joint_limits();
     let goal = Goal::new(GoalId(2), Target::Rest, OnArrival::Hold, limits);
     let begun = pair.lifecycle.begin(NewMotion::to(goal), &pair.state, NOW);
