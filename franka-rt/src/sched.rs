@@ -1,10 +1,10 @@
-//! What the operating system grants the thread: scheduling class, processor, memory, freedom from
-//! signal handlers, a socket that is polled.
+//! Requests of the thread to the operating system: scheduling class, processor, memory, freedom
+//! from signal handlers, a socket that is polled.
 //!
 //! [`Scheduling::enter`] asks for what concerns the calling thread, [`Scheduling::tune`] for what
 //! concerns its socket. Under [`Realtime::Enforce`] the first refusal is an error; under
-//! [`Realtime::Ignore`] the same requests are made and the refusals are listed in [`Granted`]. What
-//! no host can grant is an error under both.
+//! [`Realtime::Ignore`] the same requests are made and the refusals are listed in [`Granted`]. A
+//! request that no host can grant is an error under both.
 
 #[cfg(unix)]
 mod enter;
@@ -19,7 +19,7 @@ pub use error::SchedError;
 pub use kernel::{Kernel, kernel_is_realtime};
 pub use stack::{DEFAULT as PREFAULT_DEFAULT, MAX as PREFAULT_MAX};
 
-/// Whether a refusal of the operating system is an error.
+/// Handling of refusals of the operating system.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Realtime {
     /// Every request must be granted, and the kernel must be a real-time one (`PREEMPT_RT`).
@@ -29,12 +29,12 @@ pub enum Realtime {
     Ignore,
 }
 
-/// What to ask the operating system for.
+/// Requests to the operating system.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scheduling {
-    /// Whether refusals are errors.
+    /// Handling of refusals.
     pub realtime: Realtime,
-    /// `SCHED_FIFO` priority, 1 to 99; the system's maximum if `None`, as libfranka 0.21 takes it.
+    /// `SCHED_FIFO` priority, 1 to 99. `None` takes the system's maximum, as libfranka 0.21 does.
     pub priority: Option<i32>,
     /// The processor to run on; any if `None`.
     pub cpu: Option<usize>,
@@ -47,8 +47,8 @@ pub struct Scheduling {
     /// most 64 MiB (`PREFAULT_MAX`), 512 KiB by default (`PREFAULT_DEFAULT`). The thread gets a
     /// larger one by a reserve. Control functions of the user's run on this stack.
     pub prefault_stack: usize,
-    /// How long a receive polls the network card's queue before it sleeps (`SO_BUSY_POLL`), in
-    /// whole microseconds and at most 900 (`BUSY_POLL_MAX`); not at all if `None`.
+    /// Time for which a receive polls the network card's queue before it sleeps (`SO_BUSY_POLL`),
+    /// in whole microseconds and at most 900 (`BUSY_POLL_MAX`); not at all if `None`.
     ///
     /// Saves the latency of interrupt and wake-up, and occupies the processor while it polls. Only
     /// cards whose driver takes part are polled: the loopback device is not. Raising it above the
@@ -56,9 +56,9 @@ pub struct Scheduling {
     pub busy_poll: Option<Duration>,
 }
 
-/// The longest busy poll, in each millisecond between two states. Polling counts as running time,
-/// and a `SCHED_FIFO` thread that runs for more than 950 ms of a second is held up for the rest of
-/// it (`sched_rt_runtime_us`).
+/// The longest busy poll, in each millisecond between two states. Polling counts as running time. A
+/// `SCHED_FIFO` thread that runs for more than 950 ms of a second is stopped for the rest of it
+/// (`sched_rt_runtime_us`).
 pub const BUSY_POLL_MAX: Duration = Duration::from_micros(900);
 
 impl Default for Scheduling {
@@ -76,14 +76,14 @@ impl Default for Scheduling {
     }
 }
 
-/// What the operating system granted.
+/// Result of the requests to the operating system.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Granted {
     /// `SCHED_FIFO` priority of the thread; `None` if it runs under the normal scheduler.
     pub priority: Option<i32>,
-    /// How long receives poll; `None` if they do not.
+    /// Time for which receives poll; `None` if they do not.
     pub busy_poll: Option<Duration>,
-    /// What was refused and accepted, under [`Realtime::Ignore`].
+    /// Refusals that were accepted, under [`Realtime::Ignore`].
     pub refusals: Vec<SchedError>,
 }

@@ -2,13 +2,13 @@
 //! leave it.
 //!
 //! A sequence lock over two buffers of `AtomicU64` words, which the values fill in turns. The
-//! writer makes the count odd, stores the words of the one buffer, makes the count even; the value
-//! before stays whole in the other one. So a writer that is held up in the middle of a write keeps
-//! no reader from the newest whole value. Only a reader that is itself held up, until the writer
-//! has finished the next value and begun the one after it, has a torn copy and throws it away.
-//! Writing never waits; a read is one attempt, so neither side can hold the other up, whatever
-//! their priorities. A cycle that meets a torn goal keeps the previous one; a task outside the
-//! thread may try again with [`SlotReader::read_retry`].
+//! writer makes the count odd, stores the words of the one buffer, and makes the count even; the
+//! previous value stays whole in the other buffer. So a writer that is delayed in the middle of a
+//! write keeps no reader from the newest whole value. A reader has a torn copy, and throws it away,
+//! only if it is itself delayed until the writer has finished the next value and begun another one.
+//! Writing never waits, and a read is one attempt. So neither side can delay the other, for any
+//! priorities. A cycle that meets a torn goal keeps the previous one; a task outside the thread may
+//! try again with [`SlotReader::read_retry`].
 //!
 //! ```
 //! # use franka_rt::slot;
@@ -26,10 +26,11 @@
 //! needed. Memory order is argued at the two loops; `tests/loom` explores the
 //! interleavings.
 //!
-//! The count has no cache line of its own. With a reader on a second core, and the count padded to
-//! 128 bytes or not, a write of 330 words, a state, takes 71 ns in the median of most runs, and one
-//! of 64 words 29 ns; the tails differ more between runs than between the two (a busy virtual
-//! machine with two cores). A write comes once per millisecond: padding saves nothing that counts.
+//! The count has no separate cache line. Measurements had a reader on a second core, on a busy
+//! virtual machine with two cores. The count was padded to 128 bytes or not. A write of 330 words,
+//! a state, takes 71 ns in the median of most runs. A write of 64 words takes 29 ns. The tails
+//! differ more between runs than between the two. A write comes once per millisecond: padding saves
+//! nothing that counts.
 
 use core::fmt;
 
@@ -46,8 +47,8 @@ use std::sync::{
 
 /// A plain value that crosses as a fixed number of words.
 ///
-/// `load` must accept whatever `store` wrote. Neither may allocate or block when one end of the
-/// slot is on the real-time thread.
+/// `load` must accept everything that `store` wrote. Neither may allocate or block when one end of
+/// the slot is on the real-time thread.
 pub trait Words: Sized {
     /// Number of words.
     const WORDS: usize;
@@ -114,7 +115,8 @@ pub fn slot<T: Words>() -> (SlotWriter<T>, SlotReader<T>) {
 struct Shared {
     /// Twice the number of values written, plus one while a write is under way.
     count: AtomicU64,
-    /// Of the values with even numbers and of those with odd ones; the first value has number 1.
+    /// Buffers of the values with even numbers and of the values with odd ones; the first value has
+    /// number 1.
     buffers: [Box<[AtomicU64]>; 2],
 }
 
@@ -128,7 +130,7 @@ impl Shared {
 #[derive(Debug)]
 pub struct SlotWriter<T> {
     shared: Arc<Shared>,
-    /// How many values have been written.
+    /// Number of values written.
     written: u64,
     scratch: Box<[u64]>,
     value: core::marker::PhantomData<fn(&T)>,
@@ -154,10 +156,10 @@ impl<T: Words> SlotWriter<T> {
     }
 }
 
-/// What one attempt to read found.
+/// Result of one attempt to read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Read<T> {
-    /// A value newer than the last one that this reader returned.
+    /// A value newer than the last value that this reader returned.
     Newer(T),
     /// Nothing newer.
     Same,
@@ -165,7 +167,7 @@ pub enum Read<T> {
     Torn,
 }
 
-/// A reading end of a slot. A clone remembers by itself what it has read.
+/// A reading end of a slot. A clone has its own memory of what it has read.
 pub struct SlotReader<T> {
     shared: Arc<Shared>,
     /// The number of the value returned last.
@@ -205,8 +207,8 @@ impl<T: Words> SlotReader<T> {
             // the load of the count below sees that value's odd count or a later one.
             *copy = word.load(Ordering::Acquire);
         }
-        // The next value that fills this buffer is the one after next. Relaxed: the loads above
-        // come first in program order and are Acquire, so this one cannot move before them.
+        // The next but one value fills this buffer. Relaxed: the loads above come first in program
+        // order and are Acquire, so this one cannot move before them.
         if self.shared.count.load(Ordering::Relaxed) > 2 * newest + 2 {
             return Read::Torn;
         }
@@ -256,7 +258,7 @@ mod tests {
         );
     }
 
-    /// A writer that is held up in the middle of a write: a reader gets the value before.
+    /// While a writer is delayed in the middle of a write, a reader gets the previous value.
     #[test]
     fn an_unfinished_write_leaves_the_value_before_readable() {
         let (mut writer, mut reader) = slot::<[u64; 1]>();

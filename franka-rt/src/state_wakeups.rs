@@ -1,4 +1,4 @@
-//! Whether the thread sends a wake-up for every state.
+//! Flag whether the thread sends a wake-up for every state.
 //!
 //! A wake-up per state runs a task of the async world a thousand times a second, which takes about
 //! one percent of a processor, half of it on the thread. A program that only looks at the newest
@@ -16,7 +16,7 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-/// True if any subscriber wants a wake-up per state; initially true. Clones are the same one.
+/// True if any subscriber needs a wake-up per state; initially true. Clones are the same flag.
 ///
 /// The subscribers are counted elsewhere, by a channel for instance: this is only what the thread
 /// reads.
@@ -36,8 +36,8 @@ impl StateWakeups {
         self.0.swap(true, Ordering::AcqRel);
     }
 
-    /// Ends the wake-ups, unless `are_wanted` finds a subscriber, also one that came meanwhile. For
-    /// one thread only.
+    /// Ends the wake-ups, unless `are_wanted` finds a subscriber, even a new one. For one thread
+    /// only.
     pub fn release(&self, are_wanted: impl Fn() -> bool) {
         if are_wanted() {
             return;

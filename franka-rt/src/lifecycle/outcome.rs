@@ -42,9 +42,9 @@ pub struct MotionReport {
     /// addition to the springs. `None` without our law: under the robot's controller, and for a
     /// control function.
     pub compensation: Option<[f64; 7]>,
-    /// Values at the time when the condition of the motion became true and another reaction
-    /// followed: see [`Reaction`](crate::session::Reaction). `None` if it has arrived without, and
-    /// for a motion without a condition.
+    /// Values at the time when the condition of the motion became true, if the motion reacted to it
+    /// instead of arriving: see [`Reaction`](crate::session::Reaction). `None` if it has arrived
+    /// without, and for a motion without a condition.
     pub reacted: Option<Reacted>,
     /// States that never arrived while the motion ran.
     pub lost_states: u64,

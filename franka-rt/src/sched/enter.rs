@@ -11,8 +11,8 @@ use crate::sys;
 
 impl Scheduling {
     /// Applies the options to the calling thread, touches its stack and blocks signals, so that no
-    /// handler of the process runs on it. The order is that of libfranka 0.21: scheduling first,
-    /// then the question after the kernel.
+    /// handler of the process runs on it. The order is as in libfranka 0.21: scheduling first, then
+    /// the question after the kernel.
     ///
     /// Signals that report a fault of the thread itself (such as `SIGSEGV`) are not blocked.
     /// Threads and processes that the thread starts later inherit the rest.
@@ -75,7 +75,7 @@ impl Scheduling {
         stack::size(self.prefault_stack.min(PREFAULT_MAX))
     }
 
-    /// Whether every option is in its range.
+    /// Checks that every option is in its range.
     fn check(&self) -> Result<(), SchedError> {
         let polled = Duration::from_micros(1)..=BUSY_POLL_MAX;
         match self.busy_poll {
@@ -87,8 +87,8 @@ impl Scheduling {
         }
     }
 
-    /// Whether a thread of this process would be granted what is asked for, memory aside. Starts a
-    /// short-lived thread, so that the caller keeps its own scheduling; for asking before a robot
+    /// Checks whether a thread of this process would be granted the requests, memory aside. Starts
+    /// a short-lived thread, so that the caller keeps its own scheduling; for asking before a robot
     /// is contacted.
     ///
     /// # Errors

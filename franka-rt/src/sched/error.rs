@@ -6,8 +6,8 @@ use super::{BUSY_POLL_MAX, Kernel, PREFAULT_MAX};
 #[cfg(unix)]
 use crate::sys::error_text;
 
-/// Why the thread cannot run as asked. The numbers are errno values; the texts of the first three
-/// are libfranka's.
+/// Reason why the thread cannot run as asked. The numbers are errno values; the texts of the first
+/// three are libfranka's.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SchedError {
@@ -28,7 +28,7 @@ pub enum SchedError {
     Pin {
         /// The processor asked for.
         cpu: usize,
-        /// Why not.
+        /// Reason.
         errno: i32,
     },
     /// Memory cannot be locked; usually `RLIMIT_MEMLOCK` is too low.
@@ -38,23 +38,23 @@ pub enum SchedError {
     /// (`ENOPROTOOPT`).
     #[error("unable to poll the socket for {} us: {}", .duration.as_micros(), error_text(*.errno))]
     BusyPoll {
-        /// What was asked for.
+        /// Duration that was asked for.
         duration: Duration,
-        /// Why not.
+        /// Reason.
         errno: i32,
     },
     /// Caller: a busy poll this long leaves the thread no time. Under either
     /// [`Realtime`](super::Realtime).
     #[error("a busy poll of {} us is out of range: expected 1 to {} us", .got.as_micros(), BUSY_POLL_MAX.as_micros())]
     BusyPollRange {
-        /// What was asked for.
+        /// Value that was asked for.
         got: Duration,
     },
     /// Caller: the stack to touch is larger than allowed. Under either
     /// [`Realtime`](super::Realtime).
     #[error("a stack of {got} bytes is out of range: expected at most {PREFAULT_MAX} bytes")]
     PrefaultRange {
-        /// What was asked for, in bytes.
+        /// Size that was asked for, in bytes.
         got: usize,
     },
 }
@@ -83,7 +83,7 @@ impl SchedError {
     }
 }
 
-/// Where there is no thread to be refused anything.
+/// Placeholder for systems that refuse no thread anything.
 #[cfg(not(unix))]
 fn error_text(errno: i32) -> String {
     format!("Unknown error {errno}")

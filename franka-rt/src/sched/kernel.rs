@@ -1,4 +1,4 @@
-//! Whether the running kernel is a real-time one.
+//! Test whether the running kernel is a real-time kernel.
 //!
 //! Up to Linux 6.11 real time (`PREEMPT_RT`) was a patch, which also added the file
 //! `/sys/kernel/realtime`. Since 6.12 it is an option of the kernel itself, mostly without that
@@ -12,7 +12,7 @@ use core::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a host says of its kernel. [`Kernel::read`] asks the host that this runs on.
+/// Kernel of a host. [`Kernel::read`] asks the host that this runs on.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Kernel {
     /// Release, such as `6.12.43-rt`.
@@ -27,12 +27,12 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// Reads what the running host says.
+    /// Reads the files of the running host.
     pub fn read() -> Self {
         Self::read_below(Path::new("/"))
     }
 
-    /// Reads the files below `root`, such as those of another host.
+    /// Reads the files below `root`, such as the files of another host.
     pub fn read_below(root: &Path) -> Self {
         let read = |path: &str| fs::read_to_string(root.join(path)).ok();
         let line = |path| read(path).unwrap_or_default().trim().to_owned();
@@ -64,7 +64,7 @@ impl Kernel {
     }
 }
 
-/// What was looked at, and what was read there.
+/// Files that were looked at, and their content.
 impl fmt::Display for Kernel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "uname: `{}`, expected PREEMPT_RT in it", self.version)?;
@@ -84,7 +84,7 @@ impl fmt::Display for Kernel {
     }
 }
 
-/// Where distributions keep the configuration of a kernel.
+/// Places where distributions keep the configuration of a kernel.
 fn configuration_files(release: &str) -> [PathBuf; 2] {
     [
         format!("/boot/config-{release}").into(),
@@ -120,7 +120,7 @@ mod tests {
             // Patched kernels up to 6.11, with the file, and older ones, which spell it so.
             ("#14 SMP PREEMPT_RT Thu Oct 6", Some("1"), None, true),
             ("#1 SMP PREEMPT RT Mon Mar 9", None, None, true),
-            // A distribution with a version text of its own.
+            // A distribution with its own version text.
             ("custom", Some("1"), None, true),
             ("custom", None, Some(true), true),
             (plain, None, None, false),

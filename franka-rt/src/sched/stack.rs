@@ -2,8 +2,8 @@
 
 use core::hint::black_box;
 
-/// Stack touched before the loop starts unless said otherwise, in bytes. A cycle of target control
-/// uses some tens of kilobytes, a control function of the user's whatever it likes.
+/// Stack touched before the loop starts unless stated otherwise, in bytes. A cycle of target
+/// control uses some tens of kilobytes, a control function of the user's any amount.
 pub const DEFAULT: usize = 512 * 1024;
 
 /// The most that can be asked for, in bytes. Larger buffers belong on the heap, allocated before
@@ -17,7 +17,7 @@ const RESERVE: usize = 1536 * 1024;
 /// touched.
 const FRAME: usize = 16 * 1024;
 
-/// Size of a stack of which `touched` bytes are to be touched.
+/// Size of a stack of which `touched` bytes will be touched.
 pub(super) const fn size(touched: usize) -> usize {
     touched + RESERVE
 }
@@ -32,7 +32,7 @@ pub(super) fn touch(bytes: usize) {
     let mut frame = [0u8; FRAME];
     black_box(&mut frame);
     touch(bytes.saturating_sub(FRAME));
-    // Used after the call, so that each frame of the walk has a place of its own.
+    // Used after the call, so that each frame of the walk has its own place.
     black_box(&mut frame);
 }
 

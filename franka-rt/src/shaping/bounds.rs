@@ -40,7 +40,7 @@ pub enum VelocityBounds {
     Envelope {
         /// The joints, with their envelope.
         joints: JointLimits,
-        /// What comes off the envelope on both sides, `[rad/s]`.
+        /// Reduction of the envelope on both sides, `[rad/s]`.
         margin: f64,
     },
 }
@@ -59,13 +59,13 @@ impl VelocityBounds {
 }
 
 impl Bounds {
-    /// Of the FR3: velocities of the joints depend on their positions, and no lost command is
-    /// provided for.
+    /// Bounds of the FR3: velocities of the joints depend on their positions, and no lost command
+    /// is provided for.
     pub fn fr3() -> Self {
         Self::new(RobotKind::Fr3, 0.0)
     }
 
-    /// Of the FER: velocities of the joints leave room for three lost commands.
+    /// Bounds of the FER: velocities of the joints leave room for three lost commands.
     pub fn fer() -> Self {
         Self::new(RobotKind::Fer, 3.0)
     }
@@ -108,7 +108,7 @@ impl Bounds {
         }
     }
 
-    /// The same with the velocities of `joints`, such as those of the description that a robot
+    /// The same with the velocities of `joints`, such as those from the description that a robot
     /// serves. An FR3's client takes nothing else from there.
     #[must_use]
     pub fn with_envelope_of(mut self, joints: &JointLimits) -> Self {
@@ -119,7 +119,7 @@ impl Bounds {
         self
     }
 
-    /// What the joints keep at the positions `q`, `[rad]`.
+    /// Bounds of the joints at the positions `q`, `[rad]`.
     pub fn joints_at(&self, q: &[f64; 7]) -> JointBounds {
         let (lower_velocity, upper_velocity) = self.joint_velocity.at(q);
         JointBounds {

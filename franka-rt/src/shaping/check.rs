@@ -2,7 +2,7 @@
 
 use crate::shaping::InvalidCommand;
 
-/// How far the norm of a row or column of a rotation may be from 1 (libfranka 0.21,
+/// Tolerance of the norm of a row or column of a rotation (libfranka 0.21,
 /// `kOrthonormalThreshold`).
 pub const ORTHONORMAL_TOLERANCE: f64 = 1e-5;
 
@@ -31,7 +31,7 @@ pub fn pose(column_major: &[f64; 16]) -> Result<(), InvalidCommand> {
     }
 }
 
-/// Refuses an elbow that is not an angle of joint 3 `[rad]` and a sign of joint 4, -1 or +1.
+/// Refuses an elbow that is not an angle of joint 3 `[rad]` and a sign of joint 4, plus or minus 1.
 ///
 /// # Errors
 /// [`InvalidCommand::NotFinite`], then [`InvalidCommand::ElbowSign`].
@@ -44,9 +44,8 @@ pub fn elbow(elbow: &[f64; 2]) -> Result<(), InvalidCommand> {
     }
 }
 
-/// Whether a 4x4 matrix, column-major, passes for a transformation: its last row is exactly
-/// `0 0 0 1`, and each row and column of its rotation has length 1 within
-/// [`ORTHONORMAL_TOLERANCE`].
+/// True if a 4x4 matrix, column-major, passes for a transformation. Its last row is exactly `0 0 0
+/// 1`, and each row and column of its rotation has length 1 within [`ORTHONORMAL_TOLERANCE`].
 ///
 /// As in libfranka, neither the angles between the columns nor the handedness count: a mirrored
 /// matrix passes.

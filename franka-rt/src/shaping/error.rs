@@ -1,8 +1,8 @@
-//! Why a command cannot be sent.
+//! Reasons why a command cannot be sent.
 
 use core::fmt;
 
-/// Why a command cannot be sent. The texts are those of libfranka 0.21, to the letter.
+/// Reason why a command cannot be sent. The texts are taken from libfranka 0.21, to the letter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum InvalidCommand {
@@ -43,14 +43,14 @@ pub enum InvalidCommand {
     /// The low-pass filter refuses its arguments.
     #[error("{signal}lowpass-filter: {fault}")]
     Filter {
-        /// What was to be filtered.
+        /// Signal that could not be filtered.
         signal: Signal,
-        /// What is wrong.
+        /// Fault of the signal or the filter.
         fault: FilterFault,
     },
 }
 
-/// What a low-pass filter is applied to.
+/// Signal that a low-pass filter is applied to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Signal {
     /// Scalars.
@@ -59,7 +59,7 @@ pub enum Signal {
     Pose,
 }
 
-/// Its name in an error text, before that of the filter.
+/// Its name in an error text, before the filter's.
 impl fmt::Display for Signal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -69,7 +69,7 @@ impl fmt::Display for Signal {
     }
 }
 
-/// What a low-pass filter refuses.
+/// Input that a low-pass filter refuses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FilterFault {
     /// The time between two samples is negative or not finite.

@@ -1,7 +1,7 @@
 //! First-order low-pass filters.
 //!
 //! `y = g x + (1 - g) y_last` with `g = T / (T + 1 / (2 pi f))`, for the sample time `T` and the
-//! cutoff frequency `f`. At 1 ms and 100 Hz `g` is 0.386.
+//! cutoff frequency `f`. For example, `g` is 0.386 at 1 ms and 100 Hz.
 
 use core::f64::consts::PI;
 
@@ -34,7 +34,7 @@ pub fn low_pass(
 /// Filters each of several numbers as [`low_pass`] does.
 ///
 /// # Errors
-/// As of [`low_pass`].
+/// Those of [`low_pass`].
 pub fn low_pass_each<const N: usize>(
     sample_time: f64,
     current: &[f64; N],
@@ -50,9 +50,9 @@ pub fn low_pass_each<const N: usize>(
 }
 
 /// Filters a pose, column-major: the translation as [`low_pass`], the orientation along the arc
-/// from that of `last`.
+/// from the orientation of `last`.
 ///
-/// The orientations are the nearest rotations of both poses; the last row is that of `current`.
+/// The orientations are the nearest rotations of both poses; the last row is copied from `current`.
 ///
 /// # Errors
 /// [`InvalidCommand::Filter`] if an argument is not finite or has the wrong sign.
@@ -180,7 +180,7 @@ mod tests {
         assert_eq!(fault(1e-3, 0.5, 1.0), None);
     }
 
-    /// The texts are what programs show and compare.
+    /// Programs show and compare the texts.
     #[test]
     fn the_texts_are_those_of_libfranka() {
         assert_eq!(

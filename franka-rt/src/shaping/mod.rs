@@ -1,4 +1,4 @@
-//! Filter, limiter and check: what a control loop does with a returned command before it leaves.
+//! Filter, limiter and check, applied by a control loop to a returned command before it leaves.
 //! Pure functions, composed by [`Shaper`](crate::control::Shaper).
 //!
 //! ```text
@@ -14,9 +14,9 @@
 //!
 //! The references of filters and limiters are the *last commanded* values of the robot's state.
 //! Everything is arithmetic on arrays: nothing allocates, and nothing panics for any input.
-//! Formulas, order of operations and the treatment of NaN are those of libfranka 0.21
+//! Formulas, order of operations and the treatment of NaN follow libfranka 0.21
 //! (`rate_limiting.cpp`, `lowpass_filter.cpp`, `control_loop.cpp`); libfranka 0.9 differs in bounds
-//! and in how a motion begins. The robot enforces its own limits, whatever a client does.
+//! and in how a motion begins. The robot enforces its own limits in addition.
 
 mod bounds;
 pub mod check;

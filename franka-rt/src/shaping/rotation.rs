@@ -10,12 +10,12 @@ pub(crate) struct Rigid {
     pub(crate) orientation: UnitQuaternion<f64>,
     /// `[m]`.
     pub(crate) translation: Vector3<f64>,
-    /// Of the homogeneous matrix; for a pose `0 0 0 1`.
+    /// Last row of the homogeneous matrix; for a pose `0 0 0 1`.
     pub(crate) last_row: [f64; 4],
 }
 
 impl Rigid {
-    /// Of a column-major pose, which may be rounded to `f32`: with the [`nearest_rotation`].
+    /// Returns the [`nearest_rotation`] of a column-major pose, which may be rounded to `f32`.
     pub(crate) fn nearest(pose: &[f64; 16]) -> Self {
         let m = pose;
         let block = Matrix3::new(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
@@ -78,8 +78,8 @@ pub(crate) fn slerp(
     };
     let of_to = if signed < 0.0 { -of_to } else { of_to };
     let sum = from.coords * of_from + to.coords * of_to;
-    // Its length is 1 but for rounding, where this step of Newton's is as good as a division by the
-    // root.
+    // Its length is 1 except for rounding, where this step of Newton's is as good as a division by
+    // the root.
     let sum = sum * (1.5 - 0.5 * sum.norm_squared());
     UnitQuaternion::new_unchecked(Quaternion::from(sum))
 }
@@ -170,9 +170,9 @@ impl Symmetric {
     }
 }
 
-/// The rotation that maximises `tr(R'M)`, which is the nearest one: the eigenvector of the largest
-/// eigenvalue of a symmetric matrix, read as a quaternion (Horn, J. Opt. Soc. Am. A 4, 1987,
-/// section 4).
+/// The rotation that maximises `tr(R'M)`, which is the nearest one. It is the eigenvector of the
+/// largest eigenvalue of a symmetric matrix, read as a quaternion. Source: Horn, J. Opt. Soc. Am. A
+/// 4, 1987, section 4.
 #[cold]
 fn procrustes(block: &Matrix3<f64>) -> Matrix3<f64> {
     let not_a_number = Matrix3::repeat(f64::NAN);
@@ -206,12 +206,11 @@ fn procrustes(block: &Matrix3<f64>) -> Matrix3<f64> {
         .into_inner()
 }
 
-/// Where the series is used: within this of orthogonal, element sizes summed, three steps are
-/// enough.
+/// Bound of the series: within this of orthogonal, element sizes summed, three steps are enough.
 const POLISH_BELOW: f64 = 0.3;
 const POLISH_STEPS_MAX: usize = 4;
-/// What is this close to orthogonal, such as rotations rounded to `f32`, is as close after one more
-/// step as rounding allows.
+/// Within this of orthogonal, such as rotations rounded to `f32`, one more step is as close as
+/// rounding allows.
 const CUBES_AWAY: f64 = 5e-6;
 /// The rounding error of products of rotations.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;

@@ -1,5 +1,5 @@
-//! When states are due, and how late each arrived. A late state is answered like any other; one
-//! that a newer state has overtaken is dropped in `exchange`.
+//! Due times of states, and the lateness of each. A late state is answered like any other; a state
+//! that a newer one has overtaken is dropped in `exchange`.
 
 use core::time::Duration;
 use std::time::Instant;
@@ -10,9 +10,9 @@ use super::cycle::CYCLE_NANOS;
 ///
 /// The robot sends one state per millisecond of its own clock, and no state arrives before it was
 /// sent. So the offset between the two clocks is taken from the most punctual state of a recent
-/// window; what another state is later than that is the delay of network, kernel and scheduler. The
-/// window is short, so that clock drift (100 ppm make 6 us in 64 ms) and pauses of the robot (a
-/// simulated one) are soon forgotten.
+/// window. The lateness of another state is the delay of network, kernel and scheduler. The window
+/// is short, so that clock drift and pauses of the robot (a simulated one) are soon forgotten. A
+/// drift of 100 ppm makes 6 us in a window.
 #[derive(Debug, Default)]
 pub(super) struct Arrivals {
     /// `message_id` and arrival that all offsets are counted from.
@@ -52,8 +52,7 @@ mod tests {
 
     const US: fn(u64) -> Duration = Duration::from_micros;
 
-    /// Arrivals of a robot whose clock runs fast by `ppm`, each late by what `late` says, in
-    /// microseconds.
+    /// Arrivals of a robot whose clock runs fast by `ppm`, each late by `late`, in microseconds.
     fn lateness(times: core::ops::Range<u64>, ppm: i64, late: impl Fn(u64) -> u64) -> Vec<u64> {
         let start = Instant::now();
         let mut arrivals = Arrivals::default();

@@ -1,4 +1,4 @@
-//! How long one cycle took, as a whole and by phase.
+//! Duration of one cycle, as a whole and by phase.
 
 use core::fmt;
 use core::time::Duration;
@@ -21,10 +21,10 @@ pub struct CycleTimes {
     /// From when the thread had the state to the departure of the command: until the system call
     /// that sends had returned.
     pub turnaround: Duration,
-    /// What was left until the next state was due: 1 ms - `late` - `turnaround`. The way to the
-    /// robot and back is not in it and has to fit into it.
+    /// Time left until the next state was due: 1 ms - `late` - `turnaround`. The way to the robot
+    /// and back is not in it and must fit into it.
     pub slack: Slack,
-    /// Where the time went; `None` without the feature `cycle-phases`.
+    /// Times of the phases; `None` without the feature `cycle-phases`.
     pub phases: Option<Phases>,
 }
 
@@ -50,15 +50,15 @@ pub struct Phases {
     pub program: Duration,
     /// The command written into bytes and handed to the kernel.
     pub send: Duration,
-    /// What follows the command: log, newest state, rings, events, wake-up. It delays the next
-    /// cycle if it is long. Under active control it comes before the command.
+    /// Work after the command: log, newest state, rings, events, wake-up. It delays the next cycle
+    /// if it is long. Under active control it comes before the command.
     pub publish: Duration,
-    /// What the next answer does not need the next state for: goals, plans, generator, inverse
+    /// Work for the next answer without the next state: goals, plans, generator, inverse
     /// kinematics. Like the publishing, it delays the next cycle if it is long.
     pub prepare: Duration,
 }
 
-/// Where the time of a cycle goes.
+/// Phase of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -155,7 +155,7 @@ impl fmt::Display for Slack {
 }
 
 impl Phases {
-    /// The duration of a phase; `None` for one that is not among these.
+    /// The duration of a phase; `None` for a phase that has none here.
     #[cfg(feature = "cycle-phases")]
     pub(super) fn part_mut(&mut self, phase: Phase) -> Option<&mut Duration> {
         match phase {

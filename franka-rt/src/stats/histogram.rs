@@ -6,11 +6,11 @@ use core::time::Duration;
 
 use super::Counter;
 
-/// A histogram of durations with a resolution of 1/16 of their value (1 ns below 16 ns), and their
-/// exact minimum and maximum.
+/// A histogram of durations, and their exact minimum and maximum. Its resolution is 1/16 of a
+/// value, and 1 ns for the smallest values.
 ///
-/// A value with its highest bit at position e >= 4 falls in one of 16 equal buckets of
-/// `[2^e, 2^(e+1))` nanoseconds. Durations of 2^40 ns (18 minutes) and more share the last bucket.
+/// A value with its highest bit at position `e >= 4` falls in one of 16 equal buckets of `[2^e,
+/// 2^(e+1))` nanoseconds. Durations of 18 minutes (2^40 ns) and more share the last bucket.
 pub struct Histogram {
     buckets: Box<[AtomicU64]>,
     count: Counter,
@@ -19,7 +19,7 @@ pub struct Histogram {
 }
 
 impl fmt::Debug for Histogram {
-    /// How many there are, and what stands out: the buckets are hundreds.
+    /// Their number, and what stands out: the buckets are hundreds.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Histogram")
             .field("count", &self.count())

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::{Phase, Phases};
 
-/// Times the phases of one cycle, each from the end of the one before. Without the feature it is
+/// Times the phases of one cycle, each from the end of the previous one. Without the feature it is
 /// empty and reads no clock.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Laps {

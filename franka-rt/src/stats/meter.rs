@@ -8,7 +8,7 @@ use super::arrivals::Arrivals;
 use super::{Counter, CycleTimes, Histogram, MotionStatistics, Stats};
 use crate::slot::{self, SlotWriter};
 
-/// When a state arrived: after the one before it, and after it was due.
+/// Arrival of a state: the time since the previous state, and since it was due.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Arrival {
     /// Time since the state before, by this host's clock; `None` for the first.
@@ -82,12 +82,12 @@ impl Meter {
         &self.stats
     }
 
-    /// When the newest state was received.
+    /// Time at which the newest state was received.
     pub(crate) fn heard(&self) -> Option<Instant> {
         self.newest.map(|newest| newest.received)
     }
 
-    /// Counts a state, and `skipped` older ones that arrived with it. Returns when it arrived.
+    /// Counts a state, and `skipped` older ones that arrived with it. Returns its arrival.
     pub(crate) fn note_arrival(&mut self, time: u64, received: Instant, skipped: u64) -> Arrival {
         let late = self.arrivals.note(time, received);
         let before = self.newest.replace(Newest {

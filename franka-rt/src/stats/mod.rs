@@ -8,8 +8,8 @@
 //!                                                    |-------- slack ----------|   due
 //! ```
 //!
-//! One writer, the thread; readers anywhere, at any time, without a lock. Every counter is an
-//! atomic of its own, so a reader may see a cycle half counted: the numbers are for display. The
+//! One writer, the thread; readers anywhere, at any time, without a lock. Every counter is a
+//! separate atomic, so a reader may see a cycle half counted: the numbers are for display. The
 //! histograms are arrays of atomics with logarithmic buckets rather than the `hdrhistogram`
 //! crate's, whose plain cells a reader could only see through a lock or a copy made by the thread.
 //! Values that have to be consistent, a cycle or the counts of a motion, cross in a
@@ -38,17 +38,17 @@ pub(crate) use meter::Meter;
 
 use crate::slot::{Read, SlotReader, Words};
 
-/// What the loop has counted and measured since it started.
+/// Counts and measurements of the loop since it started.
 #[derive(Debug)]
 pub struct Stats {
-    /// Turns of the loop, with a state or without: while they stand still, a control function does
-    /// not return, or the thread is held up.
+    /// Turns of the loop, with a state or without. While they stand still, a control function does
+    /// not return, or the thread is not scheduled.
     pub turns: Counter,
     /// States received and given to the driver.
     pub states: Counter,
     /// Commands sent.
     pub commands: Counter,
-    /// States that were received but skipped for a newer one that had arrived too.
+    /// States that were received but skipped for a newer state that had arrived too.
     pub skipped: Counter,
     /// States that never arrived, by the gaps in `message_id`, without those skipped.
     pub lost: Counter,
@@ -90,7 +90,8 @@ impl Stats {
         newest(&self.worst)
     }
 
-    /// The newest cycle whose command left after the next state was due; `None` if there was none.
+    /// The newest cycle whose command left after the next state was due; `None` without such a
+    /// cycle.
     pub fn newest_overrun(&self) -> Option<CycleTimes> {
         newest(&self.overran)
     }
@@ -110,7 +111,7 @@ fn newest<T: Words>(slot: &SlotReader<T>) -> Option<T> {
     }
 }
 
-/// Attempts to read. One fails if this thread is held up until the value has been replaced twice.
+/// Attempts to read. One fails if this thread is delayed until the value has been replaced twice.
 const ATTEMPTS: usize = 16;
 
 /// A count with one writer.

@@ -16,11 +16,11 @@ pub struct MotionStatistics {
     pub cycles: u64,
     /// States that never arrived.
     pub lost_states: u64,
-    /// States that arrived but were skipped for a newer one that had arrived too.
+    /// States that arrived but were skipped for a newer state that had arrived too.
     pub skipped_states: u64,
     /// Lowest `control_command_success_rate` seen while running, in `[0, 1]`.
     pub success_rate_min: f64,
-    /// The newest one, in `[0, 1]`; 1 while there was none.
+    /// The newest rate, in `[0, 1]`; 1 before the first one.
     pub success_rate_newest: f64,
     success_rate_sum: f64,
     success_rate_count: u64,
@@ -81,9 +81,8 @@ impl MotionStatistics {
         (self.commands > 0).then_some(self.worst)
     }
 
-    /// Counts one state of the running motion, and those lost and skipped before it. The first and
-    /// the final state of a motion report a success rate of 0 whatever happened, so zeros do not
-    /// count.
+    /// Counts one state of the running motion, and the states lost and skipped before it. The first
+    /// and the final state of a motion always report a success rate of 0, so zeros do not count.
     pub(crate) fn note_state(&mut self, state: &RobotState, lost: u64, skipped: u64) {
         if self.cycles == 0 {
             self.span.0 = state.message_id;
@@ -158,7 +157,7 @@ impl Words for MotionStatistics {
     }
 }
 
-/// Words of a motion's statistics before those of its worst cycle.
+/// Words of a motion's statistics before its worst cycle.
 const OWN_WORDS: usize = 13;
 
 /// Times of the cycles of one motion. Made outside the thread, written by it, read anywhere.

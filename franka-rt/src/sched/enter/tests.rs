@@ -1,9 +1,9 @@
-//! What the kernel makes of the options.
+//! Effect of the options in the kernel.
 
 use super::*;
 
-/// Runs `asked.enter()` in a thread of its own and returns what it got and what `/proc` says of
-/// that thread.
+/// Runs `asked.enter()` in a new thread and returns its result and what `/proc` shows of that
+/// thread.
 fn entered(asked: Scheduling) -> (Result<Granted, SchedError>, String, String) {
     std::thread::spawn(move || {
         let granted = asked.enter();
@@ -18,7 +18,7 @@ fn entered(asked: Scheduling) -> (Result<Granted, SchedError>, String, String) {
     .expect("entering does not panic")
 }
 
-/// Real-time priority and policy: fields 40 and 41 of proc_pid_stat(5), counted after the
+/// Real-time priority and policy: fields 40 and 41 of `proc_pid_stat(5)`, counted after the
 /// parenthesised name.
 fn priority_and_policy(stat: &str) -> (i32, i32) {
     let fields: Vec<&str> = stat[stat.rfind(')').expect("a name") + 1..]

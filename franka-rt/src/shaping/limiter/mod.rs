@@ -1,4 +1,4 @@
-//! Rate limiters: from the last command towards the given one, as far as the bounds on derivatives
+//! Rate limiters: from the last command as near to the given one as the bounds on derivatives
 //! allow.
 //!
 //! | command | function | what is bounded |
@@ -9,10 +9,9 @@
 //! | twist | [`cartesian_velocity`] | norms of the linear and of the angular part |
 //! | pose | [`cartesian_pose`] | as of a twist; rotations keep 1 % more distance |
 //!
-//! The last values are those of the robot's state: last command, and its first and second
-//! derivative. Only the command is checked. Non-finite last values, and commands whose derivatives
-//! overflow, may give a non-finite result, as in libfranka; [`Shaper`](crate::control::Shaper)
-//! refuses it.
+//! The last values come from the robot's state: last command, and its first and second derivative.
+//! Only the command is checked. Non-finite last values, and commands whose derivatives overflow,
+//! may give a non-finite result, as in libfranka; [`Shaper`](crate::control::Shaper) refuses it.
 //!
 //! # What they do not keep
 //!
@@ -21,9 +20,9 @@
 //! * The jerk yields to the velocity: a vector that turns at the bound of its velocity, and a joint
 //!   that meets the envelope of its position, may exceed it.
 //! * Above its upper bound a velocity comes back at the bound of the acceleration. Below the lower
-//!   bound it comes back by half of the excess per cycle, whatever acceleration that takes.
-//! * The FR3's joints 5 and 7 have envelopes for a deceleration of 17 rad/s^2, while the limiter
-//!   brakes with 10. Sent against the upper end of their range at full speed, they pass it.
+//!   bound it comes back by half of the excess per cycle, at any acceleration.
+//! * Joints 5 and 7 of the FR3 have envelopes for a deceleration of 17 rad/s^2. The limiter brakes
+//!   with 10. Sent against the upper end of their range at full speed, they pass it.
 //!
 //! The robot judges every command by its own limits. Commands that stay away from the bounds meet
 //! none of these cases.

@@ -44,7 +44,7 @@ pub struct JointBounds {
 }
 
 impl JointBounds {
-    /// Of joint `i`, from 0.
+    /// Bounds of joint `i`, from 0.
     fn joint(&self, i: usize) -> AxisBounds {
         AxisBounds {
             upper_velocity: self.upper_velocity[i],

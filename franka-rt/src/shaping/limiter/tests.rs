@@ -1,5 +1,5 @@
-//! What limited commands keep, whatever is commanded: walks from rest in which every result is the
-//! next last value.
+//! Bounds of limited commands for any input: walks from rest in which every result is the next last
+//! value.
 
 use franka_model::limits::{CartesianLimits, JointLimits, MotionLimits};
 use franka_model::{JointVector, READY, RobotKind, Twist, rotation, transform};
@@ -73,7 +73,7 @@ fn norms(twist: &[f64; 6]) -> [f64; 2] {
     ]
 }
 
-/// The nominal limits of both halves, which the robot checks: the margin is what rounding may use.
+/// The nominal limits of both halves, which the robot checks. The margin is room for rounding.
 fn halves(limits: &CartesianLimits) -> [MotionLimits; 2] {
     [limits.translation, limits.rotation]
 }
@@ -125,8 +125,8 @@ proptest! {
         }
     }
 
-    /// Where the envelope takes the velocity back faster than the jerk allows, the jerk is
-    /// exceeded, as in libfranka.
+    /// As in libfranka, the jerk is exceeded where the envelope takes the velocity back faster than
+    /// the jerk allows.
     #[test]
     fn joint_positions_keep_velocity_and_acceleration_and_without_an_envelope_the_jerk(
         shares in commands::<7>(share()),
@@ -264,8 +264,7 @@ fn a_joint_sent_against_the_end_of_its_range_stops_before_it() {
     }
 }
 
-/// What the module says about the limiters of libfranka: the acceleration bound yields downwards
-/// only.
+/// As the module states of the limiters of libfranka, the acceleration bound yields downwards only.
 #[test]
 fn joints_5_and_7_of_the_fr3_pass_their_upper_end() {
     let limits = JointLimits::of(RobotKind::Fr3);
