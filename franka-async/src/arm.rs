@@ -221,7 +221,7 @@ impl Arm {
     /// that comes before the previous goal was taken.
     ///
     /// # Errors
-    /// Those of [`Self::set`].
+    /// As for [`Self::set`].
     pub fn try_set(&self, destination: impl Into<Destination>) -> Result<(), MotionError> {
         let destination = destination.into();
         self.session.check_goal()?;
@@ -308,8 +308,8 @@ impl Arm {
     /// goal comes.
     ///
     /// # Errors
-    /// Those of [`Self::set`]. If a guard gave up the previous chunk, once: [`MotionError::Held`]
-    /// or [`MotionError::Braked`]. [`GoalError::Late`](crate::error::GoalError::Late) if all points
+    /// As for [`Self::set`]. If a guard gave up the previous chunk, once: [`MotionError::Held`] or
+    /// [`MotionError::Braked`]. [`GoalError::Late`](crate::error::GoalError::Late) if all points
     /// have passed. [`GoalError::Ahead`](crate::error::GoalError::Ahead) if the observation is of
     /// another clock. [`GoalError::Outdated`](crate::error::GoalError::Outdated) if the observation
     /// of the previous chunk is newer. [`GoalError::Chunks`](crate::error::GoalError::Chunks) if

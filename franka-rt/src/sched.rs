@@ -34,7 +34,7 @@ pub enum Realtime {
 pub struct Scheduling {
     /// Handling of refusals.
     pub realtime: Realtime,
-    /// `SCHED_FIFO` priority, 1 to 99. `None` takes the system's maximum, as libfranka 0.21 does.
+    /// `SCHED_FIFO` priority, 1 to 99; the system's maximum if `None`.
     pub priority: Option<i32>,
     /// The processor to run on; any if `None`.
     pub cpu: Option<usize>,

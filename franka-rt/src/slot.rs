@@ -207,8 +207,8 @@ impl<T: Words> SlotReader<T> {
             // the load of the count below sees that value's odd count or a later one.
             *copy = word.load(Ordering::Acquire);
         }
-        // The next but one value fills this buffer. Relaxed: the loads above come first in program
-        // order and are Acquire, so this one cannot move before them.
+        // Value `newest + 2` is the next in this buffer. Relaxed: the loads above come first in
+        // program order and are Acquire, so this one cannot move before them.
         if self.shared.count.load(Ordering::Relaxed) > 2 * newest + 2 {
             return Read::Torn;
         }

@@ -29,8 +29,8 @@ pub(crate) use linux::*;
 #[cfg(any(not(target_os = "linux"), franka_portable))]
 pub(crate) use portable::*;
 
-/// Blocks every signal on the calling thread, and only it, so that the kernel delivers those of the
-/// process to other threads; all but those that report a fault of the thread itself.
+/// Blocks every signal on the calling thread, and only it, so that the kernel delivers the signals
+/// of the process to other threads; all but those that report a fault of the thread itself.
 pub(crate) fn block_signals() {
     // SAFETY: `sigset_t` is a C bit array, for which all zeros is a valid value. It is a set once
     // `sigfillset` has filled it below.
@@ -79,7 +79,7 @@ pub(crate) fn error_text(errno: i32) -> String {
     }
 }
 
-/// `recvfrom` with flags: the received length, cut to that of `buffer`, and the sender.
+/// `recvfrom` with flags: the received length, cut to the length of `buffer`, and the sender.
 pub(crate) fn recv_from(
     socket: &Socket,
     buffer: &mut [u8],
@@ -87,8 +87,7 @@ pub(crate) fn recv_from(
 ) -> io::Result<(usize, Option<SocketAddr>)> {
     // SAFETY: same address, length and lifetime; `MaybeUninit<u8>` has the layout of `u8`. Writing
     // uninitialised bytes through the new type would be unsound, and socket2 promises not to
-    // ("Safety" in the documentation of `Socket::recv`, to which that of `recv_from_with_flags`
-    // refers).
+    // ("Safety" in the documentation of `Socket::recv`, to which `recv_from_with_flags` refers).
     let buffer = unsafe { &mut *(core::ptr::from_mut(buffer) as *mut [MaybeUninit<u8>]) };
     let (length, sender) = socket.recv_from_with_flags(buffer, flags)?;
     Ok((length, sender.as_socket()))

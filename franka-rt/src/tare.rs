@@ -31,12 +31,12 @@ pub struct WrenchTare {
     pub q: [f64; 7],
     /// `message_id` of the last state of the average, `[ms]` of the robot's clock.
     pub time: u64,
-    /// How many states it is the average of.
+    /// Number of states in the average.
     pub states: u32,
 }
 
 impl WrenchTare {
-    /// How long the states of an average last unless asked otherwise.
+    /// Duration of the states of an average unless asked otherwise.
     pub const DURATION: Duration = Duration::from_millis(500);
 
     /// A tare is taken to hold within so much of the posture in which it was taken, `[rad]` of any
@@ -45,8 +45,8 @@ impl WrenchTare {
     pub const NEAR: f64 = 0.035;
 
     /// The wrench of a state without the tare: force, then moment about the origin of the stiffness
-    /// frame, in axes of the base, `[N, N m]`; positive is what the arm exerts. `None` where the
-    /// robot has no estimate: near a singularity it reports zeros.
+    /// frame, in axes of the base, `[N, N m]`; a positive wrench is exerted by the arm. `None`
+    /// where the robot has no estimate: near a singularity it reports zeros.
     pub fn compensate(&self, state: &RobotState) -> Option<[f64; 6]> {
         let wrench = estimate(state)?;
         Some(core::array::from_fn(|i| wrench[i] - self.wrench[i]))
@@ -65,7 +65,7 @@ impl WrenchTare {
     }
 }
 
-/// Why there is no tare.
+/// Reason why there is no tare.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TareRefused {
@@ -140,8 +140,8 @@ impl Taring {
         })
     }
 
-    /// Takes in a state; returns the tare once the states have lasted long enough. One that is as
-    /// old as the last changes nothing.
+    /// Takes in a state; returns the tare once the states have lasted long enough. A state that is
+    /// as old as the last changes nothing.
     ///
     /// # Errors
     /// [`TareRefused`] if the state is not one of an untouched arm at rest.
@@ -182,7 +182,7 @@ impl Taring {
     }
 }
 
-/// Whether the arm rests, holds itself and is not touched.
+/// Checks that the arm rests, holds itself and is not touched.
 fn check(state: &RobotState, first: &RobotState) -> Result<(), TareRefused> {
     if !matches!(state.robot_mode, RobotMode::Idle | RobotMode::Move) {
         return Err(TareRefused::Mode {
@@ -191,7 +191,7 @@ fn check(state: &RobotState, first: &RobotState) -> Result<(), TareRefused> {
     }
     for i in 0..7 {
         let (speed, way) = (state.dq[i], state.q[i] - first.q[i]);
-        // What is not a number is no rest.
+        // A value that is not a number is no rest.
         if !(speed.abs() <= SPEED && way.abs() <= WAY) {
             let joint = i as u8 + 1;
             return Err(TareRefused::Moves { joint, speed, way });

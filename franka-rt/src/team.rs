@@ -11,14 +11,14 @@
 //! ```
 //!
 //! The state of the newest round is one atomic word, which all members look at once in each of
-//! their own cycles: a load. Whoever sees a fault writes it there, by a compare-and-exchange. No
-//! thread waits for another one, and no async runtime is on the way: a member that brakes begins to
-//! within two of its cycles after the fault was seen by the thread of the member that has it. The
-//! first fault of a round stays. A newer round hides no stop: a member that has not looked yet
-//! still sees it, and a round that begins before all have seen a stop of the team is stopped by it.
+//! their own cycles: a load. A member that sees a fault writes it there, by a compare-and-exchange.
+//! No thread waits for another one, and no async runtime is on the way. A member begins to brake
+//! within two of its cycles after the thread of the faulty member has seen the fault. The first
+//! fault of a round stays. A newer round hides no stop: a member that has not looked yet still sees
+//! it, and a round that begins before all have seen a stop of the team is stopped by it.
 //!
-//! [`together`](crate::together) has common starts of motions that end by themselves; here a
-//! session goes from goal to goal.
+//! [`together`](crate::together) has common starts of independent motions; here a session goes from
+//! goal to goal.
 
 #[cfg(loom)]
 use loom::sync::{
@@ -37,13 +37,13 @@ use core::time::Duration;
 /// The most members of a team.
 pub const MEMBERS_MAX: usize = 254;
 
-/// Silence of a member's robot after which the others brake, unless said otherwise. A robot that
-/// misses as many commands stops by itself. Noticed late by one wait of the member's thread at
-/// most, 20 ms.
+/// Silence of a member's robot after which the others brake, unless stated otherwise. A robot that
+/// misses as many commands stops on its own. Detection may take up to 20 ms longer, one wait of the
+/// member's thread.
 pub const SILENCE: Duration = Duration::from_millis(20);
 
-/// How long a goal of a joint motion waits for those of the other members, by the clock of its
-/// robot. The arm is held meanwhile, or goes on with what it did before.
+/// Time for which a goal of a joint motion waits for the goals of the other members, by the clock
+/// of its robot. The arm is held meanwhile, or continues its previous motion.
 pub const START_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// One joint motion of a team.
@@ -60,23 +60,23 @@ impl Round {
     }
 }
 
-/// Why the members of a team brake. Members count from 0, in the order of the team.
+/// Reason why the members of a team brake. Members count from 0, in the order of the team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum TeamStop {
-    /// Caller: the team was told to stop.
+    /// Caller: the team was asked to stop.
     Requested,
-    /// A member has a fault; its own motion says more.
+    /// A member has a fault; its own motion reports the details.
     Member {
-        /// Which.
+        /// Number of the member.
         member: usize,
-        /// What happened to it.
+        /// Fault of the member.
         fault: MemberFault,
     },
 }
 
-/// What happened to a member of a team.
+/// Fault of a member of a team.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -85,7 +85,7 @@ pub enum MemberFault {
     RobotStopped,
     /// Its robot was silent for too long: [`SILENCE`].
     Silent,
-    /// A command could not be sent, and the robot was told to stop.
+    /// A command could not be sent, and the robot was asked to stop.
     Failed,
     /// Its session was dropped: the control thread has ended, or panicked.
     Gone,
@@ -94,7 +94,7 @@ pub enum MemberFault {
     GivenUp,
     /// It did not reach its target.
     NotReached,
-    /// Its motion was dropped, cancelled or stopped, or gave way to another goal.
+    /// Its motion was dropped, cancelled or stopped, or yielded to another goal.
     TakenBack,
     /// Its goal was refused.
     Refused,
@@ -133,7 +133,7 @@ pub struct Coordinator {
     shared: Arc<Shared>,
 }
 
-/// How far a member is with an object that the team carries.
+/// Progress of a member with an object that the team carries.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Carrying {
     /// The way that its reference has to go, `[m]`, turns included.
@@ -155,7 +155,7 @@ pub struct Member {
     has_left: bool,
 }
 
-/// Whether the goal of a round may be pursued.
+/// Passage of a goal: whether it may be pursued.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Passage {
     /// Not all members are there.
@@ -166,12 +166,12 @@ pub enum Passage {
     Stopped(TeamStop),
 }
 
-/// A team of `N` members that are to be handed to sessions.
+/// A team of `N` members, to hand to sessions.
 pub fn team<const N: usize>() -> (Coordinator, [Member; N]) {
     team_tolerating(SILENCE)
 }
 
-/// A team whose members' robots may be silent for so long.
+/// A team whose members' robots may be silent for `silence`.
 pub fn team_tolerating<const N: usize>(silence: Duration) -> (Coordinator, [Member; N]) {
     const { assert!(0 < N && N <= MEMBERS_MAX, "a team has one member to 254") };
     let shared = Arc::new(Shared {
@@ -194,8 +194,9 @@ pub fn team_tolerating<const N: usize>(silence: Duration) -> (Coordinator, [Memb
 }
 
 impl Coordinator {
-    /// Begins a round: the members wait until each has a goal of it. A round before it that has not
-    /// begun never does; goals under way of an older one go on until theirs of this one begin.
+    /// Begins a round: the members wait until each has a goal of it. An earlier round that has not
+    /// begun never does. The goals of an older round that are under way continue until the member's
+    /// goal of this round begins.
     ///
     /// A round that begins before every member has seen a [stop](Self::stop), or that the session
     /// of one has ended, is stopped for the same cause and never opens. A member looks in each
@@ -209,25 +210,25 @@ impl Coordinator {
         word.round().unwrap_or(Round(NonZeroU32::MIN))
     }
 
-    /// Brakes all members within two of their cycles. They hold where they come to rest, until they
-    /// are given other goals. Wait-free but for the members' own changes.
+    /// Brakes all members within two of their cycles. They hold where they stop, until they are
+    /// given other goals. Wait-free except for the members' own changes.
     pub fn stop(&self) {
         self.shared.stop(CALLER, Cause::Requested);
     }
 
     /// Notes that the goal of `member` in this round was refused or has ended with an error.
-    /// Without effect on a round that has stopped, and on one that is not the newest.
+    /// Without effect on a round that has stopped, or is not the newest.
     pub fn refuse(&self, round: Round, member: usize) {
         let cause = Cause::Member(MemberFault::Refused);
         self.shared.stop_round(round, member as u8, cause);
     }
 
-    /// Brakes all members, if this round is the newest. Without effect on one that has stopped.
+    /// Brakes all members, if this round is the newest. Without effect on a stopped round.
     pub fn take_back(&self, round: Round) {
         self.shared.stop_round(round, CALLER, Cause::Requested);
     }
 
-    /// Why the newest round has stopped; `None` if it has not.
+    /// Reason why the newest round has stopped; `None` if it has not.
     pub fn stopped(&self) -> Option<TeamStop> {
         self.shared.look().stop()
     }
@@ -280,8 +281,8 @@ impl Member {
         }
     }
 
-    /// The stop of the team, if this is the first call since then. That it has taken back a motion
-    /// itself is none for this member: what it does instead goes on.
+    /// The stop of the team, if this is the first call since then. A motion that this member has
+    /// taken back itself does not stop it: its next motion continues.
     pub fn take_stop(&mut self) -> Option<TeamStop> {
         let (word, stop) = self.shared.stop_after(self.seen)?;
         self.seen = word;
@@ -313,17 +314,17 @@ impl Member {
         }
     }
 
-    /// Stops whatever the other members do, in a round or not.
+    /// Stops all motions of the other members, in a round or not.
     pub fn stop(&self, fault: MemberFault) {
         self.shared.stop(self.number, Cause::Member(fault));
     }
 
-    /// Tells the others how far it is in `round`.
+    /// Reports its progress in `round` to the others.
     pub fn tell(&self, round: Round, carrying: Carrying) {
         let micrometres = (carrying.remaining.max(0.0) * 1e6) as u64;
         let way = micrometres.min(WAY_MAX);
         let word = Round::to_word(Some(round)) << 32 | u64::from(carrying.lags) << 31 | way;
-        // Each has a word of its own, which says everything by itself.
+        // Each member has its own word, which is complete in itself.
         self.shared.carrying[usize::from(self.number)].store(word, Ordering::Relaxed);
     }
 
@@ -341,7 +342,7 @@ impl Member {
         all
     }
 
-    /// Leaves the team, which goes on for as long as it needs no goal of this member.
+    /// Leaves the team, which continues for as long as it needs no goal of this member.
     pub fn leave(&mut self) {
         self.has_left = true;
         self.shared.note_seen(self.number, GONE);
@@ -363,10 +364,10 @@ struct Shared {
     /// The word of the newest round that was stopped, if a newer round has replaced it. Written
     /// after the word.
     stopped: AtomicU64,
-    /// The newest stop that each member has seen; [`GONE`] for one that has left.
+    /// The newest stop that each member has seen; [`GONE`] for a member that has left.
     seen: Box<[AtomicU64]>,
-    /// What each member says of its [`Carrying`]: bits 0 to 30 the remaining way in micrometres, 31
-    /// whether it lags, 32 to 63 the round.
+    /// [`Carrying`] of each member. The low 31 bits have the remaining way in micrometres, the next
+    /// bit is whether it lags. The upper half has the round.
     carrying: Box<[AtomicU64]>,
     members: u8,
     silence: Duration,
@@ -384,7 +385,7 @@ impl Shared {
         self.change(|word| {
             let going = match word.stop() {
                 None if word.round().is_some() => word,
-                // Each stop has a round of its own.
+                // Each stop has its own round.
                 _ => word.next_round(),
             };
             Some(going.stopped(member, cause).of_the_team())
@@ -403,7 +404,7 @@ impl Shared {
         });
     }
 
-    /// The newest stop, unless it is the one that was `seen`, with its word.
+    /// The newest stop, unless it is `seen`, with its word.
     fn stop_after(&self, seen: Word) -> Option<(Word, TeamStop)> {
         let word = self.look();
         if let Some(stop) = word.stop() {
@@ -464,8 +465,9 @@ enum Cause {
     Member(MemberFault),
 }
 
-/// Bits: 0 to 7 members present, 8 to 15 the member that stopped it, 16 to 23 why (0: it goes on),
-/// 24 whether that stops the team and not only its round, 32 to 63 the round.
+/// Bytes, from the lowest: members present; the member that stopped the round; the reason (0 while
+/// the round continues). The lowest bit of the next byte is set if the stop holds for the team and
+/// not only for the round. The upper half has the round.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Word(u64);
 
@@ -503,7 +505,7 @@ impl Word {
         Self(u64::from(round) << 32)
     }
 
-    /// True if its round comes after that of `other`, also where the numbers begin anew.
+    /// True if its round comes after the round of `other`, also where the numbers begin anew.
     fn is_newer_than(self, other: Self) -> bool {
         let ahead = ((self.0 >> 32) as u32).wrapping_sub((other.0 >> 32) as u32);
         other.round().is_none() || 0 < ahead as i32
@@ -539,22 +541,22 @@ impl Word {
     }
 }
 
-/// The longest way that is told, `[um]`.
+/// The longest way that can be reported, `[um]`.
 const WAY_MAX: u64 = (1 << 31) - 1;
 
-/// Bit of a stop that is not that of a round.
+/// Bit of a stop of the whole team, not of a round.
 const OF_THE_TEAM: u64 = 1 << 24;
 
-/// Stands for the newest stop that was seen by a member that has left, whatever the newest is.
+/// Stands for the newest stop that was seen by a member that has left, for any newest stop.
 const GONE: Word = Word(u64::MAX);
 
 /// Stands for the caller in the place of a member.
 const CALLER: u8 = u8::MAX;
 
-/// What stands for [`TeamStop::Requested`] in a word.
+/// Value that stands for [`TeamStop::Requested`] in a word.
 const REQUESTED: u8 = u8::MAX;
 
-/// What stands in a word for a fault is its place here, from 1.
+/// Faults in the order of their values in a word, from 1.
 const FAULTS: [MemberFault; 9] = [
     MemberFault::RobotStopped,
     MemberFault::Silent,

@@ -9,19 +9,20 @@
 //!
 //! The command leaves before anything is published. After [`spawn`] has returned, the loop neither
 //! allocates, frees, locks nor logs, and its only system calls are `recvfrom`, `sendto`, the clock
-//! and the `write` to the eventfd. What has to be freed (a program that ended) leaves inside
+//! and the `write` to the eventfd. A value that must be freed (a program that ended) leaves inside
 //! an event.
 //!
 //! The cycle can be lent out: a thread of the user's then runs it in this one's place, through a
 //! [`Lease`], until it gives it back.
 //!
-//! This loop is the only reader of the clock in the crate: it measures how long the robot has been
-//! silent, how far apart its states arrive, and how long an answer takes and (feature
-//! `cycle-phases`) each part of it. Control itself uses the robot's clock, in the core.
+//! This loop is the only reader of the clock in the crate. It measures how long the robot has been
+//! silent, how far apart its states arrive, and how long an answer takes. With the feature
+//! `cycle-phases` it also measures each part of an answer. Control itself uses the robot's clock,
+//! in the core.
 //!
-//! A panic in the core ends the loop and nothing else: the robot misses its commands and stops by
-//! itself, the eventfd is notified, and [`Thread::join`] returns the panic's message. The process's
-//! panic hook prints it.
+//! A panic in the core ends the loop and nothing else: the robot misses its commands and stops on
+//! its own, the eventfd is notified, and [`Thread::join`] returns the panic's message. The
+//! process's panic hook prints it.
 
 mod borrower;
 mod cycle;
@@ -66,12 +67,12 @@ use crate::slot;
 use crate::state_wakeups::StateWakeups;
 use crate::stats::{Laps, Meter};
 
-/// How to run the thread.
+/// Options of the thread.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ThreadConfig {
-    /// What to ask the operating system for.
+    /// Requests to the operating system.
     pub scheduling: Scheduling,
-    /// How many orders, notices and records can wait.
+    /// Number of orders, notices and records that can wait.
     pub capacity: Capacity,
 }
 
@@ -89,8 +90,8 @@ pub struct Capacity {
 }
 
 impl Default for Capacity {
-    /// 16 orders (a motion takes two), 64 notices (a motion causes a handful), 2048 records and
-    /// 1024 states: what comes in two seconds and in one.
+    /// 16 orders (a motion takes two) and 64 notices (a motion causes a handful). 2048 records are
+    /// two seconds, and 1024 states are one.
     fn default() -> Self {
         Self {
             orders: 16,
@@ -101,7 +102,7 @@ impl Default for Capacity {
     }
 }
 
-/// Why a thread could not be started.
+/// Reason why a thread could not be started.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StartError {
@@ -117,8 +118,8 @@ pub enum StartError {
 /// [`crate::exchange::bind`]).
 ///
 /// States count only if they come from `robot`, and commands go to where the newest state came
-/// from. Returns when the thread has asked the operating system for what `config` wants; that takes
-/// well under a millisecond of blocking.
+/// from. Returns when the thread has made the requests of `config` to the operating system; that
+/// takes well under a millisecond of blocking.
 ///
 /// # Errors
 /// [`StartError`]; the core is then dropped.

@@ -11,9 +11,9 @@
 //! ```
 //!
 //! A motion *arrives* when its robot shows the motion's modes. From then on its thread answers
-//! every state with a command that holds the arm, as the robot requires of a motion's first
-//! commands, until the last member has arrived. Each thread looks once in each of its own cycles,
-//! so the motions begin within a millisecond of each other: the robots' clocks are not
+//! every state with a command that holds the arm, until the last member has arrived. A robot
+//! requires such commands at the start of a motion. Each thread looks once in each of its own
+//! cycles, so the motions begin within a millisecond of each other. The robots' clocks are not
 //! synchronised, and no start can be closer than the next state of each.
 //!
 //! The state is one atomic word, which leaves `waiting` once at most. No thread ever waits for
@@ -58,8 +58,8 @@ impl Default for StartBarrier {
 }
 
 impl StartBarrier {
-    /// How long a motion waits for the others unless said otherwise: twice as long as a robot may
-    /// take to show the modes of a motion.
+    /// Time for which a motion waits for the others unless stated otherwise: twice as long as a
+    /// robot may take to show the modes of a motion.
     pub const TIMEOUT: Duration = Duration::from_secs(10);
 
     /// The most members.
@@ -126,7 +126,7 @@ enum MemberState {
     Decided(Gate),
 }
 
-/// Whether a motion may begin.
+/// Gate of a motion: whether it may begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gate {
     /// Not yet.
@@ -137,8 +137,7 @@ pub enum Gate {
     Broken(StartFault),
 }
 
-/// Caller: why motions that were to begin together did not. Members count from 0, in the order of
-/// their tickets.
+/// Caller: reason why a common start failed. Members count from 0, in the order of their tickets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum StartFault {
@@ -146,20 +145,20 @@ pub enum StartFault {
     /// refused before its robot was asked.
     #[error("member {member} of the common start was dropped or refused before it began")]
     Dropped {
-        /// Which.
+        /// Number of the member.
         member: usize,
     },
     /// A motion was dropped, stopped or superseded while it waited.
     #[error("member {member} of the common start was taken back while it waited")]
     Withdrawn {
-        /// Which.
+        /// Number of the member.
         member: usize,
     },
     /// A motion ended before the start: its robot refused it, stopped, or fell silent. Its own
-    /// error says what happened.
+    /// error has the cause.
     #[error("the motion of member {member} ended before the common start")]
     Ended {
-        /// Which.
+        /// Number of the member.
         member: usize,
     },
     /// Not all were there in time.
@@ -168,11 +167,11 @@ pub enum StartFault {
         .waited.as_millis()
     )]
     TimedOut {
-        /// How many had arrived.
+        /// Number of members that had arrived.
         present: usize,
-        /// How many there are.
+        /// Number of members.
         members: usize,
-        /// How long the first of them to give up had waited.
+        /// Time for which the first member to give up had waited.
         waited: Duration,
     },
 }
@@ -189,7 +188,7 @@ impl StartFault {
     }
 }
 
-/// Why a member leaves.
+/// Reason why a member leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Cause {
     Dropped,
@@ -212,7 +211,7 @@ impl StartTicket {
         self.member.into()
     }
 
-    /// Why the common start has failed; `None` if it has not.
+    /// Reason why the common start has failed; `None` if it has not.
     pub fn fault(&self) -> Option<StartFault> {
         match self.shared.gate() {
             Gate::Broken(fault) => Some(fault),
@@ -249,7 +248,7 @@ impl StartTicket {
         !matches!(self.state, MemberState::Decided(_))
     }
 
-    /// Why the common start failed for this motion; `None` if it did not.
+    /// Reason why the common start failed for this motion; `None` if it did not.
     pub fn refusal(&self) -> Option<StartFault> {
         match self.state {
             MemberState::Decided(Gate::Broken(fault)) => Some(fault),
@@ -257,8 +256,8 @@ impl StartTicket {
         }
     }
 
-    /// Takes the motion out of the common start: it goes on alone. Ends the wait of the others with
-    /// an error.
+    /// Takes the motion out of the common start: it continues alone. Ends the wait of the others
+    /// with an error.
     pub fn withdraw(&mut self) {
         if self.is_undecided() {
             self.shared.leave(self.member, Cause::Withdrawn);
@@ -298,7 +297,7 @@ struct Shared {
 enum Word {
     /// Or open, once all are present.
     Waiting { present: u16 },
-    /// `member` has left, with so many present.
+    /// `member` has left, when `present` members had arrived.
     Broken {
         present: u16,
         member: u16,
@@ -370,8 +369,8 @@ impl Shared {
     }
 }
 
-/// Bits of the word: 0 to 15 members present, 16 to 31 members that left, 32 to 39 why (0: none
-/// has).
+/// The lowest 16 bits are the members present, the next 16 the number of the member that left. The
+/// next byte is the reason, 0 if none has left.
 impl From<Word> for u64 {
     fn from(word: Word) -> Self {
         match word {

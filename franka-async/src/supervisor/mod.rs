@@ -118,7 +118,7 @@ impl Supervisor {
         self.lock().core.health().condition == Condition::Closed
     }
 
-    /// True if there is a connection, or a former one that still holds resources.
+    /// True if there is a connection, or an earlier connection still holds resources.
     pub(crate) fn is_connected(&self) -> bool {
         self.lock().core.has_connection()
     }

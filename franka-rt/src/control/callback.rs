@@ -125,9 +125,9 @@ impl Callback {
         Ok((self.newest(), finished))
     }
 
-    /// The command that holds the arm at this state, or at the first one that it held it at: the
-    /// robot's desired position, no velocity, no torque. No function is called, and the first call
-    /// afterwards is still the first.
+    /// The command that holds the arm where it was first held: the robot's desired position, no
+    /// velocity, no torque. No function is called, and the first call afterwards is still the
+    /// first.
     pub(crate) fn hold(&mut self, state: &RobotState) -> Command {
         if let Some(source) = &mut self.motion
             && !self.held

@@ -31,7 +31,7 @@ struct Steady {
     time: u64,
     /// Cycles of it.
     cycles: u32,
-    /// Those of its cycles that are summed up, and sums over them.
+    /// Number of its cycles that are summed up, and sums over them.
     summed: u32,
     q: JointVector,
     dq: JointVector,

@@ -462,8 +462,8 @@ impl ControlError {
         self.failure.refusal
     }
 
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`. The row is that of
-    /// the first error that stopped the robot, or of the robot's answer.
+    /// Returns the name of its row in the book's chapter of errors, `errors.md`: the row for the
+    /// first error that stopped the robot, or for the robot's answer.
     pub fn entry(&self) -> &'static str {
         let first = self.failure.reflex_reason.iter().next();
         match first.filter(|_| self.is_reflex()) {

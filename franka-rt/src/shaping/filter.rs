@@ -34,7 +34,7 @@ pub fn low_pass(
 /// Filters each of several numbers as [`low_pass`] does.
 ///
 /// # Errors
-/// Those of [`low_pass`].
+/// As for [`low_pass`].
 pub fn low_pass_each<const N: usize>(
     sample_time: f64,
     current: &[f64; N],

@@ -87,7 +87,7 @@ impl Meter {
         self.newest.map(|newest| newest.received)
     }
 
-    /// Counts a state, and `skipped` older ones that arrived with it. Returns its arrival.
+    /// Counts a state, and `skipped` older states that arrived with it. Returns its arrival.
     pub(crate) fn note_arrival(&mut self, time: u64, received: Instant, skipped: u64) -> Arrival {
         let late = self.arrivals.note(time, received);
         let before = self.newest.replace(Newest {

@@ -20,7 +20,7 @@ impl Pauses {
         }
     }
 
-    /// The pause after so many attempts that failed, 1 or more.
+    /// Returns the pause after `failed` failed attempts, 1 or more.
     pub(super) fn after(&mut self, failed: u32) -> Duration {
         let Backoff {
             first,
@@ -36,8 +36,8 @@ impl Pauses {
         Duration::try_from_secs_f64(pause).unwrap_or(longest)
     }
 
-    /// A number in [0, 1), by SplitMix64 (Steele, Lea, Flood: Fast splittable pseudorandom number
-    /// generators, 2014).
+    /// A number in [0, 1), by SplitMix64. Source: Steele, Lea, Flood: Fast splittable pseudorandom
+    /// number generators, 2014.
     fn draw(&mut self) -> f64 {
         self.random = self.random.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut mixed = self.random;
@@ -48,7 +48,7 @@ impl Pauses {
     }
 }
 
-/// When attempts were made, the oldest first.
+/// Times of the attempts, the oldest first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Attempts(VecDeque<Duration>);
 

@@ -1,4 +1,4 @@
-//! Where the connection to a robot stands.
+//! State of the connection to a robot.
 
 use core::time::Duration;
 
@@ -8,7 +8,7 @@ use super::policy::Policy;
 use super::reflex::ReflexCase;
 use crate::lifecycle::{CloseReason, Differences, Unready};
 
-/// Where the connection stands.
+/// State of the connection.
 #[derive(Debug)]
 pub(super) enum Connection {
     /// The first one is being made.
@@ -21,7 +21,7 @@ pub(super) enum Connection {
     Pausing { loss: Loss, at: Duration },
     /// An attempt is under way.
     Connecting(Loss),
-    /// There is none, and will be none.
+    /// The connection has ended, and there will be no other.
     Closed,
 }
 
@@ -34,28 +34,28 @@ pub(super) struct Up {
     pub(super) attempts: u32,
     /// The silence of the robot, if it is silent.
     pub(super) silent: Option<Silent>,
-    /// What the newest state showed; `None` before the first one since the connection was made, or
-    /// since a silence.
+    /// Last state seen; `None` before the first one since the connection was made, or since a
+    /// silence.
     pub(super) seen: Option<Seen>,
-    /// The mode that was told last; until one was, the usual one.
+    /// The mode that was reported last; before the first report, the usual one.
     pub(super) told: RobotMode,
     /// The reflex that holds the robot.
     pub(super) reflex: Option<ReflexCase>,
-    /// What differs from the robot of the connection before, until somebody has agreed to a
+    /// Differences from the robot of the previous connection, until someone has agreed to a
     /// recovery or a motion was asked for.
     pub(super) differences: Option<Differences>,
-    /// Whether what this program has set at the robot holds.
+    /// Progress of setting the program's settings again.
     pub(super) configuration: Configuration,
 }
 
-/// Whether what this program has set at the robot holds on a connection.
+/// Progress of setting the program's settings again on a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Configuration {
     /// It does, or nothing was set.
     Done,
     /// To be set again once the robot is idle.
     Due,
-    /// That was asked for. What fails of it is tried again at once if the robot has been idle anew
+    /// Requested. A setting that fails is tried again at once if the robot has been idle anew
     /// since.
     Requested { is_idle_anew: bool },
     /// The robot has not taken this; it is tried again when it is idle anew.
@@ -104,7 +104,7 @@ pub(super) struct Loss {
     pub(super) failed: u32,
 }
 
-/// What a state shows of the robot as a whole.
+/// Condition of the robot as a whole, from a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
     pub(super) mode: RobotMode,
@@ -130,7 +130,7 @@ impl Seen {
 }
 
 impl Silent {
-    /// When the connection is to be given up, if it is.
+    /// Time at which the connection will be given up, if it will.
     pub(super) fn deadline(&self, policy: Option<&Policy>) -> Option<Duration> {
         let policy = policy.filter(|policy| policy.reconnects && !self.is_given_up)?;
         Some(self.since.saturating_add(policy.silence))
@@ -152,12 +152,12 @@ impl Up {
         }
     }
 
-    /// When the next step of a reflex is due, if time alone brings it.
+    /// Time of the next step of a reflex, if time alone brings it.
     pub(super) fn deadline_of_reflex(&self) -> Option<Duration> {
         self.reflex.as_ref()?.deadline(self.seen?.mode)
     }
 
-    /// Why the robot takes no motions, if it does not.
+    /// Reason why the robot takes no motions, if it does not.
     pub(super) fn unready(&self) -> Option<Unready> {
         if self.silent.is_some() {
             return Some(Unready::Silent);
@@ -180,7 +180,8 @@ impl Up {
 }
 
 impl Connection {
-    /// Why the robot takes no motions, if it does not. A closed connection says so itself.
+    /// Reason why the robot takes no motions, if it does not. A closed connection reports it
+    /// itself.
     pub(super) fn unready(&self) -> Option<Unready> {
         match self {
             Self::Up(up) => up.unready(),

@@ -1,4 +1,4 @@
-//! What happened to a robot, and how it is.
+//! Events of a robot, and its health.
 
 use core::fmt;
 use core::time::Duration;
@@ -13,51 +13,50 @@ use crate::sched::SchedError;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Event {
-    /// When, since the robot was first connected to, by this computer's clock.
+    /// Time since the robot was first connected to, by this computer's clock.
     pub at: Duration,
-    /// When, by the robot's clock: `message_id` of its newest state, `[ms]`. `None` without a
+    /// Time by the robot's clock: `message_id` of its newest state, `[ms]`. `None` without a
     /// connection. A robot that was restarted may count anew.
     pub robot_time: Option<u64>,
-    /// What.
+    /// Kind of event.
     pub kind: EventKind,
 }
 
-/// What happened to a robot.
+/// Event of a robot.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum EventKind {
-    /// It is connected. What does not hold by default (a reflex, a pressed stop) follows in events
-    /// of its own.
+    /// It is connected. Conditions that do not hold by default (a reflex, a pressed stop) follow in
+    /// separate events.
     Connected {
         /// Attempts that this took.
         attempts: u32,
         /// Time since the connection before was lost; `None` for the first one.
         after: Option<Duration>,
     },
-    /// The operating system refused the control thread what it was asked for, and it goes on
-    /// without. Follows on `Connected`.
+    /// The operating system refused a request of the control thread, which continues without.
+    /// Follows on `Connected`.
     RealtimeRefused {
-        /// What was refused.
+        /// Refused requests.
         refusals: Arc<[SchedError]>,
     },
-    /// What answers differs from the robot of the connection before, and may be another one.
-    /// Follows on `Connected`. A motion that waited is refused, and a recovery takes somebody's
-    /// agreement.
+    /// The robot differs from the robot of the previous connection, and may be another one. Follows
+    /// on `Connected`. A motion that waited is refused, and a recovery needs someone to agree.
     Unrecognised {
-        /// What differs.
+        /// Differences.
         differences: Differences,
     },
-    /// What this program had set at the robot before a connection was lost is not set again, and
+    /// The settings that this program had made before a connection was lost are not set again, and
     /// motions are refused: a setting was refused, or a state shows another one.
     NotConfigured {
         /// The command that sets it.
         command: Command,
-        /// What the robot answered or shows.
+        /// Answer or state of the robot.
         text: String,
     },
     /// The connection has ended. Motions end with it.
     Lost {
-        /// Why.
+        /// Reason.
         reason: CloseReason,
     },
     /// No state has come for the link timeout; the connection is still there.
@@ -72,11 +71,11 @@ pub enum EventKind {
     },
     /// The robot stopped itself, or is found to have done so.
     Reflex(Reflex),
-    /// The supervisor leaves the robot in its reflex: somebody has to recover it.
+    /// The supervisor leaves the robot in its reflex: someone must recover it.
     NotRecovered {
         /// Number of the reflex.
         reflex: u64,
-        /// Why.
+        /// Reason.
         why: NotRecovered,
     },
     /// The robot has left a reflex and takes motions again.
@@ -119,18 +118,18 @@ pub enum EventKind {
     MotionEnded {
         /// Its name.
         goal: u64,
-        /// How.
+        /// Outcome.
         outcome: Arc<Outcome>,
     },
-    /// The load that the robot computes with is another one: of this program, or of Desk. What was
-    /// known before a connection was lost counts.
+    /// The load that the robot computes with has changed, through this program or Desk. A change
+    /// while the connection was lost counts, too.
     LoadChanged {
         /// The load now.
         load: Load,
     },
     /// There is no connection, and there will be none.
     Closed {
-        /// Why.
+        /// Reason.
         reason: CloseReason,
     },
 }
@@ -201,19 +200,19 @@ impl fmt::Display for EventKind {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Reflex {
-    /// Its number, from 1 on. One that is found after a connection was lost has a new one.
+    /// Its number, from 1 on. A reflex that is found after a connection was lost has a new number.
     pub number: u64,
     /// The errors that hold the robot.
     pub errors: Errors,
-    /// How it ended the motion that ran, with its last cycles; `None` if none of this program did.
-    /// `franka_diagnosis` says what led to it.
+    /// Error of the motion that the reflex ended, with its last cycles; `None` if it ended no
+    /// motion of this program. `franka_diagnosis` explains its cause.
     pub error: Option<Arc<ControlError>>,
-    /// What differs from the robot of before a connection was lost, if that is not recognised: the
-    /// recovery then takes somebody's agreement, whatever the policy.
+    /// Differences from the robot before a connection was lost, if it is not recognised: the
+    /// recovery then needs someone to agree, under any policy.
     pub differences: Option<Differences>,
 }
 
-/// Why a supervisor leaves a robot in its reflex.
+/// Reason why a supervisor leaves a robot in its reflex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -227,7 +226,7 @@ pub enum NotRecovered {
     /// The robot was recovered as often as the policy allows within its window.
     #[error("the policy allows no more recoveries for now")]
     TooOften,
-    /// Whoever was asked did not agree.
+    /// The person or function that was asked did not agree.
     #[error("the recovery was not agreed to")]
     Declined,
     /// The robot demands a recovery by hand, in Desk.
@@ -235,16 +234,16 @@ pub enum NotRecovered {
     ByHand,
 }
 
-/// How a robot is.
+/// Health of a robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Health {
-    /// Whether it takes motions.
+    /// Condition: whether it takes motions.
     pub condition: Condition,
     /// Since when, since the robot was first connected to.
     pub since: Duration,
-    /// Number of the reflex that holds it, if one does: what to agree to the recovery from.
+    /// Number of the reflex that holds it, if one does, for agreeing to its recovery.
     pub reflex: Option<u64>,
     /// Attempts to connect since the connection was lost; 0 while there is one.
     pub attempts: u32,
@@ -258,7 +257,7 @@ pub struct Health {
     pub last_recovery: Option<Duration>,
 }
 
-/// Whether a robot takes motions.
+/// Condition of a robot: whether it takes motions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]

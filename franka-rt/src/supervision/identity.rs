@@ -1,4 +1,4 @@
-//! Whether the robot that answers after a lost connection is the one of before, as it was.
+//! Test whether the robot that answers after a lost connection is the same robot, unchanged.
 
 use core::time::Duration;
 
@@ -6,10 +6,10 @@ use franka_proto::RobotState;
 
 use crate::lifecycle::Differences;
 
-/// What is remembered of a robot, to recognise it when a connection was lost.
+/// Record of a robot, to recognise it when a connection was lost.
 #[derive(Clone, Debug)]
 pub(super) struct Identity {
-    /// Of its description; `None` of a robot that has none.
+    /// Hash of its description; `None` for a robot without one.
     description: Option<u64>,
     frames: [[f64; 16]; 3],
     /// Mass, centre of mass and inertia of its end effector.
@@ -17,12 +17,12 @@ pub(super) struct Identity {
     q: [f64; 7],
     dq: [f64; 7],
     message_id: u64,
-    /// When that state was there, by the clock of this computer.
+    /// Time of that state, by the clock of this computer.
     at: Duration,
 }
 
 impl Identity {
-    /// Returns what is to be remembered of a robot that has shown this state just now.
+    /// Returns the record of a robot that has shown this state just now.
     pub(super) fn of(description: Option<u64>, state: &RobotState, now: Duration) -> Self {
         let [x, y, z] = state.F_x_Cee;
         Self {
@@ -41,7 +41,7 @@ impl Identity {
         *self = Self::of(self.description, state, now);
     }
 
-    /// Takes note that the newest state was there so long before `now`.
+    /// Takes note that the newest state came `silence` before `now`.
     pub(super) fn silent_for(&mut self, silence: Duration, now: Duration) {
         self.at = now.saturating_sub(silence);
     }
@@ -75,7 +75,7 @@ impl Identity {
     }
 }
 
-/// How far a joint may be from where it was, `[rad]`.
+/// Distance that a joint may be from where it was, `[rad]`.
 const MOVED: f64 = 5e-3;
 
 /// Time for which a joint may have run on at its last velocity, `[s]`: a robot that misses its

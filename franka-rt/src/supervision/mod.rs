@@ -1,4 +1,4 @@
-//! What becomes of a robot between its motions: connections that are lost and made again, reflexes
+//! Supervision of a robot between its motions: connections that are lost and made again, reflexes
 //! and the recovery from them, and motions that are asked for meanwhile.
 //!
 //! ```text
@@ -14,8 +14,8 @@
 //! ```
 //!
 //! It decides when to connect and when to recover. **It moves nothing**: the only motions that it
-//! lets begin are those that a caller waits for, and a reflex, a lost connection, a user stop, a
-//! hand on the arm and closed brakes each turn away the one that waits.
+//! lets begin have a caller that waits for them. A reflex, a lost connection, a user stop, a hand
+//! on the arm and closed brakes each turn away the waiting motion.
 //!
 //! Inputs are the `on_*` methods (of the connection and the clock), [`Supervision::submit`],
 //! `withdraw`, `stop`, `agree` and `close` (of callers); effects come out of [`Supervision::poll`].
@@ -60,14 +60,14 @@ pub use waiting::Admission;
 /// Something to carry out, in the order given.
 #[derive(Debug)]
 pub enum Output {
-    /// Tell whoever listens.
+    /// Send this to the listeners.
     Event(Event),
     /// Connect. Comes back as [`Supervision::on_connected`] or
     /// [`Supervision::on_connect_failed`].
     Connect,
     /// Close the connection for this reason. Comes back as [`Supervision::on_lost`].
     Disconnect {
-        /// Why.
+        /// Reason.
         reason: CloseReason,
     },
     /// Have the robot recover (`AutomaticErrorRecovery`). Comes back as
@@ -79,8 +79,8 @@ pub enum Output {
     /// Set again what this program has set at the robot: [`Supervision::next_setting`], one at a
     /// time, until it returns nothing. A connection that has ended may be left alone.
     Configure,
-    /// Ask somebody to agree to the recovery from this reflex. Comes back as
-    /// [`Supervision::agree`], if at all.
+    /// Ask for an agreement to the recovery from this reflex. Comes back as [`Supervision::agree`],
+    /// if at all.
     Ask(Reflex),
     /// Begin the motion that waited.
     Begin {
@@ -91,7 +91,7 @@ pub enum Output {
     Refuse {
         /// Its name.
         goal: GoalId,
-        /// Why.
+        /// Reason.
         error: MotionError,
     },
 }
@@ -106,18 +106,18 @@ pub struct Supervision {
     robot_time: Option<u64>,
     /// The load that the robot was last seen with.
     load: Option<Load>,
-    /// What the robot was when it was last seen.
+    /// Record of the robot when it was last seen.
     identity: Option<Identity>,
     /// Reflexes so far.
     reflexes: u64,
     recoveries: Attempts,
     pauses: Pauses,
-    /// How the last motion ended, if that was by a reflex that no state has shown yet.
+    /// Error of the last motion, if a reflex that no state has shown yet ended it.
     unshown: Option<Box<ControlError>>,
     /// Motions that have begun and not ended.
     motions: BTreeSet<GoalId>,
     waiting: Option<Waiting>,
-    /// What this program has set at the robot.
+    /// Settings of this program at the robot.
     settings: Settings,
     /// Connections made so far.
     connections: u64,
@@ -162,12 +162,12 @@ impl Supervision {
         }
     }
 
-    /// How the robot is.
+    /// Health of the robot.
     pub fn health(&self) -> Health {
         self.health
     }
 
-    /// Whether there is a connection, or one that has not yet given back what it had.
+    /// True if there is a connection, or an earlier connection still holds resources.
     pub fn has_connection(&self) -> bool {
         matches!(self.connection, Connection::Up(_) | Connection::Ending(_))
     }
@@ -185,7 +185,7 @@ impl Supervision {
         let why = match self.connection.unready() {
             Some(_) if motion.is_within_a_session() => return Admission::Begin,
             Some(why) if why.is_passing() => why,
-            // What holds the robot now may be gone before it has the motion.
+            // The present obstacle may be gone before the robot has the motion.
             Some(why) if !self.connection.is_configured() => {
                 let waited = Duration::ZERO;
                 return Admission::Refuse(MotionError::NotReady { why, waited });
@@ -231,13 +231,13 @@ impl Supervision {
         self.stop_latched
     }
 
-    /// The answer to every goal, of whatever motion or session, while a stop is latched.
+    /// The answer to every goal, of any motion or session, while a stop is latched.
     ///
     /// # Errors
     /// [`MotionError::NotReady`].
     pub fn check_latch(&self) -> Result<(), MotionError> {
         match self.connection {
-            // A closed connection says so itself.
+            // A closed connection reports it itself.
             Connection::Closed => Ok(()),
             _ if self.stop_latched => Err(MotionError::NotReady {
                 why: Unready::StopLatched,
@@ -258,7 +258,7 @@ impl Supervision {
     }
 
     /// Takes note of a setting that this program is about to send over the newest connection, in
-    /// this order. It is to hold on every connection to come, unless the robot refuses it. Its
+    /// this order. It will hold on every connection to come, unless the robot refuses it. Its
     /// answer goes to [`Self::on_set`].
     pub fn declare(&mut self, request: Request) -> SettingId {
         self.settings.declare(request, self.connections)
@@ -330,7 +330,7 @@ impl Supervision {
         }
     }
 
-    /// Says whether the robot may be recovered from the reflex of this number. Returns whether that
+    /// Approves or rejects the recovery from the reflex of this number. Returns true if the answer
     /// was awaited.
     pub fn agree(&mut self, reflex: u64, agreed: bool, now: Duration) -> bool {
         let Connection::Up(up) = &mut self.connection else {
@@ -360,7 +360,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// When [`Self::on_time`] has to be called, if nothing else happens before.
+    /// Time at which [`Self::on_time`] must be called, if nothing else happens before.
     pub fn deadline(&self) -> Option<Duration> {
         let of_connection = match &self.connection {
             Connection::Up(up) => match &up.silent {

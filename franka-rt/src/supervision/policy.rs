@@ -1,14 +1,13 @@
-//! What a supervisor may do, and how often.
+//! Policy of a supervisor: its permitted actions, and how often.
 
 use core::time::Duration;
 
 use franka_proto::{Errors, RobotError};
 
-/// What the supervisor of a robot does when the connection or the robot fails. The default
-/// reconnects for as long as it takes, never recovers from a reflex, and refuses motions meanwhile.
+/// Actions of a supervisor when the connection or the robot fails. The default reconnects for as
+/// long as it takes, never recovers from a reflex, and refuses motions meanwhile.
 ///
-/// Whatever it does, nothing moves that was begun before: motions and sessions end with the
-/// mishap.
+/// No earlier motion resumes under any policy: motions and sessions end with the mishap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use = "a policy does nothing until a robot is supervised by it"]
 pub struct Policy {
@@ -25,15 +24,15 @@ pub struct Policy {
     pub(super) seed: Option<u64>,
 }
 
-/// When to recover from a reflex.
+/// Rules for recovering from a reflex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Recovery {
     pub(super) times: u32,
     pub(super) window: Duration,
 }
 
-/// How long to wait between two attempts: after the first one `first`, after each other one twice
-/// as long as before, `most` at most. The first attempt is made at once.
+/// Pause between two attempts: after the first one `first`, after each other one twice as long as
+/// before, `most` at most. The first attempt is made at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Backoff {
     /// The first pause.
@@ -46,7 +45,7 @@ pub struct Backoff {
 }
 
 impl Default for Backoff {
-    /// 100 ms, 5 s, and 0.3.
+    /// Pauses from 100 ms to 5 s. The jitter is 0.3.
     fn default() -> Self {
         Self {
             first: Duration::from_millis(100),
@@ -73,8 +72,8 @@ impl Default for Policy {
 }
 
 impl Policy {
-    /// Recovers from reflexes by itself, `times` within any `window` at most, attempts that fail
-    /// included. A reflex beyond that is left to a person.
+    /// Recovers from reflexes automatically, `times` within any `window` at most, attempts that
+    /// fail included. A reflex beyond that is left to a person.
     pub fn recover(mut self, times: u32, window: Duration) -> Self {
         self.recovery = Some(Recovery { times, window });
         self
@@ -87,7 +86,7 @@ impl Policy {
         self
     }
 
-    /// Recovers from a reflex only after somebody has agreed to it.
+    /// Recovers from a reflex only after someone has agreed to it.
     pub fn ask_first(mut self) -> Self {
         self.agreement = true;
         self
@@ -106,15 +105,15 @@ impl Policy {
         self
     }
 
-    /// Gives up when a lost connection has not come back for so long; never by default.
+    /// Gives up when a lost connection has not come back for `time`; never by default.
     pub fn give_up_after(mut self, time: Duration) -> Self {
         self.give_up_after = Some(time);
         self
     }
 
-    /// How long the robot may be silent, on a connection that looks alive, before that is closed
-    /// and a new one made; 3 s by default. It begins when the silence is noticed, after the link
-    /// timeout.
+    /// Sets how long the robot may be silent, on a connection that looks alive, before that is
+    /// closed and a new one made; 3 s by default. It begins when the silence is noticed, after the
+    /// link timeout.
     pub fn silence(mut self, time: Duration) -> Self {
         self.silence = time;
         self
@@ -124,9 +123,9 @@ impl Policy {
     /// most, and begin when the robot is ready. By default it is refused at once, as
     /// [`MotionError::NotReady`](crate::lifecycle::MotionError::NotReady).
     ///
-    /// It waits for the end of this mishap only: another reflex, one during the recovery, a
+    /// It waits for the end of this mishap only. Another reflex, a reflex during the recovery, a
     /// connection that is lost again, a user stop, a hand on the arm and closed brakes turn it
-    /// away. A newer motion supersedes it as it would one that moves, and a stop takes it back.
+    /// away. A newer motion supersedes it as it would a motion under way, and a stop takes it back.
     pub fn motions_wait(mut self, most: Duration) -> Self {
         self.motions_wait = Some(most);
         self

@@ -10,7 +10,7 @@ use super::event::{NotRecovered, Reflex};
 use super::policy::{Policy, Recovery};
 use crate::lifecycle::{ControlError, Differences, Unready};
 
-/// Why a recovery did not succeed.
+/// Reason why a recovery did not succeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecoveryFailure {
     /// The robot demands a recovery by hand.
@@ -27,21 +27,21 @@ pub(super) struct ReflexCase {
     pub(super) errors: Errors,
     error: Option<Arc<ControlError>>,
     differences: Option<Differences>,
-    /// True if it has been told. That waits for the end of the motion, which has the log.
+    /// True if it has been reported. The report waits for the end of the motion, which has the log.
     told: bool,
     stage: Stage,
-    /// True if it has been told that somebody is needed, in this stage.
+    /// True if it has been reported that a person is needed, in this stage.
     stage_told: bool,
 }
 
-/// What becomes of it.
+/// Stage of the recovery.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Stage {
-    /// Somebody else has to recover the robot.
+    /// Someone else must recover the robot.
     Left(NotRecovered),
-    /// Somebody has to agree.
+    /// Someone must agree.
     AgreementAwaited,
-    /// To be recovered, not before `at`, after so many attempts that failed.
+    /// To be recovered, not before `at`, after `failed` failed attempts.
     Due { at: Duration, failed: u32 },
     /// The request is out.
     Requested { failed: u32 },
@@ -49,7 +49,7 @@ enum Stage {
     Answered { until: Duration, failed: u32 },
 }
 
-/// What is to be done about a reflex.
+/// Next step of a reflex.
 #[derive(Debug, PartialEq)]
 pub(super) enum Step {
     Tell(Reflex),
@@ -59,7 +59,7 @@ pub(super) enum Step {
 }
 
 impl ReflexCase {
-    /// Returns a reflex that was noticed at `now`, of a robot that differs so from the one of
+    /// Returns a reflex that was noticed at `now`, of a robot with these differences from the robot
     /// before.
     pub(super) fn new(
         number: u64,
@@ -86,17 +86,17 @@ impl ReflexCase {
         self.error.get_or_insert_with(|| Arc::new(error));
     }
 
-    /// True if it has been told.
+    /// True if it has been reported.
     pub(super) fn is_told(&self) -> bool {
         self.told
     }
 
-    /// Continues one that has not been told, with more errors.
+    /// Continues a reflex that has not been reported, with more errors.
     pub(super) fn continue_from(&mut self, before: Self) {
         (self.number, self.since, self.error) = (before.number, before.since, before.error);
     }
 
-    /// Why the robot takes no motions.
+    /// Reason why the robot takes no motions.
     pub(super) fn unready(&self) -> Unready {
         match self.stage {
             Stage::Left(_) => Unready::Reflex,
@@ -112,7 +112,7 @@ impl ReflexCase {
         matches!(self.stage, Stage::Requested { .. } | Stage::Answered { .. })
     }
 
-    /// Takes the answer of whoever was asked. Returns whether it was awaited.
+    /// Takes the answer to the question. Returns true if it was awaited.
     pub(super) fn agree(&mut self, agreed: bool, now: Duration) -> bool {
         let awaited = self.stage == Stage::AgreementAwaited;
         if awaited {
@@ -189,8 +189,8 @@ impl ReflexCase {
         (self.stage, self.stage_told) = (stage, false);
     }
 
-    /// When [`Self::step`] has to be called for a robot in this mode, if nothing else happens
-    /// before.
+    /// Time at which [`Self::step`] must be called for a robot in this mode, if nothing else
+    /// happens before.
     pub(super) fn deadline(&self, mode: RobotMode) -> Option<Duration> {
         match self.stage {
             Stage::Due { at, .. } if mode == RobotMode::Reflex => Some(at),
@@ -213,7 +213,8 @@ impl ReflexCase {
 }
 
 impl Stage {
-    /// What the policy makes of a reflex with these errors, of a robot that may be another one.
+    /// Returns the stage that the policy prescribes for a reflex with these errors, of a robot that
+    /// may be another one.
     fn of(
         errors: Errors,
         is_unlike: bool,

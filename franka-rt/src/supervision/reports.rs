@@ -1,4 +1,4 @@
-//! What the connection reports.
+//! Reports of the connection.
 
 use core::time::Duration;
 use std::sync::Arc;
@@ -14,25 +14,25 @@ use crate::lifecycle::{CloseReason, MotionError, Outcome, Unready};
 use crate::sched::SchedError;
 use crate::session::GoalId;
 
-/// Why there is no new connection.
+/// Reason why there is no new connection.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ConnectFailure {
-    /// What answers is not the robot that was connected before.
+    /// The robot that answers is not the robot that was connected before.
     AnotherRobot {
-        /// What differs.
+        /// Difference.
         text: String,
     },
     /// Anything else, which may pass.
     Other {
-        /// What went wrong.
+        /// Error.
         text: String,
     },
 }
 
 impl Supervision {
-    /// Takes note that there is a connection, whose first state this is, and what the control
-    /// thread was refused; `description` stands for what the robot says of itself, if it does.
-    /// Returns false if none is wanted any more: it has to be closed.
+    /// Takes note that there is a connection, whose first state this is, and which requests of the
+    /// control thread were refused; `description` is a hash of the robot's description, if it has
+    /// one. Returns false if no connection is wanted any more: it must be closed.
     pub fn on_connected(
         &mut self,
         description: Option<u64>,
@@ -76,8 +76,8 @@ impl Supervision {
         true
     }
 
-    /// Takes a state of the robot. One that is not newer than the newest is ignored; those that
-    /// show what the one before has shown may be left out: see [`Seen`].
+    /// Takes a state of the robot. A state that is not newer than the newest is ignored. States
+    /// that show the same as the previous one may be left out: see [`Seen`].
     pub fn on_state(&mut self, state: &RobotState, now: Duration) {
         if self.robot_time < Some(state.message_id) {
             self.show(state, now);
@@ -172,7 +172,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Takes note that the connection has ended. What it had may still have to be given back:
+    /// Takes note that the connection has ended. It may still hold resources:
     /// [`Self::on_released`].
     pub fn on_lost(&mut self, reason: CloseReason, now: Duration) {
         let Connection::Up(up) = &self.connection else {
@@ -266,7 +266,7 @@ impl Supervision {
     pub fn on_begun(&mut self, goal: GoalId, now: Duration) {
         self.motions.insert(goal);
         self.unshown = None;
-        // Whoever asks for it takes the robot as it is.
+        // A caller that asks for it takes the robot as it is.
         if let Connection::Up(up) = &mut self.connection {
             up.differences = None;
         }
@@ -295,7 +295,7 @@ impl Supervision {
     }
 }
 
-/// What it means that a mode has begun or ended, apart from reflexes and motions.
+/// Returns the event of a mode that has begun or ended, apart from reflexes and motions.
 fn event_of(mode: RobotMode, begun: bool) -> Option<EventKind> {
     Some(match mode {
         RobotMode::UserStopped => EventKind::UserStop { pressed: begun },
@@ -308,6 +308,6 @@ fn event_of(mode: RobotMode, begun: bool) -> Option<EventKind> {
     })
 }
 
-/// A connection that did not last so long counts as an attempt that failed, so that a robot that
-/// drops each one is not asked for the next at once.
+/// A connection that was shorter than this counts as a failed attempt, so that a robot that drops
+/// each one is not asked for the next at once.
 const LASTING: Duration = Duration::from_secs(1);

@@ -1,25 +1,25 @@
-//! What this program has set at the robot: it is to hold on every connection.
+//! Settings of this program at the robot, which should hold on every connection.
 
 use franka_proto::{Command, Request};
 
-/// What became of a setting that was sent to the robot.
+/// Result of a setting that was sent to the robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Answer {
     /// The robot has taken it, and its states show it if they show such a setting.
     Taken,
     /// The robot has taken it, and its states show another value.
     NotShown {
-        /// What they show and what was set, for a person.
+        /// The values shown and set, for a person.
         text: String,
     },
     /// The robot has refused it, or it was not sent: the setting of before holds.
     Refused {
-        /// What the robot has answered and what was set, for a person.
+        /// The robot's answer and the value set, for a person.
         text: String,
     },
     /// There was no answer: the robot may have taken it.
     Unknown {
-        /// What is missing, for a person.
+        /// The missing answer, for a person.
         text: String,
     },
 }
@@ -50,12 +50,12 @@ struct Setting {
     before: Option<Box<Setting>>,
 }
 
-/// Whether a setting holds on the newest connection.
+/// State of a setting on the newest connection.
 #[derive(Debug)]
 enum Standing {
     /// The program has sent it, and has no answer yet.
     Sent,
-    /// It has not been set, as far as known.
+    /// It is not known to have been set.
     Open,
     Holds,
     /// It could not be set, for this reason.
@@ -144,7 +144,7 @@ impl Settings {
         };
     }
 
-    /// The next setting that is to be set on the newest connection.
+    /// The next setting that must be set on the newest connection.
     pub(super) fn next(&self) -> Option<(SettingId, Request)> {
         let is_open = |setting: &&Setting| matches!(setting.standing, Standing::Open);
         let open = self.newest.iter().find(is_open)?;
@@ -191,7 +191,7 @@ impl Settings {
         })
     }
 
-    /// Removes a setting: the one before it counts again.
+    /// Removes a setting: the previous one counts again.
     fn remove(&mut self, id: SettingId) {
         if let Some(place) = self.newest.iter().position(|newest| newest.id == id) {
             match self.newest[place].before.take() {

@@ -5,10 +5,10 @@ use core::time::Duration;
 use crate::lifecycle::{MotionError, NewMotion, Unready};
 use crate::session::GoalId;
 
-/// What becomes of a motion that is asked for.
+/// Decision on a motion that is asked for.
 #[derive(Debug)]
 pub enum Admission {
-    /// Begin it now. A robot that takes no motions says so itself.
+    /// Begin it now. If the robot takes no motions, it refuses the motion itself.
     Begin,
     /// Keep it until [`Output::Begin`](super::Output::Begin) or
     /// [`Output::Refuse`](super::Output::Refuse) names it.
@@ -21,15 +21,15 @@ pub enum Admission {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Waiting {
     pub(super) goal: GoalId,
-    /// True if it gives way to a newer goal.
+    /// True if it yields to a newer goal.
     gives_way: bool,
     since: Duration,
     pub(super) until: Duration,
 }
 
 impl Waiting {
-    /// Decides on `motion`, which would wait for `most`: it becomes `waiting`, in the place of one
-    /// that gives way to it and is returned.
+    /// Decides on `motion`, which would wait for `most`. It becomes `waiting`, in the place of a
+    /// motion that yields to it and is returned.
     pub(super) fn admit(
         waiting: &mut Option<Self>,
         motion: &NewMotion,

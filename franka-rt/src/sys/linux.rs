@@ -1,4 +1,4 @@
-//! What Linux grants a thread and its socket, and the eventfd.
+//! Requests of a thread and its socket to Linux, and the eventfd.
 
 use core::time::Duration;
 use std::fs::File;
@@ -88,7 +88,7 @@ pub(crate) fn busy_poll(socket: &impl AsFd, duration: Duration) -> Result<(), i3
     }
 }
 
-/// How long receives from `socket` poll, `[us]`. The error is an errno value.
+/// Returns how long receives from `socket` poll, `[us]`. The error is an errno value.
 #[cfg(test)]
 pub(crate) fn busy_poll_of(socket: &impl AsFd) -> Result<libc::c_int, i32> {
     let mut us: libc::c_int = 0;
@@ -119,8 +119,8 @@ impl Wake {
         Ok(Self(eventfd()?.into()))
     }
 
-    /// Adds 1 to the count, which makes the descriptor readable. Never blocks. At 2^64 - 2 the
-    /// write is refused, and the descriptor is readable anyway.
+    /// Adds 1 to the count, which makes the descriptor readable. Never blocks. At the largest count
+    /// the write is refused, and the descriptor is readable anyway.
     pub(crate) fn notify(&self) {
         let _ = (&self.0).write(&1u64.to_ne_bytes());
     }

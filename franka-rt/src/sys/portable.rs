@@ -1,5 +1,5 @@
-//! Where nothing is known to be granted: every request is refused, which `Realtime::Enforce` makes
-//! an error and `Realtime::Ignore` notes.
+//! Systems that are not known to grant anything: every request is refused, which
+//! `Realtime::Enforce` makes an error and `Realtime::Ignore` notes.
 
 use core::time::Duration;
 use std::io::{self, Read as _, Write as _};

@@ -45,7 +45,7 @@ fn the_first_fault_of_a_round_stays_and_is_seen_once() {
     // A goal of the round before comes too late.
     let late = stop_of(2, MemberFault::TakenBack);
     assert_eq!(third.pass(round, 3), Passage::Stopped(late));
-    // It counts for neither round, also of one that waits already.
+    // It counts for neither round, even if its member already waits in the next one.
     assert_eq!(second.pass(next, 4), Passage::Waiting);
     let late = stop_of(1, MemberFault::TakenBack);
     assert_eq!(second.pass(round, 5), Passage::Stopped(late));

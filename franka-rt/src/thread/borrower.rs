@@ -1,4 +1,4 @@
-//! Whether the borrower of the cycle runs it.
+//! Watch on the borrower of the cycle: whether it runs the cycle.
 
 use core::time::Duration;
 use std::time::Instant;
@@ -7,8 +7,8 @@ use super::lifetime::Lifetime;
 use crate::event_fd::EventFd;
 use crate::exchange::TICK;
 
-/// Watches the turns of one borrower while the thread waits for its cycle, and tells when none has
-/// come for the link timeout. It is over when it is dropped.
+/// Watches the turns of one borrower while the thread waits for its cycle, and reports when none
+/// has come for the link timeout. It is over when it is dropped.
 pub(super) struct BorrowerWatch<'a> {
     lifetime: &'a Lifetime,
     event_fd: &'a EventFd,
@@ -16,9 +16,9 @@ pub(super) struct BorrowerWatch<'a> {
     turns: u64,
     /// Time without a turn.
     idle: Duration,
-    /// When the last look was.
+    /// Time of the last look.
     looked: Instant,
-    /// What it found.
+    /// Result of the last look.
     stalled: bool,
 }
 
@@ -56,7 +56,7 @@ impl<'a> BorrowerWatch<'a> {
         self.set(self.idle >= self.timeout);
     }
 
-    /// Notifies of a change, also of one that the borrower has made by a turn.
+    /// Notifies of a change, including a change by the borrower's own turn.
     fn set(&mut self, stalled: bool) {
         if self.lifetime.set_stalled(stalled) || self.stalled != stalled {
             self.stalled = stalled;

@@ -18,7 +18,7 @@ use crate::slot::SlotWriter;
 use crate::state_wakeups::StateWakeups;
 use crate::stats::{CycleTimes, Laps, Meter, Phase, Stats};
 
-/// What the thread owns.
+/// State of the thread.
 pub(super) struct Cycle<C: Core> {
     pub(super) core: C,
     pub(super) exchange: Exchange,
@@ -44,7 +44,7 @@ pub(super) struct Cycle<C: Core> {
     /// States since the last wake-up for one.
     pub(super) states_since_wake: u32,
     pub(super) lifetime: Arc<Lifetime>,
-    /// When the cycle was made.
+    /// Time at which the cycle was made.
     pub(super) started: Instant,
     pub(super) receive_faults: Latch,
     pub(super) send_faults: Latch,
@@ -107,7 +107,7 @@ impl<C: Core> Cycle<C> {
         }
         let command = self.core.on_state(state);
         self.laps.end(Phase::Program);
-        // A failed send is counted and reported; the loop goes on.
+        // A failed send is counted and reported; the loop continues.
         let departed = command.and_then(|command| self.transmit(&command).ok());
         let arrival = self.meter.note_arrival(state.message_id, received, skipped);
         let sent = departed.map(|departed| self.meter.answered(departed));
@@ -245,7 +245,7 @@ impl<C: Core> Cycle<C> {
         queued
     }
 
-    /// Queues the core's events, as far as there is room; returns whether there was one.
+    /// Queues the core's events, while there is room; returns true if there was one.
     fn pass_events_on(&mut self) -> bool {
         let event = || self.core.take_event().map(Notice::Core);
         self.notices.push_from(EVENTS_PER_CYCLE, event) > 0

@@ -6,9 +6,9 @@
 //!                                  +-- of a reader that was dropped --> Notice::Detached, freed elsewhere
 //! ```
 //!
-//! Each reader has a ring of its own, whose memory is laid out where it is attached. The thread
-//! copies each cycle into every ring and neither waits, allocates nor frees: a full ring drops the
-//! cycle and counts it.
+//! Each reader has its own ring, whose memory is laid out where it is attached. The thread copies
+//! each cycle into every ring and neither waits, allocates nor frees: a full ring drops the cycle
+//! and counts it.
 
 use core::time::Duration;
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
@@ -28,18 +28,18 @@ pub const READERS_MAX: usize = 4;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CapturedCycle<R = Record> {
-    /// What the driver saw and did.
+    /// Record of the driver.
     pub record: R,
     /// The state.
     pub state: RobotState,
-    /// When the thread had received it, by this host's monotonic clock.
+    /// Time at which the thread had received it, by this host's monotonic clock.
     pub received: Instant,
-    /// Cycles just before this one that did not fit into the ring of this reader.
+    /// Cycles just before this one that did not fit into this reader's ring.
     pub lost: u64,
 }
 
 impl<R> CapturedCycle<R> {
-    /// A cycle that follows the one before it without loss.
+    /// A cycle that follows the previous one without loss.
     pub fn new(record: R, state: RobotState, received: Instant) -> Self {
         Self {
             record,
@@ -68,7 +68,7 @@ impl<R> Clone for CycleFeed<R> {
     }
 }
 
-/// What both ends of a feed see.
+/// State shared by both ends of a feed.
 #[derive(Debug, Default)]
 struct Shared {
     /// Readers that exist.
@@ -85,7 +85,7 @@ impl Shared {
     }
 }
 
-/// Why no reader was attached.
+/// Reason why no reader was attached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AttachError {
@@ -95,7 +95,7 @@ pub enum AttachError {
     /// The ring cannot have this length.
     #[error("a ring of {got} cycles was asked for; possible are 1 to {}", CycleFeed::<()>::CAPACITY_MAX)]
     Capacity {
-        /// What was asked for.
+        /// Capacity that was asked for.
         got: usize,
     },
     /// The thread has not taken the readers attached before: another thread has borrowed its cycle
@@ -189,7 +189,7 @@ impl<R> CycleReader<R> {
     pub fn wait(&self, timeout: Duration) -> bool {
         let begun = Instant::now();
         loop {
-            // Asked first: what came before the end is then found.
+            // Asked first, so that cycles from before the end are then found.
             let ended = self.shared.has_ended();
             if self.waiting() > 0 {
                 return true;
@@ -238,7 +238,7 @@ const LOOK: Duration = Duration::from_millis(5);
 pub struct CycleWriter<R = Record> {
     queue: Sender<Entry<R>>,
     lost: Arc<AtomicU64>,
-    /// Cycles lost since the last one that fitted.
+    /// Cycles lost since the last cycle that fitted.
     gap: u64,
 }
 
@@ -301,7 +301,7 @@ pub fn cycle_feed<R>(version: Version) -> (CycleFeed<R>, CyclePublisher<R>) {
 }
 
 impl<R: Copy> CyclePublisher<R> {
-    /// Takes the readers that were attached, as far as there is room for them.
+    /// Takes the readers that were attached, while there is room for them.
     pub fn take_attached(&mut self) {
         for free in self.writers.iter_mut().filter(|writer| writer.is_none()) {
             *free = self.attached.pop();

@@ -9,8 +9,8 @@ use crate::stats::{Arrival, CycleTimes, MotionStatistics};
 
 /// A pure core: states, orders and silences in; commands, records and events out.
 ///
-/// [`Driver`] is the one that programs use. The trait lets the loop be tested, and its allocations
-/// be counted, beside cores that panic, answer everything or hold their events back. No method may
+/// [`Driver`] is the core that programs use. The trait lets the loop be tested, and its allocations
+/// be counted, with cores that panic, answer everything or hold their events back. No method may
 /// allocate, free, lock, log or wait: they run on the real-time thread. Methods with a body are
 /// optional.
 pub trait Core: Send + 'static {
@@ -18,7 +18,7 @@ pub trait Core: Send + 'static {
     type Order: Send + 'static;
     /// A report to other threads. It carries memory that is no longer needed, to be freed there.
     type Event: Send + 'static;
-    /// What a cycle saw and did.
+    /// Record of a cycle.
     type Record: Copy + Send + 'static;
 
     /// Takes an order.

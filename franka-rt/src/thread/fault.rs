@@ -5,12 +5,13 @@ use franka_proto::DecodeError;
 use crate::exchange::SendError;
 use crate::sys;
 
-/// A datagram, a receive or a send that failed. The loop goes on: the next state may be a good one.
+/// A datagram, a receive or a send that failed. The loop continues: the next state may be a good
+/// one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LinkFault {
-    /// A datagram of the robot cannot be decoded. One that is too short usually means a server of
-    /// another version.
+    /// A datagram of the robot cannot be decoded. A datagram that is too short usually means a
+    /// server of another version.
     #[error(transparent)]
     Datagram(#[from] DecodeError),
     /// A state was dropped: its number exceeds the newest by more than any robot's can (see
@@ -35,8 +36,8 @@ pub enum LinkFault {
 pub(super) struct Latch(Option<LinkFault>);
 
 impl Latch {
-    /// Takes the fault of a cycle, if there was one, and returns it if it differs from the one
-    /// before.
+    /// Takes the fault of a cycle, if there was one, and returns it if it differs from the previous
+    /// fault.
     pub(super) fn pass(&mut self, fault: Option<LinkFault>) -> Option<LinkFault> {
         let news = if self.0 == fault { None } else { fault };
         self.0 = fault;

@@ -27,7 +27,7 @@ pub struct Handle<C: Core = Driver> {
     /// Orders for the core. The thread takes them with the next state, or within
     /// [`crate::exchange::TICK`] while the robot is silent.
     pub orders: Sender<C::Order>,
-    /// What the core and the loop report, oldest first.
+    /// Reports of the core and the loop, oldest first.
     pub notices: Receiver<Notice<C::Event, C::Record>>,
     /// One record per state, oldest first. When the queue is full they are lost, and counted in
     /// [`Stats::records_lost`].
@@ -42,11 +42,11 @@ pub struct Handle<C: Core = Driver> {
     /// Notified after every cycle that left a notice, or a state while wake-ups are requested;
     /// after every fiftieth state without a request; and when the thread ends.
     pub event_fd: EventFd,
-    /// Whether a wake-up is sent for every state; initially true.
+    /// Flag whether a wake-up is sent for every state; initially true.
     pub state_wakeups: StateWakeups,
     /// Counts and times of the loop.
     pub stats: Arc<Stats>,
-    /// What the operating system granted the thread.
+    /// Result of the thread's requests to the operating system.
     pub granted: Granted,
     /// Lends the cycle to threads of the user's.
     pub lender: Lender<C>,
@@ -54,7 +54,7 @@ pub struct Handle<C: Core = Driver> {
     pub thread: Thread<C>,
 }
 
-/// What the thread reports.
+/// Report of the thread.
 #[derive(Debug)]
 pub enum Notice<E, R = Record> {
     /// An event of the core. None is lost: they wait in the core while the queue is full.
@@ -118,12 +118,12 @@ impl<C> Drop for Thread<C> {
     }
 }
 
-/// Why an ended thread has no core to give back.
+/// Reason why an ended thread has no core to give back.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Lost {
     /// The core panicked, which ended the thread: no command is sent any more. A defect; the
-    /// process goes on.
+    /// process continues.
     #[error("the control thread panicked: {message}")]
     Panicked {
         /// The message of the panic.
@@ -132,8 +132,8 @@ pub enum Lost {
     /// The cycle was lent when the thread was stopped, and ends with its [`Lease`](super::Lease).
     #[error("another thread had borrowed the control cycle and did not return it")]
     Lent,
-    /// The core panicked in a thread that had borrowed the cycle, which ended the control thread.
-    /// A defect; the process goes on.
+    /// The core panicked in a thread that had borrowed the cycle, which ended the control thread. A
+    /// defect; the process continues.
     #[error("the control cycle panicked in a thread that had borrowed it")]
     Spoilt,
 }
@@ -166,7 +166,7 @@ pub struct StateReader {
 impl StateReader {
     /// The newest state, if this reader has not returned it yet. Never waits.
     ///
-    /// `None` also if this thread was held up in the middle of each of a few attempts; another
+    /// `None` also if this thread was delayed in the middle of each of a few attempts; another
     /// wake-up follows then.
     pub fn newest(&mut self) -> Option<RobotState> {
         match self.slot.read_retry(ATTEMPTS) {
@@ -207,7 +207,7 @@ impl StateSequence {
     }
 }
 
-/// Attempts to read. One fails if this thread is held up until the state has been replaced twice.
+/// Attempts to read. One fails if this thread is delayed until the state has been replaced twice.
 const ATTEMPTS: usize = 16;
 
 /// The bytes of a state, at the front of the array. Each reader decodes them, which saves the

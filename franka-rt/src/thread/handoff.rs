@@ -31,7 +31,7 @@ pub(super) struct Handoff<T> {
     tick: Duration,
 }
 
-/// Where the value is.
+/// Place of the value.
 enum HandoffState<T> {
     /// With its owner.
     Running,
@@ -45,7 +45,7 @@ enum HandoffState<T> {
     Ended,
 }
 
-/// Why a value that was lent does not come back.
+/// Reason why a value that was lent does not come back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NotReturned {
     /// The owner stopped waiting: the borrower still has it.
@@ -54,7 +54,7 @@ pub(super) enum NotReturned {
     Spoilt,
 }
 
-/// Why the cycle cannot be borrowed.
+/// Reason why the cycle cannot be borrowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BorrowError {
@@ -83,7 +83,7 @@ impl<T> Handoff<T> {
     }
 
     /// Offers the owner's value to a borrower and returns it when it is back. Asks `stop_wanted`
-    /// every tick whether to go on waiting.
+    /// every tick whether to stop waiting.
     pub(super) fn lend(
         &self,
         value: T,
@@ -112,7 +112,7 @@ impl<T> Handoff<T> {
     /// The owner refuses all further borrowers.
     pub(super) fn close(&self) {
         let mut state = self.lock();
-        // What a borrower has brought back meanwhile is freed here, after the last turn.
+        // A value that a borrower has brought back meanwhile is freed here, after the last turn.
         *state = HandoffState::Ended;
         self.changed.notify_all();
     }

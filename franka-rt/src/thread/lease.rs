@@ -6,7 +6,7 @@
 //! ```
 //!
 //! The thread hands the cycle over between two turns and waits until it comes back, or until it is
-//! told to stop. The lock of the [`Handoff`] is taken at the two hand-overs only; a turn takes
+//! asked to stop. The lock of the [`Handoff`] is taken at the two hand-overs only; a turn takes
 //! none, on either thread.
 
 use std::sync::Arc;
@@ -68,17 +68,17 @@ pub struct Lease<C: Core = Driver> {
     handoff: Arc<Handoff<Box<Cycle<C>>>>,
     /// `None` only while it is dropped.
     cycle: Option<Box<Cycle<C>>>,
-    /// Whether a method of the core is being called, or has panicked.
+    /// True while a method of the core is being called, or if one has panicked.
     is_unsound: bool,
 }
 
 impl<C: Core> Lease<C> {
-    /// Waits for a state newer than all before, up to a [`TICK`](crate::exchange::TICK), and does
-    /// what the thread does with it: orders, the core, the command that this answers with at once
-    /// if there is one, publishing. `None` if none came.
+    /// Waits for a state newer than all before, up to a [`TICK`](crate::exchange::TICK). Then it
+    /// does the work of the thread: orders, the core, the command that this answers with at once if
+    /// there is one, publishing. `None` if none came.
     ///
     /// # Errors
-    /// [`BorrowError::Ended`] if the thread was told to stop, or the core has panicked: give the
+    /// [`BorrowError::Ended`] if the thread was asked to stop, or the core has panicked: give the
     /// cycle back.
     pub fn turn(&mut self) -> Result<Option<RobotState>, BorrowError> {
         if self.cycle().lifetime.stop_wanted() || self.is_unsound {
@@ -107,7 +107,7 @@ impl<C: Core> Lease<C> {
     }
 }
 
-/// Why a command was not sent.
+/// Reason why a command was not sent.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WriteFault {
@@ -123,7 +123,7 @@ impl Lease<Driver> {
     /// Sends a command for the newest state: see [`Driver::write`].
     ///
     /// # Errors
-    /// [`WriteFault`]; the motion goes on.
+    /// [`WriteFault`]; the motion continues.
     pub fn write(&mut self, command: &Command, finished: bool) -> Result<(), WriteFault> {
         if self.is_unsound {
             return Err(WriteError::NotRunning.into());

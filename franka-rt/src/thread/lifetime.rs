@@ -1,4 +1,4 @@
-//! What the thread and its owner tell each other by flags.
+//! Flags that the thread and its owner share.
 //!
 //! Nothing here knows the thread: `tests/loom` includes this file and explores what the
 //! flags order.
@@ -9,8 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 #[cfg(loom)]
 use loom::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Whether the thread is to stop, whether it has ended, and whether the borrower of its cycle runs
-/// it.
+/// Flags: a stop is requested, the thread has ended, the borrower of its cycle does not run it.
 #[derive(Debug, Default)]
 pub(super) struct Lifetime {
     stop: AtomicBool,

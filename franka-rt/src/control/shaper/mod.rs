@@ -127,7 +127,7 @@ impl Shaper {
         self.limited()
     }
 
-    /// Replaces the velocity limits of the joints by those of `joints`, from the robot's
+    /// Replaces the velocity limits of the joints by the limits of `joints`, from the robot's
     /// description, also with other [bounds](Self::with_bounds). Without effect on a robot whose
     /// velocity limits do not depend on position.
     #[must_use]
@@ -181,7 +181,7 @@ impl Shaper {
     /// `first` is whether no command of the motion came before.
     ///
     /// # Errors
-    /// Those of [`torques`](Self::torques).
+    /// As for [`torques`](Self::torques).
     pub fn joint_positions(
         &self,
         command: &JointPositions,
@@ -205,7 +205,7 @@ impl Shaper {
     /// Shapes joint velocities against the last ones, `dq_d` of the state and their derivatives.
     ///
     /// # Errors
-    /// Those of [`torques`](Self::torques).
+    /// As for [`torques`](Self::torques).
     pub fn joint_velocities(
         &self,
         command: &JointVelocities,
@@ -225,7 +225,7 @@ impl Shaper {
     /// motion came before.
     ///
     /// # Errors
-    /// Those of [`torques`](Self::torques); also if the pose is not a transformation, or the elbow
+    /// As for [`torques`](Self::torques); also if the pose is not a transformation, or the elbow
     /// has no sign.
     pub fn cartesian_pose(
         &self,
@@ -255,7 +255,7 @@ impl Shaper {
     /// elbow against [`RobotState::commanded_elbow`].
     ///
     /// # Errors
-    /// Those of [`torques`](Self::torques); also if the elbow has no sign.
+    /// As for [`torques`](Self::torques); also if the elbow has no sign.
     pub fn cartesian_velocities(
         &self,
         command: &CartesianVelocities,

@@ -1,4 +1,4 @@
-//! Connections: lost, made again, given up; and what is told of them.
+//! Connections: lost, made again, given up; and their events.
 
 use super::*;
 
@@ -91,8 +91,8 @@ const CHANGES: [fn(&mut RobotState); 4] = [
     |state| state.message_id += 3_600_000,
 ];
 
-/// Loses the connection and makes it again with a robot that has changed; returns what is told to
-/// differ.
+/// Loses the connection and makes it again with a robot that has changed; returns the reported
+/// differences.
 fn change(robot: &mut Supervised, change: fn(&mut RobotState), mode: RobotMode) -> Differences {
     robot.lose(CloseReason::ClosedByPeer);
     robot.release();
@@ -150,7 +150,7 @@ fn motion_does_not_wait_for_a_robot_that_is_not_recognised() {
             panic!("{motions:?}")
         };
         assert!(matches!(why, Unready::Unrecognised(_)), "{why}");
-        // Whoever asks now takes it as it is.
+        // A caller that asks now takes it as it is.
         assert_eq!(robot.condition(), Condition::Ready);
         assert!(matches!(robot.submit(2), Admission::Begin));
     }

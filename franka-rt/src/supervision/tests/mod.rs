@@ -165,7 +165,7 @@ impl Supervised {
         self.asked.iter().filter(is).count()
     }
 
-    /// What became of the motions that waited: whether they began, or why not.
+    /// Results of the motions that waited: whether they began, or why not.
     fn motions(&mut self) -> Vec<(u64, Option<MotionError>)> {
         let asked = std::mem::take(&mut self.asked);
         let of = |output| match output {

@@ -109,7 +109,7 @@ fn latched_stop_takes_back_the_motion_that_waits() {
     assert_eq!(robot.motions(), [], "it never begins");
 }
 
-/// A program that waits indefinitely says so with the longest duration.
+/// A program passes the longest duration to wait indefinitely.
 #[test]
 fn motions_and_silences_may_take_the_longest_duration() {
     let ever = Duration::MAX;

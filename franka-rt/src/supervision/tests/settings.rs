@@ -1,4 +1,4 @@
-//! What a program has set: on every connection before a motion begins there.
+//! Settings of a program: on every connection before a motion begins there.
 
 use super::*;
 
@@ -33,7 +33,7 @@ fn reconnect(robot: &mut Supervised) {
     assert!(robot.connect());
 }
 
-/// How often it was asked for settings.
+/// Number of times that it was asked for settings.
 fn configures(robot: &mut Supervised) -> usize {
     let is = |output: &mut Output| matches!(output, Output::Configure);
     robot.asked.extract_if(.., is).count()
@@ -147,7 +147,7 @@ fn setting_that_is_not_taken_again_refuses_motions() {
         assert_eq!(configures(&mut robot), 1);
         again(&mut robot, STIFF, refusal());
         assert_eq!(next(&mut robot), None);
-        // Another value that is refused is no better; one that is taken is.
+        // Another refused value is no better; a value that is taken is.
         set(&mut robot, SOFT, &refusal());
         assert_eq!(robot.condition(), Condition::Unready(NOT_SET));
         set(&mut robot, SOFT, &Answer::Taken);
