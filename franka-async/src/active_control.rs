@@ -1,4 +1,4 @@
-//! Active control: a thread of the user's reads states and writes commands, and is the control
+//! Active control: a thread of the program reads states and writes commands, and is the control
 //! cycle meanwhile.
 
 use std::marker::PhantomData;
@@ -21,13 +21,13 @@ use crate::input::unserved;
 use crate::robot::Robot;
 
 impl Robot {
-    /// Begins control by torques from a thread of the caller's, and resolves when the motion runs.
-    /// The first command is due within a few milliseconds: hand the result to the thread that reads
-    /// and writes at once.
+    /// Begins control by torques from the caller's thread, and resolves when the motion runs. The
+    /// first command is due within a few milliseconds, so hand the result at once to the thread
+    /// that reads and writes.
     ///
     /// # Errors
-    /// [`MotionError::Busy`] while anything else controls the arm; otherwise what ended the motion
-    /// before it ran.
+    /// [`MotionError::Busy`] while anything else controls the arm; otherwise the cause of an end
+    /// before the motion ran.
     ///
     /// # Cancel safety
     /// Dropping the future stops the robot.
@@ -38,8 +38,8 @@ impl Robot {
     }
 
     /// Begins control by joint positions, for the controller named; with
-    /// [`MoveControllerMode::ExternalController`] every command needs torques beside it. Otherwise
-    /// like [`Self::active_torques`].
+    /// [`MoveControllerMode::ExternalController`] every command also needs torques. Otherwise like
+    /// [`Self::active_torques`].
     ///
     /// # Errors
     /// See [`Self::active_torques`].
@@ -118,8 +118,8 @@ impl Robot {
 /// [`MotionError::Busy`].
 ///
 /// Commands pass no filter and no limiter. All methods block; none may be called from async code.
-/// Nothing is raised but the driver's own thread: real-time scheduling of the calling thread is up
-/// to the caller, see [`Scheduling::enter`](crate::realtime::Scheduling::enter).
+/// The driver raises only its own thread: the caller sets the real-time scheduling of the calling
+/// thread, see [`Scheduling::enter`](crate::realtime::Scheduling::enter).
 ///
 /// **Dropping it** before the last command stops the robot.
 #[derive(Debug)]
@@ -155,8 +155,8 @@ impl<C> Active<C> {
         })
     }
 
-    /// Waits for the next state of the motion; returns it with the robot's time since the state
-    /// read before, which is zero at first and more than a millisecond after a loss.
+    /// Waits for the next state of the motion. Returns it with the robot's time since the previous
+    /// state that was read, which is zero at first and more than a millisecond after a loss.
     ///
     /// # Errors
     /// [`ActiveError::Motion`] when the robot has ended the motion, or has been silent for the link
@@ -169,7 +169,7 @@ impl<C> Active<C> {
         loop {
             let lease = self.lease()?;
             let turned = lease.turn();
-            // The motion is over for the cycle, or the thread is: the bridge knows why.
+            // The motion, or the thread, has ended for the cycle: the bridge has the cause.
             let is_over = turned.is_err() || lease.core().is_watching();
             let outcome = match self.given_up() {
                 None => is_over.then(|| self.end()),
@@ -221,7 +221,7 @@ impl<C> Active<C> {
         Some(self.noted(outcome))
     }
 
-    /// Remembers how the motion ended, for the calls that follow.
+    /// Stores the end of the motion, for later calls.
     fn noted<T>(&mut self, end: Result<T, MotionError>) -> Result<T, MotionError> {
         self.error = end.as_ref().err().cloned();
         end
@@ -234,7 +234,7 @@ impl<C> Active<C> {
             .map_or(ActiveError::Finished, ActiveError::Ended)
     }
 
-    /// The cycle, which the first call takes over.
+    /// Returns the cycle, which the first call takes over.
     fn lease(&mut self) -> Result<&mut Lease, BorrowError> {
         match &mut self.lease {
             Some(lease) => Ok(lease),
@@ -269,7 +269,7 @@ impl Active<Torques> {
     /// the robot has ended the motion and returns its report.
     ///
     /// # Errors
-    /// [`ActiveError::Write`] for torques that cannot be sent, after which others may be;
+    /// [`ActiveError::Write`] for torques that cannot be sent; the motion continues.
     /// [`ActiveError::Motion`] if the robot ended the motion otherwise than asked.
     pub fn write_once(
         &mut self,
@@ -299,11 +299,11 @@ impl<C: GeneratorCommand> Active<C> {
         }))
     }
 
-    /// Sends a command to the motion generator and torques beside it, under an external controller.
+    /// Sends a command to the motion generator together with torques, under an external controller.
     /// If either is the last, waits until the robot has ended the motion and returns its report.
     ///
     /// # Errors
-    /// As [`Self::write_motion`]; torques that the motion does not want are refused with the
+    /// As [`Self::write_motion`]; torques for a motion without torques are refused with the
     /// vendor's text.
     pub fn write_motion_and_torques(
         &mut self,

@@ -61,7 +61,7 @@ impl Engage {
     }
 
     /// Binds the session to a deadman: while it is silent, and once it is dropped, the arm brakes
-    /// and holds, and every goal resolves as [`MotionError::Held`]. Its silence has to be 10 ms or
+    /// and holds, and every goal resolves as [`MotionError::Held`]. Its silence must be 10 ms or
     /// more. See [`Deadman::new`](crate::goal::Deadman::new).
     pub fn deadman(mut self, monitor: DeadmanMonitor) -> Self {
         self.engagement.deadman = Some(monitor);
@@ -113,13 +113,12 @@ pub struct Arm {
 
 impl Robot {
     /// Begins a session that holds the arm where it is and then goes from goal to goal; resolves
-    /// when it has begun. After a motion or a session that was dropped it begins when that has let
-    /// the arm go.
+    /// when it has begun. After a dropped motion or session it begins when that has released the
+    /// arm.
     ///
     /// # Errors
-    /// [`MotionError`]: [`MotionError::Busy`] while anything else controls the arm,
-    /// [`MotionError::Goal`] for gains or limits that are not accepted, or what the robot has
-    /// against it.
+    /// [`MotionError::Busy`] while anything else controls the arm, [`MotionError::Goal`] for gains
+    /// or limits that are not accepted, or the robot's refusal.
     ///
     /// # Cancel safety
     /// Dropping the future ends the session, in the background.
@@ -162,13 +161,13 @@ impl Robot {
 }
 
 impl Arm {
-    /// The robot that it belongs to.
+    /// The robot of this arm.
     pub fn robot(&self) -> &Robot {
         self.session.robot()
     }
 
     /// A motion to a pose or to joint positions; see [`Robot::move_to`]. It resolves when the arm
-    /// has arrived and rests, which is then held. Dropping it brakes the arm and holds it.
+    /// has arrived and rests; the arm is then held. Dropping it brakes the arm and holds it.
     pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
         Motion::within(&self.session, destination.into())
     }
@@ -207,7 +206,7 @@ impl Arm {
     ///
     /// # Errors
     /// [`MotionError::Goal`] for a goal that is not accepted, [`MotionError::Held`] while a
-    /// [deadman](Engage::deadman) holds the arm, and what ended the session.
+    /// [deadman](Engage::deadman) holds the arm, and the cause of the end of the session.
     ///
     /// # Cancel safety
     /// Once the future is polled, the goal is still taken.
@@ -335,10 +334,10 @@ impl Arm {
             .await
     }
 
-    /// Lets a hand guide the arm, from when it rests: along the axes that are `free` there is no
-    /// spring, and none holds the elbow if that is free; the others stay where they are. Until the
-    /// next goal; [`Self::hold`] ends it. Returns as soon as it is taken. The load has to be
-    /// declared, or it pulls the arm down.
+    /// Lets a hand guide the arm once it rests. There is no spring along the axes that are `free`,
+    /// nor at the elbow if that is free; the others stay where they are. Guiding lasts until the
+    /// next goal; [`Self::hold`] ends it. Returns as soon as it is taken. Declare the load, or it
+    /// pulls the arm down.
     ///
     /// # Errors
     /// As [`Self::set`].
@@ -372,13 +371,13 @@ impl Arm {
         Follow::new(self.robot().clone(), Some(self.session.clone()), targets)
     }
 
-    /// Changes how the goal under way and those to come are pursued, and leaves what is `None` as
-    /// it is. Options of a motion come before it. Gains, force cap and leash fade over 0.3 s:
+    /// Retunes the current and later goals of the session, and leaves options that are `None` as
+    /// they are. Options of a motion come before it. Gains, force cap and leash fade over 0.3 s:
     /// neither the reference nor the torques step.
     ///
     /// # Errors
-    /// [`MotionError::Goal`] for values out of their bounds, which change nothing; what ended the
-    /// session.
+    /// [`MotionError::Goal`] for values out of their bounds, which change nothing; the cause of the
+    /// end of the session.
     ///
     /// # Cancel safety
     /// Once the future is polled, the change is still made.
@@ -395,7 +394,7 @@ impl Arm {
             .await
     }
 
-    /// Brakes, lets the arm go and ends the session; resolves when it has ended. A goal under way
+    /// Brakes, releases the arm and ends the session; resolves when it has ended. A goal under way
     /// resolves as [`MotionError::Stopped`]. Every other handle is then disengaged.
     ///
     /// # Errors
@@ -410,7 +409,7 @@ impl Arm {
         self.ended().await
     }
 
-    /// Resolves when the session has ended, with how it did.
+    /// Resolves when the session has ended, with its outcome.
     ///
     /// # Errors
     /// As [`Self::disengage`].
@@ -438,7 +437,7 @@ impl Arm {
         Ok(reference.pose)
     }
 
-    /// The name of the goal that it heads for; `None` once the session has ended.
+    /// Name of the current goal; `None` once the session has ended.
     #[cfg(feature = "record")]
     pub(crate) fn heading(&self) -> Option<franka_rt::session::GoalId> {
         let ended = self.session.has_ended();

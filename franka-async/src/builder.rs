@@ -85,7 +85,7 @@ impl Builder {
         }
     }
 
-    /// The TCP port; 1337 by default, as on a robot.
+    /// Sets the TCP port; 1337 by default, as on a robot.
     pub fn port(mut self, port: u16) -> Self {
         self.endpoint.set_port(port);
         self
@@ -99,15 +99,15 @@ impl Builder {
         self
     }
 
-    /// `SCHED_FIFO` priority of the control thread, 1 to 99; the system's highest by default. A
-    /// number that the system refuses is an error under [`Realtime::Enforce`] and ignored under
-    /// [`Realtime::Ignore`].
+    /// Sets the `SCHED_FIFO` priority of the control thread, 1 to 99; the system's highest by
+    /// default. A number that the system refuses is an error under [`Realtime::Enforce`] and
+    /// ignored under [`Realtime::Ignore`].
     pub fn priority(mut self, priority: i32) -> Self {
         self.scheduling.priority = Some(priority);
         self
     }
 
-    /// The processor to run the control thread on; any by default.
+    /// Sets the processor of the control thread; any by default.
     pub fn cpu(mut self, cpu: usize) -> Self {
         self.scheduling.cpu = Some(cpu);
         self
@@ -125,18 +125,18 @@ impl Builder {
         self
     }
 
-    /// Time that each step of connecting may take: finding the host, the TCP connection to each of
-    /// its addresses, the handshake, the first state, the description, the states whose poses are
-    /// compared with the model. 1 s by default.
+    /// Sets the time that each step of connecting may take; 1 s by default. The steps are: finding
+    /// the host, the TCP connection to each of its addresses, the handshake, the first state, the
+    /// description, and the states whose poses are compared with the model.
     pub fn connect_timeout(mut self, timeout: Duration) -> Self {
         self.connect_timeout = timeout;
         self
     }
 
-    /// Stack of the control thread that gets its pages before the first cycle, in bytes: 512 KiB by
-    /// default, 64 MiB at most. The thread's stack is larger by a reserve. For control functions
-    /// that use more; see [`ConnectError::Realtime`](crate::error::ConnectError::Realtime) for what
-    /// is out of range.
+    /// Sets the bytes of the control thread's stack that get their pages before the first cycle:
+    /// 512 KiB by default, 64 MiB at most. The thread's stack is larger by a reserve. For control
+    /// functions that use more. A size out of range is refused as
+    /// [`ConnectError::Realtime`](crate::error::ConnectError::Realtime).
     pub fn prefault_stack(mut self, bytes: usize) -> Self {
         self.scheduling.prefault_stack = bytes;
         self
@@ -173,7 +173,7 @@ impl Builder {
     /// Connects to a robot whose reported poses disagree with its model, for any of the known
     /// [lengths](crate::model::geometry::Lengths::KNOWN). Off by default: such a robot is refused
     /// as [`ConnectError::Geometry`](crate::error::ConnectError::Geometry). Goals lead to poses as
-    /// the robot reports them. In simulation they do with errors of up to 1 mm and 3 mrad. Inverse
+    /// the robot reports them, in simulation with errors of up to 1 mm and 3 mrad. Inverse
     /// kinematics, clearances and previews are off by the error. [`Robot::geometry_check`] returns
     /// it, and a warning (`tracing`) states it.
     pub fn accept_geometry_error(mut self, accept: bool) -> Self {
@@ -218,11 +218,11 @@ impl Builder {
 
     /// Asks `agrees` before each recovery that the policy allows, with the reflex and, if it ended
     /// a motion of this program, its log and [diagnosis](crate::diagnosis::Diagnose). Implies
-    /// [`Policy::ask_first`](crate::supervision::Policy::ask_first). It runs on a thread for what
-    /// blocks ([`spawn_blocking`](tokio::task::spawn_blocking)) and may take its time: the robot
-    /// waits for its answer, and nothing else does, except a runtime that is dropped. An answer
-    /// that comes too late has no effect: see [`Robot::agree`]. A function that panics does not
-    /// agree. Without [`Self::supervise`], connecting fails as
+    /// [`Policy::ask_first`](crate::supervision::Policy::ask_first). It runs on a thread for
+    /// blocking work ([`spawn_blocking`](tokio::task::spawn_blocking)) and may take its time: the
+    /// robot waits for its answer, and nothing else does, except a runtime that is dropped. An
+    /// answer that comes too late has no effect: see [`Robot::agree`]. A function that panics does
+    /// not agree. Without [`Self::supervise`], connecting fails as
     /// [`ConnectError::Unsupervised`](crate::error::ConnectError::Unsupervised).
     pub fn ask_before_recovery(
         mut self,

@@ -1,7 +1,7 @@
 //! Options of a connection: see [`Robot::builder`](crate::Robot::builder). For the scheduling of
 //! the control thread see [`realtime`](crate::realtime). Services that pass a robot on to their own
-//! clients check these with `admission` (feature `admission`), and let one of them at a time move
-//! the arm by [`lease`].
+//! clients check the clients with `admission` (feature `admission`), and let one client at a time
+//! move the arm by [`lease`].
 
 #[cfg(feature = "admission")]
 pub mod admission;

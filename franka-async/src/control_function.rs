@@ -20,8 +20,8 @@ use crate::robot::Robot;
 use crate::user_value::UserValue;
 
 impl Robot {
-    /// Control by torques alone: `function` gets every state, and the robot's time since the state
-    /// before, which is zero at first and more than a millisecond after a loss. It returns
+    /// Control by torques alone: `function` gets every state, and the robot's time since the
+    /// previous state, which is zero at first and more than a millisecond after a loss. It returns
     /// [`Torques`], or `torques.finish()` for the last.
     ///
     /// The function runs on the real-time thread, once a millisecond, with some 300 us to answer:
@@ -38,9 +38,9 @@ impl Robot {
         )
     }
 
-    /// Control by joint positions for the robot's own controller; see [`Self::control_torques`] for
-    /// what a function may do, and [`Control::controller`] and [`Control::with_torques`] for what
-    /// turns them into torques.
+    /// Control by joint positions for the robot's own controller. See [`Self::control_torques`] for
+    /// the rules of a function, and [`Control::controller`] and [`Control::with_torques`] for the
+    /// source of the torques.
     pub fn control_joint_positions<R: Into<Next<JointPositions>>>(
         &self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -92,8 +92,8 @@ impl Robot {
 /// everything else while it does. **Dropping the future stops the robot**; the function may still
 /// be called for the few cycles that this takes.
 ///
-/// `.await` takes it as it is; what takes a future, as `tokio::spawn`, `tokio::time::timeout` and
-/// `block_on` do, takes its `.into_future()`.
+/// `.await` takes it as it is. Functions that take a future, such as `tokio::spawn`,
+/// `tokio::time::timeout` and `block_on`, need its `.into_future()`.
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited or detached"]
 pub struct Control {
@@ -126,8 +126,8 @@ impl Control {
         self
     }
 
-    /// Adds torques beside the commands to the motion generator, in the place of the robot's own
-    /// controller. Control that has torques already goes by the new function alone.
+    /// Adds torques to the commands to the motion generator, in the place of the robot's own
+    /// controller. Control that has torques already uses the new function alone.
     pub fn with_torques<R: Into<Next<Torques>>>(
         mut self,
         function: impl FnMut(&RobotState, Duration) -> R + Send + 'static,
@@ -143,8 +143,8 @@ impl Control {
         self
     }
 
-    /// Cutoff of the low-pass filter, `[Hz]`: 100 by default; 1000 and more switch it off, what is
-    /// not above zero ends the motion with its first command.
+    /// Sets the cutoff of the low-pass filter, `[Hz]`: 100 by default; 1000 and more switch it off.
+    /// With a cutoff that is not above zero, the motion ends with its first command.
     pub fn cutoff_frequency(mut self, cutoff_frequency: f64) -> Self {
         self.cutoff_frequency = cutoff_frequency;
         self
@@ -164,7 +164,7 @@ impl Control {
         self
     }
 
-    /// Begins the motion without a future: it runs on, and its outcome is only logged.
+    /// Begins the motion without a future: it continues, and its outcome is only logged.
     pub fn detach(self) {
         let (robot, canceller) = (self.robot.clone(), self.canceller.clone());
         match self.begin() {

@@ -47,7 +47,7 @@ impl Destination {
         }
     }
 
-    /// The target, seen from the poses of now.
+    /// The target, seen from the present poses.
     pub(crate) fn seen_from(&self, now: &Now) -> Target {
         let target = now.target;
         match *self {
@@ -80,7 +80,7 @@ impl From<Offset> for Destination {
 pub(crate) struct Now {
     /// Pose of the present target.
     pub(crate) target: Isometry3<f64>,
-    /// Measured.
+    /// Measured pose.
     pub(crate) arm: Isometry3<f64>,
 }
 

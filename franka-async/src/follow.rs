@@ -59,7 +59,7 @@ impl Robot {
     }
 }
 
-/// The targets of a stream.
+/// Returns the targets of a stream.
 pub(crate) fn streamed<T: Into<Target> + 'static>(
     targets: impl Stream<Item = T> + Send + 'static,
 ) -> Targets {
@@ -201,7 +201,7 @@ impl Follow {
     }
 }
 
-/// Waits for the end of the session, and returns why it takes no goals.
+/// Waits for the end of the session, and returns the reason why it takes no goals.
 async fn end_of(session: Option<&Session>) -> MotionError {
     match session {
         Some(session) => session
@@ -213,8 +213,8 @@ async fn end_of(session: Option<&Session>) -> MotionError {
     }
 }
 
-/// The newest of the targets that are there, once there is one; `None` at the end. Of a stream that
-/// is always ready, the last of [`AT_ONCE`]: the caller then gets to wait for something else.
+/// The newest of the available targets, once there is one; `None` at the end. For a stream that is
+/// always ready, the last of [`AT_ONCE`]: the caller then gets to wait for something else.
 async fn newest(targets: &mut Targets) -> Option<Target> {
     let mut newest = targets.next().await?;
     for _ in 1..AT_ONCE {
@@ -240,10 +240,10 @@ impl IntoFuture for Follow {
     type Output = Result<MotionReport, MotionError>;
     type IntoFuture = Pin<Box<dyn Future<Output = Self::Output> + Send>>;
 
-    /// Resolves when the targets have ended and the arm rests at the last one, or with the reason
-    /// why not. A target that is not accepted brakes the arm and ends the motion with
-    /// [`MotionError::Goal`]. Before the first target nothing begins, and no watchdog counts; a
-    /// stream that ends without any resolves as [`GoalError::NoTarget`].
+    /// Resolves when the targets have ended and the arm rests at the last one, or with an error. A
+    /// target that is not accepted brakes the arm and ends the motion with [`MotionError::Goal`].
+    /// Before the first target nothing begins, and no watchdog counts; a stream that ends without
+    /// any resolves as [`GoalError::NoTarget`].
     ///
     /// # Cancel safety
     /// Dropping the future brakes the arm, in the background.

@@ -15,11 +15,11 @@ use franka_proto::gripper::{Grasp, Move, Request, State, Version};
 ///
 /// A cheap handle: clones share one connection, from any task or thread. One action runs at a time:
 /// a newer one aborts it, and so does [`Gripper::stop`], from any handle. Dropping the last handle
-/// closes the connection; what is grasped by then stays grasped.
+/// closes the connection; a grasped object stays grasped.
 ///
-/// Actions have no deadline, since some take long: a move that an obstacle blocks, minutes. Put
-/// `tokio::time::timeout` around one to give it up, which stops it. A Hand that is out of reach
-/// ends them by the connection's keepalive, within seconds.
+/// Actions have no deadline, since some take long: a move that an obstacle blocks takes minutes.
+/// Put `tokio::time::timeout` around an action to give it up, which stops it. If the Hand is out of
+/// reach, the connection's keepalive ends its actions within seconds.
 ///
 /// Connecting needs a Tokio runtime with I/O and time enabled, which then runs the task of the
 /// connection. Everything else may be called and awaited from anywhere.
@@ -63,7 +63,8 @@ impl Gripper {
     }
 
     /// Finds how wide the fingers open: `max_width` of the state. Needed once after power-on and
-    /// after a change of fingers; wider grasps and moves are refused before. True if it succeeded.
+    /// after a change of fingers; until then, wider grasps and moves are refused. True if it
+    /// succeeded.
     ///
     /// # Errors
     /// [`GripperError`].

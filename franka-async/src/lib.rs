@@ -32,10 +32,10 @@
 //! ```
 //!
 //! The address is a host name or an IP address, as any string. A [`Robot`] is a cheap handle: clone
-//! it into every task and request. Dropping the last one brakes what moves and closes the
-//! connection, as [`Robot::shutdown`] does and waits for. If the program is killed, the robot stops
-//! on its own. A robot needs a host with a real-time kernel. On a host without one, as most hosts
-//! of a simulator are, connecting fails, and
+//! it into every task and request. Dropping the last one brakes the arm and closes the connection,
+//! as [`Robot::shutdown`] does and waits for. If the program is killed, the robot stops on its own.
+//! A robot needs a host with a real-time kernel. On a host without one, as most hosts of a
+//! simulator are, connecting fails, and
 //! `Robot::builder(address).realtime(Realtime::Ignore).connect()` does without. Every error of this
 //! crate converts into [`Error`]; `anyhow` prints its text when `main` returns it.
 //!
@@ -54,7 +54,7 @@
 //! # }
 //! ```
 //!
-//! Options say how, and a motion goes through several places without a stop:
+//! Options set speed and compliance, and a motion goes through several places without a stop:
 //!
 //! ```no_run
 //! # use franka_async::prelude::*;
@@ -75,9 +75,9 @@
 //! measured. [`mod@pose`] makes poses of quaternions and arrays.
 //!
 //! The end effector goes to a pose on a straight line; to joint positions, the joints go. An
-//! [`Offset`] starts at the target of what moves, and at the arm if nothing does. A target out of
-//! reach is refused before anything moves. Motions use 20 % of the robot's limits, and `speed(0.5)`
-//! takes half of that.
+//! [`Offset`] starts at the target of the current motion, or at the arm without one. A target out
+//! of reach is refused before anything moves. Motions use 20 % of the robot's limits, and
+//! `speed(0.5)` takes half of that.
 //!
 //! # What a motion is
 //!
@@ -294,7 +294,7 @@
 //! # Test without a robot
 //!
 //! `franka-sim` is a robot on sockets, in the process of the test. Its arm sticks, flexes and lags
-//! as published measurements of real ones say.
+//! as in published measurements of real ones.
 //!
 //! ```
 //! use std::time::Duration;
@@ -324,28 +324,28 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`prelude`] | what a first program needs |
+//! | [`prelude`] | names for a first program |
 //! | [`pose`] | poses from quaternions, arrays and matrices, and back |
-//! | [`goal`], [`condition`] | targets, limits, gains, chunks, guards; what a motion goes on until |
+//! | [`goal`], [`condition`] | targets, limits, gains, chunks, guards; conditions that end a motion |
 //! | [`motion`] | futures, handles and progress of motions; several robots that begin together |
 //! | [`team`] | several arms as one, with one stop |
 //! | [`state`] | every state, or the newest as it changes; external wrenches without what an untouched arm shows |
-//! | [`error`], [`diagnosis`] | what can go wrong, by who can act on it; why the robot ended a motion |
+//! | [`error`], [`diagnosis`] | errors, by who can act on them; why the robot ended a motion |
 //! | [`supervision`] | connections that are made again, recovery by a policy, events and health |
 //! | [`control`] | control at 1 kHz by functions of the program |
-//! | [`gripper`], [`vacuum`] | the end effectors, each with a connection of its own |
+//! | [`gripper`], [`vacuum`] | the end effectors, each with its own connection |
 //! | [`settings`], [`identify`] | load, thresholds and the like; friction, bias and load, measured |
 //! | [`model`] | kinematics, dynamics, limits, inverse kinematics |
 //! | [`connection`], [`realtime`] | options of a connection; scheduling, and how punctual control is |
-//! | [`record`] | what every cycle saw and did |
-//! | `recording` | all of that, and what was asked of the robot, in files; logs of libfranka (feature `record`) |
+//! | [`record`] | records of every cycle |
+//! | `recording` | all of that, and the requests to the robot, in files; logs of libfranka (feature `record`) |
 //! | `explain` | why a motion ended, and where the arm was touched (feature `record`) |
 //! | `replay`, `export` | recorded motions again, and as tables and datasets (features `record`, `export`) |
 //! | `cassette` | sessions byte for byte, played back as the robot (features `record`, `pcap`) |
 //! | `doctor` | checks of this computer (features `doctor`, `doctor-desk`) |
 //! | `metrics` | statistics as OpenMetrics text (feature `metrics`) |
 //! | [`connection::lease`] | one client of a service at a time moves the arm |
-//! | `connection::admission` | checks of who asks a service (feature `admission`) |
+//! | `connection::admission` | checks of the clients of a service (feature `admission`) |
 //! | `blocking` | programs without async (feature `blocking`) |
 //!
 //! # How it works

@@ -28,8 +28,8 @@ use crate::session::Session;
 /// separate motion, with its own [`handle`](Self::handle) and without the
 /// [`start_with`](Self::start_with) of the original.
 ///
-/// `.await` takes it as it is; what takes a future, as `tokio::spawn`, `tokio::time::timeout` and
-/// `block_on` do, takes its `.into_future()`.
+/// `.await` takes it as it is. Functions that take a future, such as `tokio::spawn`,
+/// `tokio::time::timeout` and `block_on`, need its `.into_future()`.
 #[derive(Debug)]
 #[must_use = "a motion does nothing until it is awaited or detached"]
 pub struct Motion {
@@ -45,16 +45,17 @@ pub struct Motion {
 }
 
 impl Robot {
-    /// A motion to a pose of the end effector in the base frame, or to joint positions, `[rad]`. To
-    /// a pose it is a straight line and a rotation about one axis if it begins at rest, and the arm
-    /// is compliant on the way, see [`Motion::stiffness`]; of joints all arrive together.
+    /// A motion to a pose of the end effector in the base frame, or to joint positions, `[rad]`. A
+    /// motion to a pose that begins at rest is a straight line and a rotation about one axis. The
+    /// arm is compliant on the way, see [`Motion::stiffness`]. In a motion to joint positions, all
+    /// joints arrive together.
     ///
     /// The line to a pose is planned by the task that awaits the motion, in a millisecond as a
     /// rule. If joints would come to the ends of their ranges on it, or the arm too near itself,
-    /// the elbow is led to a posture with which they do not. If there is no such posture, the
-    /// motion is refused as [`GoalError::NoLine`](crate::error::GoalError::NoLine), which names
-    /// joint positions that reach the pose, and nothing moves; with [`Motion::joint_fallback`] the
-    /// joints go there instead.
+    /// the elbow is led to a posture that avoids it. If there is no such posture, the motion is
+    /// refused as [`GoalError::NoLine`](crate::error::GoalError::NoLine), which names joint
+    /// positions that reach the pose, and nothing moves; with [`Motion::joint_fallback`] the joints
+    /// go there instead.
     pub fn move_to(&self, destination: impl Into<Destination>) -> Motion {
         Motion::of_robot(self, destination.into())
     }
@@ -137,10 +138,9 @@ impl Motion {
 
     /// Moves the joints to the pose, as [`Robot::move_joints`] does, where the arm cannot follow
     /// the straight line of [`Robot::move_to`]. The end effector then moves along a curve: mind
-    /// obstacles beside the line. [`Self::preview`] shows the path. If the joints have no path
-    /// either, the motion is refused as
-    /// [`GoalError::NoLine`](crate::error::GoalError::NoLine), and one in a session that commands
-    /// poses to the robot's own controller as
+    /// obstacles near the line. [`Self::preview`] shows the path. If the joints have no path
+    /// either, the motion is refused as [`GoalError::NoLine`](crate::error::GoalError::NoLine), and
+    /// one in a session that commands poses to the robot's own controller as
     /// [`GoalError::Backend`](crate::error::GoalError::Backend).
     ///
     /// Without effect on motions that are not planned: through waypoints, of joints, and with a
@@ -181,8 +181,8 @@ impl Motion {
         self.session.as_ref()
     }
 
-    /// Begins the motion without a future: it runs on, and its outcome is only logged. It does not
-    /// count as a handle: dropping the last handle of its session or robot still brakes it.
+    /// Begins the motion without a future: it continues, and its outcome is only logged. It does
+    /// not count as a handle: dropping the last handle of its session or robot still brakes it.
     pub fn detach(mut self) {
         match self.begin() {
             Ok(mut motion) => {
@@ -323,8 +323,9 @@ impl IntoFuture for Motion {
     }
 }
 
-/// A motion from elsewhere: how far it is, and pausing or braking it. Clones are about the same
-/// motion; none of them counts as a handle of the robot or its session, or keeps the motion going.
+/// Access to a motion from elsewhere: its progress, and pausing or braking it. Clones are for the
+/// same motion; none of them counts as a handle of the robot or its session, or keeps the motion
+/// going.
 #[derive(Clone, Debug)]
 pub struct MotionHandle(Canceller);
 
@@ -356,7 +357,7 @@ impl MotionHandle {
 }
 
 /// A motion as a future. It begins with the first poll and resolves when the arm has arrived,
-/// rests, and is no longer controlled; or with the reason why not.
+/// rests, and is no longer controlled; or with the reason why it ended before.
 ///
 /// # Cancel safety
 /// Dropping it brakes the arm, in the background: within about a quarter of a second and the
@@ -377,7 +378,7 @@ pub struct Moving {
 
 #[derive(Debug)]
 enum Stage {
-    /// Or options that are not accepted.
+    /// Or the error of options that are not accepted.
     Ready(Result<Box<Beginning>, GoalError>),
     Begun(oneshot::Receiver<Outcome>),
     Over,

@@ -73,8 +73,8 @@ impl GoalOptions {
     }
 }
 
-/// Setters for a type with the field `options: GoalOptions`. With `target`, also the setters of a
-/// type that has one target or one stream of them.
+/// Defines setters for a type with the field `options: GoalOptions`. With `target`, also the
+/// setters of a type that has one target or one stream of them.
 macro_rules! goal_options {
     () => {
         /// Walks the same paths `factor` times as fast as the limits allow: velocities scale with
@@ -146,9 +146,9 @@ macro_rules! goal_options {
         /// Sets the posture, joint positions in `[rad]`, for the null space of the end effector's
         /// pose. The arm takes it on the way to poses and while it holds them. The elbow moves at
         /// no more than half of the joints' budget, and a motion that is awaited arrives when it
-        /// rests. By default the elbow is kept near where the motion or the session began. An
-        /// engaged arm keeps its posture until it is given another. Positions out of range are
-        /// refused as [`GoalError::OutOfRange`](crate::error::GoalError::OutOfRange).
+        /// rests. By default the elbow stays near where the motion or the session began. An engaged
+        /// arm keeps its posture until another is set. Positions out of range are refused as
+        /// [`GoalError::OutOfRange`](crate::error::GoalError::OutOfRange).
         pub fn posture(mut self, posture: impl Into<[f64; 7]>) -> Self {
             self.options.tuning.posture = Some(posture.into());
             self
@@ -165,17 +165,17 @@ macro_rules! goal_options {
             self
         }
 
-        /// Sets how near to the target counts as arrived, of a stream: to its last one. By default
-        /// what the law or the robot's controller keeps on an arm that sticks:
-        /// [`Tolerance::of`](crate::goal::Tolerance::of) and
+        /// Sets how near to the target counts as arrived; for a stream, how near to its last
+        /// target. By default it is the accuracy of the law or the robot's controller on an arm
+        /// that sticks: [`Tolerance::of`](crate::goal::Tolerance::of) and
         /// [`Tolerance::under`](crate::goal::Tolerance::under).
         pub fn tolerance(mut self, tolerance: crate::goal::Tolerance) -> Self {
             self.options.tolerance = Some(tolerance);
             self
         }
 
-        /// Sets how long the arm has to rest at the target to have arrived, and the longest that it
-        /// gets for that; by default 250 ms and 5 s.
+        /// Sets how long the arm must rest at the target to have arrived, and the longest time
+        /// allowed for that; by default 250 ms and 5 s.
         pub fn settling(mut self, settling: crate::goal::Settling) -> Self {
             self.options.settling = Some(settling);
             self
@@ -188,8 +188,8 @@ macro_rules! goal_options {
         /// acts in the next one. Replaces an earlier condition.
         ///
         /// Both ends are `Ok`: [`MotionReport::reacted`](crate::MotionReport::reacted)
-        /// distinguishes a reaction from an arrival. See [`condition`](crate::condition) for what
-        /// to compare, and with what.
+        /// distinguishes a reaction from an arrival. See [`condition`](crate::condition) for the
+        /// quantities that can be compared.
         ///
         /// ```no_run
         /// # use std::time::Duration;

@@ -48,7 +48,7 @@ impl Robot {
     /// cap is above them begins with a warning (`tracing`). Below about 10 N the friction of an arm
     /// that touches nothing is enough for a reflex.
     ///
-    /// The vendor documents no range. The simulator refuses what is negative or not finite.
+    /// The vendor documents no range. The simulator refuses negative and non-finite values.
     ///
     /// # Errors
     /// [`CommandError`].
@@ -102,10 +102,10 @@ impl Robot {
         .await
     }
 
-    /// Sets the stiffness frame in the end effector's, `EE_T_K`. Resolves when a state shows it, as
-    /// what is computed next is computed from states.
+    /// Sets the stiffness frame in the end effector's, `EE_T_K`. Resolves when a state shows it,
+    /// because later results are computed from states.
     ///
-    /// The vendor documents no range. The simulator refuses what is more than 2 m away.
+    /// The vendor documents no range. The simulator refuses a frame more than 2 m away.
     ///
     /// # Errors
     /// [`CommandError`]; [`CommandError::LinkLost`] if the robot answers and its states stay away.
@@ -161,7 +161,7 @@ impl Robot {
     /// brakes do, 30 s at most.
     ///
     /// # Errors
-    /// [`CommandError`]; a refusal that names manual recovery has to be solved at the robot.
+    /// [`CommandError`]; a refusal that names manual recovery must be solved at the robot.
     /// [`CommandError::LinkLost`] if the robot answers and its states stay away, or if both do for
     /// three seconds more than the link timeout.
     ///
@@ -179,13 +179,13 @@ impl Robot {
         }
     }
 
-    /// The robot's description of itself, URDF. Protocol 10 only.
+    /// Returns the robot's description of itself, URDF. Protocol 10 only.
     ///
     /// # Errors
     /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command.
     ///
     /// # Cancel safety
-    /// Nothing is lost but the answer.
+    /// Only the answer is lost.
     pub async fn urdf(&self) -> Result<String, CommandError> {
         urdf(&self.channel(), ANSWER).await
     }
@@ -210,7 +210,7 @@ impl Robot {
     /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command.
     ///
     /// # Cancel safety
-    /// Nothing is lost but the answer.
+    /// Only the answer is lost.
     pub async fn virtual_wall(&self, id: i32) -> Result<VirtualWall, CommandError> {
         let request = Request::GetCartesianLimit { id };
         match self.channel().call(request, ANSWER).await? {
@@ -220,8 +220,7 @@ impl Robot {
     }
 
     /// Sets something at the robot, and waits for a state that shows it, if states do. The answer
-    /// comes by another way than states: a motion that begins before would take the new tool for
-    /// the old one.
+    /// comes by another way than states: an earlier motion would take the new tool for the old one.
     async fn set(&self, request: Request) -> Result<(), CommandError> {
         check_finite(&request)?;
         let turn = self.setting().lock().await;
@@ -440,7 +439,7 @@ fn short(number: f64) -> f64 {
     (number * 1e6).round() / 1e6
 }
 
-/// Adds to an answer that names no number what was sent, and what is documented.
+/// Adds the values that were sent, and the documented range, to an answer that names no number.
 fn explained(error: CommandError, request: &Request) -> CommandError {
     let invalid = Status::Setter(SetterStatus::InvalidArgumentRejected);
     let refusal = match error {
@@ -531,7 +530,7 @@ fn is_near<const N: usize>(shown: &[f64; N], set: &[f64; N]) -> bool {
         .all(|(shown, set)| (shown - set).abs() < 1e-5)
 }
 
-/// Has the robot recover from a reflex.
+/// Recovers the robot from a reflex.
 pub(crate) async fn recover(channel: &Channel) -> Result<(), CommandError> {
     let recovery = channel.call(Request::AutomaticErrorRecovery, RECOVERY);
     recovery.await.map(|_| ())

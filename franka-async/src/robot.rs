@@ -60,7 +60,8 @@ struct Shared {
     /// The newest connection.
     link: RwLock<Arc<Link>>,
     supervisor: Arc<Supervisor>,
-    /// Held until a setting has its place among the requests: none is overtaken by an older one.
+    /// Held until a setting has its place among the requests, so that no older setting overtakes
+    /// it.
     setting: Arc<Mutex<()>>,
     /// The way into the task that reconnects; `None` without such a task. Closed when it has ended.
     shutdowns: Option<mpsc::UnboundedSender<oneshot::Sender<()>>>,
@@ -135,12 +136,12 @@ impl Robot {
     /// Every cycle of the control thread from now on, with record, whole state and time of receipt:
     /// for a recorder, on a separate thread. No task passes the cycles on, so a busy runtime costs
     /// none of them. The ring holds `capacity` cycles, usually
-    /// [`CycleFeed::DEFAULT_CAPACITY`](crate::record::CycleFeed::DEFAULT_CAPACITY); what does not
-    /// fit is counted ([`CycleReader::lost`]). Ends with the connection. Takes a few milliseconds
-    /// for the memory of the ring.
+    /// [`CycleFeed::DEFAULT_CAPACITY`](crate::record::CycleFeed::DEFAULT_CAPACITY); cycles that do
+    /// not fit are counted ([`CycleReader::lost`]). Ends with the connection. Takes a few
+    /// milliseconds for the memory of the ring.
     ///
     /// # Errors
-    /// [`AttachError`]: a capacity out of range, as many readers as there can be, no connection.
+    /// [`AttachError`] for a capacity out of range, for too many readers, and without a connection.
     pub fn cycles(&self, capacity: usize) -> Result<CycleReader, AttachError> {
         let link = self.link();
         if link.has_ended() {
@@ -193,7 +194,7 @@ impl Robot {
         self.link().geometry
     }
 
-    /// [`Self::model`] as control functions ask it: by states, each with its end effector and load.
+    /// [`Self::model`] for control functions: takes states, each with its end effector and load.
     pub fn state_model(&self) -> StateModel {
         StateModel::new(self.shared.model.clone(), self.shared.version)
     }
@@ -286,7 +287,7 @@ impl Robot {
     }
 
     /// Releases a [latched](Self::latch_stop) stop: motions are admitted again. Nothing moves by
-    /// it. Returns whether one was latched.
+    /// it. Returns true if a stop was latched.
     pub fn release_stop(&self) -> bool {
         self.shared.supervisor.release_stop()
     }
@@ -436,7 +437,7 @@ impl Robot {
         GoalId(self.shared.goals.fetch_add(1, Ordering::Relaxed) + 1)
     }
 
-    /// Has the bridge begin a motion. Returns the receiver of its outcome; see
+    /// Makes the bridge begin a motion. Returns the receiver of its outcome; see
     /// [`unserved`](crate::input::unserved).
     pub(crate) fn begin(&self, motion: Beginning) -> oneshot::Receiver<Outcome> {
         let (ended, outcome) = oneshot::channel();
@@ -448,7 +449,7 @@ impl Robot {
         outcome
     }
 
-    /// Cancels what was begun under this name.
+    /// Cancels the motion of this name.
     pub(crate) fn cancel(&self, goal: GoalId) {
         self.send(Input::Cancel {
             goal,

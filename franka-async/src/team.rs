@@ -94,7 +94,7 @@ impl<const N: usize> Team<N> {
     /// one does not, the others end.
     ///
     /// # Errors
-    /// [`NotEngaged`] with the first member that did not, and why.
+    /// [`NotEngaged`] with the first member that did not begin, and the reason.
     ///
     /// # Cancel safety
     /// Dropping the future ends all sessions, in the background.
@@ -189,7 +189,7 @@ impl<const N: usize> Team<N> {
 
     /// Brakes all arms as [`Self::stop`] does, ends their sessions and latches the stop of each
     /// robot: see [`Robot::latch_stop`]. Until it is released, joint motions and motions of single
-    /// arms are refused. Returns what the stop of each arm came to.
+    /// arms are refused. Returns the outcome of the stop of each arm.
     ///
     /// # Cancel safety
     /// Once polled, the stops are latched and all arms are braked even if the future is dropped.
@@ -334,7 +334,7 @@ impl<const N: usize> Future for TeamMotion<N> {
             if let Err(running) = member
                 && let Poll::Ready(outcome) = running.as_mut().poll(context)
             {
-                // The thread has said so already, unless the goal never came to it.
+                // The thread has reported it already, unless the goal never came to it.
                 if outcome.is_err() {
                     coordinator.refuse(round, number);
                 }
