@@ -146,8 +146,8 @@ impl AsynchronousControl {
     /// next state.
     ///
     /// # Errors
-    /// [`MotionError::Invalid`] for non-finite numbers; what ended the motion, if it has
-    /// ended.
+    /// [`MotionError::Invalid`] for non-finite numbers; the cause of the end of the motion, if it
+    /// has ended.
     pub fn set_target(&self, q: [f64; 7]) -> Result<(), MotionError> {
         check::finite(&q)?;
         if let Some(outcome) = self.end.clone().now_or_never() {

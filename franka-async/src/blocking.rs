@@ -31,7 +31,7 @@
 //! | `set`, of an [`Arm`](crate::Arm) | `try_set`, which never waits |
 //! | `state`, `pose`, `target`, `reference`, `stats`; [`Deadman`](crate::goal::Deadman) | the same: none of them waits |
 //!
-//! Two motions at a time, or one and what sends its targets, take two threads, as they take two
+//! Two motions at a time, or one and the sender of its targets, take two threads, as they take two
 //! tasks with async:
 //!
 //! ```no_run
@@ -130,9 +130,9 @@ impl<T> Targets<T> {
     }
 }
 
-/// Returns a sender of targets, of which `first` is there already, and what
-/// [`Robot::follow`](crate::Robot::follow) and [`Arm::follow`](crate::Arm::follow) take: a channel
-/// for the newest one.
+/// Returns a sender of targets, of which `first` is there already, and a channel for the newest
+/// target. [`Robot::follow`](crate::Robot::follow) and [`Arm::follow`](crate::Arm::follow) take
+/// that channel.
 pub fn targets<T>(first: T) -> (Targets<T>, watch::Receiver<T>) {
     let (sender, receiver) = watch::channel(first);
     (Targets(sender), receiver)

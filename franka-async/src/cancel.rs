@@ -31,7 +31,7 @@ pub struct Canceller {
 }
 
 impl Canceller {
-    /// Returns what takes back the motion `id` of this robot.
+    /// Returns a canceller of the motion `id` of this robot.
     pub(crate) fn new(robot: &Robot, id: GoalId) -> Self {
         Self {
             robot: robot.downgrade(),

@@ -13,7 +13,7 @@ use tokio_util::codec::{Decoder, Encoder, Framed};
 
 use crate::world::{self, Stream};
 
-/// Time in which a request has to leave. Source: `SO_SNDTIMEO` of libfranka's command socket.
+/// Time in which a request must leave. Source: `SO_SNDTIMEO` of libfranka's command socket.
 const SEND_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Cuts the stream into messages, and writes requests to it.

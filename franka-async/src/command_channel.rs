@@ -357,7 +357,7 @@ impl CommandTask {
         self.pending.insert(id, waiting);
     }
 
-    /// Gives up waiting for motions that the lifecycle has done with: it begins one after the
+    /// Gives up waiting for motions that have ended for the lifecycle: it begins one after the
     /// other.
     fn forget_motions(&mut self) {
         let over = self

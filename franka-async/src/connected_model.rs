@@ -24,8 +24,8 @@ use crate::state_model::nominal;
 /// Time for a library to come over the network.
 const DOWNLOAD: Duration = Duration::from_secs(30);
 
-/// The model of the arm, from its description if it has one and that is wanted, with a hash of
-/// that; the constants of its kind otherwise.
+/// The model of the arm, from its description if it has one and the description is wanted, with a
+/// hash of it. Otherwise the constants of its kind.
 #[cfg(feature = "urdf")]
 pub(crate) async fn of(
     version: Version,
@@ -51,8 +51,8 @@ pub(crate) async fn of(
 }
 
 impl Robot {
-    /// Asks for the model library of a Franka Emika Robot, and gives its bytes: a shared library in
-    /// the format of the system. Protocol 5 only.
+    /// Returns the bytes of the model library of a Franka Emika Robot: a shared library in the
+    /// format of the system. Protocol 5 only.
     ///
     /// # Errors
     /// [`CommandError`]; [`CommandError::Request`] for a version that has no such command, without
@@ -101,7 +101,7 @@ mod library {
         pub async unsafe fn model_library(&self) -> Result<ModelLibrary, ModelLibraryError> {
             let architecture = host_architecture().ok_or(LibraryError::Architecture)?;
             let bytes = self.load_model_library(architecture, System::Linux).await?;
-            // SAFETY: the caller vouches for what the robot sends.
+            // SAFETY: the caller vouches for the library that the robot sends.
             Ok(unsafe { ModelLibrary::load(&bytes) }?)
         }
     }

@@ -309,7 +309,7 @@ struct DeviceTask<D: Device> {
     states: watch::Sender<D::State>,
     /// The newest action, until it is answered.
     running: Option<(CommandId, ActionReply<D>)>,
-    /// Stops, and actions in whose place others came.
+    /// Stops, and actions that newer ones have replaced.
     waiting: HashMap<CommandId, ActionReply<D>>,
     #[cfg(feature = "record")]
     journal: Journal,

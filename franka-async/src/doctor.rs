@@ -12,8 +12,8 @@
 //! # }
 //! ```
 //!
-//! With this feature, such an end is also told by a warning of `tracing`, with the causes in its
-//! field `causes`.
+//! With this feature, a warning of `tracing` also reports such an end, with the causes in its field
+//! `causes`.
 
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr};

@@ -117,7 +117,7 @@ impl Endpoint {
         self
     }
 
-    /// The host, or what is wrong with the text that this was made from.
+    /// Returns the host, or the error in the text that this was made from.
     pub(crate) fn host(&self) -> Result<&Host, EndpointError> {
         self.host.as_ref().map_err(Clone::clone)
     }

@@ -99,7 +99,7 @@ impl fmt::Display for GeometryCheck {
     }
 }
 
-/// Lengths in the sentence of a person.
+/// Lengths in a sentence for a person.
 struct Told<'a>(&'a Lengths);
 
 impl fmt::Display for Told<'_> {
@@ -145,9 +145,9 @@ impl Comparison {
         }
     }
 
-    /// The model with the lengths that the robot computes its poses with, and what was found. A
-    /// robot that reports no pose has the lengths that were found `before`, if it describes the
-    /// same ones.
+    /// Returns the model with the lengths that the robot computes its poses with, and the result of
+    /// the check. A robot that reports no pose has the lengths that were found `before`, if it
+    /// describes the same ones.
     ///
     /// # Errors
     /// [`ConnectError::Geometry`] if no known lengths agree, unless any geometry is `accepted`.

@@ -68,18 +68,18 @@ impl Identify {
         self.plan.reach()
     }
 
-    /// Moves the arm and returns what it is like. Nothing is changed at the robot and in this
-    /// connection, which learns in any motion: pass it to
-    /// [`Builder::known`](crate::connection::Builder::known) of later ones, and declare the load by
-    /// [`Robot::set_load`] if you like.
+    /// Moves the arm and returns its identified values. Nothing changes at the robot or in this
+    /// connection, which learns in any motion. Pass the result to
+    /// [`Builder::known`](crate::connection::Builder::known) of later connections, and declare the
+    /// load by [`Robot::set_load`] if you like.
     ///
     /// # Errors
     /// [`IdentifyError`] if a motion fails, if the arm is no longer where it was planned from, or
     /// if something held or pushed it.
     ///
     /// # Cancel safety
-    /// Dropping the future brakes the arm, in the background, as dropping a motion does; what was
-    /// measured is lost.
+    /// Dropping the future brakes the arm, in the background, as dropping a motion does; the
+    /// measurements are lost.
     pub async fn run(self) -> Result<Identified, IdentifyError> {
         let Self { robot, plan } = self;
         let state = robot.state();

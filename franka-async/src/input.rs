@@ -49,7 +49,7 @@ pub(crate) enum Input {
         kept: KeptTuning,
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
-    /// Is answered when all inputs before it are taken.
+    /// Answered when all inputs before it are taken.
     Await {
         taken: oneshot::Sender<Result<(), MotionError>>,
     },
@@ -106,8 +106,8 @@ impl Beginning {
         }
     }
 
-    /// Takes a motion of the joints to `q`, `[rad]`, in place of its straight line, if it may.
-    /// Otherwise it is refused for `error`.
+    /// Replaces the straight line of the motion by a motion of the joints to `q`, `[rad]`, if
+    /// allowed. Otherwise it is refused for `error`.
     pub(crate) fn lead_joints(&mut self, q: [f64; 7], error: GoalError, model: &Model) {
         let (NewMotion::Goal { goal, .. }, Some(options)) =
             (&mut self.motion, &self.joint_fallback)
@@ -167,8 +167,8 @@ impl Waiting {
     }
 }
 
-/// The outcome of what was begun and never answered: bridges answer everything unless their runtime
-/// drops them.
+/// The outcome of a motion that was begun and never answered: bridges answer everything unless
+/// their runtime drops them.
 pub(crate) fn unserved<E>(_: E) -> Outcome {
     let reason = CloseReason::RuntimeEnded;
     Err(MotionError::ConnectionClosed { reason })
@@ -210,7 +210,7 @@ impl EndReply {
     }
 }
 
-/// The sending end of the bridge's inbox, and what the bridge publishes.
+/// The sending end of the bridge's inbox, and the bridge's publications.
 #[derive(Clone, Debug)]
 pub(crate) struct BridgeHandle {
     /// Unbounded, since dropping a motion must be able to send; callers that await an answer bound

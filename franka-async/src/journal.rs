@@ -6,8 +6,8 @@
 //! device           actions of an end effector, its states -------+
 //! ```
 //!
-//! An entry holds what its writer has at hand; readers make words of it on a thread of theirs.
-//! Writing never waits for a reader. Without one, nothing is kept.
+//! An entry holds the data that its writer has at hand; readers turn it into words on their own
+//! thread. Writing never waits for a reader. Without one, nothing is kept.
 
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -151,7 +151,7 @@ pub(crate) struct Given {
 }
 
 impl Entry {
-    /// `what`, now.
+    /// An entry of `what`, at the present time.
     pub(crate) fn now(what: What) -> Self {
         let at = world::now().into_std();
         Self { at, what }
@@ -172,7 +172,7 @@ impl Journal {
         self.with(|readers| readers.iter().any(same))
     }
 
-    /// Writes what `what` returns, if anybody reads it.
+    /// Writes the result of `what`, if there is a reader.
     pub(crate) fn write(&self, what: impl Fn() -> Option<What>) {
         let tell = |reader: &Reader| {
             let entry = what().map(Entry::now);
@@ -181,7 +181,7 @@ impl Journal {
         self.with(|readers| readers.retain(tell));
     }
 
-    /// Writes that there is a new connection, and gives its readers the cycles from now on: they
+    /// Writes that there is a new connection, and hands its readers the cycles from now on: they
     /// may come to read of it much later.
     pub(crate) fn connected(&self, cycles: &CycleFeed) {
         // Attaching takes memory, for which no caller should wait at the lock.
@@ -202,8 +202,8 @@ impl Journal {
         });
     }
 
-    /// Writes down what a program asks of the bridge. Targets that update a goal are not written:
-    /// every cycle has them.
+    /// Writes down the requests of a program to the bridge. Targets that update a goal are not
+    /// written: every cycle has them.
     pub(crate) fn asked(&self, input: &Input) {
         self.write(|| match input {
             Input::Begin { motion, .. } => Some(What::Goal(Given::of(motion, false))),

@@ -18,7 +18,7 @@ impl KeptTuning {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Changes what these changes name, and keeps the rest.
+    /// Applies these changes, and keeps the rest.
     pub(crate) fn change(&self, changes: Tuning) {
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         *kept = changes.or(*kept);

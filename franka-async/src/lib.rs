@@ -329,7 +329,7 @@
 //! | [`goal`], [`condition`] | targets, limits, gains, chunks, guards; conditions that end a motion |
 //! | [`motion`] | futures, handles and progress of motions; several robots that begin together |
 //! | [`team`] | several arms as one, with one stop |
-//! | [`state`] | every state, or the newest as it changes; external wrenches without what an untouched arm shows |
+//! | [`state`] | every state, or the newest as it changes; external wrenches without the offset of an untouched arm |
 //! | [`error`], [`diagnosis`] | errors, by who can act on them; why the robot ended a motion |
 //! | [`supervision`] | connections that are made again, recovery by a policy, events and health |
 //! | [`control`] | control at 1 kHz by functions of the program |

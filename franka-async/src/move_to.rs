@@ -1,5 +1,5 @@
 //! Motions to one target, and [`Moving`], the future of these, of followed targets and of control
-//! functions. See `cancel` for what dropping it does to the arm.
+//! functions. See `cancel` for the effect of dropping it.
 
 use std::future::IntoFuture;
 use std::pin::Pin;
@@ -170,8 +170,8 @@ impl Motion {
         self
     }
 
-    /// Makes the target one of an object in the hand, which is there in the frame of the end
-    /// effector.
+    /// Makes the target a pose of an object in the hand, which has the pose `grasp` in the frame of
+    /// the end effector.
     pub(crate) fn of_object(mut self, grasp: Isometry3<f64>) -> Self {
         self.options.grasp = Some(grasp);
         self
@@ -199,9 +199,9 @@ impl Motion {
         MotionHandle(self.canceller.clone())
     }
 
-    /// Returns what the arm would do if the motion began now, or why the motion would be refused;
-    /// nothing moves, and nothing is sent. A motion to one target is taken for a path of one
-    /// waypoint, which it is if it begins at rest. [`Preview::blocked`] reports whether the arm
+    /// Returns the preview of the motion if it began now, or the error with which it would be
+    /// refused; nothing moves, and nothing is sent. A motion to one target is taken for a path of
+    /// one waypoint, which it is if it begins at rest. [`Preview::blocked`] reports whether the arm
     /// would come too near itself or a region to keep out of. Takes milliseconds.
     ///
     /// # Errors

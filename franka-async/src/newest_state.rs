@@ -15,7 +15,7 @@ use tokio::sync::watch;
 pub(crate) struct Newest {
     /// Stays as it is, so that each of its clones finds everything that came later.
     reader: StateReader,
-    /// The state before those that `reader` finds.
+    /// The state before the states that `reader` finds.
     first: RobotState,
     /// Last state published by the bridge. Without wake-ups per state it may be some states behind.
     /// Weak, so that subscribers see the end; and no receiver, as those are counted.

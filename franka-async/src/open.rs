@@ -192,8 +192,8 @@ async fn open_with(
     })
 }
 
-/// Runs what blocks for milliseconds (threads that are started and joined, memory that is locked
-/// and touched) where no other task waits for it. Dropping the future drops the result.
+/// Runs work that blocks for milliseconds (threads that are started and joined, memory that is
+/// locked and touched) where no other task waits for it. Dropping the future drops the result.
 async fn off_worker<T: Send + 'static>(
     blocking: impl FnOnce() -> T + Send + 'static,
 ) -> std::io::Result<T> {

@@ -220,7 +220,8 @@ impl Robot {
     }
 
     /// Sets something at the robot, and waits for a state that shows it, if states do. The answer
-    /// comes by another way than states: an earlier motion would take the new tool for the old one.
+    /// may come before such a state, and a motion that begins in between would compute with the old
+    /// tool.
     async fn set(&self, request: Request) -> Result<(), CommandError> {
         check_finite(&request)?;
         let turn = self.setting().lock().await;
@@ -406,7 +407,7 @@ fn parts(request: &Request) -> Vec<(&'static str, &[f64])> {
     }
 }
 
-/// Returns why no rigid body has this load, which is finite; `None` if one may have it.
+/// Returns the reason why no rigid body has this load, which is finite; `None` if one may have it.
 fn impossible(load: &Load) -> Option<String> {
     if load.m_load < 0.0 {
         return Some(format!("m_load is {} kg, expected 0 or more", load.m_load));

@@ -37,8 +37,8 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// The share of its time that has passed, from 0 to 1. A pause takes the share back a little:
-    /// it has the way braked and begun again.
+    /// The share of its time that has passed, from 0 to 1. A pause takes the share back a little,
+    /// because the motion brakes and begins again.
     pub fn fraction(&self) -> f64 {
         let all = self.elapsed + self.remaining;
         if all.is_zero() {
@@ -64,7 +64,7 @@ impl Course {
         }
     }
 
-    /// Notes what target control heads for.
+    /// Notes the target of target control.
     pub(crate) fn head_for(&self, heading: Option<(GoalId, Target)>) {
         let mut noted = self.heading.lock().unwrap_or_else(PoisonError::into_inner);
         *noted = heading;
@@ -76,7 +76,7 @@ impl Course {
         noted.map(|(_, target)| target)
     }
 
-    /// The name of what target control heads for; `None` if it moves nothing.
+    /// Name of the target of target control; `None` if it moves nothing.
     #[cfg(feature = "record")]
     pub(crate) fn goal(&self) -> Option<GoalId> {
         let noted = self.heading.lock().unwrap_or_else(PoisonError::into_inner);

@@ -58,7 +58,7 @@ pub enum ReplayFailure {
 }
 
 impl Robot {
-    /// Moves to the first target of a recorded motion, replays it, and lets the arm go: a session
+    /// Moves to the first target of a recorded motion, replays it, and releases the arm: a session
     /// with the defaults, and [`Arm::replay`] in it.
     ///
     /// ```no_run
@@ -99,8 +99,8 @@ impl Arm {
     /// [`MotionError::Superseded`], and [`Robot::stop`] as that or as [`MotionError::Stopped`].
     ///
     /// # Errors
-    /// [`ReplayFailure::Refused`] before anything moves; otherwise as above, or what ended the
-    /// motion to the first target or the session.
+    /// [`ReplayFailure::Refused`] before anything moves; otherwise as above, or the cause of the
+    /// end of the motion to the first target or of the session.
     ///
     /// # Cancel safety
     /// Dropping the future brakes the arm, and the session holds it.

@@ -229,7 +229,7 @@ impl Robot {
         self.link().stats.clone()
     }
 
-    /// Returns what the operating system granted the control thread, and what it refused under
+    /// Returns the grants of the operating system to the control thread, and its refusals under
     /// [`Realtime::Ignore`](crate::Realtime).
     pub fn granted(&self) -> Arc<Granted> {
         self.link().granted.clone()

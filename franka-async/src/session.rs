@@ -28,7 +28,7 @@ pub(crate) struct Session {
 }
 
 impl Session {
-    /// The session `id`, whose outcome `ended` receives.
+    /// Returns the session `id`, whose outcome `ended` receives.
     pub(crate) fn new(
         robot: Robot,
         id: GoalId,
@@ -51,7 +51,7 @@ impl Session {
         &self.robot
     }
 
-    /// The newest connection of its robot: its own, or one after its end.
+    /// The newest connection of its robot: its own, or a later one after its end.
     pub(crate) fn link(&self) -> Arc<Link> {
         self.robot.link()
     }
@@ -90,8 +90,8 @@ impl Session {
         }
     }
 
-    /// As [`Self::check`], and what a goal is answered with while a stop is latched or a deadman
-    /// holds the arm.
+    /// As [`Self::check`], and the refusal of a goal while a stop is latched or a deadman holds the
+    /// arm.
     pub(crate) fn check_goal(&self) -> Result<(), MotionError> {
         self.robot.supervisor().check_latch()?;
         self.check()?;

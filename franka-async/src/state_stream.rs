@@ -14,7 +14,7 @@ use crate::error::ReadError;
 use crate::publish::Update;
 use crate::robot::Robot;
 
-/// A state, and how many are missing before it.
+/// A state, and the number of states that are missing before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Reading {
@@ -36,8 +36,8 @@ pub struct StateStream {
 }
 
 impl Robot {
-    /// Calls `each` with every state that comes, until it breaks; returns what it breaks with. In
-    /// motion or not.
+    /// Calls `each` with every state that comes, until it breaks, and returns the value of the
+    /// break. In motion or not.
     ///
     /// ```no_run
     /// # async fn run(robot: franka_async::Robot) -> Result<(), franka_async::error::ReadError> {
@@ -96,8 +96,8 @@ impl Robot {
     /// in motion or not. A reader may lag about a second behind before it misses any. Ends when the
     /// connection does, and pauses while the robot is silent. It does not keep the connection.
     ///
-    /// For the newest state whenever one looks, see [`Self::states`]; for what control made of
-    /// each, [`Self::records`].
+    /// To read the newest state at any time, see [`Self::states`]; for the commands and records of
+    /// each cycle, [`Self::records`].
     pub fn state_stream(&self) -> StateStream {
         let link = self.link();
         let updates = BroadcastStream::new(link.subscriptions().updates());
@@ -123,7 +123,7 @@ impl Stream for StateStream {
         loop {
             let state = match ready!(self.updates.poll_next_unpin(context)) {
                 Some(Ok(Update::State(state))) => state,
-                // The next state will tell how long it was.
+                // The next state will report how long it was.
                 Some(Ok(Update::Silence(_)) | Err(BroadcastStreamRecvError::Lagged(_))) => continue,
                 None => return Poll::Ready(None),
             };

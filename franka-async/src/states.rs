@@ -57,10 +57,10 @@ impl<S: Copy + Send + Sync + 'static> States<S> {
         })
     }
 
-    /// Waits for a state that satisfies `condition`, the newest of now included, and returns it.
+    /// Waits for a state that satisfies `condition`, including the present one, and returns it.
     /// States that are replaced by a newer one before this task looks are not tested; for every
-    /// state, see [`Robot::read`](crate::Robot::read). It has no time limit but the end of the
-    /// connection, as only the caller knows when the state is to come.
+    /// state, see [`Robot::read`](crate::Robot::read). It has no time limit except the end of the
+    /// connection, as only the caller knows when the state should come.
     ///
     /// # Errors
     /// [`ReadError::ConnectionClosed`].

@@ -1,4 +1,4 @@
-//! Counts of what happened to a robot, for its metrics.
+//! Counts of the events of a robot, for its metrics.
 
 use franka_proto::RobotError;
 use franka_rt::lifecycle::{MotionError, Outcome};

@@ -1,4 +1,4 @@
-//! The external wrench without what the robot shows of it with nothing attached: see
+//! The external wrench without the offset that the robot reports with nothing attached: see
 //! [`Robot::tare`].
 
 use std::ops::ControlFlow;
@@ -10,11 +10,11 @@ use crate::error::TareError;
 use crate::robot::Robot;
 
 impl Robot {
-    /// Takes the average of what the robot estimates of external forces and torques, over half a
-    /// second of its clock, to take it off later: robots show a newton or two with nothing
-    /// attached. [`Self::tare_over`] takes another time.
+    /// Averages the robot's estimate of external forces and torques over half a second of its
+    /// clock, to subtract it later: robots show a newton or two with nothing attached.
+    /// [`Self::tare_over`] takes another time.
     ///
-    /// The arm has to rest, untouched. A tare belongs to the posture in which it was taken: in
+    /// The arm must rest, untouched. A tare belongs to the posture in which it was taken: in
     /// another posture, an undeclared load, cables and errors of the model pull differently, and
     /// friction sticks differently after each motion. [`WrenchTare::turned`] reports how far the
     /// arm has turned since; beyond [`WrenchTare::NEAR`], take a new one. Nothing is changed at the

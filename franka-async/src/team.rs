@@ -212,8 +212,7 @@ impl<const N: usize> Team<N> {
         Stopper(self.coordinator.clone())
     }
 
-    /// Reason why the newest joint motion, or what came after it, has stopped; `None` if nothing
-    /// has.
+    /// Reason why the newest joint motion, or a later one, has stopped; `None` if nothing has.
     pub fn stopped(&self) -> Option<TeamStop> {
         self.coordinator.stopped()
     }

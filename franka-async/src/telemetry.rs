@@ -49,7 +49,7 @@ impl Telemetry {
     }
 
     /// Warns of commands that left too late since the last time: at once, and while there are more
-    /// after a second, after two, and so on, at last twice a minute.
+    /// after a second, after two, and so on, finally twice a minute.
     pub(crate) fn watch(&mut self, now: Instant) {
         let overruns = self.stats.overrun.count();
         if overruns == self.told {

@@ -9,7 +9,7 @@ use franka_rt::session::ForceCap;
 /// "Target control on arms that stick".
 const FRICTION: f64 = 10.0;
 
-/// The thresholds that were set over one connection: robots do not tell theirs.
+/// The thresholds that were set over one connection: robots do not report theirs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Thresholds(Arc<Mutex<Option<CollisionBehavior>>>);
 
@@ -18,8 +18,9 @@ impl Thresholds {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(behavior);
     }
 
-    /// The force at which the robot stops itself, if a push that the arm yields to under this force
-    /// cap may come to that; `[N]` both, the second with what friction shows.
+    /// Returns the force at which the robot stops itself, if a push under this force cap may reach
+    /// it before the arm yields, and the largest push that the robot may see, friction included;
+    /// both in `[N]`.
     pub(crate) fn within(&self, cap: ForceCap) -> Option<(f64, f64)> {
         let most = match cap {
             ForceCap::Default => ForceCap::DEFAULT_NEWTONS,

@@ -4,8 +4,8 @@ use std::ops::{Deref, DerefMut};
 
 use franka_rt::panic;
 
-/// A function of the user's, with what it has captured. The bridge frees it when its motion has
-/// ended or was refused, or another task does.
+/// A function of the user's, with everything that it has captured. The bridge frees it when its
+/// motion has ended or was refused, or another task does.
 ///
 /// A panic of its destructor is logged and goes no further: it must not end the task that frees it,
 /// and with that the connection.

@@ -64,7 +64,7 @@ impl VacuumGripper {
         self.connection.act(Request::Vacuum(vacuum)).await
     }
 
-    /// Drops the object. True if that was done within `timeout`, which goes out in whole
+    /// Drops the object. True if that was done within `timeout`, which is sent in whole
     /// milliseconds.
     ///
     /// # Errors

@@ -163,7 +163,7 @@ where
     tokio::spawn(task)
 }
 
-/// Runs what blocks on a thread of the runtime of the caller.
+/// Runs blocking work on a thread of the runtime of the caller.
 pub(crate) fn spawn_blocking<T: Send + 'static>(
     blocking: impl FnOnce() -> T + Send + 'static,
 ) -> JoinHandle<T> {

@@ -1,7 +1,7 @@
 //! The eventfd by which the thread wakes the receiver of its reports: any reactor can poll it.
 //! Elsewhere than on Linux, a pair of sockets takes its place.
 //!
-//! Notifying is one non-blocking `write`, without a lock and without knowledge of what listens.
+//! Notifying is one non-blocking `write`, without a lock and without knowledge of the listener.
 //! Notifications add up until the listener drains them, so a slow listener is woken once and then
 //! looks at the slot and the queues.
 

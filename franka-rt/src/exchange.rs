@@ -144,8 +144,8 @@ impl Exchange {
         self.message_id
     }
 
-    /// Waits for a datagram, up to [`TICK`] or what [`with_wait`](Self::with_wait) was given, then
-    /// takes those that are there, up to [`DRAIN_MAX`] in all.
+    /// Waits for a datagram, up to [`TICK`] or the time given to [`with_wait`](Self::with_wait).
+    /// Then takes the waiting datagrams, up to [`DRAIN_MAX`] in all.
     ///
     /// A receive that fails does not wait. After a failed receive, this sleeps for a millisecond
     /// first, so that a lasting error does not keep the processor busy.
@@ -260,9 +260,8 @@ pub enum SendError {
 /// buffer of Linux (212992 bytes) holds fewer states than that.
 pub const DRAIN_MAX: usize = 256;
 
-/// The most that a state's `message_id` may be above the newest one, `[ms]` of the robot's clock:
-/// 49 days. No connection outlives such a silence, so what is further ahead is not a state's
-/// number.
+/// Largest step of a state's `message_id` above the newest one, `[ms]` of the robot's clock: 49
+/// days. No connection outlives such a silence, so a number further ahead is not a state's.
 pub const LEAP_MAX: u64 = u32::MAX as u64;
 
 /// Size of the `message_id`, in bytes.

@@ -24,8 +24,8 @@
 //!
 //! Modules with a socket or a thread need Unix; all else builds everywhere, also for WebAssembly.
 //!
-//! This crate knows no async runtime, opens no TCP connection and reads no file but those that tell
-//! of a real-time kernel.
+//! This crate knows no async runtime, opens no TCP connection and reads no files except those about
+//! a real-time kernel.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 // Items that only the thread uses.

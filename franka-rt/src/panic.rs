@@ -15,12 +15,12 @@ pub(crate) fn message(payload: &(dyn Any + Send)) -> String {
 /// # Errors
 /// The message of the panic, if its destructor panics.
 pub fn free<T>(value: T) -> Result<(), String> {
-    // Nothing sees what a destructor leaves half done.
+    // Nothing sees the half-finished state of a destructor.
     let freed = catch_unwind(AssertUnwindSafe(|| drop(value)));
     freed.map_err(|payload| {
         let text = message(&*payload);
         let payload_freed = catch_unwind(AssertUnwindSafe(|| drop(payload)));
-        // A payload whose destructor panics as well: its successor may do so without end.
+        // A payload whose destructor panics as well: the next payload may do so again, without end.
         payload_freed.unwrap_or_else(core::mem::forget);
         text
     })

@@ -1,8 +1,8 @@
 //! Requests of the thread to the operating system: scheduling class, processor, memory, freedom
 //! from signal handlers, a socket that is polled.
 //!
-//! [`Scheduling::enter`] asks for what concerns the calling thread, [`Scheduling::tune`] for what
-//! concerns its socket. Under [`Realtime::Enforce`] the first refusal is an error; under
+//! [`Scheduling::enter`] makes the requests for the calling thread, [`Scheduling::tune`] the
+//! requests for its socket. Under [`Realtime::Enforce`] the first refusal is an error; under
 //! [`Realtime::Ignore`] the same requests are made and the refusals are listed in [`Granted`]. A
 //! request that no host can grant is an error under both.
 

@@ -57,7 +57,7 @@ pub trait Words: Sized {
     /// left alone keep the content of an earlier value.
     fn store(&self, words: &mut [u64]);
 
-    /// Reads back what one call of [`Self::store`] left in `words`.
+    /// Reads back the words of one call of [`Self::store`].
     fn load(words: &[u64]) -> Self;
 }
 

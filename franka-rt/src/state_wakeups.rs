@@ -18,8 +18,8 @@ use std::sync::{
 
 /// True if any subscriber needs a wake-up per state; initially true. Clones are the same flag.
 ///
-/// The subscribers are counted elsewhere, by a channel for instance: this is only what the thread
-/// reads.
+/// The subscribers are counted elsewhere, by a channel for instance: this is only the flag that the
+/// thread reads.
 #[derive(Clone, Debug)]
 pub struct StateWakeups(Arc<AtomicBool>);
 

@@ -3,8 +3,8 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | this | what every Unix has |
-//! | `linux` | what only Linux grants: scheduling, locked memory, polling, the eventfd |
+//! | this | common to all Unix systems |
+//! | `linux` | available on Linux only: scheduling, locked memory, polling, the eventfd |
 //! | `portable` | the same requests elsewhere: refused, and a pair of sockets for the eventfd |
 //!
 //! The other systems are for development against simulated robots. With `--cfg franka_portable`,
@@ -48,8 +48,8 @@ pub(crate) fn block_signals() {
     unsafe { libc::pthread_sigmask(libc::SIG_BLOCK, &raw const signals, core::ptr::null_mut()) };
 }
 
-/// Signals that the kernel raises for what a thread itself does. Blocked, they would end the
-/// process without the handler that prints why.
+/// Signals that the kernel raises for a fault of a thread itself. Blocked, they would end the
+/// process without the handler that prints the cause.
 const FAULTS: [libc::c_int; 7] = [
     libc::SIGABRT,
     libc::SIGBUS,
@@ -66,7 +66,7 @@ pub(crate) fn sleep_a_millisecond() {
     unsafe { libc::poll(core::ptr::null_mut(), 0, 1) };
 }
 
-/// The system's text for an errno value, as `strerror` gives it.
+/// Returns the system's text for an errno value, from `strerror`.
 pub(crate) fn error_text(errno: i32) -> String {
     let mut text = [0u8; 128];
     // SAFETY: the buffer is valid for writes of the length passed with it. This is the POSIX

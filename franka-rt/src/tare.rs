@@ -16,7 +16,7 @@ use core::time::Duration;
 
 use franka_proto::{RobotMode, RobotState};
 
-/// The average of what the estimates show at rest.
+/// The average of the estimates at rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -149,7 +149,7 @@ impl Taring {
         let first = *self.first.get_or_insert(*state);
         check(state, &first)?;
         let wrench = estimate(state).ok_or(TareRefused::NoEstimate)?;
-        // Sums of what differs from the first state lose no digits.
+        // Sums of differences from the first state lose no digits.
         let start = estimate(&first).ok_or(TareRefused::NoEstimate)?;
         self.states += 1;
         for i in 0..6 {
@@ -213,7 +213,8 @@ fn estimate(state: &RobotState) -> Option<[f64; 6]> {
     is_there.then_some(wrench)
 }
 
-/// Greatest joint velocity of an arm at rest, `[rad/s]`: twenty times what real ones show.
+/// Greatest joint velocity of an arm at rest, `[rad/s]`: twenty times the velocity that real arms
+/// show.
 const SPEED: f64 = 0.02;
 
 /// Greatest way of a joint during the average, `[rad]`.

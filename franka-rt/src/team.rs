@@ -136,7 +136,7 @@ pub struct Coordinator {
 /// Progress of a member with an object that the team carries.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Carrying {
-    /// The way that its reference has to go, `[m]`, turns included.
+    /// The remaining way of its reference, `[m]`, turns included.
     pub remaining: f64,
     /// True if its arm is held back from its reference.
     pub lags: bool,
@@ -148,7 +148,7 @@ pub struct Carrying {
 pub struct Member {
     shared: Arc<Shared>,
     number: u8,
-    /// The newest round that it has taken part in, and since when, `[ms]` of its robot.
+    /// The newest round that it has taken part in, and since when, `[ms]` of its robot's clock.
     arrived: Option<(Round, u64)>,
     /// The newest stop that it has seen.
     seen: Word,
@@ -328,8 +328,8 @@ impl Member {
         self.shared.carrying[usize::from(self.number)].store(word, Ordering::Relaxed);
     }
 
-    /// The others of `round` together: the longest way that one of them has to go, and whether one
-    /// lags. Those that have not said how far they are do not count.
+    /// The others of `round` together: the longest remaining way among them, and whether one lags.
+    /// Members that have not reported their progress do not count.
     pub fn others(&self, round: Round) -> Carrying {
         let mut all = Carrying::default();
         for (number, word) in self.shared.carrying.iter().enumerate() {
@@ -380,7 +380,7 @@ impl Shared {
         Word(self.word.load(Ordering::Relaxed))
     }
 
-    /// Stops the newest round, or what is done after it has stopped before.
+    /// Stops the newest round, or the motions after it if it has stopped before.
     fn stop(&self, member: u8, cause: Cause) {
         self.change(|word| {
             let going = match word.stop() {

@@ -12,8 +12,8 @@
 //! and the `write` to the eventfd. A value that must be freed (a program that ended) leaves inside
 //! an event.
 //!
-//! The cycle can be lent out: a thread of the user's then runs it in this one's place, through a
-//! [`Lease`], until it gives it back.
+//! The cycle can be lent out: a thread of the program then runs it in this thread's place, through
+//! a [`Lease`], until it is given back.
 //!
 //! This loop is the only reader of the clock in the crate. It measures how long the robot has been
 //! silent, how far apart its states arrive, and how long an answer takes. With the feature

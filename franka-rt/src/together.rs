@@ -142,7 +142,7 @@ pub enum Gate {
 #[non_exhaustive]
 pub enum StartFault {
     /// A ticket, or the motion that had it, was dropped before it was awaited; or the motion was
-    /// refused before its robot was asked.
+    /// refused before a request to its robot.
     #[error("member {member} of the common start was dropped or refused before it began")]
     Dropped {
         /// Number of the member.

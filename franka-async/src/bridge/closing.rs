@@ -26,7 +26,7 @@ const BRAKING_TIMEOUT: Duration = Duration::from_secs(3);
 const ENDING_TIMEOUT: Duration = Duration::from_secs(2);
 
 impl Bridge {
-    /// Brakes what moves, and takes no more inputs.
+    /// Brakes the arm if it moves, and takes no more inputs.
     pub(super) fn begin_closing(&mut self) {
         self.drop_plans(MotionError::Stopped);
         let now = self.now();
@@ -47,8 +47,8 @@ impl Bridge {
         self.phase = BridgePhase::Lost;
     }
 
-    /// Resolves what is pending, brakes an arm that moves, closes the connection and ends the
-    /// thread. Requests to shut down that come meanwhile are added to `done`.
+    /// Resolves pending calls, brakes an arm that moves, closes the connection and ends the thread.
+    /// Requests to shut down that come meanwhile are added to `done`.
     pub(super) async fn end(
         mut self,
         mut inbox: mpsc::UnboundedReceiver<Input>,

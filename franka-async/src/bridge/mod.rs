@@ -93,7 +93,7 @@ struct Awaited {
     turns: u64,
 }
 
-/// A bridge that is not yet running, with what it will receive.
+/// A bridge that is not yet running, with its receivers.
 pub(crate) struct Prepared {
     bridge: Bridge,
     inbox: mpsc::UnboundedReceiver<Input>,
@@ -255,7 +255,7 @@ impl Bridge {
         });
     }
 
-    /// Reason why no state could show what is awaited, if none has come since.
+    /// Reason why no state could show the awaited change, if none has come since.
     fn unseen(&self) -> Option<MotionError> {
         let awaited = self.awaited.as_ref()?;
         if self.publisher.state().message_id != awaited.newest {
@@ -265,7 +265,7 @@ impl Bridge {
         Lifecycle::unseen(silence, self.stats.turns.get() != awaited.turns)
     }
 
-    /// Carries out what the lifecycle has decided, in its order.
+    /// Carries out the decisions of the lifecycle, in its order.
     fn carry_out(&mut self) {
         let now = self.now();
         self.lifecycle.on_state(&self.publisher.state(), now);

@@ -1,6 +1,7 @@
-//! Paths, which are planned before they begin: on threads for work that blocks, as it takes up to a
-//! hundred milliseconds, in which the bridge serves stops. A newer goal supersedes them once it
-//! begins, a path thus when it is planned: if it is refused, those before it are as they were.
+//! Paths, which are planned before they begin. Planning takes up to a hundred milliseconds, so it
+//! runs on threads for blocking work, and the bridge serves stops meanwhile. A newer goal
+//! supersedes older ones once it begins; a path begins when it is planned. If the path is refused,
+//! the goals before it stay as they were.
 
 use std::panic::resume_unwind;
 use std::sync::Arc;
@@ -27,9 +28,9 @@ pub(super) struct Planning {
     task: JoinHandle<Result<Chunk, PathError>>,
 }
 
-/// Distance of a joint from the start of a path, `[rad]`, from which on it is planned anew. Where
-/// the arm moves, the path is entered in motion: a joint at half of its speed goes so far in a
-/// hundred milliseconds.
+/// Distance of a joint from the start of a path, `[rad]`, beyond which the path is planned anew.
+/// Where the arm moves, the path is entered in motion: a joint at half of its speed goes so far in
+/// a hundred milliseconds.
 const LEFT_START: f64 = 0.1;
 
 /// Plans of a path beyond the first until it is refused, because the arm moves on too fast.
@@ -103,7 +104,7 @@ impl Bridge {
         });
     }
 
-    /// Begins the motion whose path has been planned, the newest, or refuses it.
+    /// Begins the newest motion, whose path has been planned, or refuses it.
     pub(super) fn on_planned(&mut self, planned: Result<Chunk, PathError>) {
         let Some(planning) = self.planning.pop() else {
             return;

@@ -15,7 +15,7 @@
 //! Silence counts, not the connection: only messages of the client's own program should call
 //! [`Holder::keep_alive`]. When they stop, two clocks notice. The control thread brakes the arm by
 //! the robot's clock, also when the rest of the process hangs. The lease is free by the host's
-//! clock, and what comes from the former holder afterwards is refused.
+//! clock, and later requests of the former holder are refused.
 //!
 //! The lease binds services, not the program itself: a motion that the program begins needs none.
 //! Neither does a stop: [`Robot::stop`] is open to every client.

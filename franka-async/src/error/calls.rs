@@ -99,7 +99,7 @@ pub enum ActionError<C: ServiceCommand> {
     /// Device: it could not do it, or something ended it: a stop, or a newer action.
     #[error(transparent)]
     Failure(#[from] Failure<C>),
-    /// Caller: the device could not do it, for what was asked of it is out of its range.
+    /// Caller: the device cannot carry out the request, because the request is out of its range.
     #[error("{failure} ({why})")]
     OutOfRange {
         /// Answer of the device.
@@ -310,7 +310,7 @@ impl TareError {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelLibraryError {
-    /// The robot was asked for it and did not give it.
+    /// The robot was asked for it and did not send it.
     #[error(transparent)]
     Command(#[from] CommandError),
     /// It cannot be loaded.

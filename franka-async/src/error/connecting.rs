@@ -26,7 +26,7 @@ const IGNORE: &str = " (for a simulator: `Realtime::Ignore`, in Python `realtime
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConnectError<P: Protocol = Version> {
-    /// Host: it does not grant what real-time control needs, see
+    /// Host: it does not grant the requests of real-time control, see
     /// [`Builder::realtime`](crate::connection::Builder::realtime).
     #[error("{}{}", .0, if .0.is_misuse() { "" } else { IGNORE })]
     Realtime(#[from] SchedError),
@@ -88,9 +88,9 @@ pub enum ConnectError<P: Protocol = Version> {
         /// Result of each attempt, in the order tried.
         attempts: Vec<Attempt<P>>,
     },
-    /// Robot: its system has a protocol version that is not spoken here. Caller: the version was
-    /// given and is another, see [`VersionPolicy`](crate::connection::VersionPolicy). The text
-    /// names the system and what to do, where libfranka's text names versions of libfranka.
+    /// Robot: its system has a protocol version that this driver does not speak. Caller: the given
+    /// version is another, see [`VersionPolicy`](crate::connection::VersionPolicy). The text names
+    /// the system and the remedy, where libfranka's text names versions of libfranka.
     #[error(
         "libfranka: Incompatible library version (server version: {}, library version: {}): {}",
         .0.server_version, .0.library_version.number(), .0.explanation()
@@ -129,7 +129,7 @@ pub enum ConnectError<P: Protocol = Version> {
         address: SocketAddr,
     },
     /// Robot: it computes the poses that it reports with another geometry than its description, or
-    /// the constants of its kind, and with no other that is known. See
+    /// than the constants of its kind. That geometry is not a known one. See
     /// [`Builder::accept_geometry_error`](crate::connection::Builder::accept_geometry_error).
     #[error(
         "the robot reports a pose {:.1} µm from that of its model at the same joint positions: expected {:.0} µm at most (accept_geometry_error connects all the same)",
@@ -271,7 +271,7 @@ impl From<LinkFault> for ConnectError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ModelError {
-    /// The robot was asked for its description and did not give it.
+    /// The robot was asked for its description and did not send it.
     #[error(transparent)]
     Command(#[from] CommandError),
     /// Robot: its description does not fit an arm that this driver knows.

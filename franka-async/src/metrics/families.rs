@@ -246,7 +246,7 @@ impl<'a, 'e> Families<'a, 'e> {
     }
 }
 
-/// Encodes one sample with the label of its robot and these.
+/// Encodes one sample with the label of its robot and these labels.
 fn labelled(
     family: &mut MetricEncoder<'_>,
     scrape: &Scrape<'_>,

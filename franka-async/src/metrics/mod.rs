@@ -7,7 +7,7 @@
 //! and how motions ended. The thread does nothing for them. The thread's counts begin anew with
 //! each connection of a supervised robot.
 //!
-//! | metric | type | labels beside `robot` |
+//! | metric | type | labels besides `robot` |
 //! |---|---|---|
 //! | `franka_build_info` | info | `version`; without `robot` |
 //! | `franka_connected` | gauge, 0 or 1 | |

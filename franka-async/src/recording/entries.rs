@@ -1,4 +1,4 @@
-//! The thread that makes words of what journals say.
+//! The thread that turns journal entries into words.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -15,7 +15,7 @@ use crate::world;
 /// Entries that may wait for the thread.
 const ENTRIES: usize = 4096;
 
-/// The robots of a recording, by what names their journals.
+/// The robots of a recording, by track.
 type Tracks = BTreeMap<usize, Recorded>;
 
 /// A robot of a recording.
@@ -25,8 +25,8 @@ pub(super) struct Recorded {
     pub(super) track: Track,
 }
 
-/// The way to the thread. Dropping it ends the thread once it has passed on what waits; that is not
-/// waited for.
+/// The way to the thread. Dropping it ends the thread once the waiting entries are passed on; the
+/// drop does not wait for that.
 #[derive(Debug)]
 pub(super) struct EntryQueue {
     entries: EntrySender,

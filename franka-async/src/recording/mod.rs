@@ -1,5 +1,4 @@
-//! Recordings of robots: every cycle, what was asked of them and what came of it, in files that
-//! viewers open.
+//! Recordings of robots: every cycle, the requests and their results, in files that viewers open.
 //!
 //! ```text
 //! control thread --ring--------------+
@@ -105,7 +104,7 @@ impl Track {
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TrackError {
-    /// The control thread gives no cycles.
+    /// The control thread provides no cycles.
     #[error(transparent)]
     Cycles(#[from] AttachError),
     /// The recorder does not take it.
@@ -144,8 +143,8 @@ impl Recorder {
         Self::around(recorder::Recorder::black_box(black_box)?)
     }
 
-    /// Writes no file, and serves what a recording would have to Foxglove: see [`Self::serve`].
-    /// Returns the address at which it does, too.
+    /// Writes no file, and serves the content of a recording to Foxglove: see [`Self::serve`]. Also
+    /// returns the address of the server.
     ///
     /// # Errors
     /// As [`Self::serve`].
@@ -177,8 +176,8 @@ impl Recorder {
     }
 
     /// Records this robot from now on: every cycle, goals and how they end, with the diagnosis of a
-    /// reflex, events of its supervision, and requests, whichever handle they come from. The
-    /// description of a Franka Research 3 is asked for and attached to the file.
+    /// reflex, events of its supervision, and requests from all of its handles. The description of
+    /// a Franka Research 3 is requested and attached to the file.
     ///
     /// # Errors
     /// [`TrackError`]: there is a robot of that name, the recording has ended, the robot has as

@@ -12,7 +12,7 @@ use tokio_stream::wrappers::errors::BroadcastStreamRecvError;
 /// Events that a slow listener may lag behind before it misses some.
 pub(crate) const CAPACITY: usize = 256;
 
-/// An event, and how many are missing before it.
+/// An event, and the number of events that are missing before it.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Notification {

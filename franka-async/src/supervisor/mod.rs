@@ -123,7 +123,7 @@ impl Supervisor {
         self.lock().core.has_connection()
     }
 
-    /// True if lost connections and reflexes are acted on, rather than only told.
+    /// True if lost connections and reflexes are handled, and not only reported.
     pub(crate) fn is_supervised(&self) -> bool {
         self.is_supervised
     }
@@ -287,9 +287,9 @@ impl Supervisor {
         self.work.notified().await;
     }
 
-    /// Passes an input on to the bridge of the newest connection, or keeps it back with the motion
-    /// that waits. Returns that connection, which `newest` looks up under the lock: a motion that
-    /// waits begins under it, too, so a cancel or a stop never goes to a connection before that.
+    /// Passes an input on to the bridge of the newest connection, or keeps it back with the waiting
+    /// motion. Returns that connection, which `newest` looks up under the lock. A waiting motion
+    /// begins under it, too, so a cancel or a stop never goes to an older connection.
     pub(crate) fn pass(&self, input: Input, newest: impl FnOnce() -> Arc<Link>) -> Arc<Link> {
         self.with(|inner, now| {
             let link = newest();
@@ -298,7 +298,7 @@ impl Supervisor {
         })
     }
 
-    /// Does something to a robot as its newest state shows it, and then what follows from it.
+    /// Applies `act` to a robot as its newest state shows it, and then handles the consequences.
     fn with<T>(&self, act: impl FnOnce(&mut Inner, Duration) -> T) -> T {
         let mut inner = self.lock();
         let now = world::now() - self.begun;
@@ -501,7 +501,7 @@ impl Inner {
         });
     }
 
-    /// Carries out what the core has decided, in its order, and shows how the robot is.
+    /// Carries out the decisions of the core, in its order, and publishes the health of the robot.
     fn carry_out(&mut self, closing: &Closing, now: Duration) {
         // A receiver of the event finds the robot as it is after that event.
         let health = self.core.health();

@@ -18,7 +18,7 @@ pub enum WriteError {
     /// No motion runs that takes it: its last command was written, or the robot has ended it.
     #[error("writeOnce must not be called after the motion has finished.")]
     NotRunning,
-    /// Torques beside a motion command, under the robot's own controller.
+    /// Torques together with a motion command, under the robot's own controller.
     #[error("Torques can only be commanded in kExternalController mode.")]
     TorquesUnwanted,
     /// A motion command without the torques that the motion requires with it.

@@ -113,7 +113,7 @@ impl TargetStatus {
     /// Source: as above.
     pub const REST: f64 = 0.01;
 
-    /// The status that a state of the motion shows of its newest target.
+    /// The status of the newest target in a state of the motion.
     pub fn of(state: &RobotState, target: Option<&[f64; 7]>, goal_tolerance: f64) -> Self {
         let Some(target) = target else {
             return Self::Idle;

@@ -9,7 +9,8 @@ use franka_proto::{MoveControllerMode, MoveRequest, RobotState, Version};
 use super::{Command, GeneratorCommand, MotionCommand, Next, Torques};
 use crate::control::{Failure, Shaper};
 
-/// A control function, boxed: a state, and the robot's time since the state before, to a command.
+/// A control function, boxed: from a state, and the robot's time since the previous state, to a
+/// command.
 type Function<T> = Box<dyn FnMut(&RobotState, Duration) -> Next<T> + Send>;
 
 /// One or two control functions, called with every state of a motion.
@@ -25,13 +26,13 @@ pub struct Callback {
     generator_first: bool,
     motion: Option<Source<MotionCommand>>,
     torques: Option<Source<Torques>>,
-    /// `message_id` of the state before.
+    /// `message_id` of the previous state.
     previous: Option<u64>,
     /// True if the arm has been held, so that the newest command holds it.
     held: bool,
 }
 
-/// A function, and the newest command made of what it returned.
+/// A function, and the newest command made of its answer.
 struct Source<T> {
     function: Function<T>,
     newest: T,
@@ -62,7 +63,7 @@ impl Callback {
         Self::new(version, Some(Source::new(motion, C::ZERO.into())))
     }
 
-    /// Adds torques beside the commands to a motion generator, in the place of the robot's own
+    /// Adds torques to the commands to a motion generator, in the place of the robot's own
     /// controller.
     #[must_use]
     pub fn with_torques<R: Into<Next<Torques>>>(
@@ -186,8 +187,8 @@ impl<T> Source<T> {
     /// Returns the function's command, and whether it is the last. A panic of the function is
     /// caught.
     fn call(&mut self, state: &RobotState, step: Duration) -> Result<(T, bool), Failure> {
-        // A function that has panicked is never called again, so nothing reads what it left half
-        // done.
+        // A function that has panicked is never called again, so nothing reads its half-finished
+        // state.
         let called = catch_unwind(AssertUnwindSafe(|| (self.function)(state, step)));
         let next = called.map_err(Failure::Panicked)?;
         next.into_parts().map_err(Failure::GivenUp)

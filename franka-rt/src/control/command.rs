@@ -99,7 +99,7 @@ impl MotionCommand {
         elbow.as_ref().map_or(Ok(()), check::elbow)
     }
 
-    /// Passes it through the shaper; `first` of its motion or not.
+    /// Passes the command through the shaper; `first` if it is the first of its motion.
     pub(crate) fn shaped(
         &self,
         shaper: &Shaper,
@@ -116,7 +116,7 @@ impl MotionCommand {
         }
     }
 
-    /// Writes it into the fields of its generator; all others stay as they are.
+    /// Writes the command into the fields of its generator; all others stay as they are.
     pub(crate) fn write_to(&self, command: &mut RobotCommand) {
         match *self {
             Self::JointPositions(JointPositions(q)) => command.q_c = q,

@@ -31,7 +31,7 @@ impl Driver {
         }
     }
 
-    /// Computes what the answer to the next state does not need that state for: the program's next
+    /// Computes the parts of the next answer that do not need the next state: the program's next
     /// goal, plan and reference. To be called once everything that waits for this cycle is done.
     pub fn prepare(&mut self) {
         if let Some(motion) = &mut self.motion
@@ -42,7 +42,7 @@ impl Driver {
     }
 
     /// Notes the times of a cycle whose command has left, when all of them are known. Returns the
-    /// counts of the motion that runs; `None` if none does.
+    /// counts of the current motion; `None` if none runs.
     pub fn note_cycle(&mut self, cycle: &CycleTimes) -> Option<&MotionStatistics> {
         let motion = self.motion.as_ref().filter(|motion| motion.has_begun())?;
         self.statistics.note_cycle(cycle);

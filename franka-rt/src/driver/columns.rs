@@ -11,7 +11,7 @@ use crate::session::Guard;
 pub struct Column {
     /// Its name, in most cases the name of the field of the state or record.
     pub name: &'static str,
-    /// Its unit; what its numbers are where it has none.
+    /// Its unit, or the meaning of its numbers where it has none.
     pub unit: &'static str,
     /// The shape of it in one cycle: empty for one number, `[4, 4]` for a pose, row-major.
     pub shape: &'static [usize],

@@ -3,7 +3,7 @@
 
 use core::time::Duration;
 
-/// Silence of the robot after which the link counts as lost, unless said otherwise.
+/// Silence of the robot after which the link counts as lost, unless stated otherwise.
 ///
 /// Source: the UDP receive timeout of libfranka, `network.h`.
 pub const LINK_TIMEOUT: Duration = Duration::from_secs(1);

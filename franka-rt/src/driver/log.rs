@@ -15,12 +15,12 @@ use franka_proto::{General, RobotCommand, RobotState, SuccessRate};
 pub struct LogEntry {
     /// The state.
     pub state: RobotState,
-    /// The newest command before it, as sent; zeros before the first.
+    /// The newest command before the state, as sent; zeros before the first.
     pub command: RobotCommand,
 }
 
 impl LogEntry {
-    /// `state`, after the newest command before it.
+    /// Returns the entry of `state`, after the newest command before it.
     pub fn new(state: RobotState, command: RobotCommand) -> Self {
         Self { state, command }
     }
@@ -133,7 +133,7 @@ impl ControlLog {
     }
 
     /// Notes the newest command, for the state that comes next. To be called after each state: the
-    /// entry may still hold what an older one left.
+    /// entry may still hold an older command.
     pub(super) fn note_command(&mut self, command: &RobotCommand) {
         if let Some(entry) = self.entries.get_mut(self.next) {
             entry.command = *command;

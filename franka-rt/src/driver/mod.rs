@@ -26,8 +26,9 @@
 //! the command that `on_state` returns, [`Driver::record`] and [`Driver::take_event`]. Work that
 //! can wait until the command has left is done in [`Driver::after_send`], once for each state, and
 //! [`Driver::note_cycle`]; work that needs no new state, in [`Driver::prepare`]. No clock, socket,
-//! allocation or log: the thread, and the lockstep tests, supply time and carry the effects out. A
-//! program that has ended leaves inside an [`Event`], so that its memory is freed elsewhere.
+//! allocation or log: the thread, and the lockstep tests, supply the time and carry out the
+//! effects. A program that has ended leaves inside an [`Event`], so that its memory is freed
+//! elsewhere.
 
 mod aftermath;
 mod columns;
@@ -275,8 +276,8 @@ impl Driver {
     }
 
     /// Writes a command for the newest state of a motion under [`Program::Active`], to be sent at
-    /// once. The last one says so; it is then repeated with every state until the robot has left
-    /// the motion's modes.
+    /// once. The last one is `finished`; it is then repeated with every state until the robot has
+    /// left the motion's modes.
     ///
     /// # Errors
     /// [`WriteError`]; nothing must be sent then, and the motion continues.

@@ -127,7 +127,7 @@ pub struct ReferenceReader(SlotReader<ReferenceState>);
 impl ReferenceReader {
     /// The reference of the newest cycle; `None` where target control did not answer it.
     pub fn newest(&self) -> Option<ReferenceState> {
-        // A clone has read nothing yet, and so finds what is there whether or not it is new.
+        // A clone has read nothing yet, and so finds the present value whether or not it is new.
         match self.0.clone().read_retry(ATTEMPTS) {
             Read::Newer(newest) => Some(newest).filter(|newest| newest.goal != GoalId::default()),
             Read::Same | Read::Torn => None,

@@ -148,7 +148,7 @@ impl Program {
         }
     }
 
-    /// Computes what the next step does not need the next state for.
+    /// Computes the parts of the next step that do not need the next state.
     pub(super) fn prepare(&mut self) {
         match self {
             Self::Target(session) => session.prepare(),

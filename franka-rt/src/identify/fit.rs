@@ -8,7 +8,7 @@ use super::{Estimate, Identified, IdentifiedJoint, IdentifiedLoad, Plan, declare
 use crate::driver::Record;
 use crate::session::Guard;
 
-/// Takes the records of a [`Plan`]'s motions, and finds what the arm must be like.
+/// Takes the records of a [`Plan`]'s motions, and identifies the arm.
 #[derive(Clone, Debug)]
 pub struct Fit {
     model: Model,
@@ -76,7 +76,7 @@ pub enum FitError {
     Disturbed {
         /// The joint, 1 to 7.
         joint: usize,
-        /// Root mean square of what is left, `[N m]`.
+        /// Root mean square of the remainder, `[N m]`.
         got: f64,
         /// The most that is accepted, `[N m]`.
         expected: f64,
@@ -150,7 +150,7 @@ impl Fit {
         }
     }
 
-    /// Returns what the arm is like.
+    /// Returns the identified values of the arm.
     ///
     /// # Errors
     /// [`FitError`].
@@ -207,7 +207,7 @@ impl Fit {
         (inverse * right, inverse.diagonal())
     }
 
-    /// Deviation of each joint's windows from what the unknowns say, `[N m]`.
+    /// Deviation of each joint's windows from the prediction of the unknowns, `[N m]`.
     fn residuals(&self, unknowns: &Unknowns) -> JointVector {
         JointVector::from_fn(|joint, _| {
             let off = self.windows.iter().filter_map(|window| {
@@ -312,7 +312,8 @@ const REWEIGHTED: usize = 3;
 /// Least deviation of a joint's windows, `[N m]`: the resolution of its sensor.
 const RESIDUAL_MIN: f64 = 0.01;
 
-/// More than any joint takes, `[N m]`: numbers beyond, and what is no number, are not counted.
+/// More than any joint takes, `[N m]`: larger numbers, and values that are not numbers, are not
+/// counted.
 const ABSURD: f64 = 1e3;
 
 /// Greatest deviation of a joint's windows on an arm that nothing has pushed, `[N m]`.

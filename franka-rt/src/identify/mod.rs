@@ -48,8 +48,8 @@ impl fmt::Display for Estimate {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct IdentifiedJoint {
-    /// Friction at `Plan::SPEED`, viscous part included, beyond what the robot compensates
-    /// itself, `[N m]`.
+    /// Friction at `Plan::SPEED`, viscous part included, beyond the robot's own compensation, `[N
+    /// m]`.
     pub friction: Estimate,
     /// Torque that it takes in either direction and in every pose, such as the zero error of its
     /// torque sensor, `[N m]`.

@@ -60,7 +60,7 @@ pub(super) enum CommandSide {
     Started,
     /// It did not end in time; a `StopMove` is out.
     Cancelled,
-    /// The robot has said how it ended, or why it did not begin.
+    /// The robot has reported how it ended, or why it did not begin.
     Ended(MoveStatus),
 }
 
@@ -165,7 +165,7 @@ impl CurrentMotion {
         }
     }
 
-    /// True if the robot has neither said that the motion is over nor been given up.
+    /// True if the robot has neither reported the end of the motion nor been given up.
     pub(super) fn is_open(&self) -> bool {
         matches!(self.command, CommandSide::Requested | CommandSide::Started)
     }

@@ -139,7 +139,7 @@ impl Lifecycle {
         None
     }
 
-    /// Resolves all that waits for the motion with `outcome`, then starts the next motion.
+    /// Resolves everything that waits for the motion with `outcome`, then starts the next motion.
     fn tell(&mut self, work: Work, outcome: Outcome, counted: &Counted, now: Duration) {
         let rest = match &outcome {
             Err(error) if !error.is_ready_for_more() => Err(error.clone()),
@@ -186,8 +186,8 @@ impl Lifecycle {
         self.resolve(motion.id(), outcome);
     }
 
-    /// Resolves what waits for the end of a motion: its goals or program with `outcome`, requests
-    /// for its stop with `rest`.
+    /// Resolves everything that waits for the end of a motion: its goals or program with `outcome`,
+    /// requests for its stop with `rest`.
     pub(super) fn resolve_work(&mut self, work: Work, outcome: &Outcome, rest: &Outcome) {
         match work {
             Work::Goals(goals) => {

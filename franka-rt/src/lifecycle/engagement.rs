@@ -53,7 +53,7 @@ impl Engagement {
     }
 }
 
-/// Changes to the goal under way, and nothing to where it goes.
+/// Changes to the goal under way, except for its destination.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tuning {
     /// Stiffness and damping; the gains fade over 0.3 s.
@@ -113,7 +113,7 @@ impl Tuning {
 }
 
 impl Lifecycle {
-    /// Takes a goal for the session `engaged`. It supersedes the goal before it.
+    /// Takes a goal for the session `engaged`. It supersedes the previous goal.
     pub(super) fn submit_within(
         &mut self,
         engaged: GoalId,
@@ -236,7 +236,7 @@ impl Lifecycle {
         let tuned = tuning.apply(goals.current);
         goals.backend.check(&tuned)?;
         tuned.check(&self.model, state)?;
-        // Gains that a guiding hand has no use for have to be fit for the goals after it.
+        // Gains that do not matter to a guiding hand must be fit for the goals after it.
         if let Some(gains) = tuning.gains {
             let target = Target::Rest;
             let later = Goal {

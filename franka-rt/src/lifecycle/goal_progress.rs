@@ -225,7 +225,7 @@ impl Goals {
         Some(result)
     }
 
-    /// Takes the reason why a goal of chunks was given up, if it was not told.
+    /// Takes the reason why a goal of chunks was given up, if it was not reported.
     pub(super) fn take_chunk_error(&mut self) -> Option<MotionError> {
         match core::mem::replace(&mut self.stream, ChunkStream::None) {
             ChunkStream::GivenUp(error) => Some(error),
@@ -245,8 +245,8 @@ impl Goals {
         }
     }
 
-    /// True if the motion ended well, or as the robot was `told` to stop it, with an older goal than
-    /// the current one.
+    /// True if the motion ended well, or by a stop that the robot was `told`, with an older goal
+    /// than the current one.
     pub(super) fn came_too_late(&self, command: CommandSide, told: bool, ended: &Ended) -> bool {
         let Program::Target(session) = &ended.program else {
             return false;

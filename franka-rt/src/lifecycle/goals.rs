@@ -140,7 +140,7 @@ impl Lifecycle {
         let previous = match self.goals_mut() {
             Some(goals) if !is_ending => {
                 if let Some(path) = path {
-                    // There was room where it was accepted.
+                    // There was room when it was accepted.
                     let _ = goals.send(goal.id, *path);
                 }
                 goals.supersede(goal, reason.clone())

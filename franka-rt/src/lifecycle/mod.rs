@@ -90,7 +90,7 @@ pub enum Output {
         /// The request.
         request: Request,
     },
-    /// Tell the caller that began this program or session, if it asked, that it runs now.
+    /// Notify the caller that began this program or session, if it asked, that it runs now.
     Began {
         /// Its name.
         id: GoalId,
@@ -113,7 +113,7 @@ pub struct Lifecycle {
     phase: LifecyclePhase,
     /// Motion that waits for the motion under way, or an abandoned one, to end.
     next: Option<NewMotion>,
-    /// The last session that goes from goal to goal, if it did not end as asked, and how it ended.
+    /// The last session from goal to goal, if it did not end as asked, and its error.
     ended: Option<(GoalId, MotionError)>,
     /// Stops that have not resolved.
     stops: Vec<Stop>,
@@ -165,7 +165,7 @@ impl LifecyclePhase {
 }
 
 impl Lifecycle {
-    /// Returns an idle lifecycle for a robot of this model, whose limits goals have to keep, and
+    /// Returns an idle lifecycle for a robot of this model, whose limits goals must keep, and
     /// protocol `version`.
     pub fn new(model: Arc<Model>, version: Version) -> Self {
         Self {
@@ -219,7 +219,7 @@ impl Lifecycle {
         Margin::of(gains, &self.model, state, self.version)
     }
 
-    /// Has the first session begin with what was identified of the arm before, which was
+    /// Begins the first session with the identified values of the arm, which were
     /// [checked](Identified::check). The load that is declared then counts.
     #[must_use]
     pub fn knowing(mut self, found: Identified) -> Self {

@@ -28,9 +28,9 @@ pub struct MotionReport {
     /// From the first state that the goal answered to the arrival, in the robot's time, with all
     /// pauses and delays; for a control function, to the end of the motion.
     ///
-    /// It does not include the time for which the arm then has to rest there,
-    /// [`Settling::hold`](crate::session::Settling::hold), after which the motion resolves; what is
-    /// counted below does.
+    /// It does not include the time for which the arm must then rest there,
+    /// [`Settling::hold`](crate::session::Settling::hold), after which the motion resolves. The
+    /// counts below include that time.
     pub duration: Duration,
     /// Distance of the measured end effector from its target; `None` for a motion without one.
     pub final_error: Option<PoseError>,
@@ -63,7 +63,7 @@ pub struct MotionReport {
     /// Commands that left only after the next state was due. No cause for alarm on a simulator that
     /// waits for commands, which still has them in time.
     pub overruns: u64,
-    /// The cycle that took longest, and in what.
+    /// The longest cycle, with its phases.
     pub worst_cycle: Option<CycleTimes>,
     /// Times between two states in a row, by this host's clock.
     pub interval: Option<Quantiles>,
@@ -187,7 +187,7 @@ pub enum MotionError {
         /// For how long, at least.
         silence: Duration,
     },
-    /// Robot: it refused to start the motion. libfranka's text, and after a reflex what to do.
+    /// Robot: it refused to start the motion. libfranka's text, and after a reflex the remedy.
     #[error("{}{}", .0, recover_first(.0))]
     Rejected(Refusal),
     /// Robot: it ended the motion: a reflex, a user stop, another client's stop, a safety function.
@@ -242,7 +242,7 @@ pub enum MotionError {
         /// Cause of the end.
         reason: CloseReason,
     },
-    /// Peer: a reply of its cannot be read.
+    /// Peer: one of its replies cannot be read.
     #[error(transparent)]
     Violation(#[from] Violation),
     /// Peer: it left the protocol. Please report it.
@@ -256,7 +256,7 @@ pub enum MotionError {
 impl MotionError {
     /// True if the robot accepts a new motion afterwards without help from outside.
     ///
-    /// After a reflex the robot has to be recovered first; after a lost link or connection,
+    /// After a reflex the robot must be recovered first; after a lost link or connection,
     /// reconnected to. A control function that fails may have left it without commands for long
     /// enough to stop itself, too.
     pub fn is_ready_for_more(&self) -> bool {
@@ -287,7 +287,7 @@ impl MotionError {
         }
     }
 
-    /// This error of a motion whose condition was true before.
+    /// Returns this error for a motion whose condition was true before.
     pub(super) fn after(self, reacted: Reacted) -> Self {
         Self::AfterReaction {
             reacted: Box::new(reacted),
@@ -390,7 +390,7 @@ fn not_ready(why: Unready, waited: Duration) -> String {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Party {
-    /// The program: it asked for what cannot be, or it ended something itself.
+    /// The program: it made an impossible request, or it ended something itself.
     Caller,
     /// At the robot: it refused, stopped itself, or something is in its way.
     Robot,
@@ -473,7 +473,7 @@ impl ControlError {
     }
 
     /// True if the robot stopped itself for one of the reasons in
-    /// [`ControlFailure::reflex_reason`], and has to be recovered.
+    /// [`ControlFailure::reflex_reason`], and must be recovered.
     pub fn is_reflex(&self) -> bool {
         self.failure.refusal.status() == Status::Move(MoveStatus::ReflexAborted)
     }

@@ -29,7 +29,7 @@ enum StopStage {
         /// Deadline after which the robot is asked to stop. `None` once it was.
         until: Option<Duration>,
     },
-    /// Nothing of this program moves. The states have to show it.
+    /// Nothing of this program moves. The states must show it.
     Showing {
         /// Report on the motion that was stopped.
         report: Box<MotionReport>,

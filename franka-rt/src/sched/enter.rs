@@ -1,4 +1,4 @@
-//! Asking the operating system, and what it answers.
+//! Requests to the operating system, and their results.
 
 use core::time::Duration;
 use std::net::{Ipv4Addr, UdpSocket};
@@ -19,7 +19,7 @@ impl Scheduling {
     ///
     /// # Errors
     /// Under [`Realtime::Enforce`], the first request that was refused. Requests granted before it
-    /// stay granted. Under either, an option that is out of range: nothing is asked for then.
+    /// stay granted. Under both, an option that is out of range: then nothing is requested.
     pub fn enter(&self) -> Result<Granted, SchedError> {
         self.enter_on(Kernel::read)
     }
@@ -53,8 +53,8 @@ impl Scheduling {
         Ok(granted)
     }
 
-    /// Applies the options to the socket that the thread receives from, and notes in `granted` what
-    /// came of it.
+    /// Applies the options to the socket that the thread receives from, and notes the result in
+    /// `granted`.
     ///
     /// # Errors
     /// Under [`Realtime::Enforce`], [`SchedError::BusyPoll`] if that is refused.

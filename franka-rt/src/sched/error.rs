@@ -19,8 +19,8 @@ pub enum SchedError {
     #[error("libfranka: unable to set realtime scheduling: {}", error_text(*.0))]
     SetScheduling(i32),
     /// Nothing shows that the kernel is a real-time one. Under
-    /// [`Realtime::Enforce`](super::Realtime::Enforce) only.
-    /// libfranka's text, and then what was read.
+    /// [`Realtime::Enforce`](super::Realtime::Enforce) only. libfranka's text, and then the
+    /// evidence.
     #[error("libfranka: Running kernel does not have realtime capabilities. ({0})")]
     KernelNotRealtime(Box<Kernel>),
     /// The processor asked for does not exist or is not open to this process.

@@ -10,7 +10,7 @@ pub const DEFAULT: usize = 512 * 1024;
 /// the loop.
 pub const MAX: usize = 64 * 1024 * 1024;
 
-/// Stack beyond what is touched, in bytes: for the larger frames of unoptimised builds.
+/// Stack beyond the touched part, in bytes: for the larger frames of unoptimised builds.
 const RESERVE: usize = 1536 * 1024;
 
 /// Bytes that one frame of the walk covers: a few pages, so that little more than asked for is

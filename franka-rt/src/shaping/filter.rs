@@ -67,7 +67,7 @@ pub fn low_pass_pose(
         .map(|filtered| filtered.pose())
 }
 
-/// [`low_pass_pose`] with what [`Rigid::nearest`] makes of `last`.
+/// As [`low_pass_pose`], with the result of [`Rigid::nearest`] for `last`.
 pub(crate) fn low_pass_rigid(
     sample_time: f64,
     current: &[f64; 16],

@@ -45,8 +45,8 @@ pub struct Phases {
     pub orders: Duration,
     /// The state read from its bytes.
     pub decode: Duration,
-    /// The driver: law and guards; or a function of the user's. Under active control, also what the
-    /// user's thread did until it wrote.
+    /// The driver: law and guards; or a function of the user's. Under active control, also the work
+    /// of the user's thread until it wrote.
     pub program: Duration,
     /// The command written into bytes and handed to the kernel.
     pub send: Duration,
@@ -93,8 +93,8 @@ impl CycleTimes {
         }
     }
 
-    /// From when the state was due to the end of all that is timed: the departure of the command,
-    /// or of what follows it.
+    /// Time from when the state was due to the end of all that is timed: the departure of the
+    /// command, or the later work.
     pub fn total(&self) -> Duration {
         let work = self.phases.map_or(Duration::ZERO, |phases| phases.sum());
         self.late.saturating_add(self.turnaround.max(work))
@@ -117,7 +117,7 @@ impl CycleTimes {
 }
 
 impl Slack {
-    /// Returns what `late` and `turnaround` leave of a cycle.
+    /// Returns the rest of a cycle after `late` and `turnaround`.
     pub(crate) fn of(late: Duration, turnaround: Duration) -> Self {
         let gone = late.saturating_add(turnaround).as_nanos();
         let gone = i64::try_from(gone).unwrap_or(i64::MAX);

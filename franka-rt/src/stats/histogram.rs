@@ -78,7 +78,7 @@ impl Histogram {
 
     /// The shortest duration, exactly; `None` if none was counted.
     pub fn min(&self) -> Option<Duration> {
-        // The count does not tell: a reader may see it before the minimum.
+        // The count does not decide: a reader may see it before the minimum.
         let min = self.min.load(Ordering::Relaxed);
         (min != u64::MAX).then(|| Duration::from_nanos(min))
     }

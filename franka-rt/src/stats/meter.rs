@@ -11,7 +11,7 @@ use crate::slot::{self, SlotWriter};
 /// Arrival of a state: the time since the previous state, and since it was due.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Arrival {
-    /// Time since the state before, by this host's clock; `None` for the first.
+    /// Time since the previous state, by this host's clock; `None` for the first.
     pub interval: Option<Duration>,
     /// From when it was due to when the thread had it: see [`CycleTimes::late`].
     pub late: Duration,
@@ -107,7 +107,7 @@ impl Meter {
         Arrival { interval, late }
     }
 
-    /// The cycle of the newest state, whose command left at `departed`.
+    /// Returns the cycle of the newest state, whose command left at `departed`.
     pub(crate) fn answered(&self, departed: Instant) -> CycleTimes {
         let newest = self.newest.expect("only a state that came is answered");
         let turnaround = departed.saturating_duration_since(newest.received);

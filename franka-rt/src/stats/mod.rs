@@ -12,7 +12,7 @@
 //! separate atomic, so a reader may see a cycle half counted: the numbers are for display. The
 //! histograms are arrays of atomics with logarithmic buckets rather than the `hdrhistogram`
 //! crate's, whose plain cells a reader could only see through a lock or a copy made by the thread.
-//! Values that have to be consistent, a cycle or the counts of a motion, cross in a
+//! Values that must be consistent, a cycle or the counts of a motion, cross in a
 //! [`slot`](crate::slot).
 //!
 //! * [`Histogram`]: durations in logarithmic buckets. [`CycleTimes`]: one cycle and its phases.

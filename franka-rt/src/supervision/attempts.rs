@@ -31,7 +31,7 @@ impl Pauses {
         let longest = first.saturating_mul(1 << doublings).min(most);
         let jitter = if jitter.is_nan() { 0.0 } else { jitter };
         let share = jitter.clamp(0.0, 1.0) * self.draw();
-        // Times a share, the longest duration is rounded to more than there is.
+        // Times a share, the longest duration is rounded up beyond its range.
         let pause = longest.as_secs_f64() * (1.0 - share);
         Duration::try_from_secs_f64(pause).unwrap_or(longest)
     }

@@ -15,7 +15,7 @@ pub(super) enum Connection {
     First,
     /// There is one.
     Up(Up),
-    /// It is lost, and what it had is not yet given back.
+    /// It is lost, and its resources are not yet given back.
     Ending(Loss),
     /// The next attempt comes at `at`.
     Pausing { loss: Loss, at: Duration },
@@ -63,7 +63,8 @@ pub(super) enum Configuration {
 }
 
 impl Configuration {
-    /// Has what failed tried again, since the robot is idle anew. Returns whether something had.
+    /// Makes the failed settings be tried again, since the robot is idle anew. Returns true if
+    /// there are any.
     pub(super) fn retry(&mut self) -> bool {
         match self {
             Self::Requested { is_idle_anew } => *is_idle_anew = true,
@@ -113,9 +114,9 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Returns what `state` shows. Two states that show the same need not both be passed to
-    /// [`Supervision::on_state`](super::Supervision::on_state), unless there was a silence between
-    /// them.
+    /// Returns the condition that `state` shows. Two states that show the same need not both be
+    /// passed to [`Supervision::on_state`](super::Supervision::on_state), unless there was a
+    /// silence between them.
     pub fn of(state: &RobotState) -> Self {
         Self {
             mode: state.robot_mode,
@@ -192,7 +193,7 @@ impl Connection {
         }
     }
 
-    /// True if what this program has set at the robot holds, if there is a connection.
+    /// True if the settings of this program hold at the robot, if there is a connection.
     pub(super) fn is_configured(&self) -> bool {
         match self {
             Self::Up(up) => up.configuration == Configuration::Done,

@@ -109,7 +109,7 @@ pub enum EventKind {
         latched: bool,
     },
     /// A motion, a session or a program was handed over to the connection. Goals that a session
-    /// takes without a future (`set`, `chunk`, `guide`) are not told.
+    /// takes without a future (`set`, `chunk`, `guide`) are not reported.
     MotionBegun {
         /// Its name, as in the log.
         goal: u64,

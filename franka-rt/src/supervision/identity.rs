@@ -46,7 +46,7 @@ impl Identity {
         self.at = now.saturating_sub(silence);
     }
 
-    /// Returns what differs in `other`, which was seen later.
+    /// Returns the differences of `other`, which was seen later.
     pub(super) fn differences(&self, other: &Self) -> Differences {
         let differs =
             |a: &[f64], b: &[f64]| core::iter::zip(a, b).any(|(a, b)| (a - b).abs() > EPS);

@@ -76,8 +76,8 @@ pub enum Output {
         /// Number of the reflex.
         reflex: u64,
     },
-    /// Set again what this program has set at the robot: [`Supervision::next_setting`], one at a
-    /// time, until it returns nothing. A connection that has ended may be left alone.
+    /// Send the settings of this program again: [`Supervision::next_setting`], one at a time, until
+    /// it returns nothing. A connection that has ended may be left alone.
     Configure,
     /// Ask for an agreement to the recovery from this reflex. Comes back as [`Supervision::agree`],
     /// if at all.
@@ -378,7 +378,7 @@ impl Supervision {
         [of_connection, of_motion].into_iter().flatten().min()
     }
 
-    /// Does what is due at `now`.
+    /// Takes the steps that are due at `now`.
     pub fn on_time(&mut self, now: Duration) {
         match &mut self.connection {
             Connection::Pausing { loss, at } if now >= *at => {
@@ -430,7 +430,7 @@ impl Supervision {
         }
     }
 
-    /// Does what has become possible, and brings the health up to date.
+    /// Takes the steps that have become possible, and updates the health.
     fn go_on(&mut self, now: Duration) {
         while let Some(step) = self.next_step(now) {
             self.take(step, now);

@@ -131,7 +131,7 @@ impl Policy {
         self
     }
 
-    /// Draws what is left to chance from this seed; each robot from another one by default.
+    /// Sets the seed of the random jitter; each robot has another one by default.
     pub fn seed(mut self, seed: u64) -> Self {
         self.seed = Some(seed);
         self

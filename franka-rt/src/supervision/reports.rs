@@ -128,7 +128,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Takes note of a robot that these errors hold. Returns whether that is new.
+    /// Takes note of a robot that these errors hold. Returns true if they are new.
     fn on_reflex(&mut self, errors: Errors, now: Duration) -> bool {
         let Connection::Up(up) = &mut self.connection else {
             return false;
@@ -203,7 +203,7 @@ impl Supervision {
         self.go_on(now);
     }
 
-    /// Takes note that all that the lost connection had is given back: its control thread has
+    /// Takes note that all resources of the lost connection are given back: its control thread has
     /// ended, and its socket is closed.
     pub fn on_released(&mut self, now: Duration) {
         if let Connection::Ending(loss) = &self.connection {

@@ -12,7 +12,7 @@ pub enum Answer {
         /// The values shown and set, for a person.
         text: String,
     },
-    /// The robot has refused it, or it was not sent: the setting of before holds.
+    /// The robot has refused it, or it was not sent: the earlier setting holds.
     Refused {
         /// The robot's answer and the value set, for a person.
         text: String,
@@ -75,7 +75,7 @@ impl Settings {
         self.newest.iter().all(holds)
     }
 
-    /// True if something has to be set again.
+    /// True if something must be set again.
     pub(super) fn any_open(&self) -> bool {
         self.next().is_some()
     }
@@ -161,7 +161,7 @@ impl Settings {
             })
     }
 
-    /// Has what could not be set tried again.
+    /// Makes the failed settings be tried again.
     pub(super) fn retry(&mut self) {
         for setting in &mut self.newest {
             if let Standing::Failed { .. } = setting.standing {

@@ -57,8 +57,8 @@ pub(crate) fn pin_to(cpu: usize) -> Result<(), i32> {
 
 /// Locks every page of the process, present and future, into memory. The error is an errno value.
 pub(crate) fn lock_memory() -> Result<(), i32> {
-    // SAFETY: the function takes flags only. It changes which pages may be evicted, not what they
-    // hold.
+    // SAFETY: the function takes flags only. It changes which pages may be evicted, not their
+    // content.
     match unsafe { libc::mlockall(libc::MCL_CURRENT | libc::MCL_FUTURE) } {
         0 => Ok(()),
         _ => Err(last_errno()),

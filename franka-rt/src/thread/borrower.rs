@@ -42,8 +42,8 @@ impl<'a> BorrowerWatch<'a> {
     }
 
     /// Looks, at `now`, whether there was a turn since the last look. A tick is due between two
-    /// looks; in what goes beyond it the host has held this thread up, and the borrower perhaps as
-    /// well.
+    /// looks. If more time has passed, the host has delayed this thread, and perhaps the borrower
+    /// as well.
     pub(super) fn look(&mut self, now: Instant) {
         let turns = self.lifetime.turns();
         if turns == self.turns {

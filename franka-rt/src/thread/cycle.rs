@@ -71,7 +71,7 @@ impl<C: Core> Cycle<C> {
             sent = self.answer(state, now, reception.skipped);
             self.publish(now);
         } else {
-            // Only time spent in the receive counts as silence. If the host held this thread up
+            // Only time spent in the receive counts as silence. If the host delayed this thread
             // after it, states may lie in the socket: the next turn reads them first.
             let listened = now.min(begun + reception.waited);
             let heard = self.meter.heard().unwrap_or(self.started);
@@ -94,8 +94,8 @@ impl<C: Core> Cycle<C> {
         readable
     }
 
-    /// Sends the command of the core for a state, if there is one, then does what need not precede
-    /// it. Returns the times of the command.
+    /// Sends the command of the core for a state, if there is one, then does the work that may
+    /// follow it. Returns the times of the command.
     fn answer(
         &mut self,
         state: &RobotState,
@@ -251,7 +251,7 @@ impl<C: Core> Cycle<C> {
         self.notices.push_from(EVENTS_PER_CYCLE, event) > 0
     }
 
-    /// Gives away the ring of a reader of cycles that was dropped; returns whether there was one.
+    /// Hands over the ring of a reader of cycles that was dropped; returns true if there was one.
     fn detach(&mut self) -> bool {
         let detached = || self.cycles.take_detached().map(Notice::Detached);
         self.notices.push_from(1, detached) > 0

@@ -24,7 +24,7 @@ use crate::queue::{self, Full, Receiver, Sender};
 /// The most readers of one control thread at a time.
 pub const READERS_MAX: usize = 4;
 
-/// One cycle of the control thread: a state, and what was done with it.
+/// One cycle of the control thread: a state, and the work of the driver for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct CapturedCycle<R = Record> {
@@ -78,8 +78,8 @@ struct Shared {
 }
 
 impl Shared {
-    /// Acquire, pairs with the Release in the drop of [`CyclePublisher`]: who sees the end finds
-    /// every cycle that was pushed before it.
+    /// Acquire, pairs with the Release in the drop of [`CyclePublisher`]: a reader that sees the
+    /// end finds every cycle that was pushed before it.
     fn has_ended(&self) -> bool {
         self.ended.load(Ordering::Acquire)
     }
@@ -89,7 +89,7 @@ impl Shared {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AttachError {
-    /// There are as many readers as there can be. Drop one first.
+    /// The number of readers is at its maximum. Drop one first.
     #[error("{READERS_MAX} readers are attached to the control thread, and no more can be")]
     TooMany,
     /// The ring cannot have this length.
@@ -232,7 +232,7 @@ impl<R> Drop for CycleReader<R> {
 /// Time between two looks of a reader that waits.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// The end of a reader's ring that the thread writes to. It holds memory: the thread gives it away
+/// The end of a reader's ring that the thread writes to. It holds memory: the thread hands it over
 /// to be freed.
 #[derive(Debug)]
 pub struct CycleWriter<R = Record> {

@@ -35,7 +35,7 @@ pub trait Core: Send + 'static {
     /// it lasts.
     fn on_silence(&mut self, silence: Duration);
 
-    /// The silence that has to be reported in time: the thread waits for a state no longer than a
+    /// The silence that must be reported in time: the thread waits for a state no longer than a
     /// fraction of it.
     fn link_timeout(&self) -> Duration {
         LINK_TIMEOUT

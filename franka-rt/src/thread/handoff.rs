@@ -6,7 +6,7 @@
 //!   borrower:                    borrow --> Lent --> give_back
 //! ```
 //!
-//! Nothing here knows what is lent: `tests/loom` includes this file and explores the
+//! Nothing here knows the value that is lent: `tests/loom` includes this file and explores the
 //! hand-overs.
 
 use std::sync::PoisonError;
@@ -136,7 +136,7 @@ impl<T> Handoff<T> {
         }
     }
 
-    /// Gives back what was borrowed; `None` if it is not to be used any more.
+    /// Gives back the borrowed value; `None` if it must not be used any more.
     pub(super) fn give_back(&self, value: Option<T>) {
         let mut state = self.lock();
         *state = match (&*state, value) {

@@ -1,7 +1,7 @@
 //! Flags that the thread and its owner share.
 //!
-//! Nothing here knows the thread: `tests/loom` includes this file and explores what the
-//! flags order.
+//! Nothing here knows the thread: `tests/loom` includes this file and explores the order that the
+//! flags impose.
 
 #[cfg(not(loom))]
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -29,8 +29,8 @@ impl Lifetime {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Release, pairs with the Acquire in [`Self::has_ended`]: a reader that sees the end sees what
-    /// the thread left.
+    /// Release, pairs with the Acquire in [`Self::has_ended`]: a reader that sees the end also sees
+    /// the thread's last writes.
     pub(super) fn note_end(&self) {
         self.ended.store(true, Ordering::Release);
     }

@@ -1,5 +1,5 @@
-//! Filter, limiter and check of what a control function returns; of torques, their rate. The
-//! limiter is on by default for an FER and off for an FR3, as in libfranka.
+//! Filter, limiter and check of a control function's commands; for torques, the limiter bounds
+//! their rate. The limiter is on by default for an FER and off for an FR3, as in libfranka.
 
 #[cfg(test)]
 mod tests;
@@ -156,8 +156,7 @@ impl Shaper {
     /// Shapes torques against the last ones, `tau_J_d` of the state.
     ///
     /// # Errors
-    /// [`InvalidCommand`] if a number of the command, or of what it is shaped against, is not
-    /// finite.
+    /// [`InvalidCommand`] if a number of the command, or of its references, is not finite.
     pub fn torques(
         &self,
         command: &Torques,
@@ -241,7 +240,7 @@ impl Shaper {
         };
         let pose = self.pose(&command.O_T_EE, last, state)?;
         check::pose(&pose)?;
-        // The filter makes a rotation of what is none: libfranka sends that, in place of an error.
+        // The filter makes a rotation of any matrix; libfranka sends that, in place of an error.
         if pose != command.O_T_EE {
             check::pose(&command.O_T_EE)?;
         }

@@ -67,7 +67,7 @@ pub fn cartesian_pose(
     )
 }
 
-/// [`cartesian_pose`] with what [`Rigid::nearest`] makes of the poses.
+/// As [`cartesian_pose`], with the results of [`Rigid::nearest`] for the poses.
 pub(crate) fn limit_rigid(
     bounds: &CartesianBounds,
     command: &[f64; 16],

@@ -1,7 +1,7 @@
 //! Rate limiters: from the last command as near to the given one as the bounds on derivatives
 //! allow.
 //!
-//! | command | function | what is bounded |
+//! | command | function | bounded quantity |
 //! |---|---|---|
 //! | torques | [`torques`] | rate |
 //! | one velocity, seven joint velocities | [`velocity`], [`joint_velocities`] | velocity, acceleration, jerk |

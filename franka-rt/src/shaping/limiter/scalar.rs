@@ -8,9 +8,9 @@ use crate::shaping::{CYCLE, InvalidCommand, hi, lo};
 /// Bounds on the motion of one coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AxisBounds {
-    /// Greatest velocity, `[rad/s]` or `[m/s]`; negative where the axis has to turn back.
+    /// Greatest velocity, `[rad/s]` or `[m/s]`; negative where the axis must turn back.
     pub upper_velocity: f64,
-    /// Least velocity, in the same unit; positive where the axis has to turn back.
+    /// Least velocity, in the same unit; positive where the axis must turn back.
     pub lower_velocity: f64,
     /// Acceleration in both directions, per second.
     pub acceleration: f64,
@@ -184,8 +184,8 @@ pub fn joint_positions(
     }))
 }
 
-/// The acceleration is bounded by the jerk first, then by what keeps the velocity below its upper
-/// bound, and at last by what keeps it above its lower bound. Near a bound the acceleration falls
+/// The acceleration is bounded by the jerk first, then so that the velocity stays below its upper
+/// bound, and finally so that it stays above its lower bound. Near a bound the acceleration falls
 /// in proportion to the distance, at the rate that the jerk allows.
 fn limit_velocity(
     bounds: &AxisBounds,
