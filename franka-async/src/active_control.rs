@@ -37,7 +37,7 @@ impl Robot {
         Active::begin(self, request).await
     }
 
-    /// Begins control by joint positions, for the controller named; with
+    /// Begins control by joint positions, for the given controller; with
     /// [`MoveControllerMode::ExternalController`] every command also needs torques. Otherwise like
     /// [`Self::active_torques`].
     ///

@@ -77,7 +77,7 @@ impl AsynchronousOptions {
 /// The least velocity, `[rad/s]`, and the least tolerance, `[rad]`.
 const LEAST: f64 = 1e-6;
 
-/// Farther than any two postures of an arm are apart, `[rad]`. The vendor's examples have a
+/// Farther than the distance of any two postures of an arm, `[rad]`. The vendor's examples have a
 /// tolerance of 10.
 const FARTHEST: f64 = 20.0;
 
@@ -192,8 +192,8 @@ impl AsynchronousControl {
     }
 
     /// Ends the motion at the newest target, or where the arm is without one, and resolves when the
-    /// robot has. Best after
-    /// [`Self::reached`]: the robot may refuse to end a motion that still moves.
+    /// robot has ended it. Best after [`Self::reached`]: the robot may refuse to end a motion that
+    /// still moves.
     ///
     /// # Errors
     /// The cause of another end of the motion.
@@ -217,7 +217,7 @@ impl AsynchronousControl {
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, Targets> {
-        // Nothing in here can be half done.
+        // Nothing in here can be half-finished.
         self.targets.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -228,7 +228,7 @@ impl Drop for AsynchronousControl {
     }
 }
 
-/// The error for a request that the end of the motion leaves without an answer.
+/// The error of a request that the end of the motion leaves unanswered.
 fn end_of(outcome: Outcome) -> MotionError {
     outcome.err().unwrap_or(MotionError::Stopped)
 }

@@ -1,4 +1,4 @@
-//! The same names for programs without async: [`Wait::wait`] in the place of `.await`, and
+//! Blocking versions for programs without async: [`Wait::wait`] in the place of `.await`, and
 //! [`WaitEach::wait_each`] for streams.
 //!
 //! ```no_run

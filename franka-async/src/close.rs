@@ -14,8 +14,8 @@ impl Closing {
         self.0.get_or_init(|| reason).clone()
     }
 
-    /// Returns why the connection has ended. Without a reason noted, the tasks that would have
-    /// noted one were dropped by their runtime.
+    /// Returns the reason for the end of the connection. If no reason was noted, the runtime has
+    /// dropped the tasks that would have noted one.
     pub(crate) fn reason(&self) -> CloseReason {
         self.0.get().cloned().unwrap_or(CloseReason::RuntimeEnded)
     }

@@ -124,7 +124,7 @@ impl Encoder<Outgoing> for MessageCodec {
     }
 }
 
-/// The name by which the reference client's socket library calls the class of a failure.
+/// Name of the class of a failure in the reference client's socket library.
 pub(crate) fn reason(error: &io::Error) -> String {
     use io::ErrorKind;
     match error.kind() {

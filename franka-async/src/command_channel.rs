@@ -74,7 +74,7 @@ pub(crate) enum Report {
         motion: MotionId,
         status: MoveStatus,
     },
-    /// The `Move` of a motion was not answered with anything readable.
+    /// The `Move` of a motion had no readable answer.
     MoveViolation {
         motion: MotionId,
         violation: Violation,
@@ -144,7 +144,7 @@ impl Channel {
         (channel, Connection { task, close }, inbox)
     }
 
-    /// Has it write requests and their answers there.
+    /// Makes it write requests and their answers to this journal.
     #[cfg(feature = "record")]
     pub(crate) fn with_journal(mut self, journal: Journal) -> Self {
         self.journal = journal;
@@ -269,7 +269,7 @@ impl CommandTask {
         let _ = self.reports.send(Report::Closed { reason });
     }
 
-    /// Serves until the connection ends and returns why it did.
+    /// Serves until the connection ends and returns the reason.
     async fn serve(&mut self, (motions, calls): &mut Queues) -> CloseReason {
         loop {
             let until = self

@@ -19,7 +19,7 @@ use crate::supervisor::Supervisor;
 use crate::world;
 
 impl Robot {
-    /// Connects with the options that [`Robot::builder`] begins with.
+    /// Connects with the default options of [`Robot::builder`].
     ///
     /// # Errors
     /// [`ConnectError`]. Without a real-time kernel this is [`ConnectError::Realtime`]: see
@@ -35,7 +35,7 @@ impl Robot {
 impl Builder {
     /// Connects: real-time check, TCP, handshake, first state, description. Must be called on a
     /// Tokio runtime with I/O and time enabled, which then runs the two tasks of the connection,
-    /// and a third one where it is supervised.
+    /// and a third one for supervision.
     ///
     /// # Errors
     /// [`ConnectError`]; nothing is left behind. Nothing is tried twice, supervised or not.

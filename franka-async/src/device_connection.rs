@@ -307,7 +307,7 @@ struct DeviceTask<D: Device> {
     socket: Datagrams,
     peer: IpAddr,
     states: watch::Sender<D::State>,
-    /// The newest action, until it is answered.
+    /// The newest action, until its answer.
     running: Option<(CommandId, ActionReply<D>)>,
     /// Stops, and actions that newer ones have replaced.
     waiting: HashMap<CommandId, ActionReply<D>>,

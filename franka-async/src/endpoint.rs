@@ -18,7 +18,7 @@ use std::str::FromStr;
 ///
 /// Other text makes an endpoint too, which connecting refuses as
 /// [`ConnectError::Endpoint`](crate::error::ConnectError::Endpoint) before anything is sent. To
-/// know at once, `parse` it.
+/// find out at once, `parse` it.
 ///
 /// ```
 /// use franka_async::connection::Endpoint;
@@ -62,7 +62,7 @@ impl fmt::Display for Endpoint {
     }
 }
 
-/// Caller: a text that names no place.
+/// Caller: a text that is no endpoint.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EndpointError {
@@ -78,7 +78,7 @@ pub enum EndpointError {
         /// Text in the place of the port.
         port: String,
     },
-    /// It looks like an address and is not a valid one.
+    /// It looks like an address and is not valid.
     #[error(
         "`{address}` is not an IP address: expected one like 172.16.0.2, fd00::2 or fe80::2%eth0; an IPv6 address with a \
          port takes brackets, [fd00::2]:1337"

@@ -65,7 +65,7 @@ pub(crate) enum Input {
     },
     Cancel {
         goal: GoalId,
-        /// The target for which it is taken back, as it was refused.
+        /// The refused target for which it is taken back.
         refused: Option<GoalError>,
     },
     Stop {
@@ -99,7 +99,7 @@ pub(crate) struct Beginning {
 }
 
 impl Beginning {
-    /// Has its goal ask for this posture.
+    /// Sets this posture in its goal.
     pub(crate) fn lead(&mut self, posture: Option<[f64; 7]>) {
         if let NewMotion::Goal { goal, .. } = &mut self.motion {
             goal.posture = posture;

@@ -82,7 +82,7 @@ pub(crate) fn entry_queue(room: usize) -> (EntrySender, EntryReceiver) {
     (sender, receiver)
 }
 
-/// Something that was asked for or happened.
+/// A request or an event.
 #[derive(Debug)]
 pub(crate) struct Entry {
     pub(crate) at: Instant,
@@ -159,7 +159,7 @@ impl Entry {
 }
 
 impl Journal {
-    /// Has everything from now on go to `reader`, until that is gone.
+    /// Sends everything from now on to `reader`, until that is gone.
     pub(crate) fn read(&self, reader: Reader) {
         self.with(|readers| readers.push(reader));
     }
@@ -194,7 +194,7 @@ impl Journal {
         }
     }
 
-    /// Writes down how something ended.
+    /// Writes down the end of a goal, a session or a program.
     pub(crate) fn ended(&self, goal: GoalId, outcome: &Outcome) {
         self.write(|| {
             let outcome = Arc::new(outcome.clone());
@@ -241,7 +241,7 @@ impl Journal {
     }
 
     fn with<T>(&self, act: impl FnOnce(&mut Vec<Reader>) -> T) -> T {
-        // Nothing can be half done in there.
+        // Nothing can be half-finished in there.
         act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }

@@ -9,8 +9,8 @@ use tokio::sync::watch;
 
 /// Reads the newest state where the control thread has left it.
 ///
-/// Reading it costs no other thread or task anything. A subscriber to changes has the bridge woken
-/// for every state.
+/// Reading it costs no other thread or task anything. For a subscriber to changes, the bridge is
+/// woken for every state.
 #[derive(Clone, Debug)]
 pub(crate) struct Newest {
     /// Stays as it is, so that each of its clones finds everything that came later.

@@ -1,4 +1,4 @@
-//! Poses as other programs have them, and turned poses.
+//! Conversions of poses from and to other programs, and turned poses.
 //!
 //! A [`Pose`] is an [`Isometry3`](crate::nalgebra::Isometry3) of `nalgebra`, so that
 //! products of poses do most of the work. `start` is a pose of the end effector in the base frame:
@@ -66,7 +66,7 @@ pub enum NotRigid {
 /// The pose nearest to a matrix, such as one of the model's.
 ///
 /// # Errors
-/// [`NotRigid`]; of rotations that are less than 1e-3 off, none.
+/// [`NotRigid`]. Rotations that are less than 1e-3 off are accepted.
 pub fn from_matrix(matrix: &Matrix4<f64>) -> Result<Pose, NotRigid> {
     transform::isometry(matrix).ok_or_else(|| {
         if let Some(index) = matrix.iter().position(|x| !x.is_finite()) {

@@ -29,7 +29,7 @@ pub struct Reference {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// Since it began, by the robot's clock, pauses included.
+    /// Time since it began, by the robot's clock, pauses included.
     pub elapsed: Duration,
     /// Time until the reference is at the target, if nothing delays it. The arm settles after that,
     /// a quarter of a second at least.

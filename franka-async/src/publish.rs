@@ -122,7 +122,7 @@ impl Publisher {
         self.state_wakeups.release(is_wanted);
     }
 
-    /// Has the thread wake the bridge for every state, or not on behalf of the bridge itself.
+    /// Makes the thread wake the bridge for every state, or no longer for the bridge itself.
     pub(crate) fn watch(&mut self, every_state: bool) {
         self.is_watched = every_state;
         if every_state {
@@ -163,8 +163,8 @@ impl Subscriptions {
         updates
     }
 
-    /// The silence that the link was given up for, if no state has come since: `newest` is the
-    /// `message_id` of the newest. The message of it is sent once; later subscribers look here.
+    /// The silence for which the link was given up, if no state has come since. `newest` is the
+    /// `message_id` of the newest state. Its message is sent once; later subscribers look here.
     pub(crate) fn silence(&self, newest: u64) -> Option<Duration> {
         let silent = *lock(&self.silent);
         silent.and_then(|told| (newest <= told.since).then_some(told.silence))
@@ -179,7 +179,7 @@ impl Subscriptions {
 }
 
 fn lock(silent: &Mutex<Option<Silent>>) -> std::sync::MutexGuard<'_, Option<Silent>> {
-    // Nothing in there can be half done.
+    // Nothing in there can be half-finished.
     silent.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -1,4 +1,4 @@
-//! The task of a supervised robot: it reconnects, has the robot recover, and asks whether it may.
+//! The task of a supervised robot: it reconnects, recovers the robot, and asks whether it may.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -124,7 +124,7 @@ impl Reconnector {
         }
     }
 
-    /// Has everything set again that this program has set.
+    /// Sends all settings of this program again.
     fn configure(&mut self) {
         if let Some(robot) = self.robot.upgrade() {
             let setting = parameters::Again::at(&robot).run();
@@ -133,7 +133,7 @@ impl Reconnector {
     }
 
     fn connect(&mut self) {
-        // Of the connection before.
+        // The task of the previous connection.
         self.configuring = None.into();
         let span = tracing::info_span!("reconnect");
         let (builder, states) = (self.builder.clone(), self.states.clone());
@@ -222,7 +222,7 @@ impl Reconnector {
         });
     }
 
-    /// Has this program's connection closed, if there is one.
+    /// Closes this program's connection, if there is one.
     fn close(&mut self) {
         self.is_closing = true;
         if let Some(robot) = self.robot.upgrade() {

@@ -23,12 +23,12 @@ use crate::robot::Robot;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ReplayReport {
-    /// From the first target to the last.
+    /// Time from the first target to the last.
     pub duration: Duration,
-    /// Between the joints and where they were in the recording, the joint that was furthest off in
+    /// Distance of the joints from their recorded positions, the joint that was furthest off in
     /// each state, `[rad]`.
     pub joints: Spread,
-    /// Between the end effector and where it was in the recording, `[m]`.
+    /// Distance of the end effector from its recorded position, `[m]`.
     pub position: Spread,
     /// States that were compared.
     pub states: usize,
@@ -39,7 +39,7 @@ pub struct ReplayReport {
 #[derive(Clone, Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReplayFailure {
-    /// The recorded motion is not one for this arm. Nothing has moved.
+    /// The recorded motion does not suit this arm. Nothing has moved.
     #[error(transparent)]
     Refused(#[from] ReplayError),
     /// The motion to the first target, or the session, ended otherwise.
@@ -52,7 +52,7 @@ pub enum ReplayFailure {
         after: Duration,
         /// Measured distance.
         distance: String,
-        /// The most that is accepted.
+        /// Largest distance that is accepted.
         most: String,
     },
 }

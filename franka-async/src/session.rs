@@ -65,7 +65,7 @@ impl Session {
         &self.tuning
     }
 
-    /// Notes where it has begun, if that is known.
+    /// Notes the joint positions where it has begun, if known.
     pub(crate) fn keep(&self, posture: Option<[f64; 7]>) {
         if let Some(posture) = posture {
             self.posture.get_or_init(|| posture);

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use franka_model::{Dynamics, EndEffector, Load, Model, RobotKind};
 use franka_proto::{RobotState, Version};
 
-/// The model of one robot, asked by its states: each has the joint positions and velocities, and
+/// The model of one robot, for its states. Each state has the joint positions and velocities, and
 /// the end effector, the load and the gravity that are set on the robot. A control function takes
 /// it along; nothing here allocates or waits.
 ///

@@ -37,7 +37,7 @@ impl Tally {
         }
     }
 
-    /// Motions by how they ended: every way, with its count.
+    /// Motions by how they ended: every outcome, with its count.
     pub(crate) fn motions(&self) -> impl Iterator<Item = (&'static str, u64)> + use<> {
         OUTCOMES.into_iter().zip(self.motions)
     }

@@ -37,8 +37,8 @@ impl Robot {
     /// ```
     ///
     /// # Errors
-    /// [`TareError::Refused`] if the arm moves, is touched or guided, or has no estimate where it
-    /// is; [`TareError::Read`] if states no longer come.
+    /// [`TareError::Refused`] if the arm moves, is touched or guided, or the robot has no estimate
+    /// there; [`TareError::Read`] if states no longer come.
     ///
     /// # Cancel safety
     /// Nothing moves and nothing is kept: dropping the future takes no tare.

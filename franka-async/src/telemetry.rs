@@ -21,12 +21,12 @@ pub(crate) struct Telemetry {
 #[derive(Default)]
 struct Backoff {
     last: Option<Instant>,
-    /// From then on until the next one, at least.
+    /// Least time from that warning to the next.
     interval: Duration,
 }
 
 impl Backoff {
-    /// True if a warning is due now, which it is taken for.
+    /// Returns true if a warning is due now, and then counts it as given.
     fn take(&mut self, now: Instant) -> bool {
         let since = self.last.map(|last| now.duration_since(last));
         self.interval = match since {
@@ -78,7 +78,7 @@ impl Telemetry {
     }
 }
 
-/// Sums a motion up that has ended for the thread.
+/// Logs a summary of a motion that has ended for the thread.
 pub(crate) fn sum_up(ended: &Ended) {
     let (statistics, times) = (&ended.statistics, &ended.times);
     let interval = times.interval.quantiles().unwrap_or_default();

@@ -18,9 +18,8 @@ impl Thresholds {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(behavior);
     }
 
-    /// Returns the force at which the robot stops itself, if a push under this force cap may reach
-    /// it before the arm yields, and the largest push that the robot may see, friction included;
-    /// both in `[N]`.
+    /// Returns the robot's threshold and the largest force that it may estimate under this force
+    /// cap, friction included, if the second exceeds the first; both in `[N]`.
     pub(crate) fn within(&self, cap: ForceCap) -> Option<(f64, f64)> {
         let most = match cap {
             ForceCap::Default => ForceCap::DEFAULT_NEWTONS,

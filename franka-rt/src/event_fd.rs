@@ -20,7 +20,7 @@ use crate::sys;
 pub struct EventFd(Arc<sys::Wake>);
 
 impl EventFd {
-    /// Opens one without a notification.
+    /// Opens an eventfd without a notification.
     ///
     /// # Errors
     /// If the process or the system has no descriptor left.
@@ -28,7 +28,7 @@ impl EventFd {
         Ok(Self(Arc::new(sys::Wake::new()?)))
     }
 
-    /// Makes the descriptor readable. Never blocks and cannot fail in a way that matters: if
+    /// Makes the descriptor readable. Never blocks and cannot fail in a relevant way: if
     /// notifications that were not drained leave no room, the descriptor is readable anyway.
     pub fn notify(&self) {
         self.0.notify();

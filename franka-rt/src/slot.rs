@@ -141,8 +141,8 @@ impl<T: Words> SlotWriter<T> {
     pub fn write(&mut self, value: &T) {
         value.store(&mut self.scratch);
         let number = self.written + 1;
-        // Release, as the last store of the write before: a reader that sees this one sees every
-        // word of that value.
+        // Release, like the last store of the previous write: a reader that sees this one sees
+        // every word of that value.
         self.shared.count.store(2 * number - 1, Ordering::Release);
         for (word, &new) in self.shared.buffer(number).iter().zip(&self.scratch) {
             // Release, pairs with the Acquire load of this word: a reader that sees it also sees
@@ -170,7 +170,7 @@ pub enum Read<T> {
 /// A reading end of a slot. A clone has its own memory of what it has read.
 pub struct SlotReader<T> {
     shared: Arc<Shared>,
-    /// The number of the value returned last.
+    /// The number of the last value returned.
     seen: u64,
     scratch: Box<[u64]>,
     value: core::marker::PhantomData<fn() -> T>,
@@ -216,9 +216,9 @@ impl<T: Words> SlotReader<T> {
         Read::Newer(T::load(&self.scratch))
     }
 
-    /// Like [`Self::read_newer`], with up to `attempts` attempts while they are torn. Not for the
-    /// real-time thread: on one core, a reader of higher priority would use all of them up against
-    /// a writer that cannot run.
+    /// Like [`Self::read_newer`], with up to `attempts` attempts while the copies are torn. Not for
+    /// the real-time thread: on one core, a reader of higher priority would use all of them up
+    /// against a writer that cannot run.
     pub fn read_retry(&mut self, attempts: usize) -> Read<T> {
         for _ in 1..attempts {
             match self.read_newer() {

@@ -50,8 +50,8 @@ impl StateWakeups {
 
     /// True to send a wake-up for every state.
     pub fn are_wanted(&self) -> bool {
-        // Relaxed: nothing else is read on the strength of it. A request takes effect one state
-        // later at worst.
+        // Relaxed: nothing else is read because of it. A request takes effect one state later at
+        // worst.
         self.0.load(Ordering::Relaxed)
     }
 }

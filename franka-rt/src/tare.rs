@@ -39,9 +39,9 @@ impl WrenchTare {
     /// Duration of the states of an average unless asked otherwise.
     pub const DURATION: Duration = Duration::from_millis(500);
 
-    /// A tare is taken to hold within so much of the posture in which it was taken, `[rad]` of any
-    /// joint. A convention: two degrees change the torque of an undeclared kilogram half a metre
-    /// away by less than 0.2 N m.
+    /// A tare is assumed to hold within this distance of its posture, `[rad]` of any joint. A
+    /// convention: two degrees change the torque of an undeclared kilogram half a metre away by
+    /// less than 0.2 N m.
     pub const NEAR: f64 = 0.035;
 
     /// The wrench of a state without the tare: force, then moment about the origin of the stiffness
@@ -79,7 +79,7 @@ pub enum TareRefused {
         joint: u8,
         /// Its velocity, `[rad/s]`.
         speed: f64,
-        /// Its way since the first state of the average, `[rad]`.
+        /// Its distance since the first state of the average, `[rad]`.
         way: f64,
     },
     /// A goal is under way: the arm may stick yet, and is pushed.
@@ -100,7 +100,7 @@ pub enum TareRefused {
          take the tare in another one"
     )]
     NoEstimate,
-    /// The time is out of range.
+    /// The given time is out of range.
     #[error("a tare over {got:?}, expected 20 ms to 60 s")]
     Duration {
         /// The time given.
@@ -122,7 +122,7 @@ pub struct Taring {
 const NUMBERS: usize = 6 + 7 + 7;
 
 impl Taring {
-    /// For states that last for `duration`, by the robot's clock.
+    /// Returns a taring for states that last for `duration`, by the robot's clock.
     ///
     /// # Errors
     /// [`TareRefused::Duration`].

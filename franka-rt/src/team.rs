@@ -240,7 +240,7 @@ impl Member {
         self.number.into()
     }
 
-    /// For how long its robot may be silent.
+    /// Time for which its robot may be silent.
     pub fn silence(&self) -> Duration {
         self.shared.silence
     }
@@ -250,7 +250,7 @@ impl Member {
     pub fn pass(&mut self, round: Round, now: u64) -> Passage {
         let since = match self.arrived {
             Some((arrived, since)) if arrived == round => since,
-            // Too late, or too early: where it has arrived is not forgotten for it.
+            // Too late, or too early: its arrival in another round is kept.
             _ if !self.shared.look().is_going(round) => return self.passage(round),
             _ => {
                 self.arrived = Some((round, now));

@@ -34,7 +34,7 @@ use std::sync::{
 
 use core::time::Duration;
 
-/// A common start, before its tickets are handed out.
+/// A common start, before its tickets are given out.
 ///
 /// ```
 /// use franka_rt::together::StartBarrier;

@@ -15,14 +15,14 @@ use crate::world;
 /// up from 1.
 pub(super) const CLOSING: GoalId = GoalId(u64::MAX);
 
-/// Time that a motion gets to brake and finish when the last handle is dropped.
+/// Time for a motion to brake and finish when the last handle is dropped.
 const CLOSING_TIMEOUT: Duration = Duration::from_secs(15);
 
 /// Time that an arm on its way to a goal has to stop when the connection is lost, before the thread
 /// that brakes it ends.
 const BRAKING_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// Time that the control thread gets to end, which takes it a cycle.
+/// Time for the control thread to end, which takes it a cycle.
 const ENDING_TIMEOUT: Duration = Duration::from_secs(2);
 
 impl Bridge {
@@ -72,7 +72,7 @@ impl Bridge {
                         MotionError::ConnectionClosed { reason },
                     );
                 }
-                // Who waits for another answer sees the end by its channel being closed.
+                // A caller that waits for another answer sees the end by its closed channel.
                 _ => {}
             }
         }

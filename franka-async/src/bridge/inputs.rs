@@ -149,7 +149,7 @@ impl Bridge {
         self.callers.insert(id, caller);
     }
 
-    /// Completes a motion by where the robot is, and begins it.
+    /// Completes a motion by the robot's present position, and begins it.
     fn begin(&mut self, beginning: Beginning, path: Option<Chunk>) -> Result<(), MotionError> {
         let (now, state) = (self.now(), *self.publisher.state());
         let Beginning {

@@ -86,7 +86,7 @@ struct Caller {
 /// A deadline of the lifecycle.
 struct Awaited {
     deadline: Duration,
-    /// `message_id` of the newest state, and since when none has come that is newer.
+    /// `message_id` of the newest state, and the time since which no newer one has come.
     newest: u64,
     since: Duration,
     /// Turns of the control thread when the deadline was set.
@@ -237,7 +237,7 @@ impl Bridge {
         world::now() - self.started
     }
 
-    /// Notes since when a deadline is waited for.
+    /// Notes the time since which a deadline is waited for.
     fn note_deadline(&mut self) {
         let deadline = self.lifecycle.deadline();
         if deadline == self.awaited.as_ref().map(|it| it.deadline) {
@@ -323,7 +323,7 @@ impl Bridge {
     }
 }
 
-/// Notes how something ended, which may have been detached.
+/// Notes the end of a goal or program, which may have been detached.
 fn log(goal: GoalId, outcome: &Outcome) {
     match outcome {
         Ok(_) if goal == closing::CLOSING => tracing::info!("the arm rests, and is let go"),

@@ -23,7 +23,7 @@ pub(super) struct Planning {
     replies: Replies,
     /// Joint positions that the path starts from, `[rad]`.
     start: [f64; 7],
-    /// Plans that may still be made if the arm has left the start meanwhile.
+    /// Number of plans that may still be made if the arm has left the start meanwhile.
     plans_left: u32,
     task: JoinHandle<Result<Chunk, PathError>>,
 }
@@ -33,7 +33,7 @@ pub(super) struct Planning {
 /// a hundred milliseconds.
 const LEFT_START: f64 = 0.1;
 
-/// Plans of a path beyond the first until it is refused, because the arm moves on too fast.
+/// Number of plans after the first until a path is refused, because the arm moves on too fast.
 pub(super) const PLANS: u32 = 4;
 
 /// Most paths that are being planned. One more supersedes the oldest.
@@ -154,12 +154,12 @@ impl Bridge {
         self.take_back_plans(MotionError::Superseded, |plan| plan.session() == session);
     }
 
-    /// Takes back the path of this goal. Returns whether there is one.
+    /// Takes back the path of this goal. Returns true if there is one.
     pub(super) fn cancel_plan(&mut self, goal: GoalId) -> bool {
         self.take_back_plans(MotionError::Stopped, |plan| plan.id() == goal)
     }
 
-    /// Takes back the paths that a session is to go along.
+    /// Takes back the paths of a session that have not begun.
     pub(super) fn end_plans_of(&mut self, session: GoalId) {
         self.take_back_plans(MotionError::Stopped, |plan| plan.session() == Some(session));
     }

@@ -43,13 +43,13 @@ pub enum Error {
     /// There is no connection to the Franka Hand.
     #[error(transparent)]
     ConnectGripper(#[from] ConnectError<gripper::Version>),
-    /// The Franka Hand did not do it.
+    /// The Franka Hand did not carry out an action.
     #[error(transparent)]
     Gripper(#[from] ActionError<gripper::Command>),
     /// There is no connection to the vacuum gripper.
     #[error(transparent)]
     ConnectVacuumGripper(#[from] ConnectError<vacuum::Version>),
-    /// The vacuum gripper did not do it.
+    /// The vacuum gripper did not carry out an action.
     #[error(transparent)]
     VacuumGripper(#[from] ActionError<vacuum::Command>),
     /// The robot's model library cannot be used.

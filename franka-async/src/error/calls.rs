@@ -96,7 +96,7 @@ impl CommandError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ActionError<C: ServiceCommand> {
-    /// Device: it could not do it, or something ended it: a stop, or a newer action.
+    /// Device: it failed, or something ended the action: a stop, or a newer action.
     #[error(transparent)]
     Failure(#[from] Failure<C>),
     /// Caller: the device cannot carry out the request, because the request is out of its range.
@@ -184,13 +184,13 @@ impl ReadError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ActiveError {
-    /// The motion has ended, and how.
+    /// The motion has ended, with this error.
     #[error(transparent)]
     Motion(#[from] MotionError),
     /// The motion has ended otherwise than asked, as an earlier call has returned.
     #[error("the motion has ended{}: {}", if needs_recovery(.0) { RECOVER } else { "" }, .0)]
     Ended(MotionError),
-    /// The motion has ended as asked: its last command was written before.
+    /// The motion has ended as asked: its last command was written earlier.
     #[error("the motion has finished, and takes neither reads nor commands: begin a new one")]
     Finished,
     /// The command was not sent; the motion continues.

@@ -30,7 +30,7 @@ pub enum ConnectError<P: Protocol = Version> {
     /// [`Builder::realtime`](crate::connection::Builder::realtime).
     #[error("{}{}", .0, if .0.is_misuse() { "" } else { IGNORE })]
     Realtime(#[from] SchedError),
-    /// Caller: the text that was given as the place of the device names none. Nothing was sent.
+    /// Caller: the given text is not an endpoint. Nothing was sent.
     #[error(transparent)]
     Endpoint(#[from] EndpointError),
     /// Caller: the silence after which the link counts as lost is out of range, see
@@ -251,7 +251,7 @@ impl From<StartError> for ConnectError {
     }
 }
 
-/// By hand, as the refusal is no source: its own text is libfranka's.
+/// Written by hand, as the refusal is no source: its own text is libfranka's.
 impl<P: Protocol> From<IncompatibleVersion<P>> for ConnectError<P> {
     fn from(refusal: IncompatibleVersion<P>) -> Self {
         Self::IncompatibleVersion(refusal)

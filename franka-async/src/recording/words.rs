@@ -21,7 +21,7 @@ pub(super) fn goal(given: &Given) -> EventKind {
     } = given;
     let target = match (destination, goal) {
         (Some(Destination::Target(target)), _) => place(*target),
-        // Completed by where the arm is when it begins: the cycles have it.
+        // Completed by the position of the arm when it begins: the cycles have it.
         (Some(_), _) => None,
         (None, Some(goal)) => place(goal.target),
         (None, None) => None,
@@ -171,7 +171,7 @@ pub(super) fn note(level: Level, source: &str, text: String) -> EventKind {
     })
 }
 
-/// A request to the robot, and why it was not done.
+/// A request to the robot, and the reason if it was not done.
 pub(super) fn request(request: &Request, error: Option<String>) -> EventKind {
     let none = String::new();
     let (name, arguments) = match request {

@@ -61,7 +61,7 @@ struct Inner {
     waiting: Option<Waiting>,
     refused: Vec<Refused>,
     jobs: VecDeque<Job>,
-    /// `None` once closed, as the next.
+    /// `None` once closed, like the next field.
     events: Option<broadcast::Sender<Event>>,
     health: Option<watch::Sender<Health>>,
     #[cfg(feature = "metrics")]
@@ -237,7 +237,7 @@ impl Supervisor {
         });
     }
 
-    /// Writes down how something ended that the supervision does not follow.
+    /// Writes down the end of something that the supervision does not follow.
     #[cfg(feature = "record")]
     pub(crate) fn write_down(&self, goal: GoalId, outcome: &Outcome) {
         self.with(|inner, _| inner.journal.ended(goal, outcome));
@@ -449,7 +449,7 @@ impl Inner {
         let Err(error) = self.core.check_latch() else {
             return Some(input);
         };
-        // Receivers may have been dropped.
+        // The receivers may have been dropped.
         match input {
             Input::Set { motion, taken } => {
                 self.note_refused(motion.motion.id(), &error);
@@ -595,7 +595,7 @@ mod tests {
             let passed = catch_unwind(AssertUnwindSafe(|| {
                 supervisor.pass(input, || {
                     is_locked = supervisor.inner.try_lock().is_err();
-                    // In the place of a connection.
+                    // Stands for a connection.
                     std::panic::resume_unwind(Box::new(()))
                 })
             }));

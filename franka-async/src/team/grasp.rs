@@ -36,8 +36,8 @@ pub struct Grasp<'a, const N: usize> {
 
 impl<const N: usize> Team<N> {
     /// Takes an object as held by all arms from now on, where it is: `bases` are the robots' base
-    /// frames and `object` is the object's frame, all in one frame of the program's choice. Where
-    /// the object is in each hand follows from where the arms are held now. Nothing moves.
+    /// frames and `object` is the object's frame, all in one frame of the program's choice. The
+    /// present positions of the arms define the place of the object in each hand. Nothing moves.
     ///
     /// Weight that is not declared ([`Robot::set_load`](crate::Robot::set_load)) is carried by the
     /// springs: each arm's share of it, for a load that several hold.
@@ -73,9 +73,9 @@ impl<const N: usize> Grasp<'_, N> {
         self.move_with(object, |motion| motion)
     }
 
-    /// [`Self::move_to`] with options, which must be the same for each arm: `grasp.move_with(pose,
-    /// |motion| motion.speed(0.3).force_cap(15.0))`. The limits of the translation and the
-    /// rotation, at the origin of the object, are the least of all arms.
+    /// [`Self::move_to`] with options, which must be the same for each arm. Example:
+    /// `grasp.move_with(pose, |motion| motion.speed(0.3).force_cap(15.0))`. The limits of the
+    /// translation and the rotation, at the origin of the object, are the least of all arms.
     pub fn move_with(&self, object: Pose, options: impl Fn(Motion) -> Motion) -> TeamMotion<N> {
         let budgets = self.team.arms.each_ref().map(|arm| {
             let limits = arm.robot().model().joint_limits();

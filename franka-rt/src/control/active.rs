@@ -1,4 +1,4 @@
-//! Active control: a thread of the user's reads a state, and writes the command that answers it.
+//! Active control: a thread of the program reads a state, and writes the command that answers it.
 
 use super::{Command, Misfit};
 use crate::control::Modes;

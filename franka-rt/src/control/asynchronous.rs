@@ -22,7 +22,7 @@ pub struct AsynchronousTarget {
 }
 
 impl AsynchronousPositions {
-    /// A program without a target, and where its targets are written.
+    /// Returns a program without a target, and the writer of its targets.
     pub fn new() -> (Self, SlotWriter<AsynchronousTarget>) {
         let (writer, targets) = slot();
         (Self { targets }, writer)

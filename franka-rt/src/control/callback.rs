@@ -76,7 +76,7 @@ impl Callback {
         }
     }
 
-    /// Replaces the shaper, [`Shaper::by_default`] at first.
+    /// Replaces the shaper; by default [`Shaper::by_default`].
     #[must_use]
     pub fn with_shaper(self, shaper: Shaper) -> Self {
         Self { shaper, ..self }
@@ -146,7 +146,7 @@ impl Callback {
         }
     }
 
-    /// Returns whether the motion function has finished.
+    /// Returns true if the motion function has finished.
     fn step_motion(
         &mut self,
         state: &RobotState,

@@ -62,7 +62,7 @@ impl MotionCommand {
         }
     }
 
-    /// The command to the same generator that changes nothing: where the robot desires to be, at no
+    /// The command to the same generator that changes nothing: the robot's desired position, at no
     /// velocity. The robot expects it at the start of a motion.
     pub(super) fn holding(&self, state: &RobotState) -> Self {
         match self {

@@ -2,7 +2,7 @@
 
 use super::{CartesianPose, CartesianVelocities, JointPositions, JointVelocities, Torques};
 
-/// A command, and whether it is the last one.
+/// A command, and whether it is the last.
 ///
 /// Control functions may return the bare command to continue.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,7 +13,7 @@ pub struct Column {
     pub name: &'static str,
     /// Its unit, or the meaning of its numbers where it has none.
     pub unit: &'static str,
-    /// The shape of it in one cycle: empty for one number, `[4, 4]` for a pose, row-major.
+    /// Its shape in one cycle: empty for one number, `[4, 4]` for a pose, row-major.
     pub shape: &'static [usize],
     /// Meaning of its numbers.
     pub kind: ColumnKind,
@@ -30,7 +30,7 @@ pub enum ColumnKind {
     Count,
     /// 0 or 1.
     Flag,
-    /// The place of a name in this list; none if it is beyond its end.
+    /// The place of a name in this list; no name if it is beyond the end.
     Name(&'static [&'static str]),
 }
 

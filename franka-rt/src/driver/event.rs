@@ -107,7 +107,7 @@ pub enum Ending {
     Refused,
     /// The robot fell silent.
     LinkLost {
-        /// The silence when it was given up.
+        /// Length of the silence when it was given up.
         silence: Duration,
     },
 }

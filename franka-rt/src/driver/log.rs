@@ -58,8 +58,8 @@ impl ControlLog {
         }
     }
 
-    /// Marks the numbers as rounded to six significant digits, as a table of libfranka has them. A
-    /// diagnosis then takes no difference for real that rounding may have made.
+    /// Marks the numbers as rounded to six significant digits, as in a table of libfranka. A
+    /// diagnosis then ignores differences that rounding may have made.
     #[must_use]
     pub fn rounded(self) -> Self {
         Self {
@@ -201,7 +201,7 @@ impl<'de> serde::Deserialize<'de> for ControlLog {
     }
 }
 
-/// A group of columns: its name, and where its numbers are.
+/// A group of columns: its name, and the access to its numbers.
 type Columns = (&'static str, fn(&LogEntry) -> &[f64]);
 
 const COLUMNS: [Columns; 11] = [

@@ -125,7 +125,7 @@ const ATTEMPTS: usize = 16;
 pub struct ReferenceReader(SlotReader<ReferenceState>);
 
 impl ReferenceReader {
-    /// The reference of the newest cycle; `None` where target control did not answer it.
+    /// The reference of the newest cycle; `None` if target control did not answer it.
     pub fn newest(&self) -> Option<ReferenceState> {
         // A clone has read nothing yet, and so finds the present value whether or not it is new.
         match self.0.clone().read_retry(ATTEMPTS) {

@@ -31,7 +31,7 @@ impl Observer {
         }
     }
 
-    /// Shows it a cycle. Returns whether it panics, which happens once.
+    /// Shows it a cycle. Returns true if it panics, which happens once.
     pub(super) fn see(&mut self, record: &Record, state: &RobotState) -> bool {
         if self.panicked.is_some() {
             return false;
@@ -44,7 +44,7 @@ impl Observer {
     }
 }
 
-/// Elsewhere: see [`Event::Ended`](super::Event::Ended).
+/// Freed elsewhere: see [`Event::Ended`](super::Event::Ended).
 impl Drop for Observer {
     fn drop(&mut self) {
         // The panic has been reported.

@@ -16,7 +16,7 @@ use crate::together::Gate;
 pub enum Program {
     /// Goals from a slot, turned into torques.
     Target(Box<TargetSession>),
-    /// A function of the user's, called with every state.
+    /// A function of the program, called with every state.
     Callback(Box<Callback>),
     /// Commands written from outside, see [`Driver::write`](super::Driver::write).
     Active(ActiveControl),
@@ -28,7 +28,7 @@ pub enum Program {
 pub(super) enum CycleOutcome {
     /// This command; the last one if `finished`.
     Command { command: Command, finished: bool },
-    /// Nothing now, but perhaps something is written before the next state.
+    /// Nothing now, but a command may be written before the next state.
     Open,
     /// No command, and none later.
     Failed(Failure),

@@ -41,8 +41,8 @@ pub struct Record {
     /// Reference joint accelerations, `[rad/s^2]`.
     pub ddq_ref: [f64; 7],
     /// Joint positions that the reference heads for, `[rad]`; `None` where it heads for a pose, to
-    /// rest or where a hand guides the arm, and outside target control. A target that moves: where
-    /// it is now.
+    /// rest or where a hand guides the arm, and outside target control. For a moving target, its
+    /// present position.
     pub q_target: Option<[f64; 7]>,
     /// Pose that the reference heads for, as [`Self::q_target`]. It is the pose of the end effector
     /// in the base frame, or of the object that the hand holds, `[m]`.
@@ -55,12 +55,12 @@ pub struct Record {
     /// Commanded joint torques without gravity and friction, `[N m]`; zero under active control,
     /// whose commands leave after the cycle.
     pub tau_c: [f64; 7],
-    /// Part of it that compensates friction and bias, before the guards, `[N m]`; zero outside
-    /// target control.
+    /// Part of the torque that compensates friction and bias, before the guards, `[N m]`; zero
+    /// outside target control.
     pub compensation: [f64; 7],
     /// Guards that bound the command.
     pub bindings: Bindings,
-    /// From when the state was due to when the thread had it: see
+    /// Time from when the state was due to when the thread had it: see
     /// [`CycleTimes::late`](crate::stats::CycleTimes::late).
     pub late: Duration,
     /// Time from the receipt of the state to the departure of its command; zero where none left,

@@ -1,4 +1,4 @@
-//! The driver beside states and programs that a test makes up.
+//! The driver, with states and programs that a test makes up.
 
 use std::sync::Arc;
 

@@ -229,7 +229,8 @@ fn a_robot_on_ipv6_and_one_whose_address_is_mapped_are_known_and_answered() {
     let v6 = IpAddr::from(Ipv6Addr::LOCALHOST);
     let v4 = IpAddr::from(Ipv4Addr::LOCALHOST);
     let mapped = IpAddr::from(Ipv4Addr::LOCALHOST.to_ipv6_mapped());
-    // Where the robot sends from, what it is known as, and the family of the socket that receives.
+    // The address that the robot sends from, its known address, and the family of the receiving
+    // socket.
     for (from, known, socket) in [
         (v6, v6, v6),
         (v4, mapped, v4),

@@ -87,8 +87,8 @@ pub enum FitError {
 type Unknowns = SVector<f64, 18>;
 
 impl Fit {
-    /// Begins for an arm of this model that is in this state: end effector, declared load and base
-    /// are to stay as they are.
+    /// Begins for an arm of this model that is in this state. End effector, declared load and base
+    /// must stay as they are.
     pub fn new(model: &Model, state: &RobotState) -> Self {
         let end_effector = Load::from_arrays(state.m_ee, &state.F_x_Cee, &state.I_ee);
         let load = Load::from_arrays(state.m_load, &state.F_x_Cload, &state.I_load);
@@ -102,8 +102,8 @@ impl Fit {
         }
     }
 
-    /// Takes the record of a cycle. Slower motions, cycles in which a guard binds, and records that
-    /// are missed do no harm; motions under the robot's own controller do.
+    /// Takes the record of a cycle. Slower motions, cycles in which a guard binds, and missed
+    /// records do no harm; motions under the robot's own controller do.
     pub fn on_record(&mut self, record: &Record) {
         let (v, a) = (JointVector::from(record.dq_ref), record.ddq_ref);
         let signs = v.map(|v| if v.abs() > FAST { v.signum() } else { 0.0 });
@@ -278,7 +278,7 @@ fn prior() -> Unknowns {
     })
 }
 
-/// Guards under which something else than the arm itself takes torques.
+/// Guards under which something other than the arm itself takes torques.
 const HOLDING: [Guard; 5] = [
     Guard::Leash,
     Guard::ForceCap,

@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 use crate::session::{Budget, Tolerance};
 
-/// Motions around the joint positions at which the arm is: in each of a few poses all joints go to
+/// Motions around the present joint positions of the arm: in each of a few poses all joints go to
 /// and fro twice, then back to the start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -62,8 +62,8 @@ impl Plan {
         rotation: 0.05,
     };
 
-    /// Plans for an arm of this model in this state. Joints near a limit are led away from it
-    /// first.
+    /// Plans for an arm of this model in this state. Joints near a limit are first led away from
+    /// it.
     pub fn new(model: &Model, state: &RobotState) -> Self {
         let limits = model.joint_limits();
         let mut budget = Budget::of(limits);
@@ -119,7 +119,7 @@ impl Plan {
         self.reach
     }
 
-    /// About how long they take together.
+    /// Approximate duration of all motions together.
     pub fn duration(&self) -> Duration {
         let durations = self.motions.iter().map(|motion| motion.duration);
         durations.fold(Duration::ZERO, Duration::saturating_add)

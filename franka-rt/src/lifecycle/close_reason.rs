@@ -24,7 +24,7 @@ pub enum CloseReason {
         /// Failed operation, in the words of the reference client.
         text: String,
     },
-    /// Peer: it left the protocol in a way that no later message can mend.
+    /// Peer: it left the protocol in a way that no later message can repair.
     #[error("{text}")]
     Protocol {
         /// Expected and received values.
@@ -39,10 +39,10 @@ pub enum CloseReason {
     /// Link: the robot sent no states, on a connection that looked alive. Its supervisor closed it.
     #[error("the robot was silent for {} ms more than the link timeout", .silence.as_millis())]
     Silent {
-        /// For how long, from when it was noticed.
+        /// Length of the silence, from when it was noticed.
         silence: Duration,
     },
-    /// Link: the connection was lost, and the supervisor has given up to make a new one.
+    /// Link: the connection was lost, and the supervisor has stopped trying to reconnect.
     #[error("no new connection in {} s, {attempts} attempts: {text}", .after.as_secs())]
     GivenUp {
         /// Attempts that failed.

@@ -28,7 +28,7 @@ pub(super) struct CurrentMotion {
     pub(super) deadline: Option<Duration>,
     /// Step that the robot had not taken by a deadline, so that it was asked to stop.
     pub(super) given_up: Option<&'static str>,
-    /// Since when its last command is out.
+    /// Time since which its last command is out.
     pub(super) finishing: Option<Duration>,
     /// Reason why its program could not continue.
     pub(super) failure: Option<MotionError>,
@@ -105,8 +105,8 @@ impl CurrentMotion {
             Some(refusal) if ended.ending == Ending::Disarmed && is_rejection(status) => {
                 return Err(MotionError::Rejected(refusal));
             }
-            // So ends a motion that the robot was asked to stop, even with its finishing command on
-            // its way,
+            // A motion that the robot was asked to stop ends so, even with its finishing command on
+            // its way.
             Some(_) if status == MoveStatus::Preempted && self.stopped.is_some() => {
                 return match &self.work {
                     Work::Goals(goals) => goals.outcome_of_stop(ended),
@@ -115,7 +115,7 @@ impl CurrentMotion {
             }
             Some(refusal) => {
                 return Err(match (status, self.given_up) {
-                    // and any motion that was given up.
+                    // A motion that was given up ends so, too.
                     (MoveStatus::Preempted, Some(what)) => MotionError::Protocol { what },
                     _ => ControlError::new(refusal, ended, model).into(),
                 });
@@ -219,7 +219,8 @@ impl From<Failure> for MotionError {
 }
 
 impl ControlError {
-    /// A robot of this model ended a motion with `refusal`. Takes the log of the motion.
+    /// Returns the error of a robot of this model that ended a motion with `refusal`. Takes the log
+    /// of the motion.
     fn new(refusal: Refusal, ended: &mut Ended, model: &Arc<Model>) -> Box<Self> {
         let log = core::mem::take(&mut ended.log);
         Box::new(Self {

@@ -7,7 +7,7 @@ use core::fmt;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Differences {
-    /// Its description of itself, or that it has one.
+    /// Its description of itself, or the fact that it has one.
     pub description: bool,
     /// A frame of its end effector (`F_T_NE`, `NE_T_EE`, `EE_T_K`), or the end effector's mass,
     /// centre of mass or inertia.

@@ -149,8 +149,8 @@ impl Lifecycle {
         self.follow(&outcome.map(drop), counted, now);
     }
 
-    /// Starts the motion that waits, if any, once no motion is under way. `before` is how the
-    /// previous one ended.
+    /// Starts the waiting motion, if any, once no motion is under way. `before` is the end of the
+    /// previous one.
     fn follow(&mut self, before: &Result<(), MotionError>, counted: &Counted, now: Duration) {
         if let LifecyclePhase::Idle = self.phase
             && let Some(next) = self.next.take()

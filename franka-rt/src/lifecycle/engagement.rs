@@ -60,7 +60,7 @@ pub struct Tuning {
     pub gains: Option<Gains>,
     /// Limits of the motion.
     pub budget: Option<Budget>,
-    /// With how much force springs and dampers may press. It fades as the gains do.
+    /// Largest force of springs and dampers. It fades as the gains do.
     pub force_cap: Option<ForceCap>,
     /// Largest distance of the reference ahead of the arm. It fades as the gains do.
     pub leash: Option<Leash>,
@@ -286,7 +286,7 @@ impl Lifecycle {
         self.goals().is_some_and(|goals| goals.owner != Owner::Goal)
     }
 
-    /// Ends the session of that name. Returns whether it has the arm.
+    /// Ends the session of that name. Returns true if it has the arm.
     pub(super) fn release(&mut self, engaged: GoalId) -> bool {
         let ending = self.is_ending();
         let Some(goals) = self.goals_mut() else {

@@ -1,4 +1,4 @@
-//! The goals of one motion under target control, and how each turned out.
+//! The goals of one motion under target control, and their outcomes.
 
 use std::sync::Arc;
 
@@ -127,7 +127,7 @@ impl Goals {
         Ok(())
     }
 
-    /// True if a chunk or a path can be sent. Frees those that the session is done with.
+    /// True if a chunk or a path can be sent. Frees those that the session no longer needs.
     pub(super) fn has_room(&mut self) -> bool {
         while let Some(done) = self.chunks.collect() {
             drop(done);
@@ -182,7 +182,7 @@ impl Goals {
     pub(super) fn reach(&mut self, engaged: GoalId, settled: &Settled) -> Option<Outcome> {
         let goal = self.current;
         if goal.id == engaged {
-            // Given up after it had arrived: it is not to be taken back there.
+            // Given up after it had arrived: the arm must not be taken back there.
             if !matches!(settled.settlement, Settlement::Arrived(_)) {
                 self.current.target = Target::Rest;
             }

@@ -103,7 +103,7 @@ impl Lifecycle {
         Some((goal.id, goal.hand_target()))
     }
 
-    /// The goal that was taken last.
+    /// The last goal taken.
     fn newest(&self) -> Option<&Goal> {
         match &self.next {
             Some(NewMotion::Goal { goal, .. }) => Some(goal),
@@ -161,7 +161,7 @@ impl Lifecycle {
         }
     }
 
-    /// Changes a goal that has not been superseded. Returns whether there was one of that name.
+    /// Changes a goal that has not been superseded. Returns true if there was one of that name.
     pub(super) fn amend(
         &mut self,
         id: GoalId,

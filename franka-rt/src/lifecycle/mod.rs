@@ -120,7 +120,7 @@ pub struct Lifecycle {
     motions: u64,
     /// Cycles that the log of a motion holds.
     log_size: usize,
-    /// Silence of the robot before which nothing that no state has shown counts as missing.
+    /// Silence of the robot before which no missing state counts.
     link_timeout: Duration,
     /// Regions that the arm keeps out of under target control.
     keep_out: KeepOut,
@@ -232,7 +232,7 @@ impl Lifecycle {
         self.keep_out = regions;
     }
 
-    /// Returns whether no motion is under way, and no motion or stop waits. The arm may still brake
+    /// Returns true if no motion is under way, and no motion or stop waits. The arm may still brake
     /// after the end of the connection: see [`Self::is_braking`].
     pub fn is_idle(&self) -> bool {
         if !self.stops.is_empty() {

@@ -172,7 +172,7 @@ pub enum MotionError {
         .silence.as_millis()
     )]
     Stalled {
-        /// For how long, when it was given up.
+        /// Length of the silence when it was given up.
         silence: Duration,
     },
     /// Caller: the control thread has run no cycle for this long, and the robot has ended the
@@ -194,8 +194,8 @@ pub enum MotionError {
     /// Clear the cause; after a reflex, recover.
     #[error(transparent)]
     Control(#[from] Box<ControlError>),
-    /// Robot or link: the supervised robot takes no motions now, and this one did not wait, or not
-    /// any longer. It has not begun. The party that can act on it depends on the reason.
+    /// Robot or link: the supervised robot takes no motions now, and this one did not wait, or no
+    /// longer waits. It has not begun. The party that can act on it depends on the reason.
     #[error("{}", not_ready(*.why, *.waited))]
     NotReady {
         /// Reason.
@@ -233,7 +233,7 @@ pub enum MotionError {
     /// Link: the robot fell silent.
     #[error("libfranka: UDP receive: Timeout (no robot state for {} ms)", .silence.as_millis())]
     LinkLost {
-        /// The silence when it was given up.
+        /// Length of the silence when it was given up.
         silence: Duration,
     },
     /// The command connection has ended. The party that can act on it depends on the reason.

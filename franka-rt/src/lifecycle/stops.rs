@@ -24,7 +24,7 @@ pub(super) struct Stop {
 enum StopStage {
     /// The motion under way brakes.
     Braking {
-        /// The outcome of this goal decides, which several stops may share.
+        /// The goal whose outcome decides; several stops may share it.
         goal: GoalId,
         /// Deadline after which the robot is asked to stop. `None` once it was.
         until: Option<Duration>,
@@ -35,7 +35,7 @@ enum StopStage {
         report: Box<MotionReport>,
         /// Deadline for the states to show that. `None` until the first of them.
         until: Option<Duration>,
-        /// Error that the newest state amounts to.
+        /// Error in the newest state.
         why: MotionError,
     },
 }

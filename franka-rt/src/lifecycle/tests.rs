@@ -1,4 +1,4 @@
-//! The lifecycle beside a driver whose states a test makes up.
+//! The lifecycle, with a driver whose states a test makes up.
 
 mod product;
 mod stops;
@@ -15,7 +15,7 @@ use crate::shaping::InvalidCommand;
 
 const NOW: Duration = Duration::ZERO;
 
-/// A lifecycle with its driver, and what the lifecycle has asked of the robot or resolved.
+/// A lifecycle with its driver, and the requests and outcomes of the lifecycle.
 struct LifecycleAndDriver {
     lifecycle: Lifecycle,
     driver: Driver,

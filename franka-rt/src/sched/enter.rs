@@ -24,7 +24,7 @@ impl Scheduling {
         self.enter_on(Kernel::read)
     }
 
-    /// [`Self::enter`] on a host with this kernel.
+    /// As [`Self::enter`], on a host with this kernel.
     fn enter_on(&self, kernel: impl FnOnce() -> Kernel) -> Result<Granted, SchedError> {
         self.check()?;
         sys::block_signals();

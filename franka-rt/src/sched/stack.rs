@@ -6,8 +6,8 @@ use core::hint::black_box;
 /// control uses some tens of kilobytes, a control function of the user's any amount.
 pub const DEFAULT: usize = 512 * 1024;
 
-/// The most that can be asked for, in bytes. Larger buffers belong on the heap, allocated before
-/// the loop.
+/// Largest stack that can be requested, in bytes. Larger buffers belong on the heap, allocated
+/// before the loop.
 pub const MAX: usize = 64 * 1024 * 1024;
 
 /// Stack beyond the touched part, in bytes: for the larger frames of unoptimised builds.

@@ -17,7 +17,7 @@ use super::cycle::CYCLE_NANOS;
 pub(super) struct Arrivals {
     /// `message_id` and arrival that all offsets are counted from.
     origin: Option<(u64, Instant)>,
-    /// The smallest offset of the window before, and of this one so far, in nanoseconds.
+    /// The smallest offset of the previous window, and of this one so far, in nanoseconds.
     earliest: [i64; 2],
     /// States in this window.
     counted: u32,

@@ -14,12 +14,12 @@ use crate::slot::Words;
 pub struct CycleTimes {
     /// `message_id` of the state that the command answers, `[ms]` of the robot's clock.
     pub time: u64,
-    /// From when the state was due to when the thread had it: network, kernel and waking up. A
+    /// Time from when the state was due to when the thread had it: network, kernel and waking up. A
     /// state is due a whole number of milliseconds, by `message_id`, after the most punctual of the
-    /// last 32 to 64 states. Zero for that one.
+    /// last 32 to 64 states. Zero for that state.
     pub late: Duration,
-    /// From when the thread had the state to the departure of the command: until the system call
-    /// that sends had returned.
+    /// Time from when the thread had the state to the departure of the command: until the system
+    /// call that sends had returned.
     pub turnaround: Duration,
     /// Time left until the next state was due: 1 ms - `late` - `turnaround`. The way to the robot
     /// and back is not in it and must fit into it.
@@ -100,7 +100,7 @@ impl CycleTimes {
         self.late.saturating_add(self.turnaround.max(work))
     }
 
-    /// The part that took longest, and how long.
+    /// The longest part, and its duration.
     pub fn longest(&self) -> (Phase, Duration) {
         let late = (Phase::Arrival, self.late);
         let Some(phases) = &self.phases else {
@@ -141,7 +141,7 @@ impl Slack {
         u64::try_from(self.nanos).ok().map(Duration::from_nanos)
     }
 
-    /// By how much the command was too late; `None` if it was not.
+    /// Time by which the command was too late; `None` if it was not.
     pub fn overrun(self) -> Option<Duration> {
         (self.nanos < 0).then(|| Duration::from_nanos(self.nanos.unsigned_abs()))
     }

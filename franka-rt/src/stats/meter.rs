@@ -13,7 +13,7 @@ use crate::slot::{self, SlotWriter};
 pub struct Arrival {
     /// Time since the previous state, by this host's clock; `None` for the first.
     pub interval: Option<Duration>,
-    /// From when it was due to when the thread had it: see [`CycleTimes::late`].
+    /// Time from when it was due to when the thread had it: see [`CycleTimes::late`].
     pub late: Duration,
 }
 

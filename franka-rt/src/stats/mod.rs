@@ -44,7 +44,7 @@ pub struct Stats {
     /// Turns of the loop, with a state or without. While they stand still, a control function does
     /// not return, or the thread is not scheduled.
     pub turns: Counter,
-    /// States received and given to the driver.
+    /// States received and handed to the driver.
     pub states: Counter,
     /// Commands sent.
     pub commands: Counter,
@@ -77,7 +77,7 @@ pub struct Stats {
     /// [`CycleTimes::slack`]. A command that left later than that counts as zero here, and in
     /// [`Self::overrun`].
     pub slack: Histogram,
-    /// By how much commands left after the next state was due; one value per overrun.
+    /// Times by which commands left after the next state was due; one value per overrun.
     pub overrun: Histogram,
     worst: SlotReader<CycleTimes>,
     overran: SlotReader<CycleTimes>,
@@ -96,7 +96,7 @@ impl Stats {
         newest(&self.overran)
     }
 
-    /// The motion that runs, so far, or the last one; `None` before the first. Of a motion that has
+    /// The present motion so far, or the last one; `None` before the first. After a motion has
     /// ended, the state that showed its end is not counted here: its report counts it.
     pub fn motion(&self) -> Option<MotionStatistics> {
         newest(&self.motion)

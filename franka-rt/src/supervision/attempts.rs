@@ -1,4 +1,4 @@
-//! Attempts: pauses between them that grow, and how many there were within a time.
+//! Attempts: growing pauses between them, and their number within a time.
 
 use core::time::Duration;
 use std::collections::VecDeque;
@@ -53,7 +53,7 @@ impl Pauses {
 pub(super) struct Attempts(VecDeque<Duration>);
 
 impl Attempts {
-    /// Notes an attempt at `now`, unless there were `most` within `window` before. Returns whether
+    /// Notes an attempt at `now`, unless there were `most` within `window` before. Returns true if
     /// it may be made.
     pub(super) fn note(&mut self, most: u32, window: Duration, now: Duration) -> bool {
         self.forget(window, now);

@@ -31,7 +31,7 @@ pub enum EventKind {
     Connected {
         /// Attempts that this took.
         attempts: u32,
-        /// Time since the connection before was lost; `None` for the first one.
+        /// Time since the previous connection was lost; `None` for the first connection.
         after: Option<Duration>,
     },
     /// The operating system refused a request of the control thread, which continues without.
@@ -69,7 +69,7 @@ pub enum EventKind {
         /// Time since the silence was noticed.
         after: Duration,
     },
-    /// The robot stopped itself, or is found to have done so.
+    /// The robot stopped itself, or was found in a reflex.
     Reflex(Reflex),
     /// The supervisor leaves the robot in its reflex: someone must recover it.
     NotRecovered {
@@ -87,12 +87,12 @@ pub enum EventKind {
         /// True if the supervisor did it, rather than this program or a person.
         by_supervisor: bool,
     },
-    /// The user stop was pressed or released, or a safety function did as much.
+    /// The user stop was pressed or released, or a safety function had the same effect.
     UserStop {
         /// True if it holds the robot now.
         pressed: bool,
     },
-    /// A hand began or ended to guide the arm.
+    /// A hand began or stopped guiding the arm.
     Guiding {
         /// True if it does now.
         active: bool,
@@ -241,7 +241,7 @@ pub enum NotRecovered {
 pub struct Health {
     /// Condition: whether it takes motions.
     pub condition: Condition,
-    /// Since when, since the robot was first connected to.
+    /// Start of the condition, counted from the first connection to the robot.
     pub since: Duration,
     /// Number of the reflex that holds it, if one does, for agreeing to its recovery.
     pub reflex: Option<u64>,

@@ -79,15 +79,15 @@ impl Identity {
 const MOVED: f64 = 5e-3;
 
 /// Time for which a joint may have run on at its last velocity, `[s]`: a robot that misses its
-/// client bridges 20 ms and brakes, from its highest velocities in about 0.3 s.
+/// client bridges 20 ms and then brakes. From its highest velocities that takes about 0.3 s.
 const BRAKING: f64 = 0.3;
 
 /// Difference of two numbers of a frame or a tool that are not the same; states of protocol 10 have
 /// single precision.
 const EPS: f64 = 1e-5;
 
-/// By how much the robot's clock may be off the time that has passed. Much more than states are
-/// late, and much less than the time that a robot takes to start.
+/// Tolerance between the robot's clock and the time that has passed. Much more than the lateness of
+/// states, and much less than the time that a robot takes to start.
 const CLOCK: Duration = Duration::from_secs(5);
 
 #[cfg(test)]

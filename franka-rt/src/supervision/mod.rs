@@ -70,8 +70,8 @@ pub enum Output {
         /// Reason.
         reason: CloseReason,
     },
-    /// Have the robot recover (`AutomaticErrorRecovery`). Comes back as
-    /// [`Supervision::on_recovery`] with this number.
+    /// Recover the robot (`AutomaticErrorRecovery`). Comes back as [`Supervision::on_recovery`]
+    /// with this number.
     Recover {
         /// Number of the reflex.
         reflex: u64,
@@ -221,7 +221,7 @@ impl Supervision {
         self.set_latch(true, now);
     }
 
-    /// Admits motions again. Returns whether a stop was latched.
+    /// Admits motions again. Returns true if a stop was latched.
     pub fn release_stop(&mut self, now: Duration) -> bool {
         self.set_latch(false, now)
     }
@@ -247,7 +247,7 @@ impl Supervision {
         }
     }
 
-    /// Returns whether a stop was latched before.
+    /// Returns true if a stop was latched before.
     fn set_latch(&mut self, latched: bool, now: Duration) -> bool {
         let before = core::mem::replace(&mut self.stop_latched, latched);
         if before != latched {

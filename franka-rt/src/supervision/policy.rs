@@ -39,8 +39,8 @@ pub struct Backoff {
     pub first: Duration,
     /// The longest pause.
     pub most: Duration,
-    /// Share of each pause that is left to chance, 0 to 1, so that many robots that were lost
-    /// together do not come back in step: a pause is shorter by up to so much.
+    /// Random share of each pause, 0 to 1, by which the pause may be shorter. So robots that were
+    /// lost together do not come back in step.
     pub jitter: f64,
 }
 

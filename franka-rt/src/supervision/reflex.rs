@@ -13,7 +13,7 @@ use crate::lifecycle::{ControlError, Differences, Unready};
 /// Reason why a recovery did not succeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecoveryFailure {
-    /// The robot demands a recovery by hand.
+    /// The robot requires a recovery by hand.
     ByHand,
     /// Anything else: it was refused or given up, or there was no answer. It may be repeated.
     Other,
@@ -45,7 +45,7 @@ enum Stage {
     Due { at: Duration, failed: u32 },
     /// The request is out.
     Requested { failed: u32 },
-    /// The robot has recovered, and is to show it by then.
+    /// The robot has recovered, and should show it by then.
     Answered { until: Duration, failed: u32 },
 }
 

@@ -65,7 +65,7 @@ pub(crate) fn lock_memory() -> Result<(), i32> {
     }
 }
 
-/// Has receives from `socket` poll the network card's queue for that long, in whole microseconds,
+/// Makes receives from `socket` poll the network card's queue for that long, in whole microseconds,
 /// before they sleep. The error is an errno value.
 pub(crate) fn busy_poll(socket: &impl AsFd, duration: Duration) -> Result<(), i32> {
     let Ok(us) = libc::c_int::try_from(duration.as_micros()) else {

@@ -1,5 +1,5 @@
-//! One turn of the loop: receive, answer, publish, prepare, count. Which state is the newest is
-//! decided in `exchange`.
+//! One turn of the loop: receive, answer, publish, prepare, count. `exchange` decides which state
+//! is the newest.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -30,7 +30,7 @@ pub(super) struct Cycle<C: Core> {
     pub(super) records: Sender<C::Record>,
     /// All states, as they came.
     pub(super) sequence: Sender<Datagram>,
-    /// All cycles, for those who attach to them.
+    /// All cycles, for attached readers.
     pub(super) cycles: CyclePublisher<C::Record>,
     /// The newest state.
     pub(super) states: SlotWriter<Datagram>,
@@ -228,7 +228,7 @@ impl<C: Core> Cycle<C> {
         due
     }
 
-    /// Queues a fault of the receiving side if it is a new one; returns whether it did.
+    /// Queues a fault of the receiving side if it is a new one; returns true if it did.
     fn report(&mut self, fresh: bool, fault: Option<LinkFault>) -> bool {
         if !fresh && fault.is_none() {
             return false; // A tick without any datagram is neither a fault nor the end of one.

@@ -115,7 +115,7 @@ impl<R: Send + 'static> CycleFeed<R> {
     pub const CAPACITY_MAX: usize = 65_536;
 
     /// Attaches a reader with a ring of `capacity` cycles, usually [`Self::DEFAULT_CAPACITY`]. It
-    /// gets every cycle from one soon after the call on. Allocates the ring and writes to all of
+    /// receives every cycle from shortly after the call. Allocates the ring and writes to all of
     /// it: some milliseconds.
     ///
     /// # Errors
@@ -183,9 +183,9 @@ impl<R> CycleReader<R> {
         })
     }
 
-    /// Blocks this thread until a cycle can be taken, and returns whether one can: not if none has
-    /// come within `timeout` or none will come any more. Looks every 5 ms: the control thread wakes
-    /// no one for this.
+    /// Blocks this thread until a cycle can be taken. Returns false if none has come within
+    /// `timeout`, or none will come any more. Looks every 5 ms: the control thread wakes no one for
+    /// this.
     pub fn wait(&self, timeout: Duration) -> bool {
         let begun = Instant::now();
         loop {

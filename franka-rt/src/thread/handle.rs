@@ -81,8 +81,8 @@ impl<C> Thread<C> {
         self.shared.ask_to_stop();
     }
 
-    /// True if the loop has ended, because it was stopped or because the core panicked. The
-    /// eventfd is notified after this has become true.
+    /// True if the loop has ended, because it was stopped or because the core panicked. The eventfd
+    /// is notified afterwards.
     pub fn has_ended(&self) -> bool {
         self.shared.has_ended()
     }

@@ -23,7 +23,7 @@ use loom::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-/// The place where a value passes between the owner and a borrower.
+/// The place where a value passes from the owner to a borrower and back.
 pub(super) struct Handoff<T> {
     wanted: AtomicBool,
     state: Mutex<HandoffState<T>>,

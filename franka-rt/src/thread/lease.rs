@@ -1,4 +1,4 @@
-//! The cycle, lent to a thread of the user's.
+//! The cycle, lent to a thread of the program.
 //!
 //! ```text
 //!             borrow                        drop
@@ -30,8 +30,8 @@ impl<C: Core> Lender<C> {
         Self { handoff }
     }
 
-    /// Takes the cycle over from its thread. Blocks until that has done its turn: a cycle, or a
-    /// [`TICK`](crate::exchange::TICK) while the robot is silent.
+    /// Takes the cycle over from its thread. Blocks until the thread has finished its turn: a
+    /// cycle, or a [`TICK`](crate::exchange::TICK) while the robot is silent.
     ///
     /// # Errors
     /// [`BorrowError`].

@@ -1,4 +1,4 @@
-//! Checks of who asks, for services over HTTP, WebSockets and gRPC that can move or recover an arm.
+//! Checks of requests, for services over HTTP, WebSockets and gRPC that can move or recover an arm.
 //!
 //! A listener on a loopback address does not keep web pages out. A page of any site, open in a
 //! browser on this computer, can send requests there, and can open WebSockets. The site can also
@@ -69,7 +69,7 @@ pub enum Refused {
         /// The name.
         got: String,
     },
-    /// A page of another origin asks.
+    /// A page of another origin makes the request.
     #[error("the request is from a page of another origin")]
     Origin,
     /// Only requests from this computer are answered without a token.

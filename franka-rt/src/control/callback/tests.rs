@@ -1,4 +1,4 @@
-//! Control functions beside states that a test makes up.
+//! Control functions, called with states that a test makes up.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 

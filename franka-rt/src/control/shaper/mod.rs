@@ -44,7 +44,7 @@ pub struct Shaper {
 enum FirstReference {
     /// Itself: it passes as it is if the state is at rest (libfranka 0.21).
     Itself,
-    /// The state, as all that follow (libfranka 0.9).
+    /// The state, as for all later ones (libfranka 0.9).
     State,
 }
 
@@ -153,7 +153,7 @@ impl Shaper {
         self
     }
 
-    /// Shapes torques against the last ones, `tau_J_d` of the state.
+    /// Shapes torques, with the last ones, `tau_J_d` of the state, as reference.
     ///
     /// # Errors
     /// [`InvalidCommand`] if a number of the command, or of its references, is not finite.
@@ -176,8 +176,8 @@ impl Shaper {
         Ok(Torques(tau))
     }
 
-    /// Shapes joint positions against the last ones, `q_d` of the state and its derivatives.
-    /// `first` is whether no command of the motion came before.
+    /// Shapes joint positions, with the last ones, `q_d` of the state and its derivatives, as
+    /// reference. `first` is true for the first command of the motion.
     ///
     /// # Errors
     /// As for [`torques`](Self::torques).
@@ -201,7 +201,8 @@ impl Shaper {
         Ok(JointPositions(q))
     }
 
-    /// Shapes joint velocities against the last ones, `dq_d` of the state and their derivatives.
+    /// Shapes joint velocities, with the last ones, `dq_d` of the state and their derivatives, as
+    /// reference.
     ///
     /// # Errors
     /// As for [`torques`](Self::torques).
@@ -220,8 +221,8 @@ impl Shaper {
     }
 
     /// Shapes a pose against the last one, [`RobotState::commanded_pose`] and its derivatives, and
-    /// its elbow against [`RobotState::commanded_elbow`]. `first` is whether no command of the
-    /// motion came before.
+    /// its elbow against [`RobotState::commanded_elbow`]. `first` is true for the first command of
+    /// the motion.
     ///
     /// # Errors
     /// As for [`torques`](Self::torques); also if the pose is not a transformation, or the elbow

@@ -1,4 +1,4 @@
-//! The order of the steps, their references, and what is refused.
+//! The order of the steps, their references, and their refusals.
 
 use franka_model::transform;
 use nalgebra::{Isometry3, Vector3};
@@ -101,7 +101,7 @@ fn the_first_position_or_pose_of_a_motion_counts_as_its_own_past_in_protocol_10(
     assert!(0.1 < elbow[0] && elbow[0] < 0.100_01 && elbow[1] == -1.0);
 }
 
-/// As a robot has it that leaves the commanded fields at zero.
+/// The state of a robot that leaves the commanded fields at zero.
 fn unfilled(state: &RobotState) -> RobotState {
     RobotState {
         O_T_EE_d: state.O_T_EE_c,
@@ -338,7 +338,7 @@ fn a_cutoff_frequency_that_is_not_positive_is_reported_with_the_first_command() 
     }
 }
 
-/// Ordinary numbers, and all that floating point has beside them.
+/// Ordinary numbers, and all special values of floating point.
 fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![
         6 => -3.0..3.0,

@@ -24,9 +24,9 @@ enum Step {
     Cancel,
     Disengage,
     Stop,
-    /// The robot does what it was asked for, and time passes.
+    /// The robot does as it was asked, and time passes.
     Run,
-    /// The robot goes out of the motion, without a word.
+    /// The robot leaves the motion without a reply.
     Leaves,
     /// The robot ends the motion by a reply, and shows it still.
     Preempts,
@@ -125,9 +125,9 @@ enum Robot {
     Idle,
     Asked(MotionId, Modes),
     Runs(MotionId),
-    /// It shows no motion any more, and has not said how it ended.
+    /// It shows no motion any more, and has not reported how it ended.
     Left(MotionId),
-    /// It has said how the motion ended, and shows it for one state more.
+    /// It has reported how the motion ended, and shows it for one state more.
     Ended,
 }
 
@@ -318,7 +318,7 @@ impl Bench {
         self.settle();
     }
 
-    /// Passes on what there is to pass on, and looks at what came of it.
+    /// Passes on all outputs and events, and checks the results.
     fn settle(&mut self) {
         self.pair.settle();
         for request in std::mem::take(&mut self.pair.sent) {

@@ -73,8 +73,8 @@ pub fn torques(
     }))
 }
 
-/// `command` as far from `last` as `max_rate` allows in a cycle, and whether that is less far than
-/// it was.
+/// Returns `command`, as far from `last` as `max_rate` allows in a cycle, and whether that limited
+/// it.
 pub(crate) fn limit_rate(command: f64, last: f64, max_rate: f64) -> (f64, bool) {
     let rate = (command - last) / CYCLE;
     let limited = hi(lo(rate, max_rate), -max_rate);

@@ -1,4 +1,4 @@
-//! Policies, mishap by mishap, beside a robot that a test makes up.
+//! Policies, mishap by mishap, with a robot that a test makes up.
 
 mod connections;
 mod motions;
@@ -23,7 +23,7 @@ const MS: fn(u64) -> Duration = Duration::from_millis;
 const WINDOW: Duration = Duration::from_secs(60);
 const COLLISION: RobotError = RobotError::CartesianReflex;
 
-/// A supervision, and what it has asked for and told.
+/// A supervision, its outputs and its events.
 struct Supervised {
     supervision: Supervision,
     now: u64,
@@ -83,7 +83,7 @@ impl Supervised {
         result
     }
 
-    /// Lets so much time pass, and has everything done when it is due.
+    /// Lets this much time pass, and handles everything when it is due.
     fn pass(&mut self, milliseconds: u64) {
         let end = self.now + milliseconds;
         while let Some(due) = self.supervision.deadline().filter(|due| *due <= MS(end)) {

@@ -1,4 +1,4 @@
-//! Reflexes: told, recovered from, left alone.
+//! Reflexes: reported, recovered from, left alone.
 
 use super::*;
 
