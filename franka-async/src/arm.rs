@@ -248,7 +248,7 @@ impl Arm {
         self.session.link().course.target().filter(|_| !ended)
     }
 
-    /// Position of the reference in this millisecond; `None` once the session has ended.
+    /// Returns the reference of this millisecond; `None` once the session has ended.
     pub fn reference(&self) -> Option<Reference> {
         let ended = self.session.has_ended();
         self.robot().reference().filter(|_| !ended)

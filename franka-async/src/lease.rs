@@ -65,7 +65,7 @@ struct Held {
 }
 
 impl Lease {
-    /// Takes the lease under `name`, which other clients receive. It is lost after more than
+    /// Takes the lease under `name`, which refused clients are shown. It is lost after more than
     /// `silence` without [`Holder::keep_alive`]; with [`Duration::MAX`], only its holder ends it.
     ///
     /// # Errors

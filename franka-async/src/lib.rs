@@ -4,8 +4,8 @@
 //! A program sets goals at its own rate. A separate thread, one per robot, answers the robot every
 //! millisecond; no task of the runtime is on that path, so a busy or blocked program delays new
 //! goals and nothing else. This page is all that a first program needs. The book (`docs/src` of the
-//! repository) has a guide for its readers. Its first chapters have whole programs: a service with
-//! a queue of jobs, a policy at 10 Hz, a guarded move, a script.
+//! repository) shows where to start. Its first chapters have whole programs: a service with a queue
+//! of jobs, a policy at 10 Hz, a guarded move, a script.
 //!
 //! # Connect
 //!

@@ -246,9 +246,10 @@ impl Robot {
     /// [`MotionError::Superseded`] unless the arm was seen to rest before. [`Self::latch_stop`]
     /// holds.
     ///
-    /// An arm that hands keep in motion is stopped by the robot. It receives the stop request after
-    /// two seconds, and has four to end the motion and two more to show an arm at rest. So a stop
-    /// resolves within eight seconds, mostly within half a second, while the link stays up.
+    /// An arm that hands keep in motion is stopped by the robot. The robot receives the stop
+    /// request after two seconds. It has four seconds to end the motion, and two more to show an
+    /// arm at rest. So a stop resolves within eight seconds, mostly within half a second, while the
+    /// link stays up.
     ///
     /// If the connection to a [supervised](crate::connection::Builder::supervise) robot is lost
     /// meanwhile, the stop waits for the next one, 10 s at most, and stops there as well.

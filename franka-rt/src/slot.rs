@@ -29,8 +29,8 @@
 //! The count has no separate cache line. Measurements had a reader on a second core, on a busy
 //! virtual machine with two cores. The count was padded to 128 bytes or not. A write of 330 words,
 //! a state, takes 71 ns in the median of most runs. A write of 64 words takes 29 ns. The tails
-//! differ more between runs than between the two. A write comes once per millisecond: padding saves
-//! nothing that counts.
+//! differ more between runs than between the two layouts. A write comes once per millisecond:
+//! padding saves nothing that counts.
 
 use core::fmt;
 

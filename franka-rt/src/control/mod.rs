@@ -7,8 +7,8 @@
 //! * [`Shaper`]: filter, limiter and check of each kind of command, as libfranka's control loops
 //!   take them.
 //! * [`ActiveControl`]: a motion whose commands are written from outside.
-//! * [`AsynchronousPositions`]: sparse joint targets between which the robot plans, and what became
-//!   of them.
+//! * [`AsynchronousPositions`]: sparse joint targets between which the robot plans, and their
+//!   results.
 //! * [`Command`]: content of one datagram, which knows whether a motion in given [`Modes`] takes
 //!   it.
 //! * [`Failure`]: the reason why a program could not continue.

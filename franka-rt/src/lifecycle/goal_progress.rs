@@ -245,8 +245,8 @@ impl Goals {
         }
     }
 
-    /// True if the motion ended well, or by a stop that the robot was `told`, with an older goal
-    /// than the current one.
+    /// True if the motion ended well, or by a stop request to the robot (`told`), with an older
+    /// goal than the current one.
     pub(super) fn came_too_late(&self, command: CommandSide, told: bool, ended: &Ended) -> bool {
         let Program::Target(session) = &ended.program else {
             return false;

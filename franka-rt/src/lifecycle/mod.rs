@@ -120,7 +120,7 @@ pub struct Lifecycle {
     motions: u64,
     /// Cycles that the log of a motion holds.
     log_size: usize,
-    /// Silence of the robot before which no missing state counts.
+    /// Silence of the robot after which a change that no state has shown counts as missing.
     link_timeout: Duration,
     /// Regions that the arm keeps out of under target control.
     keep_out: KeepOut,

@@ -66,9 +66,9 @@ impl Lifecycle {
     /// and a robot without a motion. Returns false, and does nothing, if that is so already, and
     /// after the end of the connection.
     ///
-    /// If a motion was given up and the robot may still run it, `StopMove` is sent again. It is also
-    /// sent if the motion under way has not ended after [`BRAKE_TIMEOUT`]. Stops that are asked for
-    /// at the same time share one brake and its outcome.
+    /// If a motion was given up and the robot may still run it, `StopMove` is sent again. It is
+    /// also sent if the motion under way has not ended after [`BRAKE_TIMEOUT`]. Stops that are
+    /// requested at the same time share one brake and its outcome.
     pub fn stop(&mut self, id: GoalId, state: &RobotState, now: Duration) -> bool {
         match &self.phase {
             LifecyclePhase::Closed { .. } => return false,

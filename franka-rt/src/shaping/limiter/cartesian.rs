@@ -118,8 +118,8 @@ fn halves(twist: &[f64; 6]) -> (Vector3<f64>, Vector3<f64>) {
 /// Where the last velocity is so far outside that no acceleration in this direction leads back, the
 /// distance is NaN and does not bound.
 ///
-/// Limits shares of the vectors, where libfranka computes with unit vectors times their lengths:
-/// half the time, and a difference by rounding.
+/// Computes with shares of the vectors, where libfranka computes with unit vectors times their
+/// lengths. This takes half the time, and differs by rounding.
 #[inline(always)]
 fn limit_vector(
     most: &MotionLimits,
