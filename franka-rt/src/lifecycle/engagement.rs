@@ -138,8 +138,8 @@ impl Lifecycle {
         Ok(())
     }
 
-    /// Hands a chunk to the session `engaged`. It replaces the previous chunk, from the point that
-    /// it defines itself. Any other goal is superseded by `goal`, which names the chunks until
+    /// Hands a chunk to the session `engaged`. It replaces the previous chunk, in the way that its
+    /// own options define. Any other goal is superseded by `goal`, which names the chunks until
     /// another goal comes, and has their speed and stiffness. The arm rests at the last point.
     ///
     /// # Errors

@@ -282,8 +282,8 @@ impl Goals {
     }
 
     /// Returns the outcome of the current goal in a motion that was stopped by a request to the
-    /// robot, since the arm did not stop. It is the outcome that the session reported before.
-    /// Otherwise a brake was all that was asked for, or the goal was stopped.
+    /// robot, since the arm did not stop. If the session reported an outcome before, that is the
+    /// outcome. Otherwise only a brake was asked for, or the goal was stopped.
     pub(super) fn outcome_of_stop(&self, ended: &Ended) -> Outcome {
         let brakes = self.current.target == Target::Rest && !self.goes_on() && !self.cancelled;
         self.outcome(ended).unwrap_or_else(|| {

@@ -26,8 +26,7 @@ pub struct Event {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum EventKind {
-    /// It is connected. Conditions that do not hold by default (a reflex, a pressed stop) follow in
-    /// separate events.
+    /// It is connected. Unusual conditions (a reflex, a pressed stop) follow in separate events.
     Connected {
         /// Attempts that this took.
         attempts: u32,
