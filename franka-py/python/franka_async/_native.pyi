@@ -1009,9 +1009,9 @@ class Robot:
         motion raises `MotionError` of the kind `stopped` at once, while the arm still brakes. A
         motion that another task requests meanwhile takes over: `stop` then raises `MotionError` of
         the kind `superseded`. It raises other kinds if the arm was not seen to be at rest:
-        `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. An arm that hands keep in motion
-        for two seconds is stopped by the robot's own controller; the wait ends within eight. Once
-        begun, it continues even if it is cancelled.
+        `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. An arm that hands keep in
+        motion for two seconds is stopped by the robot's own controller; the wait ends within eight.
+        Once begun, it continues even if it is cancelled.
         """
     def latch_stop(self) -> Operation[None]:
         """Stops like `stop`, and latches the stop: until `release_stop`, every motion, session and
@@ -1798,15 +1798,15 @@ class Sim:
         `before-5.9`: the joint limits of the robot's system, of an FR3. `state_geometry`,
         `recorded` (upper arm 0.3162 m, forearm 0.3842 m; the default unless `ideal`), `described`
         (0.316 m, 0.384 m) or `random` (1 mm and 3 mrad off, by `seed`): the geometry of its own
-        poses. `seed` of all other randomness. `q`, joint positions at the start, 7 numbers, rad, within the joint ranges.
-        `tool`, `hand` or a tuple of its frame on the flange (a pose), its mass, kg, and its centre
-        of mass in the flange frame, m: declared to the robot. `load`, a tuple of mass and centre:
-        not declared. `hand` serves a Franka Hand and mounts it, `vacuum_gripper` a vacuum gripper,
-        each at a separate address: use `Gripper(sim.hand_address)`, because `robot.gripper()` uses
-        the port after the robot's, which is the Hand's with `address` only. `network`, a `Network`
-        between robot and clients. `address`, the address to listen on; the grippers then listen on
-        the following ports, as on a robot. `enforce_limits`, true if commands outside the limits
-        cause a reflex.
+        poses. `seed` of all other randomness. `q`, joint positions at the start, 7 numbers, rad,
+        within the joint ranges. `tool`, `hand` or a tuple of its frame on the flange (a pose), its
+        mass, kg, and its centre of mass in the flange frame, m: declared to the robot. `load`, a
+        tuple of mass and centre: not declared. `hand` serves a Franka Hand and mounts it,
+        `vacuum_gripper` a vacuum gripper, each at a separate address: use
+        `Gripper(sim.hand_address)`, because `robot.gripper()` uses the port after the robot's,
+        which is the Hand's with `address` only. `network`, a `Network` between robot and clients.
+        `address`, the address to listen on; the grippers then listen on the following ports, as on
+        a robot. `enforce_limits`, true if commands outside the limits cause a reflex.
         """
     @staticmethod
     def fer(**options: Unpack[SimOptions]) -> Sim:

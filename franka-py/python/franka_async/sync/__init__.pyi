@@ -465,9 +465,9 @@ class Robot:
         motion raises `MotionError` of the kind `stopped` at once, while the arm still brakes. A
         motion that another task requests meanwhile takes over: `stop` then raises `MotionError` of
         the kind `superseded`. It raises other kinds if the arm was not seen to be at rest:
-        `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. An arm that hands keep in motion
-        for two seconds is stopped by the robot's own controller; the wait ends within eight. Once
-        begun, it continues even if it is cancelled.
+        `protocol`, `not_at_rest`, `link_lost`, `connection_closed`. An arm that hands keep in
+        motion for two seconds is stopped by the robot's own controller; the wait ends within eight.
+        Once begun, it continues even if it is cancelled.
         """
 
     def latch_stop(self) -> None:
