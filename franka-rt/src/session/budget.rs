@@ -1,5 +1,4 @@
-//! How fast a goal may be approached: limits per joint, and limits for the norm of translation and
-//! rotation.
+//! Speed limits of an approach: per joint, and for the norm of translation and rotation.
 
 use franka_model::limits::{CartesianLimits, JointLimits, MotionLimits};
 use franka_model::{Model, Twist};
@@ -8,18 +7,18 @@ use nalgebra::Vector3;
 
 use crate::session::GoalError;
 
-/// Limits of the reference: how fast the goal is approached.
+/// Limits of the reference: the speed of the approach to a goal.
 ///
-/// A stop, and a goal that comes while the arm moves faster than its budget allows, may use more
-/// acceleration and jerk than the budget has, up to the robot's limits. On the way to a pose each
-/// joint may use thrice its velocity, and the robot's acceleration.
+/// The arm may use more acceleration and jerk than the budget has, up to the robot's limits, in two
+/// cases: a stop, and a goal that arrives while the arm moves faster than its budget allows. On the
+/// way to a pose each joint may use three times its velocity, and the robot's acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// Per joint, `[rad/s, rad/s^2, rad/s^3]`.
+    /// Limits of each joint, `[rad/s, rad/s^2, rad/s^3]`.
     pub joints: [AxisLimits; 7],
-    /// For the norm of the end effector's translation, `[m/s, m/s^2, m/s^3]`.
+    /// Limits of the norm of the end effector's translation, `[m/s, m/s^2, m/s^3]`.
     pub translation: AxisLimits,
-    /// For the norm of the end effector's rotation, `[rad/s, rad/s^2, rad/s^3]`.
+    /// Limits of the norm of the end effector's rotation, `[rad/s, rad/s^2, rad/s^3]`.
     pub rotation: AxisLimits,
 }
 
@@ -27,9 +26,9 @@ impl Budget {
     /// Share of the robot's joint limits that the default budget uses.
     pub const JOINT_SHARE: f64 = 0.2;
 
-    /// The default budget: a fifth of the robot's joint limits, 0.3 m/s, 0.5 m/s^2, 20 m/s^3 and
-    /// 0.5 rad/s, 1 rad/s^2, 20 rad/s^3. A person beside the arm can follow and stop a motion of
-    /// this pace.
+    /// Returns the default budget. Joints get a fifth of the robot's limits. Translation gets 0.3
+    /// m/s, 0.5 m/s^2 and 20 m/s^3; rotation gets 0.5 rad/s, 1 rad/s^2 and 20 rad/s^3. A person
+    /// beside the arm can follow and stop a motion of this pace.
     pub fn of(limits: &JointLimits) -> Self {
         Self {
             joints: core::array::from_fn(|i| AxisLimits {
@@ -66,18 +65,18 @@ impl Budget {
         }
     }
 
-    /// Least velocity, acceleration and jerk of every axis, in its units. The default budget at
-    /// [`Self::SPEED_MIN`] has more. A joint needs days with them for a third of a radian.
+    /// Lowest velocity, acceleration and jerk of every axis, in its units. The default budget at
+    /// [`Self::SPEED_MIN`] has more. At these limits a joint needs days for a third of a radian.
     pub const LIMITS_MIN: [f64; 3] = [1e-6, 1e-9, 1e-12];
 
-    /// Least factor that [`Self::at_speed`] takes.
+    /// Lowest factor that [`Self::at_speed`] accepts.
     pub const SPEED_MIN: f64 = 1e-4;
 
-    /// The same as [`Self::scaled`], where that keeps the limits of the robot.
+    /// Same as [`Self::scaled`], for factors that keep the robot's limits.
     ///
     /// # Errors
-    /// [`GoalError::Speed`] with the greatest factor that does, unless `factor` is between
-    /// [`Self::SPEED_MIN`] and that.
+    /// [`GoalError::Speed`] with the greatest valid factor, unless `factor` is between
+    /// [`Self::SPEED_MIN`] and that value.
     pub fn at_speed(self, factor: f64, model: &Model) -> Result<Self, GoalError> {
         let most = self.fastest(model);
         if (Self::SPEED_MIN..=most).contains(&factor) {
@@ -89,7 +88,7 @@ impl Budget {
         })
     }
 
-    /// The greatest factor by which all limits can be scaled and stay inside those of the robot.
+    /// Returns the greatest factor for which all scaled limits stay inside the robot's limits.
     fn fastest(&self, model: &Model) -> f64 {
         let (robot, cartesian) = (model.joint_limits(), model.cartesian_limits());
         let joints = self.joints.iter().enumerate().map(|(i, own)| {
@@ -108,12 +107,12 @@ impl Budget {
                 let acceleration = (acceleration / own.acceleration).sqrt();
                 velocity.min(acceleration).min((jerk / own.jerk).cbrt())
             });
-        // Less what rounding may add to a limit.
+        // Minus the rounding error that scaling may add to a limit.
         fastest.fold(f64::INFINITY, f64::min) * (1.0 - 1e-12)
     }
 
-    /// The budget with the accelerations and jerks of translation and rotation raised as
-    /// [`able_to_stop`] does, where a motion at `twist` and `acceleration` does not keep them.
+    /// Returns the budget with the accelerations and jerks of translation and rotation raised as in
+    /// [`able_to_stop`], if a motion at `twist` and `acceleration` exceeds them.
     pub(crate) fn able_to_stop(
         &self,
         twist: &Twist,
@@ -140,9 +139,9 @@ impl Budget {
         }
     }
 
-    /// Limits of the three axes of translation and the three of rotation for a plan from `velocity`
-    /// along `way`, such that even all axes at their limits at once stay inside the budgets of the
-    /// norms.
+    /// Returns the limits of the six axes of translation and rotation for a plan from `velocity`
+    /// along `way`. Even with all axes at their limits at once, the motion stays inside the budgets
+    /// of the norms.
     pub(crate) fn axes(&self, translation: &Leg, rotation: &Leg) -> [AxisLimits; 6] {
         let (t, r) = (translation.shares(), rotation.shares());
         core::array::from_fn(|i| {
@@ -160,19 +159,19 @@ impl Budget {
     }
 }
 
-/// Time in which a motion that leaves its budget, or is to stop, can be brought to rest, `[s]`. A
-/// stop from the default joint velocities within the default joint accelerations takes as long.
+/// Time for braking a motion that leaves its budget or that must stop, `[s]`. A stop from the
+/// default joint velocities within the default joint accelerations takes as long.
 const STOP_TIME: f64 = 0.25;
 
-/// Time in which the acceleration of that stop is built up or taken back, `[s]`.
+/// Time for building up or removing the acceleration of that stop, `[s]`.
 const RAMP_TIME: f64 = 0.025;
 
-/// `limits`, with acceleration and jerk raised as far as it takes to stop from `velocity` and
-/// `acceleration` in about [`STOP_TIME`], up to the robot's `most`.
+/// Raises acceleration and jerk of `limits` enough to stop from `velocity` and `acceleration` in
+/// about [`STOP_TIME`], up to the robot's limits `most`.
 ///
-/// A goal may come, with a budget of its own, while the arm moves faster than that budget allows.
-/// Its small acceleration would then brake over an unexpectedly long distance, and its small
-/// jerk would first let the acceleration of the motion before it run on.
+/// A goal with a smaller budget may arrive while the arm moves faster than that budget allows. Its
+/// small acceleration would then brake over an unexpectedly long distance. Its small jerk would
+/// first let the present acceleration of the arm continue.
 pub(crate) fn able_to_stop(
     limits: AxisLimits,
     velocity: f64,
@@ -187,11 +186,11 @@ pub(crate) fn able_to_stop(
     }
 }
 
-/// Share of a velocity limit that is kept for catching up with a target that moves.
+/// Share of a velocity limit that is reserved for catching up with a moving target.
 const RESERVE: f64 = 0.1;
 
-/// The speed of a frame that moves with a target at `speed`, and what it leaves of the limit `most`
-/// for motions within the frame, whatever their direction.
+/// Returns the speed of a frame that moves with a target at `speed`, and the rest of the limit
+/// `most` for motions in any direction within the frame.
 pub(crate) fn beside(speed: f64, most: f64) -> (f64, f64) {
     let kept = speed.min((1.0 - RESERVE) * most);
     (kept, most - kept)
@@ -202,7 +201,7 @@ pub(crate) fn keeps(limits: &AxisLimits, velocity: f64, acceleration: f64) -> bo
     velocity.abs() <= 1.01 * limits.velocity && acceleration.abs() <= 1.01 * limits.acceleration
 }
 
-/// The distance of three axes to their target, and their motion at its start.
+/// Distance of three axes to their target, and their motion at its start.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Leg {
     pub(crate) way: Vector3<f64>,
@@ -211,12 +210,12 @@ pub(crate) struct Leg {
 }
 
 impl Leg {
-    /// The share of a norm budget that each axis gets. The squares sum to 1.
+    /// Returns the share of a norm budget for each axis. The squares sum to 1.
     ///
-    /// A third each would keep the norm, but a motion along one axis would then use 58 % of the
-    /// budget. So the shares follow the way to go: on a straight line each axis gets its part of
-    /// the line and the line gets the whole budget. While the axes move elsewhere, part of it
-    /// follows the velocity, and part is spread evenly, so that a sideways motion can be braked.
+    /// With a third for each axis a motion along one axis would use only 58 % of the budget. So the
+    /// shares follow the direction to the target: on a straight line each axis gets its part of the
+    /// line, and the line gets the whole budget. While the axes move elsewhere, part of the budget
+    /// follows the velocity and part is spread evenly, so that a sideways motion can be braked.
     fn shares(&self) -> Vector3<f64> {
         let (along_way, along_velocity) = if self.is_straight() {
             (0.99, 0.0)
@@ -238,7 +237,8 @@ impl Leg {
         squares.map(f64::sqrt)
     }
 
-    /// True if velocity and acceleration lie on the line of the way, to a millionth of their size.
+    /// True if velocity and acceleration lie on the line to the target, to a millionth of their
+    /// size.
     fn is_straight(&self) -> bool {
         let on_line =
             |v: &Vector3<f64>| self.way.cross(v).norm() <= 1e-6 * self.way.norm() * v.norm();

@@ -1,4 +1,4 @@
-//! What target control is asked for.
+//! Goals: the requests of target control.
 
 mod words;
 
@@ -20,34 +20,35 @@ use crate::team::Round;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GoalId(pub u64);
 
-/// Where to go.
+/// Target of a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Target {
-    /// To rest, over the joints, in about a quarter of a second and under the robot's jerk limit,
-    /// however gentle the goal's budget is.
+    /// Rest: the joints brake in about a quarter of a second. This uses up to the robot's jerk
+    /// limit, however gentle the goal's budget is.
     Rest,
-    /// To joint positions, `[rad]`.
+    /// Joint positions, `[rad]`.
     Joints([f64; 7]),
-    /// To a pose of the end effector in the base frame, `O_T_EE`, metres.
+    /// Pose of the end effector in the base frame, `O_T_EE`, metres.
     Pose(Isometry3<f64>),
-    /// To joint positions that move: the arm gets there and goes on with them. Only for goals that
-    /// are held. The motion counts for [`Self::MOVES_ON_MS`] after the newest target, then the arm
-    /// brakes on its path.
+    /// Moving joint positions: the arm catches up with them and keeps moving with them. Only for
+    /// goals that are held. The motion is extrapolated for [`Self::MOVES_ON_MS`] after the newest
+    /// target, then the arm brakes on its path.
     MovingJoints {
-        /// Positions when the target is taken up, `[rad]`.
+        /// Positions at the instant when the session takes up the target, `[rad]`.
         q: [f64; 7],
-        /// Their velocities, `[rad/s]`.
+        /// Velocities of the positions, `[rad/s]`.
         dq: [f64; 7],
     },
-    /// To a pose that moves; otherwise as [`Self::MovingJoints`].
+    /// A moving pose; otherwise as [`Self::MovingJoints`].
     MovingPose {
-        /// `O_T_EE` when the target is taken up, metres.
+        /// `O_T_EE` at the instant when the session takes up the target, metres.
         pose: Isometry3<f64>,
         /// Velocity of the frame's origin, `[m/s]`, and angular velocity, `[rad/s]`, base axes.
         twist: Twist,
     },
-    /// Hand guiding: the reference goes with the arm along the free axes, and stays on the others.
+    /// Hand guiding: the reference follows the arm along the free axes, and stays fixed on the
+    /// others.
     Guide(Free),
 }
 
@@ -84,16 +85,16 @@ impl From<(Isometry3<f64>, Twist)> for Target {
 }
 
 impl Target {
-    /// How long a target that moves goes on by itself, `[ms]` of the robot's clock. A stream of
-    /// 5 Hz is followed without a pause.
+    /// Time for which a moving target is extrapolated, `[ms]` of the robot's clock. The arm follows
+    /// a stream of 5 Hz without a pause.
     pub const MOVES_ON_MS: u64 = 200;
 
-    /// True if it moves.
+    /// True if the target moves.
     pub fn moves(&self) -> bool {
         matches!(self, Self::MovingJoints { .. } | Self::MovingPose { .. })
     }
 
-    /// The place where it is, without its motion.
+    /// Returns the target at rest at its present place.
     #[must_use]
     pub fn place(self) -> Self {
         match self {
@@ -103,7 +104,7 @@ impl Target {
         }
     }
 
-    /// Where it is, and moves on from, `ms` milliseconds later.
+    /// Returns the target extrapolated by `ms` milliseconds.
     #[must_use]
     pub(crate) fn after(self, ms: u64) -> Self {
         let t = ms as f64 * 1e-3;
@@ -130,7 +131,7 @@ pub(crate) fn moved(pose: &Isometry3<f64>, twist: &Twist, t: f64) -> Isometry3<f
     )
 }
 
-/// What is free under hand guiding.
+/// Axes that are free under hand guiding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Free {
     /// Axes of the base frame at the end effector: x y z, about x y z.
@@ -140,7 +141,7 @@ pub struct Free {
 }
 
 impl Free {
-    /// Everything.
+    /// All axes and the elbow.
     pub const ALL: Self = Self {
         axes: [true; 6],
         elbow: true,
@@ -159,79 +160,80 @@ impl Free {
     }
 }
 
-/// What the session does once the reference has arrived.
+/// Action of the session once the reference has arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OnArrival {
-    /// Holds the target until a newer goal comes, and reports nothing.
+    /// Holds the target until the next goal, and reports nothing.
     Hold,
-    /// Reports when the arm has settled, and holds the target until a newer goal comes.
+    /// Reports when the arm has settled, and holds the target until the next goal.
     ReportAndHold,
     /// Reports when the arm has settled, and ends the motion.
     ReportAndFinish,
 }
 
-/// One goal, complete: a newer one replaces all of it.
+/// One complete goal. A newer goal replaces all of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Goal {
-    /// Its name.
+    /// Identifies the goal.
     pub id: GoalId,
-    /// Where to go.
+    /// Target of the motion.
     pub target: Target,
-    /// What the session does once the reference has arrived.
+    /// Action of the session once the reference has arrived.
     pub on_arrival: OnArrival,
-    /// How fast.
+    /// Limits of velocity, acceleration and jerk.
     pub budget: Budget,
-    /// How stiff.
+    /// Stiffness and damping.
     pub gains: Gains,
-    /// How near counts as arrived; `None` for what the law keeps on an arm that sticks: see
-    /// [`Tolerance::of`] and [`Tolerance::under`]. An arm that holds an object with others of its
-    /// team, and comes to rest farther away than that, has arrived within 5 mm and 10 mrad, too.
+    /// Tolerance of the arrival; `None` uses what the law achieves on an arm with friction: see
+    /// [`Tolerance::of`] and [`Tolerance::under`]. An arm that holds an object together with others
+    /// of its team has also arrived if it stops within 5 mm and 10 mrad.
     pub tolerance: Option<Tolerance>,
-    /// What happens if its updates stop coming; only for goals that are held.
+    /// Reaction to a stream of updates that stops; only for goals that are held.
     pub watchdog: Option<Watchdog>,
-    /// With how much force springs and dampers may press at the end effector.
+    /// Limit of the force that springs and dampers may exert at the end effector.
     pub force_cap: ForceCap,
-    /// How far ahead of the arm its target may be.
+    /// Limit of the distance between arm and target.
     pub lead: Option<Lead>,
-    /// How far ahead of the arm the reference may be.
+    /// Limit of the distance between arm and reference.
     pub leash: Leash,
-    /// How far the arm may be pushed off its way.
+    /// Limit of the distance that the arm may be pushed off its path.
     pub deviation: Deviation,
-    /// How the arm has to settle.
+    /// Conditions under which the arm counts as settled.
     pub settling: Settling,
-    /// Where the arm's free direction goes while the end effector goes to a pose, joint positions
-    /// in `[rad]`: as near to them as the pose lets it. With one the elbow also moves while the end
-    /// effector rests, and a goal arrives when both rest. `None` keeps the elbow, while the end
-    /// effector moves, near where the session began.
+    /// Joint positions for the elbow's free direction, `[rad]`, while the end effector moves to a
+    /// pose. The joints get as near to them as the pose allows. With a posture, the elbow also
+    /// moves while the end effector rests, and a goal arrives when both rest. `None` keeps the
+    /// elbow near its place at the session's start while the end effector moves.
     pub posture: Option<[f64; 7]>,
-    /// True if it leads along a path to its target. The path is sent beside it, as a chunk: without
-    /// one the arm rests.
+    /// True if the goal follows a path to its target. The path is sent separately, as a chunk.
+    /// Without the chunk the arm rests.
     pub along_path: bool,
-    /// True if the arm is to stop on its way, within the budget, and to stay there until this is
-    /// taken back.
+    /// True if the arm must stop on its path, within the budget, and stay there until this is
+    /// reset.
     pub paused: bool,
     /// Condition that ends the motion early. A goal keeps the condition that it began with.
     pub reaction: Option<Reaction>,
-    /// The joint motion of a team that it is part of: it begins with the goals of the other
-    /// members, and is given up for a fault of one. Only for sessions with a [`Member`].
+    /// Joint motion of a team that the goal belongs to. It begins together with the goals of the
+    /// other members, and a fault of one member aborts it. Only for sessions with a [`Member`].
     ///
     /// [`Member`]: crate::team::Member
     pub round: Option<Round>,
-    /// The object that the hand holds, in the frame of the end effector: the target is a pose of
-    /// the object, which moves on its line. Springs and force cap act at the hand. In a round the
-    /// reference waits for the arms of the other members.
+    /// Pose of the held object in the frame of the end effector. The target is then a pose of the
+    /// object, and the object moves on the straight line. Springs and force cap act at the hand. In
+    /// a round the reference waits for the arms of the other members.
     pub grasp: Option<Isometry3<f64>>,
-    /// Incremented by each new target and each new end, not by tuning. Only a new revision feeds
-    /// the watchdog.
+    /// Incremented by each new target and each new [`on_arrival`](Self::on_arrival), not by tuning.
+    /// Only a new revision feeds the watchdog.
     pub revision: u64,
 }
 
 impl Goal {
-    /// Shortest silence that a watchdog or a deadman may be set to.
+    /// Shortest timeout of a watchdog or a deadman.
     pub const SILENCE_MIN: Duration = Duration::from_millis(10);
 
-    /// A goal for an arm with these limits, with the defaults: the default budget, joints stiff on
-    /// the way to joint positions and the end effector compliant otherwise, the default force cap.
+    /// Creates a goal for an arm with these limits. It has the default budget and the default force
+    /// cap. The joints are stiff for joint targets; for other targets the end effector is
+    /// compliant.
     pub fn new(id: GoalId, target: Target, on_arrival: OnArrival, limits: &JointLimits) -> Self {
         Self {
             id,
@@ -260,7 +262,7 @@ impl Goal {
         }
     }
 
-    /// The target of the end effector itself.
+    /// Returns the target of the end effector itself.
     pub(crate) fn hand_target(&self) -> Target {
         match (self.target, &self.grasp) {
             (Target::Pose(object), Some(grasp)) => Target::Pose(object * grasp.inverse()),

@@ -1,4 +1,4 @@
-//! Why a goal is not accepted.
+//! Reasons for refusing a goal.
 
 use core::time::Duration;
 
@@ -6,23 +6,23 @@ use crate::law::GainError;
 use crate::session::condition::ConditionError;
 use crate::session::{Backend, Budget, Chunk, Goal};
 
-/// Why a goal is not accepted. Nothing has moved.
+/// Reason for refusing a goal. Nothing has moved.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GoalError {
     /// The target has a number that is not finite.
     #[error("a number of the target's {what} is not finite")]
     NotFinite {
-        /// Which part of the target.
+        /// The part of the target.
         what: &'static str,
     },
-    /// A stream of targets has ended, and none came.
+    /// The stream of targets ended before its first target.
     #[error("the targets ended before the first one came")]
     NoTarget,
-    /// Commands under an external controller, which none is without torques beside them.
+    /// Commands for an external controller came without torques, which it needs.
     #[error("an external controller needs torques beside the commands, got none: `with_torques`")]
     NoTorques,
-    /// The target moves: there is no arrival to wait for.
+    /// The target moves, so there is no arrival to wait for.
     #[error("the target moves, so that the arm cannot come to rest at it")]
     Moves,
     /// A joint position lies outside the joint's range.
@@ -47,8 +47,8 @@ pub enum GoalError {
         /// See `x`.
         z: f64,
     },
-    /// The arm reaches the pose, but not on a straight line from where it is: joints come to the
-    /// ends of their ranges on the way, with every posture that was tried.
+    /// The arm reaches the pose, but not on a straight line from its present place. Joints reach
+    /// the ends of their ranges on the way, with every posture that was tried.
     #[error(
         "the arm cannot go to {} on a straight line{hindrance}: {}",
         place([*x, *y, *z]),
@@ -61,25 +61,25 @@ pub enum GoalError {
         y: f64,
         /// See `x`.
         z: f64,
-        /// What keeps the arm from it with the elbow where it is.
+        /// The obstacle to the straight line with the elbow in its present place.
         hindrance: Hindrance,
-        /// Joint positions that reach the pose, `[rad]`, and to which the joints can move; regions
-        /// to keep out of are not considered. `None` if none were found.
+        /// Joint positions that reach the pose, `[rad]`, and to which the joints can move; the
+        /// search ignores keep-out regions. `None` if none were found.
         posture: Option<[f64; 7]>,
     },
     /// A limit of the budget is less than [`Budget::LIMITS_MIN`], or exceeds the robot's.
     #[error("{what} limit {got}, expected between {least} and {most}")]
     Budget {
-        /// Which limit.
+        /// The limit.
         what: &'static str,
         /// The value given.
         got: f64,
-        /// The least value that is accepted.
+        /// The lowest accepted value.
         least: f64,
         /// The robot's own limit.
         most: f64,
     },
-    /// A speed is not positive, or takes a limit beyond the robot's.
+    /// A speed is not positive, or raises a limit above the robot's.
     #[error(
         "speed {got}, expected between {least} and {most:.3} times the limits of the motion",
         least = Budget::SPEED_MIN
@@ -87,56 +87,56 @@ pub enum GoalError {
     Speed {
         /// The factor given.
         got: f64,
-        /// The greatest factor with which all limits stay inside the robot's.
+        /// The greatest factor that keeps all limits inside the robot's.
         most: f64,
     },
     /// A stiffness or damping is out of bounds.
     #[error(transparent)]
     Gains(#[from] GainError),
     /// Gains whose joint springs act only in the null space of the end effector have no spring at
-    /// the end effector: nothing would take the arm to its target.
+    /// the end effector. Nothing would pull the arm to its target.
     #[error("no spring at the end effector, and those of the joints act in its null space only")]
     Unheld,
-    /// A number of the goal is outside what is accepted.
+    /// A number of the goal is out of bounds.
     #[error("{what} is {got} {unit}, expected {}", between(*.least, *.most))]
     Number {
-        /// Which number.
+        /// The number.
         what: &'static str,
         /// The value given.
         got: f64,
         /// Its unit.
         unit: &'static str,
-        /// The least that is accepted.
+        /// The lowest accepted value.
         least: f64,
-        /// The most that is accepted.
+        /// The highest accepted value.
         most: f64,
     },
-    /// The quaternion of the target is not that of a rotation.
+    /// The quaternion of the target does not have length one.
     #[error("the quaternion of the target has the length {length}, expected 1")]
     NotRotation {
-        /// Its length.
+        /// Length of the quaternion.
         length: f64,
     },
-    /// The last point of a chunk has passed: the arm has nothing left to follow of it.
+    /// The last point of a chunk has passed, so the arm has nothing left to follow.
     #[error("the last point of the chunk passed {} ms ago", .by.as_millis())]
     Late {
-        /// How long ago, by the robot's clock.
+        /// Time since that point, by the robot's clock.
         by: Duration,
     },
-    /// The times of a chunk count from one that the robot does not come to for long: of another
+    /// The time origin of a chunk lies too far in the robot's future. It is probably from another
     /// clock.
     #[error("the chunk's time origin is {} ms after the robot's newest state, expected {} ms at most, by the robot's clock", .by.as_millis(), Chunk::OFFSET_MAX.as_millis())]
     Ahead {
-        /// How far ahead of that state.
+        /// Time from the robot's newest state to the origin.
         by: Duration,
     },
-    /// A chunk names an observation from before that of the chunk that is followed.
+    /// The observation of a chunk is older than the observation of the chunk that the arm follows.
     #[error("the chunk was observed {} ms before the one that is followed", .by.as_millis())]
     Outdated {
-        /// How long before.
+        /// Time between the two observations.
         by: Duration,
     },
-    /// Too many chunks came within a few cycles of the control thread.
+    /// Too many chunks arrived within a few cycles of the control thread.
     #[error(transparent)]
     Chunks(#[from] TooManyChunks),
     /// The backend of the session cannot do what the goal asks for.
@@ -144,29 +144,30 @@ pub enum GoalError {
     Backend {
         /// The backend.
         backend: Backend,
-        /// What it cannot do.
+        /// The unsupported request.
         got: &'static str,
-        /// What can take it, or what can be taken.
+        /// A backend that supports it, or the supported requests.
         expected: &'static str,
     },
-    /// A region to keep out of is invalid, or one too many.
+    /// A keep-out region is invalid, or there are too many.
     #[error("region {region} to keep out of {why}")]
     KeepOut {
-        /// Which one, from 1.
+        /// The region, from 1.
         region: usize,
-        /// What is wrong with it.
+        /// The reason.
         why: &'static str,
     },
-    /// The condition of a reaction is not accepted, or what follows it.
+    /// The condition of a reaction, or the target after it, is not accepted.
     #[error(transparent)]
     Condition(#[from] ConditionError),
-    /// A silence of a watchdog or a deadman is shorter than a lossy network may bring by itself.
+    /// The timeout of a watchdog or a deadman is so short that a lossy network alone could exceed
+    /// it.
     #[error("silence of {} ms, expected at least {} ms", .got.as_millis(), Goal::SILENCE_MIN.as_millis())]
     Silence {
-        /// The time given.
+        /// The timeout given.
         got: Duration,
     },
-    /// An object that is held is to go somewhere else than to a pose.
+    /// The target for a held object is not a pose.
     #[error("an object that is held can only be taken to a pose")]
     Grasp,
     /// The robot's state names an end effector that is not a rigid transformation, or a load that
@@ -176,7 +177,7 @@ pub enum GoalError {
 }
 
 impl GoalError {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of the row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::NoTarget => "goal-no-target",
@@ -206,7 +207,7 @@ impl GoalError {
     }
 }
 
-/// A position in an error's text.
+/// Formats a position for an error's text.
 fn place(position: [f64; 3]) -> String {
     let [x, y, z] = position;
     if position.iter().any(|x| x.abs() > 10.0) {
@@ -215,13 +216,13 @@ fn place(position: [f64; 3]) -> String {
     format!("({x:.4}, {y:.4}, {z:.4}) m")
 }
 
-/// Why the arm cannot follow a straight line.
+/// Reason why the arm cannot follow a straight line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Hindrance {
-    /// It leaves the line, with this joint, from 1, at the end of its range, if one is.
+    /// The arm leaves the line, with this joint, from 1, at the end of its range, if any.
     Range(Option<u8>),
-    /// It comes too near itself.
+    /// The arm comes too near itself.
     Itself,
 }
 
@@ -241,7 +242,7 @@ impl core::fmt::Display for Hindrance {
     }
 }
 
-/// What to do instead of a straight line.
+/// Advice about alternatives to a straight line.
 fn way_on(posture: Option<&[f64; 7]>) -> String {
     match posture {
         Some(q) => format!("`move_joints` to {q:.4?} reaches the pose"),
@@ -249,7 +250,7 @@ fn way_on(posture: Option<&[f64; 7]>) -> String {
     }
 }
 
-/// Chunks came faster than the control thread takes them up.
+/// Chunks arrived faster than the control thread takes them up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{} chunks are under way already, send fewer at once",
@@ -257,7 +258,7 @@ fn way_on(posture: Option<&[f64; 7]>) -> String {
 )]
 pub struct TooManyChunks;
 
-/// What is accepted, in words.
+/// Describes the accepted range in words.
 fn between(least: f64, most: f64) -> String {
     if most.is_infinite() {
         format!("at least {least}")

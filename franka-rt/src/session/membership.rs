@@ -1,5 +1,5 @@
-//! The part of a session in a team: which goals may begin, when the arm has to brake for the
-//! others, and when the others have to for this one.
+//! The part of a session in a team: when goals may begin, when the arm must brake for the others,
+//! and when the others must brake for this arm.
 
 use core::time::Duration;
 
@@ -7,7 +7,7 @@ use super::running::RunningSession;
 use super::{Goal, GoalId, OnArrival, SessionEvent, Settlement, Target};
 use crate::team::{Carrying, Member, MemberFault, Passage, Round, TeamStop};
 
-/// What a session knows of its team.
+/// Knowledge of a session about its team.
 #[derive(Debug)]
 pub(super) struct Membership {
     member: Member,
@@ -15,9 +15,9 @@ pub(super) struct Membership {
     waiting: Option<(Round, Goal)>,
     /// The goal of a round that has begun.
     pursued: Option<Pursued>,
-    /// True if the team has been told that the session has a fault, since its newest state.
+    /// True if the session has reported a fault to the team since its newest state.
     has_failed: bool,
-    /// How far it is with an object that the team carries, if it does.
+    /// Progress with an object that the team carries, if any.
     carrying: Option<Carrying>,
 }
 
@@ -25,11 +25,11 @@ pub(super) struct Membership {
 struct Pursued {
     round: Round,
     goal: GoalId,
-    /// What it is held at, once it has come to its end as asked.
+    /// Target at which the arm is held after the goal ended as asked.
     held: Option<Target>,
 }
 
-/// How far the reference may be ahead of those of the others, `[m]`.
+/// Greatest distance by which the reference may be ahead of the other arms' references, `[m]`.
 const AHEAD: f64 = 0.002;
 
 impl Membership {
@@ -43,7 +43,8 @@ impl Membership {
         }
     }
 
-    /// Replaces the first goal of a session by one that holds the arm, if it has to wait.
+    /// Returns the first goal of a session, or a goal that holds the arm if the first goal must
+    /// wait.
     pub(super) fn first(&mut self, goal: Goal) -> Goal {
         let Some(round) = goal.round else {
             return goal;
@@ -51,13 +52,14 @@ impl Membership {
         self.waiting = Some((round, goal));
         Goal {
             id: GoalId::default(), // no goal's
-            watchdog: None,        // None may expire before it begins.
+            watchdog: None, // No goal may expire before it begins.
             ..goal.at_rest(OnArrival::Hold)
         }
     }
 
     /// Returns the goal to take up for the answer to the state `now`, `message_id`, and the stop of
-    /// the team, in the cycle that sees it or that takes up a goal of a round that has stopped.
+    /// the team. The stop is returned in the cycle that sees it, or that takes up a goal of a
+    /// stopped round.
     pub(super) fn admit(
         &mut self,
         newer: Option<Goal>,
@@ -70,7 +72,8 @@ impl Membership {
             match self.member.pass(round, now) {
                 Passage::Waiting => return (taken, stop),
                 Passage::Open => {
-                    // Taken from an older round: a stop of the team would have stopped this one.
+                    // The stop is from an older round. A stop of the team would have stopped this
+                    // round.
                     stop = None;
                     self.pursued = Some(Pursued {
                         round,
@@ -79,7 +82,7 @@ impl Membership {
                     });
                 }
                 Passage::Stopped(reason) => {
-                    // The arm does not pursue its goal of an older round any longer either.
+                    // The arm no longer pursues its goal of an older round either.
                     self.pursued = None;
                     stop = Some(reason);
                 }
@@ -90,9 +93,9 @@ impl Membership {
         (taken, stop)
     }
 
-    /// Takes note of a goal that was read. Returns whether it waits for the other members.
+    /// Records a goal that was read. Returns true if it waits for the other members.
     fn keeps(&mut self, goal: &Goal) -> bool {
-        // A goal of a round may be to hold the arm, too.
+        // A goal of a round may also hold the arm.
         let comes_to_rest = goal.target == Target::Rest && goal.on_arrival != OnArrival::Hold;
         let taken_back = comes_to_rest && goal.round.is_none();
         if let Some((round, waiting)) = self.waiting
@@ -128,8 +131,7 @@ impl Membership {
         true
     }
 
-    /// True if the reference has to wait for the arms that carry the same object, this one
-    /// included.
+    /// True if the reference must wait for the arms that carry the same object, this arm included.
     pub(super) fn waits(&self) -> bool {
         let (Some(pursued), Some(own)) = (self.pursued, self.carrying) else {
             return false;
@@ -138,7 +140,7 @@ impl Membership {
         own.lags || others.lags || others.remaining > own.remaining + AHEAD
     }
 
-    /// Stops the round if its goal has been given up. Tells the others how far it is.
+    /// Stops the round if its goal was given up. Reports the arm's progress to the others.
     pub(super) fn watch(&mut self, session: &mut RunningSession) {
         self.carrying = session.carrying();
         if let (Some(pursued), Some(own)) = (self.pursued, self.carrying) {
@@ -152,8 +154,8 @@ impl Membership {
         }
     }
 
-    /// Takes note of the end of a goal, at this target. One that ended as asked is still part of
-    /// its round, also when it is tuned: if it is given up later, the others brake.
+    /// Records the end of a goal at this target. A goal that ended as asked stays part of its
+    /// round, also after tuning: if it is given up later, the others brake.
     pub(super) fn settle(&mut self, event: &SessionEvent, target: Target) {
         let (SessionEvent::Settled { settlement, .. }, Some(pursued)) = (event, &mut self.pursued)
         else {
@@ -174,7 +176,7 @@ impl Membership {
         self.member.give_up(round, fault);
     }
 
-    /// Stops the team for a fault outside the goals, once until the next state.
+    /// Stops the team for a fault outside the goals, at most once until the next state.
     pub(super) fn fail(&mut self, fault: MemberFault) {
         if !self.has_failed {
             self.has_failed = true;
@@ -182,7 +184,7 @@ impl Membership {
         }
     }
 
-    /// Stops the team if that is too long for no state to come.
+    /// Stops the team if `silence` is too long.
     pub(super) fn on_silence(&mut self, silence: Duration) {
         if silence >= self.member.silence() {
             self.fail(MemberFault::Silent);

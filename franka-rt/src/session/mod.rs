@@ -1,5 +1,4 @@
-//! Target control: goals in, one continuous joint-space reference and the torques that follow it
-//! out.
+//! Target control: turns goals into one continuous joint-space reference and torques.
 //!
 //! ```text
 //! prepared: goal slot -> lead -> course (joint generator | pose generator -> inverse kinematics)
@@ -7,17 +6,16 @@
 //! answered: -> leash -> law -> guards of the torques -> torques
 //! ```
 //!
-//! Only what needs the newest state is computed between that state and its answer. The rest is
-//! prepared before the state comes.
+//! Between a state and its answer, the session computes only the parts that need this state.
+//! Everything else is prepared before the state arrives.
 //!
 //! The state of a session is a joint reference `q, dq, ddq`. A course moves it: over seven joints
 //! for joint goals and for braking, over three axes of translation and three of rotation for poses.
 //! When the kind of goal changes, the new course starts from the position, velocity and
 //! acceleration of the reference, so nothing steps.
 //!
-//! A goal that is to finish passes through the stages of `GoalStage`: under way, landing,
-//! releasing, finished. A newer goal takes the session back under way from any of them but the
-//! last.
+//! A goal that finishes passes through the stages of `GoalStage`: under way, landing, releasing,
+//! finished. A newer goal takes the session back under way from any stage except the last.
 
 mod aim;
 mod approach;
@@ -95,10 +93,11 @@ use running::RunningSession;
 use tool::{end_effector_of, load_of, rigid};
 
 /// Time for which something may hold the course back: an obstacle by the leash, or the joints'
-/// bounds. A goal that is to finish and has not got on by then is braked, and lands where it is.
+/// bounds. A goal that finishes and has made no progress by then is braked, and lands where it is.
 pub const STALL_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// One session. Created outside the thread, moved into it, handed back when it has ended.
+/// One session. It is created outside the thread, moved into the thread, and handed back when it
+/// has ended.
 #[derive(Debug)]
 pub struct TargetSession {
     model: Arc<Model>,
@@ -106,29 +105,29 @@ pub struct TargetSession {
     active: Option<RunningSession>,
     /// A goal that waits for its common start.
     held: Option<Goal>,
-    /// A goal whose common start has failed, and why.
+    /// A goal whose common start failed, and the cause.
     unstarted: Option<(GoalId, StartFault)>,
-    /// The deadman that it is bound to.
+    /// Deadman of the session.
     deadman: Option<DeadmanMonitor>,
-    /// Its part in a team.
+    /// Membership in a team.
     team: Option<Membership>,
     backend: Backend,
     version: Version,
-    /// Where chunks come from.
+    /// Source of chunks.
     chunks: Option<ChunkReader>,
     keep_out: KeepOut,
     speed_cap: Option<f64>,
-    /// What follows a goal that is held and has to be given up.
+    /// Action after a goal that is held had to be given up.
     afterwards: OnArrival,
-    /// Whether goals may be followed, as of the newest state.
+    /// State of the gate that permits goals, from the newest state.
     gate: Gate,
-    /// What is known of the arm from earlier sessions.
+    /// Values learned about the arm in earlier sessions.
     known: Learned,
 }
 
 impl TargetSession {
-    /// A session that follows the goals written to `goals`, for a robot that speaks `version`. The
-    /// first goal has to be there before the session runs.
+    /// Creates a session that follows the goals written to `goals`, for a robot that speaks
+    /// `version`. The first goal must be there before the session runs.
     pub fn new(model: Arc<Model>, version: Version, goals: SlotReader<Goal>) -> Self {
         Self {
             model,
@@ -149,46 +148,47 @@ impl TargetSession {
         }
     }
 
-    /// Begins with what earlier sessions have [learned](Self::learned) of the arm.
+    /// Begins with the values that earlier sessions have [learned](Self::learned) about the arm.
     #[must_use]
     pub(crate) fn knowing(mut self, learned: Learned) -> Self {
         self.known = learned;
         self
     }
 
-    /// What is known of the arm by now.
+    /// Returns the values learned about the arm so far.
     pub(crate) fn learned(&self) -> Learned {
         let active = self.active.as_ref();
         active.map_or(self.known, |active| active.learned(self.known))
     }
 
-    /// Holds the arm where a goal was given up that was to be held, until a newer one comes. By
-    /// default the session ends then.
+    /// Holds the arm where a held goal was given up, until the next goal. By default the session
+    /// ends then.
     #[must_use]
     pub fn going_on(mut self) -> Self {
         self.afterwards = OnArrival::ReportAndHold;
         self
     }
 
-    /// Keeps the arm out of these regions; by default there are none. It always keeps clear of
-    /// itself.
+    /// Keeps the arm out of these regions; by default there are no regions. The arm always keeps
+    /// clear of itself.
     ///
-    /// What is on the flange counts as the vendor's Hand if the robot knows of an end effector with
-    /// a mass.
+    /// If the robot reports an end effector with a mass, the session assumes the vendor's Hand on
+    /// the flange.
     #[must_use]
     pub fn out_of(mut self, regions: KeepOut) -> Self {
         self.keep_out = regions;
         self
     }
 
-    /// Keeps every point of the arm to this speed, `[m/s]`; by default it has none of its own.
+    /// Caps the speed of every point of the arm, `[m/s]`; by default the session has no cap.
     #[must_use]
     pub fn no_faster_than(mut self, speed_cap: f64) -> Self {
         self.speed_cap = Some(speed_cap);
         self
     }
 
-    /// Replaces what turns setpoints into torques; by default the session's own law does.
+    /// Replaces the backend that turns setpoints into torques. The default is the session's own
+    /// law.
     #[must_use]
     pub fn with_backend(mut self, backend: Backend) -> Self {
         self.backend = backend;
@@ -212,21 +212,21 @@ impl TargetSession {
         self
     }
 
-    /// Stops the team, if it is a member of one, for a fault outside its goals.
+    /// Stops the team for a fault outside the session's goals. Does nothing without a team.
     pub(crate) fn fail_team(&mut self, fault: MemberFault) {
         if let Some(team) = &mut self.team {
             team.fail(fault);
         }
     }
 
-    /// Tells that no state has come for `silence`.
+    /// Reports to the team that no state has arrived for `silence`.
     pub(crate) fn on_silence(&mut self, silence: Duration) {
         if let Some(team) = &mut self.team {
             team.on_silence(silence);
         }
     }
 
-    /// Leaves the team, if it is a member of one.
+    /// Leaves the team, if any.
     pub(crate) fn leave_team(&mut self) {
         if let Some(team) = &mut self.team {
             team.leave();
@@ -235,24 +235,24 @@ impl TargetSession {
 
     /// Lets the session take up chunks.
     ///
-    /// The newest chunk of the goal in force moves the arm, whatever the goal's own target is;
-    /// where it ends the arm rests, and what follows the arrival does. Send the first chunk before
-    /// its goal is written, and the arm does not set out for the goal's target: [`Target::Rest`]
-    /// suits most.
+    /// The newest chunk of the goal in force moves the arm; the goal's own target has no effect
+    /// then. Where the chunk ends, the arm rests, and [`OnArrival`] applies.
+    ///
+    /// Send the first chunk before its goal is written, so that the arm does not set out for the
+    /// goal's target. [`Target::Rest`] suits most such goals.
     #[must_use]
     pub fn with_chunks(mut self, chunks: ChunkReader) -> Self {
         self.chunks = Some(chunks);
         self
     }
 
-    /// The newest goal that the session has taken up. An older goal came too late.
+    /// Returns the newest goal that the session has taken up. An older goal came too late.
     pub fn last_goal(&self) -> Option<GoalId> {
         let active = self.active.as_ref().map(|active| active.goal.id);
         self.held.map(|held| held.id).or(active)
     }
 
-    /// How far the arm was from its target when it had been let go, before the robot's controller
-    /// took it.
+    /// Distance of the arm from its target at the release, before the robot's controller took over.
     pub(crate) fn released(&self) -> Option<PoseError> {
         self.active.as_ref()?.released()
     }
@@ -262,19 +262,18 @@ impl TargetSession {
         self.chunks.as_mut()?.take(goal)
     }
 
-    /// True if everything that the session computes with beside measured joints and torques is
-    /// finite in `state`.
+    /// True if all values of `state` that the session uses are finite, besides measured joints and
+    /// torques.
     pub(crate) fn can_read(&self, state: &RobotState) -> bool {
         self.backend.can_read(state)
     }
 
-    /// Answers one state, with what [`Self::prepare`] has computed. Bounded work, no allocation.
+    /// Answers one state, using the results of [`Self::prepare`]. Bounded work, no allocation.
     ///
-    /// While the gate is closed the arm is held where it is, with the gains of the goal that waits.
-    /// If the gate is broken, the arm lands there, unless another goal comes.
+    /// While the gate is closed the session holds the arm where it is, with the gains of the
+    /// waiting goal. If the gate is broken, the arm lands there, unless another goal arrives.
     ///
-    /// What there is to report is left in `event`: returned, its 280 bytes would be copied in every
-    /// cycle.
+    /// The report is left in `event`. A return value of 280 bytes would be copied in every cycle.
     pub(crate) fn answer(
         &mut self,
         gate: Gate,
@@ -284,7 +283,7 @@ impl TargetSession {
         self.gate = gate;
         if self.active.is_none() {
             let Some(goal) = self.newer() else {
-                // The first goal is torn: the arm is held for this cycle.
+                // The first goal is torn, so the arm is held for this cycle.
                 return SessionStep {
                     answer: self.backend.holding(state),
                     trace: Trace::default(),
@@ -330,8 +329,8 @@ impl TargetSession {
         step
     }
 
-    /// Computes what the answer to the next state does not need that state for: takes up goals and
-    /// chunks, plans, and moves the reference by one step. Bounded work, no allocation.
+    /// Computes everything that does not depend on the next state: takes up goals and chunks,
+    /// plans, and moves the reference by one step. Bounded work, no allocation.
     pub(crate) fn prepare(&mut self) {
         if let Some(active) = &self.active {
             let next = active.newest() + 1;
@@ -367,8 +366,7 @@ impl TargetSession {
         }
     }
 
-    /// Whether the goal that waits for its common start has been taken back, or another one has
-    /// come in its place.
+    /// True if the goal that waits for its common start was withdrawn or replaced.
     pub(crate) fn is_withdrawn(&mut self) -> bool {
         let Some(goal) = self.read() else {
             return false;
@@ -377,7 +375,7 @@ impl TargetSession {
         goal.target == Target::Rest || before.is_some_and(|before| before.id != goal.id)
     }
 
-    /// The newest goal, or what takes its place before the common start, if it has not been taken
+    /// Returns the newest goal, or its substitute before the common start, if it has not been taken
     /// up.
     fn newer(&mut self) -> Option<Goal> {
         match self.gate {
@@ -392,7 +390,7 @@ impl TargetSession {
                 let nothing = self.active.is_none();
                 self.held.filter(|_| nothing).map(|held| Goal {
                     id: GoalId::default(), // no goal's
-                    watchdog: None,        // None may expire before the common start.
+                    watchdog: None, // No goal may expire before the common start.
                     ..held.at_rest(OnArrival::Hold)
                 })
             }

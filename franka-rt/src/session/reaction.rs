@@ -1,4 +1,4 @@
-//! What a motion does when a condition becomes true, and what is reported of it.
+//! Reactions of a motion to a condition, and their reports.
 
 use core::time::Duration;
 
@@ -10,35 +10,35 @@ use crate::session::condition::{Condition, ConditionError};
 use crate::session::{Budget, GoalError, Target, check};
 use crate::slot::Words;
 
-/// A condition, and where the motion goes once it is true: to rest by itself, or with
-/// [`Condition::then`] to another target.
+/// A condition, and the target of the motion once it is true: rest by default, or the target of
+/// [`Condition::then`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reaction {
-    /// Checked in every cycle until the goal has come to its end.
+    /// Checked in every cycle until the goal has ended.
     pub condition: Condition,
-    /// Where the arm goes when it becomes true: [`Target::Rest`], joint positions or a pose.
+    /// Target once the condition is true: [`Target::Rest`], joint positions or a pose.
     pub then: Target,
 }
 
-/// What a motion saw when its condition became true.
+/// Observations of a motion at the time when its condition became true.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Reacted {
-    /// Time from the first state of the goal to the one in which the condition was true, by the
+    /// Time from the first state of the goal to the state in which the condition was true, by the
     /// robot's clock.
     pub after: Duration,
     /// `message_id` of that state, `[ms]` of the robot's clock.
     pub time: u64,
     /// External wrench in it, in base axes with its torque about the origin of the stiffness frame,
-    /// `[N, N m]`: positive is what the arm exerts.
+    /// `[N, N m]`. Positive values mean that the arm exerts the wrench.
     pub wrench: [f64; 6],
     /// Pose of the end effector in it, base frame, from the measured joints.
     pub pose: Isometry3<f64>,
 }
 
 impl From<Condition> for Reaction {
-    /// The arm comes to rest.
+    /// Creates a reaction that stops the arm.
     fn from(condition: Condition) -> Self {
         Self {
             condition,
@@ -48,11 +48,12 @@ impl From<Condition> for Reaction {
 }
 
 impl Condition {
-    /// Has the motion go on to `target`, a pose or joint positions, once the condition is true: the
-    /// arm brakes as quickly as by itself and then turns there, without waiting for the program.
+    /// Continues the motion to `target`, a pose or joint positions, once the condition is true. The
+    /// arm brakes as quickly as for a plain condition and then turns to the target, without waiting
+    /// for the program.
     ///
-    /// It goes as fast as the motion does; acceleration and jerk are at least those of the default
-    /// budget, so that a slow approach does not make it leave slowly.
+    /// The speed is the motion's. Acceleration and jerk are at least the default budget's, so that
+    /// the arm retreats quickly even after a slow approach.
     pub fn then(self, target: impl Into<Target>) -> Reaction {
         Reaction {
             condition: self,
@@ -76,7 +77,7 @@ impl Reaction {
 }
 
 impl Budget {
-    /// The budget with accelerations and jerks that are at least those of `other`.
+    /// Returns the budget with accelerations and jerks at least as high as in `other`.
     pub(super) fn as_brisk_as(&self, other: &Self) -> Self {
         let brisk =
             |own: franka_otg::AxisLimits, other: &franka_otg::AxisLimits| franka_otg::AxisLimits {
@@ -92,7 +93,7 @@ impl Budget {
     }
 }
 
-/// A word that says whether there is a reaction, 8 of the target, and those of the condition.
+/// One word for the presence of a reaction, 8 for the target, then the words of the condition.
 impl Words for Option<Reaction> {
     const WORDS: usize = 1 + Target::WORDS + Condition::WORDS;
 

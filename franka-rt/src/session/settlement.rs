@@ -1,4 +1,4 @@
-//! How goals end, as a session reports it to the lifecycle.
+//! Ends of goals, as a session reports them to the lifecycle.
 
 use core::time::Duration;
 
@@ -6,7 +6,7 @@ use super::{GoalId, PoseError, Reacted, Shortfall};
 use crate::team::TeamStop;
 use crate::together::StartFault;
 
-/// What a session reports to the lifecycle.
+/// Report of a session to the lifecycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(
     clippy::large_enum_variant,
@@ -14,87 +14,89 @@ use crate::together::StartFault;
 )]
 #[non_exhaustive]
 pub enum SessionEvent {
-    /// A goal that was to finish has come to its end; the session releases the arm unless a newer
-    /// goal comes.
+    /// A goal with [`OnArrival::ReportAndFinish`](super::OnArrival) has ended. The session releases
+    /// the arm unless a newer goal arrives.
     Settled {
         /// The goal.
         goal: GoalId,
-        /// How it came to its end.
+        /// Kind of end.
         settlement: Settlement,
         /// Time from the first cycle that saw the goal to the arrival, `[ms]` of the robot's clock.
         duration_ms: u64,
-        /// What friction and bias are compensated by there, `[N m]`; `None` where the robot's
+        /// Torques that compensate friction and bias there, `[N m]`; `None` where the robot's
         /// controller turns setpoints into torques.
         compensation: Option<[f64; 7]>,
-        /// The reaction that has led it to this end, if one has.
+        /// The reaction that caused this end, if any.
         reacted: Option<Reacted>,
     },
     /// The robot's state names an end effector that is not a rigid transformation, or a load that
-    /// is not finite; the session ends without a torque.
+    /// is not finite. The session ends without sending a torque.
     BadTool,
-    /// The arm was let go and does not come to rest, so that the motion cannot finish: the robot
-    /// has to be told to stop. The session answers states until it does, and takes no more goals.
+    /// The arm was released and does not stop, so the motion cannot finish. The lifecycle must
+    /// command the robot to stop. Until it stops, the session answers states and takes no more
+    /// goals.
     Restless,
 }
 
-/// How a goal came to its end.
+/// Kind of end of a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Settlement {
     /// At the target, within the tolerance, at rest and held there.
     Arrived(PoseError),
-    /// At rest where it was braked; or its reference is, and the arm is moved from outside.
+    /// At rest where it braked. Alternatively only the reference rests, and something outside moves
+    /// the arm.
     AtRest,
-    /// The reference reached the target, the arm did not: something holds it, or its load is not
-    /// what was declared.
+    /// The reference reached the target, the arm did not: something holds it, or its load differs
+    /// from the declared load.
     TargetNotReached(Shortfall),
-    /// Given up, and held: at the last target, or where it came to rest without its deadman.
+    /// Given up, and held at the last target, or where it stopped when its deadman failed.
     Held(Lapse),
-    /// Given up, and braked: it is held where it came to rest.
+    /// Given up, and braked. The arm is held where it stopped.
     Braked(Lapse),
-    /// At rest where it was held: its common start has failed.
+    /// At rest where it was held, because the common start failed.
     Unstarted(StartFault),
 }
 
-/// Why a goal was given up.
+/// Reason for giving up a goal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Lapse {
-    /// Its targets stopped coming: see [`Watchdog`](super::Watchdog).
+    /// Its targets stopped arriving: see [`Watchdog`](super::Watchdog).
     Silent {
-        /// For how long none had come, by the robot's clock.
+        /// Time without a target, by the robot's clock.
         silence: Duration,
     },
     /// The [`Deadman`](super::Deadman) that the session is bound to fell silent, or was dropped.
     Deadman,
-    /// Something pushed the arm further from its path than it may swing back by itself:
-    /// [`Deviation`](super::Deviation).
+    /// Something pushed the arm further from its path than the distance that it may swing back
+    /// alone: [`Deviation`](super::Deviation).
     Displaced,
-    /// The way leads too near to the arm itself, or to a region to keep out of: see
+    /// The path comes too near the arm itself or a keep-out region: see
     /// [`SELF_STOP`](super::SELF_STOP) and [`KEEP_OUT_STOP`](super::KEEP_OUT_STOP).
     Blocked {
-        /// The region, from 1, in the order in which the session was given them; `None` for the arm
+        /// The region, from 1, in the order in which the session got them; `None` for the arm
         /// itself.
         region: Option<usize>,
     },
-    /// The joints have no way on to the target from where the arm came to rest: one is at the end
-    /// of its range, or the arm is stretched.
+    /// The joints cannot continue to the target from where the arm stopped: one is at the end of
+    /// its range, or the arm is stretched.
     OutOfReach {
-        /// The joint at the end of its range, from 1, if one is.
+        /// The joint at the end of its range, from 1, if any.
         joint: Option<usize>,
     },
-    /// The team that it is a member of has stopped.
+    /// The arm's team has stopped.
     Team(TeamStop),
     /// The arm was faster than the speed cap of its session.
     TooFast,
     /// The arm stood still under commands that should have moved it, and the robot reported no
-    /// error: its brakes are closed, or its controller has stopped.
+    /// error. Either its brakes are closed or its controller has stopped.
     Unresponsive,
 }
 
 impl Lapse {
-    /// True if no update brings the goal back.
+    /// True if no update can resume the goal.
     pub(super) fn is_final(self) -> bool {
         match self {
             Self::Silent { .. } => false,
@@ -110,7 +112,7 @@ impl Lapse {
 }
 
 impl Lapse {
-    /// Returns the name of its row in the book's chapter of errors, `errors.md`.
+    /// Returns the name of the row in the book's chapter of errors, `errors.md`.
     pub fn entry(&self) -> &'static str {
         match self {
             Self::Silent { .. } => "lapse-silent",

@@ -1,4 +1,4 @@
-//! What a session answers a state with, and what the record has of it.
+//! Answer of a session to a state, and the values that the record keeps of it.
 
 use core::time::Duration;
 
@@ -8,27 +8,27 @@ use super::reference::Reference;
 use super::{Bindings, GoalId, Target};
 use crate::control::{MotionCommand, Torques};
 
-/// What a session answers a state with.
+/// Answer of a session to a state.
 #[derive(Debug)]
 pub(crate) struct SessionStep {
     pub(crate) answer: SessionCommand,
     pub(crate) trace: Trace,
-    /// The last command: the motion ends once the robot has taken it.
+    /// True for the last command: the motion ends once the robot has taken it.
     pub(crate) finished: bool,
 }
 
-/// What the record of a cycle has of the session; all zero where no goal is followed.
+/// Values of the session for the record of a cycle; all zero where the session follows no goal.
 #[derive(Debug, Default)]
 pub(crate) struct Trace {
     pub(crate) goal: GoalId,
     pub(crate) reference: Reference,
-    /// What it heads for, where that is now; `None` where no goal is followed.
+    /// Present place of the target; `None` where the session follows no goal.
     pub(crate) target: Option<Target>,
-    /// Since the goal was first seen.
+    /// Time since the session first saw the goal.
     pub(crate) elapsed: Duration,
-    /// Until the reference meets the goal's target.
+    /// Time until the reference meets the goal's target.
     pub(crate) remaining: Duration,
-    /// `[N m]`
+    /// Compensation torques, `[N m]`.
     pub(crate) compensation: JointVector,
     pub(crate) bindings: Bindings,
 }

@@ -1,10 +1,11 @@
-//! How near an arm comes to its target, and so what counts as arrived.
+//! Tolerance: the distance from the target at which an arm counts as arrived.
 
 use crate::law::compensation::STATIC_FRICTION;
 use crate::law::{Gains, Law};
 use crate::session::Controller;
 
-/// How near counts as arrived, measured at the end effector.
+/// Greatest distance from the target at which an arm counts as arrived, measured at the end
+/// effector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Distance, `[m]`.
@@ -14,7 +15,7 @@ pub struct Tolerance {
 }
 
 impl Default for Tolerance {
-    /// That of gains that compensate friction: 1 mm and 3 mrad.
+    /// Tolerance with gains that compensate friction: 1 mm and 3 mrad.
     fn default() -> Self {
         Self {
             translation: 1e-3,
@@ -24,16 +25,16 @@ impl Default for Tolerance {
 }
 
 impl Tolerance {
-    /// The most that [`of`](Self::of) gives, 3 cm and 0.15 rad: springs that leave more hold an arm
-    /// nowhere.
+    /// Greatest value that [`of`](Self::of) returns: 3 cm and 0.15 rad. Springs that leave larger
+    /// errors cannot hold an arm in place.
     pub const MOST: Self = Self {
         translation: 0.03,
         rotation: 0.15,
     };
 
-    /// What an arm keeps under `gains` whose joints stick like those of a realistic simulated arm
-    /// (`franka_sim::arm::Family::realistic`): the default, and the stretch of the springs against
-    /// that part of the friction which the gains do not compensate.
+    /// Returns the error that remains under `gains` on an arm with the friction of a realistic
+    /// simulated arm (`franka_sim::arm::Family::realistic`). This is the default, plus the stretch
+    /// of the springs under the part of the friction that the gains do not compensate.
     pub fn of(gains: &Gains) -> Self {
         let left: [f64; 7] =
             core::array::from_fn(|i| (STATIC_FRICTION[i] - gains.compensation[i]).max(0.0));
@@ -43,7 +44,7 @@ impl Tolerance {
         }
         let projected = gains.project_joint_gains || gains.law == Law::OperationalSpace;
         let turned: [f64; 7] = core::array::from_fn(|i| match gains.joint_stiffness[i] {
-            // They do not act at the end effector.
+            // Projected joint springs do not act at the end effector.
             _ if projected => f64::INFINITY,
             _ if left[i] == 0.0 => 0.0,
             stiffness => (left[i] / stiffness).powi(2),
@@ -52,7 +53,7 @@ impl Tolerance {
         let of_all = turned.iter().sum::<f64>().sqrt();
         let softest = |axes: &[f64]| axes.iter().copied().fold(f64::INFINITY, f64::min);
         let (linear, angular) = gains.cartesian_stiffness.split_at(3);
-        // Springs of joints and of the end effector act side by side.
+        // Springs of joints and of the end effector act in parallel.
         let beside = |one: f64, other: f64| 1.0 / (1.0 / one + 1.0 / other);
         let Self {
             translation,
@@ -66,9 +67,9 @@ impl Tolerance {
         }
     }
 
-    /// What an arm like that keeps under the robot's own controllers, with the impedance that they
-    /// have by default and whatever their setpoints are: 2 mm and 5 mrad under joint impedance,
-    /// 5 mm and 15 mrad under Cartesian impedance.
+    /// Returns the error that remains on such an arm under the robot's own controllers with their
+    /// default impedance, for all kinds of setpoints: 2 mm and 5 mrad under joint impedance. Under
+    /// Cartesian impedance it is 5 mm and 15 mrad.
     pub fn under(controller: Controller) -> Self {
         match controller {
             Controller::JointImpedance => Self {
@@ -83,12 +84,12 @@ impl Tolerance {
     }
 }
 
-/// The force and the torque at the end effector that these come to, `[N]` and `[N m]`: what springs
-/// alone left in 99 of 100 goals times their stiffness, and a third more.
+/// Force and torque at the end effector that correspond to [`STATIC_FRICTION`], `[N]` and `[N m]`. Each
+/// is the 99th percentile of the error under springs alone, times their stiffness, plus a third.
 const FORCE: f64 = 8.0;
 const TORQUE: f64 = 2.0;
 
-/// From the first joints to the end effector, `[m]`.
+/// Distance from the first joints to the end effector, `[m]`.
 const REACH: f64 = 0.8;
 
 #[cfg(test)]
@@ -103,7 +104,7 @@ mod tests {
         (translation * 1e3, rotation * 1e3)
     }
 
-    /// Beside what `arms --law springs` and the like leave at the 99th percentile.
+    /// Compares with the 99th percentiles of `arms --law springs` and its siblings.
     #[test]
     fn what_springs_alone_leave_is_within_it() {
         for (gains, [mm, mrad]) in [
@@ -141,7 +142,7 @@ mod tests {
         soft.project_joint_gains = false;
         soft.joint_stiffness = [0.0; 7];
         assert_eq!(of(soft), most);
-        // All joints but one are compensated, and none has a spring.
+        // All joints but one are compensated, and no joint has a spring.
         let mut one = Gains::cartesian();
         (one.joint_stiffness, one.compensation[6]) = ([0.0; 7], 0.0);
         assert!(of(one).0 <= most.0 && of(one).1 <= most.1, "{:?}", of(one));

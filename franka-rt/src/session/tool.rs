@@ -1,11 +1,11 @@
-//! Frames and loads of a robot state as the model takes them.
+//! Frames and loads of a robot state in the model's types.
 
 use franka_model::{EndEffector, Load, transform};
 use franka_proto::{RobotState, Version};
 use nalgebra::{Isometry3, Matrix4, Rotation3, Translation3, UnitQuaternion};
 
-/// The end effector and stiffness frame that a state names, orthonormalised, as protocol 10 rounds
-/// them to `f32`. `None` if one of them is not a rigid transformation.
+/// Returns the end effector and stiffness frame of a state, orthonormalised, because protocol 10
+/// rounds them to `f32`. `None` if one of them is not a rigid transformation.
 pub(crate) fn end_effector_of(state: &RobotState) -> Option<EndEffector> {
     let rigid = |column_major| {
         transform::isometry_from_array(column_major).map(|pose| transform::matrix(&pose))
@@ -16,8 +16,8 @@ pub(crate) fn end_effector_of(state: &RobotState) -> Option<EndEffector> {
     })
 }
 
-/// The load of end effector and payload together in a state of `version`. `None` if a number of it
-/// is not finite.
+/// Returns the load of end effector and payload together in a state of `version`. `None` if one of
+/// its numbers is not finite.
 pub(crate) fn load_of(state: &RobotState, version: Version) -> Option<Load> {
     let total = state.total_load(version);
     let numbers = [&[total.m_total][..], &total.F_x_Ctotal, &total.I_total];
@@ -29,8 +29,8 @@ pub(crate) fn load_of(state: &RobotState, version: Version) -> Option<Load> {
     })
 }
 
-/// A pose of the model as an isometry. The model's poses are products of rotations, so nothing is
-/// left to orthonormalise.
+/// Converts a pose of the model to an isometry. The model's poses are products of rotations, so
+/// they need no orthonormalisation.
 pub(crate) fn rigid(pose: &Matrix4<f64>) -> Isometry3<f64> {
     let rotation = Rotation3::from_matrix_unchecked(pose.fixed_view::<3, 3>(0, 0).into_owned());
     Isometry3::from_parts(

@@ -1,8 +1,8 @@
-//! Why points are not a chunk.
+//! Reasons for refusing the points of a chunk.
 
 use std::time::Duration;
 
-/// Why a chunk cannot be made of these points.
+/// Reason for refusing the points of a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ChunkError {
@@ -15,7 +15,7 @@ pub enum ChunkError {
          origin"
     )]
     TooMany {
-        /// The most that a chunk may have, [`Chunk::POINTS_MAX`](super::Chunk::POINTS_MAX).
+        /// Maximum number of points, [`Chunk::POINTS_MAX`](super::Chunk::POINTS_MAX).
         most: usize,
     },
     /// A number of a point is not finite, or larger than 1e6.
@@ -34,7 +34,7 @@ pub enum ChunkError {
         /// The length.
         length: f64,
     },
-    /// A point comes less than a millisecond after the one before it, or before it.
+    /// The time of a point is earlier than the time of the previous point plus a millisecond.
     #[error(
         "point {point} is due at {time:?}, expected 1 ms or more after the one before, at {before:?}"
     )]
@@ -43,7 +43,7 @@ pub enum ChunkError {
         point: usize,
         /// Its time.
         time: Duration,
-        /// The time of the point before it.
+        /// Time of the previous point.
         before: Duration,
     },
     /// A point lies later than [`Chunk::OFFSET_MAX`](super::Chunk::OFFSET_MAX) after the chunk's
@@ -58,7 +58,8 @@ pub enum ChunkError {
         /// Its time.
         time: Duration,
     },
-    /// Between two points the end effector turns so far that its direction is in doubt.
+    /// Between two points the end effector turns so far that the direction of the turn is
+    /// ambiguous.
     #[error("{degrees} degrees from point {} to point {point}: expected less than 170", point - 1)]
     Turn {
         /// The later point, from 1.

@@ -1,4 +1,4 @@
-//! The chunk: points with times, as a policy gives them.
+//! The chunk: points with times, as a policy predicts them.
 
 use core::time::Duration;
 
@@ -15,17 +15,17 @@ use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
 use crate::session::{GoalError, Target, check};
 
-/// The least time between two points: one cycle, less the rounding of a conversion.
+/// Least time between two points: one cycle, minus the rounding of a conversion.
 const SPACING_MIN: Duration = Duration::from_nanos(999_999);
 
-/// The largest number of a point, in its unit. Far above any number of an arm, and small enough for
-/// all computations to stay finite.
+/// Largest number of a point, in its unit. It is far above any number of an arm, and small enough
+/// for all computations to stay finite.
 const NUMBER_MAX: f64 = 1e6;
 
-/// The largest angle between two points, `[rad]`.
+/// Largest angle between two points, `[rad]`.
 pub(super) const TURN_MAX: f64 = 170.0 * core::f64::consts::PI / 180.0;
 
-/// Where the times of a chunk count from.
+/// Origin of a chunk's times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Origin {
     /// The cycle that takes the chunk up.
@@ -34,21 +34,21 @@ pub(super) enum Origin {
     Robot(u64),
 }
 
-/// Points with times, joints or poses, that an arm is to move through: what a policy predicts from
+/// Points with times, joints or poses, that an arm moves through: the prediction of a policy from
 /// one observation.
 ///
-/// The points are joined by a motion that is twice continuously differentiable and rests at the
-/// last one. The arm follows it within the budget of the goal that the chunk belongs to, whatever
-/// the points ask for: where they ask for more, it lags, and makes up for that within the budget
-/// too. A chunk that ends faster than the budget can brake is overshot by what braking takes; send
-/// the next chunk before the last one ends, and it never comes to that.
+/// The motion through the points is twice continuously differentiable and rests at the last point.
+/// The arm follows it within the budget of the chunk's goal. Where the points ask for more than the
+/// budget, the arm lags, and catches up within the budget. If a chunk ends faster than the budget
+/// can brake, the arm overshoots by its braking distance. To avoid that, send the next chunk before
+/// the last one ends.
 ///
 /// - **Latency.** [`observed_at`](Self::observed_at) names the state that the policy saw. Points
-///   whose time has passed when the chunk is taken up are skipped, and the motion is entered at the
-///   instant that the robot is at.
-/// - **Receding horizon.** A newer chunk takes the place of the one before it as soon as its first
-///   point's time has come, or at once if none is running. If it has superseded one that waited, it
-///   comes when that was to, earlier than its own time by as long as that one waited at most. It is
+///   whose time has passed at take-up are skipped, and the arm enters the motion at the robot's
+///   present time.
+/// - **Receding horizon.** A newer chunk replaces the current chunk as soon as the newer chunk's
+///   first point is due, or at once if none is running. If it has superseded a chunk that waited,
+///   it takes over when that chunk was due, so at most that chunk's waiting time early. It is
 ///   blended in over [`Chunk::BLEND`]; see [`blend`](Self::blend) and [`replace`](Self::replace).
 ///
 /// ```
@@ -70,13 +70,14 @@ pub struct Chunk {
     pub(super) points: Points,
     pub(super) origin: Origin,
     pub(super) blend: Duration,
-    /// True if the velocities of the points were given: these are checked before it is sent.
+    /// True if the caller gave the velocities of the points. They are checked before the chunk is
+    /// sent.
     pub(super) with_velocities: bool,
-    /// How a path waits and pauses; `None` for points that have times.
+    /// Pace at which a path waits and pauses; `None` for points that have times.
     pub(super) pace: Option<Pace>,
 }
 
-/// What the points are.
+/// Kinds of points.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Points {
     Joints(Curve<Reference>),
@@ -84,25 +85,25 @@ pub(super) enum Points {
 }
 
 impl Chunk {
-    /// The most points of a chunk: ten seconds of a policy that acts at 100 Hz.
+    /// Maximum number of points in a chunk: ten seconds of a policy that acts at 100 Hz.
     pub const POINTS_MAX: usize = 1024;
 
-    /// Chunks that may be on their way to the thread, in use, or on their way back at a time.
+    /// Maximum number of chunks that are in use, or in transit to or from the thread.
     pub const UNDER_WAY_MAX: usize = 8;
 
-    /// The latest that a point may lie after its chunk's origin, and that origin after the robot's
-    /// newest state. A later time is a mistake of units, or of clocks.
+    /// Latest time of a point after its chunk's origin, and of that origin after the robot's newest
+    /// state. A later time is a mistake of units or clocks.
     pub const OFFSET_MAX: Duration = Duration::from_secs(60);
 
-    /// How long a chunk is blended with what the arm does unless said otherwise: as long as one
-    /// inference of a policy at 10 Hz.
+    /// Default time over which a chunk is blended with the present motion: as long as one inference
+    /// of a policy at 10 Hz.
     pub const BLEND: Duration = Duration::from_millis(100);
 
-    /// Through joint positions, `[rad]`, each at its time after the chunk's origin. Their
-    /// velocities are estimated from their neighbours.
+    /// Creates a chunk through joint positions, `[rad]`, each at its time after the chunk's origin.
+    /// The velocities are estimated from the neighbours.
     ///
     /// # Errors
-    /// [`ChunkError`] names the first point that is wrong.
+    /// [`ChunkError`] names the first invalid point.
     pub fn joints(
         points: impl IntoIterator<Item = (Duration, [f64; 7])>,
     ) -> Result<Self, ChunkError> {
@@ -121,8 +122,8 @@ impl Chunk {
         ))
     }
 
-    /// The same with the joints' velocities, `[rad/s]`, given too. The arm rests at the last point
-    /// nevertheless.
+    /// Creates a chunk through joint positions with velocities, `[rad/s]`. The arm still rests at
+    /// the last point.
     ///
     /// # Errors
     /// As for [`joints`](Self::joints).
@@ -149,8 +150,8 @@ impl Chunk {
         })
     }
 
-    /// Through poses of the end effector in the base frame, `O_T_EE`, metres, each at its time
-    /// after the chunk's origin. Their velocities are estimated from their neighbours.
+    /// Creates a chunk through poses of the end effector in the base frame, `O_T_EE`, metres, each
+    /// at its time after the chunk's origin. The velocities are estimated from the neighbours.
     ///
     /// # Errors
     /// As for [`joints`](Self::joints), and [`ChunkError::Turn`].
@@ -178,9 +179,9 @@ impl Chunk {
         ))
     }
 
-    /// The same with the twists of the end effector given too: velocity of the frame's origin,
-    /// `[m/s]`, and angular velocity, `[rad/s]`, both in base axes. The arm rests at the last point
-    /// nevertheless.
+    /// Creates a chunk through poses with twists of the end effector: velocity of the frame's
+    /// origin, `[m/s]`, and angular velocity, `[rad/s]`, both in base axes. The arm still rests at
+    /// the last point.
     ///
     /// # Errors
     /// As for [`poses`](Self::poses).
@@ -210,43 +211,47 @@ impl Chunk {
         })
     }
 
-    /// Counts the points' times from the robot's state `message_id`, `[ms]`: the one that the
-    /// policy saw. Without it they count from the cycle that takes the chunk up.
+    /// Counts the points' times from the robot's state `message_id`, `[ms]`, which the policy saw.
+    /// Without this call they count from the cycle that takes up the chunk.
     #[must_use]
     pub fn observed_at(mut self, message_id: u64) -> Self {
         self.origin = Origin::Robot(message_id);
         self
     }
 
-    /// Replaces [`Chunk::BLEND`]: the time over which the chunk is blended with what the arm does
-    /// when it is taken up. What the arm does goes on with its velocity and acceleration at first,
-    /// and the difference to the chunk is then let go. An arm that lags behind another chunk is
-    /// taken to be where that one wants it, if that is nearer to the new one: what it lags, it
-    /// makes up for at the pace of the budget, and not within the blend.
+    /// Replaces [`Chunk::BLEND`], the time over which the chunk is blended with the present motion.
+    /// The arm first continues with its velocity and acceleration, and its difference to the chunk
+    /// then fades out.
+    ///
+    /// An arm may lag behind another chunk at that instant. If that chunk's reference is nearer to
+    /// the new chunk, the blend begins there. The arm then makes up for its lag at the pace of the
+    /// budget, not within the blend.
     #[must_use]
     pub fn blend(mut self, over: Duration) -> Self {
         self.blend = over.min(Self::OFFSET_MAX);
         self
     }
 
-    /// Does not blend: the arm turns to the chunk as fast as the budget allows. For chunks that
-    /// correct the one before.
+    /// Does not blend: the arm turns to the chunk as fast as the budget allows. Use this for chunks
+    /// that correct the previous chunk.
     #[must_use]
     pub fn replace(self) -> Self {
         self.blend(Duration::ZERO)
     }
 
-    /// Time from the robot's state `now`, `message_id`, to the last point: zero if that has passed.
+    /// Returns the time from the robot's state `now`, `message_id`, to the last point; zero if that
+    /// has passed.
     pub fn end_after(&self, now: u64) -> Duration {
         Duration::try_from_secs_f64(self.end() - self.since_origin(now)).unwrap_or(Duration::ZERO)
     }
 
-    /// Time from the last point to the robot's state `now`: zero if that has not passed.
+    /// Returns the time from the last point to the robot's state `now`; zero if the point is not
+    /// due yet.
     pub fn late_by(&self, now: u64) -> Duration {
         Duration::try_from_secs_f64(self.since_origin(now) - self.end()).unwrap_or(Duration::ZERO)
     }
 
-    /// Where the arm rests after the last point.
+    /// Target at which the arm rests after the last point.
     pub fn target(&self) -> Target {
         match &self.points {
             Points::Joints(curve) => Target::Joints(curve.last().q.into()),
@@ -254,13 +259,13 @@ impl Chunk {
         }
     }
 
-    /// Checks the chunk for a robot in `state`: every point for joints. For poses the last one,
-    /// where the arm is to rest; on the way to it inverse kinematics holds the arm inside its
-    /// bounds, whatever it is asked for. Velocities that were given have to be ones that the robot
-    /// allows.
+    /// Checks the chunk for a robot in `state`. For joints every point is checked. For poses only
+    /// the last one is, where the arm will rest; on the way there, inverse kinematics always keeps
+    /// the arm inside its bounds. The robot must allow the velocities that the caller gave.
     ///
     /// # Errors
-    /// [`GoalError`] of the first point that cannot be reached, or is passed too fast.
+    /// [`GoalError`] of the first point that cannot be reached, or that the arm would pass too
+    /// fast.
     pub fn check(&self, model: &Model, state: &RobotState) -> Result<(), GoalError> {
         if self.with_velocities {
             self.check_velocities(model)?;
@@ -287,7 +292,7 @@ impl Chunk {
         }
     }
 
-    /// The state that the policy saw, `message_id`, if that is named.
+    /// Returns the state that the policy saw, `message_id`, if named.
     pub(crate) fn observation(&self) -> Option<u64> {
         match self.origin {
             Origin::TakeUp => None,
@@ -295,7 +300,8 @@ impl Chunk {
         }
     }
 
-    /// Seconds from the origin to the robot's time `now`; a chunk without an origin begins then.
+    /// Returns the seconds from the origin to the robot's time `now`; a chunk without an origin
+    /// begins then.
     pub(super) fn since_origin(&self, now: u64) -> f64 {
         match self.origin {
             Origin::TakeUp => 0.0,
@@ -303,12 +309,12 @@ impl Chunk {
         }
     }
 
-    /// True if its times count from the cycle that takes it up, whenever that is.
+    /// True if the times count from the cycle that takes up the chunk.
     pub(super) fn begins_at_take_up(&self) -> bool {
         self.origin == Origin::TakeUp
     }
 
-    /// When the first point is due, seconds from the origin.
+    /// Due time of the first point, seconds from the origin.
     pub(super) fn begin(&self) -> f64 {
         match &self.points {
             Points::Joints(curve) => curve.begin(),
@@ -316,7 +322,7 @@ impl Chunk {
         }
     }
 
-    /// When the last point is due, seconds from the origin.
+    /// Due time of the last point, seconds from the origin.
     pub(super) fn end(&self) -> f64 {
         match &self.points {
             Points::Joints(curve) => curve.end(),
@@ -394,7 +400,7 @@ fn check_numbers(point: usize, numbers: &[f64]) -> Result<(), ChunkError> {
 fn check_pose(point: usize, pose: &Isometry3<f64>) -> Result<(), ChunkError> {
     check_numbers(point, pose.translation.vector.as_slice())?;
     let length = pose.rotation.coords.norm();
-    // NaN is no such length either.
+    // NaN is not such a length either.
     if (length - 1.0).abs() < 1e-6 {
         Ok(())
     } else {

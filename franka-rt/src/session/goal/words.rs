@@ -1,4 +1,4 @@
-//! The form of a goal in the slot that crosses into the thread.
+//! Encoding of a goal in the slot to the control thread.
 
 use core::time::Duration;
 
@@ -26,7 +26,7 @@ fn pose_of([x, y, z, i, j, k, w]: [f64; 7]) -> Isometry3<f64> {
     )
 }
 
-/// The kind of target, 7 numbers, and 7 of its velocity.
+/// The kind of target, 7 numbers, and 7 numbers for its velocity.
 impl Words for Target {
     const WORDS: usize = 1 + 7 + 7;
 
@@ -68,13 +68,13 @@ impl Words for Target {
     }
 }
 
-/// Name, revision, what follows, whether it is paused and along a path, the round, 2 of the
-/// watchdog; then 27 numbers of budget, the gains, 2 of tolerance, the force cap, 3 of the lead, 7
-/// of the grasp and 7 of the posture, which are zero or no numbers without one, 3 of the leash, 3
-/// of the deviation and 2 of the settling; then the target and the reaction.
+/// First come name, revision, action on arrival, flags for pause and path, round, and 2 words of
+/// the watchdog. Then come the numbers that the test below counts: budget, gains, tolerance, force
+/// cap, lead, grasp, posture, leash, deviation and settling. A missing tolerance, lead or grasp is
+/// stored as zeros, a missing posture as NaN. Target and reaction follow.
 ///
-/// Written by hand: generated code needs an implementation for the type of each field, which comes
-/// to as many lines. The test below fails if a field is left out.
+/// Written by hand: generated code needs an implementation for the type of each field, which takes
+/// as many lines. The test below fails if a field is left out.
 impl Words for Goal {
     const WORDS: usize = NUMBERS + Target::WORDS + Option::<Reaction>::WORDS;
 
@@ -209,7 +209,7 @@ impl Words for Goal {
     }
 }
 
-/// Words of a goal before those of its target.
+/// Words of a goal before the words of its target.
 const NUMBERS: usize = 6 + 27 + Gains::NUMBERS + 2 + 1 + 3 + 7 + 7 + 3 + 3 + 2;
 
 impl OnArrival {
