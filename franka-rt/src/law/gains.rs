@@ -1,8 +1,8 @@
-//! Which law the arm runs, and its stiffness and damping.
+//! The control law, and its stiffness and damping.
 
 use crate::shaping::{DEFAULT_CUTOFF_FREQUENCY, MAX_CUTOFF_FREQUENCY};
 
-/// How the springs and dampers of [`Gains`] become torques.
+/// Law that turns the springs and dampers of [`Gains`] into torques.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Law {
@@ -18,8 +18,8 @@ pub enum Law {
 /// Law and diagonal gains: a spring and damper at the end effector, along the axes of the base
 /// frame, and one at each joint.
 ///
-/// A goal brings all of them. On the way from one goal's to the next every number cross-fades, also
-/// the choices, so that no change steps the torque.
+/// A goal brings all of them. Between two goals every number cross-fades, including the choices, so
+/// that no change steps the torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
     /// The law that uses them.
@@ -43,15 +43,15 @@ pub struct Gains {
     /// where they move the elbow but do not push at the hand. [`Law::OperationalSpace`] always does
     /// this.
     pub project_joint_gains: bool,
-    /// The most that friction and bias of a joint are compensated by, `[N m]`; zero for none. The
-    /// springs alone leave an arm that sticks millimetres from its target.
+    /// Greatest compensation of friction and bias at each joint, `[N m]`; zero for none. With
+    /// springs alone, friction leaves the arm millimetres from its target.
     pub compensation: [f64; 7],
-    /// The most that springs, dampers and compensation may come to at each joint, `[N m]`, and what
-    /// the motion itself takes on top of them: the torque of a command, beside gravity, stays below
+    /// Greatest torque of springs, dampers and compensation together at each joint, including the
+    /// torques of the motion itself, `[N m]`. The torque of a command, besides gravity, stays below
     /// it. Only the brake of a joint that is too fast may use more.
     pub torque_limits: [f64; 7],
     /// Cutoff frequency of the first-order low-pass on the torques, `[Hz]`; at 1000 it is off. A
-    /// lower one is quieter, and takes from the [`Margin`](crate::session::Margin).
+    /// lower frequency is quieter, and reduces the [`Margin`](crate::session::Margin).
     pub torque_cutoff: f64,
 }
 
@@ -60,9 +60,9 @@ pub struct Gains {
 #[error("{what}{} is {got}, expected between {least} and {most}", of_axis(*.axis))]
 #[non_exhaustive]
 pub struct GainError {
-    /// The group of gains.
+    /// Group of gains.
     pub what: &'static str,
-    /// Its number in the group, from 1; `None` for a single number.
+    /// Number in the group, from 1; `None` for a single number.
     pub axis: Option<usize>,
     /// The value given.
     pub got: f64,
@@ -77,7 +77,7 @@ fn of_axis(axis: Option<usize>) -> String {
 }
 
 impl Gains {
-    /// The least of each number that [`check`](Self::check) accepts.
+    /// Lowest values that [`check`](Self::check) accepts.
     pub const LEAST: Self = Self {
         law: Law::Hybrid,
         cartesian_stiffness: [0.0; 6],
@@ -92,12 +92,12 @@ impl Gains {
         torque_cutoff: 20.0,
     };
 
-    /// The most of each number that [`check`](Self::check) accepts.
+    /// Highest values that [`check`](Self::check) accepts.
     ///
-    /// Stiffness at the end effector: the bounds of the robot's own impedance commands, 3000 N/m
-    /// and 300 N m/rad. Joints and damping: ten times the stiff preset. All of it on every axis at
-    /// once has not been tried on hardware. Compensation: twice the default and more. Torques: the
-    /// default.
+    /// Stiffness at the end effector has the bounds of the robot's own impedance commands, 3000 N/m
+    /// and 300 N m/rad. The bounds of joints and damping are ten times the stiff preset. No one has
+    /// tried all of it on every axis at once on hardware. The bound of the compensation is twice
+    /// the default and more. The bound of the torques is the default.
     pub const MOST: Self = Self {
         law: Law::OperationalSpace,
         cartesian_stiffness: [3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0],
@@ -112,16 +112,16 @@ impl Gains {
         torque_cutoff: MAX_CUTOFF_FREQUENCY,
     };
 
-    /// The default of [`compensation`](Self::compensation): the friction of the worst simulated
-    /// arms (`franka_sim::arm::Family::bad`), and as much as half a kilogram that is not declared
-    /// and their torque sensors take.
+    /// Default of [`compensation`](Self::compensation). It covers the friction of the worst
+    /// simulated arms (`franka_sim::arm::Family::bad`), and the torques of half an undeclared
+    /// kilogram and of their torque sensors.
     pub const COMPENSATION: [f64; 7] = [5.0, 6.0, 5.0, 7.0, 4.0, 4.0, 2.0];
 
-    /// The default of [`torque_limits`](Self::torque_limits), `[N m]`: just inside the 87 and 12 N
-    /// m that the joints can give.
+    /// Default of [`torque_limits`](Self::torque_limits), `[N m]`: just inside the 87 and 12 N m
+    /// that the joints can exert.
     pub const TORQUE_LIMITS: [f64; 7] = [86.0, 86.0, 86.0, 86.0, 11.5, 11.5, 11.5];
 
-    /// How many numbers [`to_array`](Self::to_array) gives.
+    /// Length of the array that [`to_array`](Self::to_array) returns.
     pub(crate) const NUMBERS: usize = 45;
 
     /// Compliant at the end effector: 750 N/m and 60 N m/rad, with light joint springs that keep
@@ -142,8 +142,9 @@ impl Gains {
         }
     }
 
-    /// As compliant, with the softer wrist and the lighter damping of the DROID platform, without
-    /// feedforward and compensation: for a policy that was trained on its data.
+    /// Compliant as [`cartesian`](Self::cartesian), with the softer wrist and the lighter damping
+    /// of the DROID platform, without feedforward and compensation. Use it for a policy that was
+    /// trained on DROID data.
     pub const fn droid() -> Self {
         Self {
             cartesian_stiffness: [750.0, 750.0, 750.0, 15.0, 15.0, 15.0],
@@ -154,8 +155,8 @@ impl Gains {
         }
     }
 
-    /// Stiff joints, no spring at the end effector. More damping begins to oscillate on arms whose
-    /// torques lag by 10 ms.
+    /// Stiff joints, no spring at the end effector. With more damping, arms whose torques lag by 10
+    /// ms begin to oscillate.
     pub const fn joint() -> Self {
         Self {
             law: Law::Hybrid,
@@ -172,7 +173,7 @@ impl Gains {
         }
     }
 
-    /// The same gains, friction and bias left to the springs.
+    /// Returns the same gains without compensation: springs alone act against friction and bias.
     #[must_use]
     pub const fn without_compensation(self) -> Self {
         Self {
@@ -181,9 +182,9 @@ impl Gains {
         }
     }
 
-    /// The same gains with another stiffness at the end effector, base axes. Its damping scales
-    /// with the square root, which keeps the damping ratio; an axis without stiffness takes its
-    /// damping ratio from [`Gains::cartesian`].
+    /// Returns the same gains with another stiffness at the end effector, base axes. The damping
+    /// scales with the square root, which keeps the damping ratio. An axis without stiffness gets
+    /// its damping ratio from [`Gains::cartesian`].
     #[must_use]
     pub fn with_cartesian_stiffness(self, stiffness: [f64; 6]) -> Self {
         let preset = Self::cartesian();
@@ -202,11 +203,11 @@ impl Gains {
         }
     }
 
-    /// Checks that every number is between that of [`LEAST`](Self::LEAST) and that of
+    /// Checks that every number lies between its values in [`LEAST`](Self::LEAST) and
     /// [`MOST`](Self::MOST).
     ///
     /// # Errors
-    /// [`GainError`] names the first one that is not.
+    /// [`GainError`] names the first number that does not.
     pub fn check(&self) -> Result<(), GainError> {
         let (least, most) = (Self::LEAST.to_array(), Self::MOST.to_array());
         for (i, got) in self.to_array().into_iter().enumerate() {
@@ -234,8 +235,8 @@ impl Gains {
         Ok(())
     }
 
-    /// Everything as numbers, springs and dampers first, then choices, compensation and what the
-    /// torques pass through.
+    /// Returns all numbers: springs and dampers first, then choices, compensation, and the filters
+    /// and limits of the torques.
     pub(crate) fn to_array(self) -> [f64; Self::NUMBERS] {
         let mut all = [0.0; Self::NUMBERS];
         all[..6].copy_from_slice(&self.cartesian_stiffness);

@@ -6,11 +6,11 @@
 //! springs, dq_ref ----------------------> Compensation of friction and bias
 //! ```
 //!
-//! [`Gains`] are what a goal asks for. `blended_gains` has the same in numbers, where a choice
-//! is a weight, so that `fade` leads from one to the next continuously. `interaction` makes torques
-//! of them by either law; the two differ in the wrench at the end effector and in where the springs
-//! of the joints act. `compensation` adds what springs cannot do on an arm that sticks or carries
-//! what it does not know of. What bounds these torques are guards of the session.
+//! [`Gains`] are the request of a goal. `blended_gains` holds the same as numbers, with choices as
+//! weights, so that `fade` changes from one to the next continuously. `interaction` turns them into
+//! torques by either law. The two laws differ in the wrench at the end effector and in where the
+//! springs of the joints act. `compensation` adds torques that springs cannot exert, against
+//! friction and an undeclared load. The session's guards bound these torques.
 //!
 //! # The hybrid law
 //!
@@ -21,9 +21,9 @@
 //! Kp  = J' Kx J + Kq        Kd = J' Kxd J + Kqd
 //! ```
 //!
-//! With the reference in joint space the spring at the end effector needs no pose error of its own:
-//! `J (q_ref - q)` is that error to first order, and the leash keeps it small. Gravity is
-//! compensated by the robot, and friction in part.
+//! With the reference in joint space the spring at the end effector needs no separate pose error:
+//! `J (q_ref - q)` is that error to first order, and the leash keeps it small. The robot
+//! compensates gravity, and part of the friction.
 //!
 //! `g` and the low-pass on `dq_ref` are [`Gains::feedforward`] and its cutoff. With
 //! [`Gains::project_joint_gains`] the torques of `Kq` and `Kqd` pass through the null-space

@@ -1,5 +1,5 @@
-//! What turns the setpoints of a session into torques: its own law, or one of the robot's
-//! controllers.
+//! Backends of a session: the session's own law, or one of the robot's controllers, turns setpoints
+//! into torques.
 
 use core::fmt;
 
@@ -14,36 +14,36 @@ use crate::control::{
 use crate::session::guard::backstop::BACKSTOP;
 use crate::session::{ForceCap, Goal, GoalError, Guard, SessionCommand, Target};
 
-/// What turns setpoints into torques.
+/// The backend that turns setpoints into torques.
 ///
 /// | guard | [`Torques`](Self::Torques) | [`RobotController`](Self::RobotController) |
 /// |---|---|---|
 /// | clearance, lead, watchdog, deadman, reaction | yes | yes |
 /// | joints' bounds on the way to a pose | yes | yes |
 /// | leash, deviation, velocity barrier | yes | no: an arm that is held back or pushed away springs back to its setpoint |
-/// | force cap | yes | no: a goal that asks for one is refused |
+/// | force cap | yes | no: the session refuses a goal with a force cap |
 /// | torque clamp and rate | yes | no: the torques are the robot's |
 /// | limiter of setpoints (backstop) | no | yes |
 ///
-/// [`Self::has`] returns the same for each [`Guard`]. Beside them the robot has its own limits,
-/// reflexes and collision thresholds, whatever the backend.
+/// [`Self::has`] returns the same for each [`Guard`]. In addition, the robot has its own limits,
+/// reflexes and collision thresholds under every backend.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Backend {
     /// The law of the session, on this host.
     #[default]
     Torques,
-    /// One of the robot's own controllers, which gets the setpoints: every controller takes every
-    /// kind. Its stiffness is the robot's: see `set_joint_impedance` and `set_cartesian_impedance`;
-    /// the gains of goals are without effect, and a goal with a force cap is refused.
+    /// One of the robot's own controllers, which gets the setpoints. Every controller accepts every
+    /// kind. The robot sets its stiffness: see `set_joint_impedance` and `set_cartesian_impedance`.
+    /// The gains of goals have no effect, and a goal with a force cap is refused.
     ///
-    /// Setpoints go on from where the robot itself takes them to be: when commands were lost, and
-    /// the robot went on by itself, the reference is put where it went. Its limiter is the
+    /// Setpoints continue from the robot's own setpoint. If commands were lost and the robot
+    /// continued alone, the reference moves to the robot's setpoint. The robot's limiter is the
     /// backstop.
     RobotController {
-        /// What follows the setpoints.
+        /// Controller that follows the setpoints.
         controller: Controller,
-        /// What it follows.
+        /// Kind of setpoints.
         setpoints: Setpoints,
     },
 }
@@ -52,37 +52,38 @@ pub enum Backend {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Controller {
-    /// A spring and damper per joint. It comes nearer to its target than the other.
+    /// A spring and damper per joint. It gets nearer to its target than the Cartesian controller.
     JointImpedance,
-    /// Springs and dampers at the end effector. An arm that sticks rests further from its target,
-    /// and its posture is held softly: joint positions are met at the end effector only.
+    /// Springs and dampers at the end effector. An arm with friction rests further from its target,
+    /// and its posture is held softly. Joint positions are reached only at the end effector.
     CartesianImpedance,
 }
 
-/// What the robot's controller gets.
+/// Setpoints for the robot's controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Setpoints {
-    /// Joint positions. Every goal but hand guiding.
+    /// Joint positions. Supports every goal except hand guiding.
     JointPositions,
-    /// Joint velocities, which the robot integrates. Every goal but hand guiding.
+    /// Joint velocities, which the robot integrates. Supports every goal except hand guiding.
     ///
-    /// Each is that of the reference. Where the robot has integrated to another position, the
-    /// difference is made up for slowly if it is small, so that the arm ends at its target and not
-    /// beside it; otherwise the reference goes on from there.
+    /// Each is the velocity of the reference. The robot may have integrated to another position. If
+    /// the difference is small, it is made up for slowly, so that the arm ends exactly at its
+    /// target. Otherwise the reference continues from the robot's position.
     JointVelocities,
-    /// Poses of the end effector. Poses only.
+    /// Poses of the end effector. Supports only goals with poses.
     ///
-    /// Each goes with its elbow, the angle of joint 3, which leaves the robot's own inverse
-    /// kinematics nothing to choose: its joints are those of the reference, and keep their limits.
-    /// A stretched arm is refused, and joint 4 stays on its side of [`FLIP_ANGLE`]: the robot takes
-    /// the elbow's side for that of the beginning. Where joint 3 rests while the arm moves about
-    /// its pose, which takes wide turns of the joints 3 and 5, an elbow says little about the
-    /// others: there only the robot's own check applies, and setpoints of joints are the better
-    /// choice.
+    /// Each pose comes with its elbow, the angle of joint 3, so that the robot's own inverse
+    /// kinematics has no choice. Its joints match the reference, and keep their limits. The session
+    /// refuses a stretched arm. Joint 4 stays on its side of [`FLIP_ANGLE`], because the robot
+    /// keeps the elbow's side from the beginning.
+    ///
+    /// The elbow determines the other joints poorly where joint 3 rests while the arm moves about
+    /// its pose, which requires wide turns of joints 3 and 5. There only the robot's own check
+    /// applies, and joint setpoints are the better choice.
     CartesianPoses,
-    /// Twists of the end effector, which the robot integrates, each with its elbow. What holds for
-    /// [`Self::CartesianPoses`] and [`Self::JointVelocities`] holds here.
+    /// Twists of the end effector, which the robot integrates, each with its elbow. The notes on
+    /// [`Self::CartesianPoses`] and [`Self::JointVelocities`] apply here.
     CartesianVelocities,
 }
 
@@ -95,7 +96,7 @@ impl Setpoints {
         Self::CartesianVelocities,
     ];
 
-    /// The setpoint that holds the arm: what the robot desires already, or no velocity.
+    /// Returns the setpoint that holds the arm: the robot's desired setpoint, or zero velocity.
     pub(super) fn holding(self, state: &RobotState) -> MotionCommand {
         let elbow = Some(elbow(&state.q_d.into()));
         match self {
@@ -131,7 +132,7 @@ impl Backend {
         ]
     };
 
-    /// The robot's joint impedance controller, with these setpoints.
+    /// The robot's joint impedance controller with these setpoints.
     pub const fn joint_impedance(setpoints: Setpoints) -> Self {
         Self::RobotController {
             controller: Controller::JointImpedance,
@@ -139,7 +140,7 @@ impl Backend {
         }
     }
 
-    /// The robot's Cartesian impedance controller, with these setpoints.
+    /// The robot's Cartesian impedance controller with these setpoints.
     pub const fn cartesian_impedance(setpoints: Setpoints) -> Self {
         Self::RobotController {
             controller: Controller::CartesianImpedance,
@@ -147,7 +148,7 @@ impl Backend {
         }
     }
 
-    /// The motion that it takes.
+    /// Returns the motion request for the robot.
     pub fn request(self, version: Version) -> MoveRequest {
         let Self::RobotController {
             controller,
@@ -170,8 +171,8 @@ impl Backend {
         MoveRequest::new(controller, generator)
     }
 
-    /// True if the robot's inverse kinematics stands between its setpoints and the joints: it takes
-    /// poses only.
+    /// True if the robot's inverse kinematics stands between its setpoints and the joints. Such a
+    /// backend accepts only poses.
     pub fn is_cartesian(self) -> bool {
         use Setpoints::{CartesianPoses, CartesianVelocities};
         matches!(
@@ -185,9 +186,9 @@ impl Backend {
 
     /// True if commands of a session with this backend pass through `guard`.
     ///
-    /// The guards of the reference hold under every backend. Those of the torques, and the two that
-    /// move the reference with an arm that is pushed away, are the session's own law's: the robot's
-    /// controller has springs, bounds and reflexes of its own.
+    /// The guards of the reference apply under every backend. The guards of the torques, and the
+    /// two that move the reference along with a pushed arm, exist only under the session's own law.
+    /// The robot's controller has its own springs, bounds and reflexes.
     pub fn has(self, guard: Guard) -> bool {
         let own_law = self == Self::Torques;
         match guard {
@@ -261,8 +262,8 @@ impl Backend {
         }
     }
 
-    /// The limits of the joints of `model` under this backend: the elbow that goes with poses has
-    /// limits of its own, and no backstop stands between these joints and the robot.
+    /// Returns the limits of the joints of `model` under this backend. The elbow that accompanies
+    /// poses has its own limits, and no backstop stands between these joints and the robot.
     pub(super) fn limited(self, model: &Model) -> Option<Model> {
         if !self.is_cartesian() {
             return None;
@@ -278,8 +279,8 @@ impl Backend {
         Some(model.clone().with_joint_limits(limits))
     }
 
-    /// True if the desired state of the robot, which setpoints go on from, is finite where it is
-    /// read.
+    /// True if the robot's desired state, from which setpoints continue, is finite in the parts
+    /// that are read.
     pub(super) fn can_read(self, state: &RobotState) -> bool {
         if self == Self::Torques {
             return true;
@@ -297,8 +298,8 @@ impl Backend {
         joints == [true; 3] && (!self.is_cartesian() || pose())
     }
 
-    /// The answer that holds the arm: what the robot desires already, or no torques beside its
-    /// gravity compensation.
+    /// Returns the answer that holds the arm: the robot's desired setpoint, or zero torques besides
+    /// its gravity compensation.
     pub(super) fn holding(self, state: &RobotState) -> SessionCommand {
         match self {
             Self::Torques => SessionCommand::Torques(Torques([0.0; 7])),
@@ -341,19 +342,19 @@ impl fmt::Display for Setpoints {
     }
 }
 
-/// The elbow at these joint positions, as a command has it.
+/// Returns the elbow at these joint positions in the form of a command.
 pub(super) fn elbow(q: &JointVector) -> [f64; 2] {
     [q[2], side(q)]
 }
 
-/// On which side of the stretched arm joint 4 is: as [`franka_model::elbow::elbow`], but -1 or +1
+/// Side of the stretched arm on which joint 4 is: as [`franka_model::elbow::elbow`], but -1 or +1
 /// also at the flip angle itself.
 fn side(q: &JointVector) -> f64 {
     if q[3] < FLIP_ANGLE { -1.0 } else { 1.0 }
 }
 
-/// What takes what no controller of the robot does.
+/// Backend for goals that no controller of the robot supports.
 const OWN_LAW: &str = "Backend::Torques";
 
-/// Share of the elbow's velocity that joint 3 may take, where that is less than its own.
+/// Share of the elbow's velocity that joint 3 may use, where that is less than its own limit.
 const ELBOW: f64 = 0.95;

@@ -1,4 +1,4 @@
-//! When a goal has been reached, and how the arm is let go afterwards.
+//! Arrival of goals, and release of the arm afterwards.
 
 use core::time::Duration;
 
@@ -10,19 +10,19 @@ use crate::session::{LimitedTorque, Settlement, Tolerance};
 /// Joint velocity below which the arm counts as resting, `[rad/s]`.
 pub(crate) const REST_VELOCITY: f64 = 0.01;
 
-/// How an arm has to settle at its target once its reference has arrived there.
+/// Conditions under which an arm counts as settled at its target once its reference has arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settling {
-    /// How long it has to stay within the tolerance and at rest, whole milliseconds from 1 on: a
-    /// swing through the target does not count.
+    /// Time for which the arm must stay within the tolerance and at rest, whole milliseconds, at
+    /// least 1. A swing through the target does not count.
     pub hold: Duration,
-    /// The longest that it gets for that, from `hold` to [`Self::TIMEOUT_MAX`]. One that makes no
-    /// progress is given up earlier.
+    /// Longest time for settling, from `hold` to [`Self::TIMEOUT_MAX`]. A goal without progress is
+    /// given up earlier.
     pub timeout: Duration,
 }
 
 impl Default for Settling {
-    /// 250 ms and 5 s.
+    /// Hold of 250 ms and timeout of 5 s.
     fn default() -> Self {
         Self {
             hold: Duration::from_millis(250),
@@ -32,28 +32,28 @@ impl Default for Settling {
 }
 
 impl Settling {
-    /// The longest timeout that is accepted.
+    /// The longest accepted timeout.
     pub const TIMEOUT_MAX: Duration = Duration::from_secs(60);
 }
 
-/// Cycles that an arm has to rest that comes to rest without a target.
+/// Cycles of rest after which an arm without a target counts as stopped.
 const HOLD_AT_REST: u64 = 100;
 
-/// The longest time for that: its reference rests, so an arm that does not is moved from outside. A
-/// goal that is patient about its target makes no patient stop.
+/// Longest time for that: the reference rests, so an arm that still moves is moved from outside.
+/// The timeout of a goal does not extend its stop.
 const REST_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// Cycles without progress after which an arm at rest is short of its target for certain.
+/// Cycles without progress after which an arm at rest certainly stays short of its target.
 const STUCK: u64 = 500;
 
-/// What counts as progress, as a part of the tolerance.
+/// Least progress, in parts of the tolerance.
 const PROGRESS: f64 = 0.02;
 
-/// Cycles over which the spring is let go.
+/// Cycles over which the spring is released.
 const RELEASE: u32 = 100;
 
-/// Time after which the robot is told to stop an arm that was let go and does not rest. A motion
-/// that finished then would end in a reflex.
+/// Time after which the robot must stop an arm that was released and does not rest. If the motion
+/// finished then, it would end in a reflex.
 pub const RELEASE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Distance of the measured end effector from its target.
@@ -67,7 +67,7 @@ pub struct PoseError {
 }
 
 impl PoseError {
-    /// How far `pose` is from `target`.
+    /// Returns the distance of `pose` from `target`.
     pub fn between(pose: &Isometry3<f64>, target: &Isometry3<f64>) -> Self {
         Self {
             translation: (pose.translation.vector - target.translation.vector).norm(),
@@ -79,23 +79,23 @@ impl PoseError {
         self.in_parts_of(tolerance) <= 1.0
     }
 
-    /// The greater part of a tolerance that one of the two is.
+    /// Returns the greater of the two errors in parts of their tolerances.
     fn in_parts_of(&self, tolerance: &Tolerance) -> f64 {
         let translation = self.translation / tolerance.translation;
         translation.max(self.rotation / tolerance.rotation)
     }
 }
 
-/// How an arm rests that does not come to its target.
+/// State of an arm that rests short of its target.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Shortfall {
-    /// How far it is from there.
+    /// Distance from the target.
     pub error: PoseError,
     /// Wrench towards the target at the end effector, base axes, `[N, N m]`; an obstacle exerts the
     /// opposite. `None` if the robot's controller turns setpoints into torques.
     pub pull: Option<[f64; 6]>,
-    /// Where a torque limit of its goal keeps it from pulling harder.
+    /// Torque limit of the goal that keeps the arm from pulling harder, if any.
     pub limited: Option<LimitedTorque>,
 }
 
@@ -127,7 +127,7 @@ impl core::fmt::Display for Shortfall {
     }
 }
 
-/// Judges, cycle by cycle, whether the arm has settled.
+/// Decides in each cycle whether the arm has settled.
 #[derive(Debug)]
 pub(super) struct Landing {
     target: Option<Isometry3<f64>>,
@@ -135,20 +135,21 @@ pub(super) struct Landing {
     settling: Settling,
     cycles: u64,
     held: u64,
-    /// The least error so far, in parts of the tolerance, and the cycles since then in which
-    /// nothing has changed.
+    /// The least error so far, in parts of the tolerance, and the cycles without a change since
+    /// then.
     nearest: f64,
     stuck: u64,
 }
 
 pub(super) enum Verdict {
     Settling,
-    /// How it settled, and how many cycles ago.
+    /// Result of the settling, and cycles since then.
     Settled(Settlement, u64),
 }
 
 impl Landing {
-    /// For a target of the end effector; without one, coming to rest is enough.
+    /// Creates a landing at a target of the end effector. Without a target, it is enough that the
+    /// arm stops.
     pub(super) fn new(
         target: Option<Isometry3<f64>>,
         tolerance: Tolerance,
@@ -169,8 +170,8 @@ impl Landing {
         self.target
     }
 
-    /// True if the arm, measured at one pose, rests at the pose of its `reference`, and that one is
-    /// short of the target.
+    /// True if the arm, measured at one pose, rests at the pose of its `reference`, and the
+    /// reference is short of the target.
     pub(super) fn is_short_at(
         &self,
         reference: &Isometry3<f64>,
@@ -181,7 +182,8 @@ impl Landing {
         near(measured) && self.target.is_some_and(|target| !near(&target))
     }
 
-    /// Judges one cycle; `working` says that the law does something yet to move an arm at rest.
+    /// Judges one cycle. `working` is true while the law is still increasing its torques to move an
+    /// arm at rest.
     pub(super) fn judge(
         &mut self,
         measured: &Isometry3<f64>,
@@ -217,9 +219,9 @@ impl Landing {
     }
 }
 
-/// Releases the spring: the reference moves to where the arm was, so that the motion ends without a
-/// step in torque. An arm whose load is not what was declared still hangs on the spring then, and
-/// does not fall.
+/// Releases the spring: the reference moves to the arm's position, so that the motion ends without
+/// a step in torque. An arm whose load differs from the declared load still hangs on the spring
+/// then, and does not fall.
 #[derive(Debug)]
 pub(super) struct Release {
     target: Option<Isometry3<f64>>,
@@ -229,8 +231,8 @@ pub(super) struct Release {
 }
 
 impl Release {
-    /// For a spring that reaches from the arm at `arm` to the reference, both `[rad]`, and a goal
-    /// with this target.
+    /// Creates the release of a spring between the arm at `arm` and the reference, both `[rad]`,
+    /// for a goal with this target.
     pub(super) fn new(
         target: Option<Isometry3<f64>>,
         arm: JointVector,
@@ -244,24 +246,24 @@ impl Release {
         }
     }
 
-    /// The reference in this cycle.
+    /// Returns the reference in this cycle.
     pub(super) fn reference(&mut self) -> JointVector {
         self.cycle += 1;
         let remaining = RELEASE.saturating_sub(self.cycle);
         self.arm + self.length * (f64::from(remaining) / f64::from(RELEASE))
     }
 
-    /// How far `pose` is from the target, if there is one.
+    /// Returns the distance of `pose` from the target, if there is one.
     pub(super) fn error(&self, pose: &Isometry3<f64>) -> Option<PoseError> {
         self.target.map(|target| PoseError::between(pose, &target))
     }
 
-    /// True if the spring has been let go and the arm rests.
+    /// True if the spring is released and the arm rests.
     pub(super) fn is_over(&self, at_rest: bool) -> bool {
         self.cycle >= RELEASE && at_rest
     }
 
-    /// True if the arm does not come to rest.
+    /// True if the arm does not stop.
     pub(super) fn is_in_vain(&self) -> bool {
         u128::from(self.cycle) >= RELEASE_TIMEOUT.as_millis()
     }
@@ -309,7 +311,7 @@ mod tests {
     fn an_arm_without_progress_is_short_of_its_target_after_half_a_second() {
         let mut landing = landing(Settling::default());
         let at = |x: f64| Isometry3::translation(x, 0.0, 0.0);
-        // It creeps, moves, and the law works on it.
+        // The arm creeps, moves, and the law works on it.
         for i in 0..20 {
             let on_its_way = at(0.03 - 1e-4 * f64::from(i));
             assert_eq!(judge_for(&mut landing, 50, &on_its_way, RESTS), None);

@@ -52,7 +52,7 @@ impl Membership {
         self.waiting = Some((round, goal));
         Goal {
             id: GoalId::default(), // no goal's
-            watchdog: None, // No goal may expire before it begins.
+            watchdog: None,        // No goal may expire before it begins.
             ..goal.at_rest(OnArrival::Hold)
         }
     }

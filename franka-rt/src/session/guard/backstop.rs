@@ -4,9 +4,9 @@ use franka_proto::Version;
 
 use crate::shaping::Bounds;
 
-/// Share of the robot's acceleration and jerk that the backstop lets pass: the echo that it limits
-/// against is rounded to `f32` by a Franka Research 3, by up to 0.25 rad/s^2 of what it makes of
-/// two positions.
+/// Share of the robot's acceleration and jerk that the backstop permits. It limits against an echo
+/// that a Franka Research 3 rounds to `f32`. The rounding changes the acceleration computed from
+/// two positions by up to 0.25 rad/s^2.
 pub(crate) const BACKSTOP: f64 = 0.95;
 
 /// The bounds of the limiter behind the stream.

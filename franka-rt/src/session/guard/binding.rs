@@ -1,4 +1,4 @@
-//! Which guards bound a command: a field of every record.
+//! Guards that bound a command: a field of every record.
 
 /// A guard that can hold a command back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -12,44 +12,43 @@ pub enum Guard {
     InverseKinematics,
     /// A spring and damper torque reached its clamp.
     TorqueClamp,
-    /// Spring and damper would have pressed with more force than the goal allows, and what was
-    /// beyond it was taken off.
+    /// Spring and damper would have exerted more force than the goal allows. The excess was
+    /// removed.
     ForceCap,
     /// A joint came near the robot's velocity limit and was braked.
     VelocityBarrier,
     /// The torque changed faster than the robot accepts and was slowed.
     TorqueRate,
-    /// The targets stopped coming; the arm comes to rest, or rests, for that reason.
+    /// The targets stopped arriving. The arm brakes or rests for that reason.
     Watchdog,
-    /// The deadman is silent; as above.
+    /// The deadman is silent. The arm brakes or rests for that reason.
     Deadman,
     /// The limiter before the robot's own controller changed a setpoint.
     Backstop,
     /// On the way to a pose a joint reached the cap of its velocity.
     JointVelocity,
-    /// On the way to a pose a joint came to the end of its range, or had to be able to stop before
-    /// it.
+    /// On the way to a pose a joint reached the end of its range, or had to keep enough distance to
+    /// stop before the end.
     PositionEnvelope,
-    /// The arm came near itself or a region to keep out of: the reference goes slowly, or brakes
-    /// before it.
+    /// The arm came near itself or a keep-out region. The reference slows down, or stops before it.
     Clearance,
-    /// The arm was displaced from its path, and its goal given up for that.
+    /// The arm was displaced from its path, and its goal was given up.
     Deviation,
-    /// The target was further ahead of the arm than it may be, and was drawn nearer.
+    /// The target was further ahead of the arm than the lead allows, and was drawn nearer.
     Lead,
-    /// No plan could be made to the target (only by a defect); the previous course goes on.
+    /// No plan could be made to the target (only by a defect). The previous course continues.
     PlanFailure,
-    /// The condition of the goal was true: the arm comes to rest or goes to the other target, or is
-    /// there, for that reason.
+    /// The condition of the goal was true. For that reason the arm brakes, moves to the other
+    /// target, or is there.
     Reaction,
-    /// A member of the team has a fault, or the team was stopped: the arm comes to rest, or rests,
-    /// for that reason.
+    /// A member of the team has a fault, or the team was stopped. The arm brakes or rests for that
+    /// reason.
     Team,
-    /// On the way to a pose a point of the arm came to the session's speed cap and the joints were
-    /// slowed; or the arm was faster, and its goal given up for that.
+    /// On the way to a pose a point of the arm reached the session's speed cap and the joints were
+    /// slowed. Alternatively, the arm was faster, and its goal was given up.
     SpeedCap,
     /// The arm stood still under commands that should have moved it, without an error, and its goal
-    /// was given up for that.
+    /// was given up.
     Unresponsive,
 }
 
@@ -88,7 +87,7 @@ impl Guard {
     ];
 }
 
-/// What people call it, such as `joint range`.
+/// Formats the common name of the guard, such as `joint range`.
 impl core::fmt::Display for Guard {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.pad(match self {
@@ -116,7 +115,7 @@ impl core::fmt::Display for Guard {
 }
 
 impl Bindings {
-    /// Adds `guard` where `binds`.
+    /// Adds `guard` if `binds`.
     pub(crate) fn set(&mut self, guard: Guard, binds: bool) {
         self.0 |= u32::from(binds) << guard as u32;
     }
@@ -128,12 +127,12 @@ impl Bindings {
         bindings
     }
 
-    /// The guards of either.
+    /// Returns the guards of either set.
     pub fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// A bit for each guard, in the order of [`Guard::ALL`] from the lowest on.
+    /// Returns a bit for each guard, in the order of [`Guard::ALL`] from the lowest bit.
     pub fn to_bits(self) -> u32 {
         self.0
     }
@@ -152,13 +151,13 @@ impl Bindings {
         self.0 & (1 << guard as u32) != 0
     }
 
-    /// The guards that did.
+    /// Returns the guards that bound the command.
     pub fn iter(self) -> impl Iterator<Item = Guard> {
         let all = Guard::ALL.into_iter();
         all.filter(move |guard| self.contains(*guard))
     }
 
-    /// True if no guard did.
+    /// True if no guard bound the command.
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
@@ -166,7 +165,7 @@ impl Bindings {
 
 #[cfg(feature = "serde")]
 impl serde::Serialize for Bindings {
-    /// A sequence of the guards.
+    /// Serializes the guards as a sequence.
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_seq(self.iter())
     }

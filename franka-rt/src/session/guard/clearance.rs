@@ -1,15 +1,16 @@
-//! Clearance: the reference slows down towards the arm itself and towards regions that it is to
-//! keep out of, and comes to rest before it is too near.
+//! Clearance: the reference slows down towards the arm itself and towards keep-out regions, and
+//! stops before it is too near.
 //!
-//! What has to stay clear is the whole way to rest. Before the reference takes a step, the brake
-//! from behind that step is planned, and its posture at rest and half way there are held against
-//! the arm's shape. A step from which the arm could not stop in time is not taken: the reference
-//! brakes from where it is, and the step before has shown that this is clear. So the distance is
-//! kept whatever moves the reference, and by the generator's own brake, which keeps the robot's
-//! limits; to less than a tenth of a millimetre at the default pace and half a millimetre at a
-//! quick one, by which the way to rest may sag between the two.
+//! The whole path to rest must stay clear. Before the reference takes a step, the brake after that
+//! step is planned. Its postures at rest and half way there are checked against the arm's shape. A
+//! step after which the arm could not stop in time is not taken. The reference brakes from its
+//! place instead, and the check of the previous step has shown that this is clear.
 //!
-//! Only what comes nearer is held up. A motion out of a zone is free, also for an arm that begins
+//! So the distance is kept for every kind of motion, under the generator's own brake, which keeps
+//! the robot's limits. Between the two checked postures the path may sag: by less than a tenth of a
+//! millimetre at the default pace, and by half a millimetre at a quick pace.
+//!
+//! Only approaches are held back. A motion out of a zone is free, even for an arm that begins
 //! inside.
 
 use franka_model::collision::{
@@ -17,62 +18,62 @@ use franka_model::collision::{
 };
 use franka_model::{JointVector, Model};
 
-/// Distance, `[m]`, that two links keep that have two others between them: what the robot's
-/// self-collision avoidance asks for is put at 0.05, and the arm is a spring that swings past its
-/// reference.
+/// Distance kept between two links that have two other links between them, `[m]`. The robot's
+/// self-collision avoidance asks for about 0.05. The rest is for the arm, which is a spring and
+/// swings past its reference.
 pub const SELF_STOP: f64 = 0.06;
 
-/// Distance, `[m]`, that the capsules around the links keep from a region to keep out of.
+/// Distance kept between the capsules around the links and a keep-out region, `[m]`.
 pub const KEEP_OUT_STOP: f64 = 0.02;
 
-/// Distance beyond these, `[m]`, below which the approach is slow.
+/// Additional distance below which the approach is slow, `[m]`.
 pub const SLOW_ZONE: f64 = 0.06;
 
-/// Regions that a session can keep out of.
+/// Maximum number of keep-out regions of a session.
 pub const KEEP_OUT_MAX: usize = REGIONS_MAX;
 
-/// Regions that the arm and its Hand keep out of, in the base frame; room for [`KEEP_OUT_MAX`] of
-/// them.
+/// Keep-out regions of the arm and its Hand in the base frame; room for [`KEEP_OUT_MAX`] regions.
 pub type KeepOut = [Option<Obstacle>; KEEP_OUT_MAX];
 
-/// How many links further along the chain another one has to be; a tool comes after link 7. Closer
-/// ones come near each other in postures that the arm takes every day.
+/// Least distance along the chain between two links that are checked, in links; a tool comes after
+/// link 7. Closer links come near each other in everyday postures.
 const APART: u8 = 3;
 
-/// How much nearer, `[m]`, counts as nearer: above the rounding of distances, and below what a
-/// first cycle from rest leads to.
+/// Least change that counts as an approach, `[m]`: above the rounding of distances, and below the
+/// first cycle of a motion from rest.
 const NEARER: f64 = 1e-9;
 
-/// What one session keeps clear of.
+/// Surroundings that one session keeps clear of.
 #[derive(Debug)]
 pub(crate) struct Clearance {
-    /// The arm from itself, and what covers it from regions.
+    /// Distances within the arm, and between its capsules and the regions.
     spacing: Spacing,
     known: Option<Known>,
 }
 
-/// What the last full check found, at a posture on the way of the arm.
+/// Result of the last full check, at a posture on the path of the arm.
 #[derive(Debug)]
 struct Known {
-    /// A bound on how far the joints may turn from there before a distance is small.
+    /// Bound on the turns of the joints from there before a distance is small.
     bound: MotionBound,
-    /// The distances that could be small on the way to rest from there.
+    /// Distances that could be small on the path from there to rest.
     candidates: CandidateMask,
 }
 
-/// What lies on the way to rest.
+/// Obstacles on the path to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ahead {
     /// Nothing near.
     Clear,
-    /// Something that is approached slowly.
+    /// An obstacle that is approached slowly.
     Near,
-    /// Something that is not to be approached: the region with this index, or the arm itself.
+    /// An obstacle that must not be approached: the region with this index, or the arm itself.
     TooNear(Option<usize>),
 }
 
 impl Clearance {
-    /// For an arm with this model, with the vendor's Hand on its flange or nothing.
+    /// Creates the clearance of an arm with this model, with the vendor's Hand on its flange or
+    /// nothing.
     pub(crate) fn new(model: &Model, hand: bool, keep_out: KeepOut) -> Self {
         let shapes = [Shape::vendor(), Shape::covering(model.kind())];
         let [arm, cover] = shapes.map(|shape| shape.with_lengths(*model.lengths()));
@@ -88,7 +89,7 @@ impl Clearance {
         }
     }
 
-    /// Checks the way from `next` to rest at `end`, for a reference that is at `now`.
+    /// Checks the path from `next` to rest at `end`, for a reference at `now`.
     pub(crate) fn ahead(
         &mut self,
         now: &JointVector,
@@ -98,8 +99,8 @@ impl Clearance {
         let half = (next + end) * 0.5;
         let way = (end - half).abs();
         let still = JointVector::zeros();
-        // Nearly always the arm has moved too little since the last full check for anything else to
-        // be near.
+        // Nearly always the arm has moved too little since the last full check to be near anything
+        // else.
         if let Some(known) = &self.known {
             let candidates = known.bound.candidates(&self.spacing, &half, &way);
             if candidates.is_empty() {
@@ -122,7 +123,7 @@ impl Clearance {
         self.on_the_way(now, (&middle, there), (end, candidates))
     }
 
-    /// The first distance that is too small at `next` and smaller than at `now`.
+    /// Returns the first distance that is too small at `next` and smaller than at `now`.
     pub(crate) fn too_near(&self, now: &JointVector, next: &JointVector) -> Option<Item> {
         let (here, there) = (self.spacing.at(now), self.spacing.at(next));
         self.spacing.items(CandidateMask::ALL).find(|&item| {
@@ -132,11 +133,11 @@ impl Clearance {
         })
     }
 
-    /// Checks the way from `now` to `half` and to `end`, where only distances of the candidates may
-    /// be small.
+    /// Checks the path from `now` to `half` and to `end`, where only distances of the candidates
+    /// may be small.
     ///
-    /// Only what is near there is compared with where it is now. Once something is known to be
-    /// near, what could still make a difference is what would be too near.
+    /// Only distances that are small there are compared with their present values. Once an obstacle
+    /// is known to be near, only distances that would be too small can change the result.
     fn on_the_way(
         &self,
         now: &JointVector,

@@ -1,4 +1,4 @@
-//! The deadman: a token that has to be kept alive. The arm brakes when its owner is silent or gone.
+//! The deadman: a token that must be kept alive. The arm brakes when its owner is silent or gone.
 
 use core::sync::atomic::{AtomicU64, Ordering};
 use core::time::Duration;
@@ -9,32 +9,32 @@ use crate::session::Goal;
 /// The value of the counter once the token is dropped.
 const GONE: u64 = u64::MAX;
 
-/// A count that no token comes to.
+/// A count that no token reaches.
 const NEVER: u64 = u64::MAX - 1;
 
-/// What the two ends of a deadman share.
+/// Shared state of the two ends of a deadman.
 #[derive(Debug)]
 pub struct Pulse {
-    /// How often the token was kept alive.
+    /// Number of times that the token was kept alive.
     beats: AtomicU64,
-    /// The count at which it was last found silent.
+    /// Count at which the thread last found the token silent.
     silent: AtomicU64,
 }
 
 impl Pulse {
-    /// True if the control thread has found the token silent, and it was not kept alive since.
+    /// True if the control thread has found the token silent, and no one has kept it alive since.
     pub fn is_silent(&self) -> bool {
         // Relaxed, as below.
         self.beats.load(Ordering::Relaxed) == self.silent.load(Ordering::Relaxed)
     }
 }
 
-/// The token of a session. [`Self::keep_alive`] has to be called more often than every `silence`;
-/// otherwise, and once the token is dropped, the arm brakes and holds, and every goal ends as held,
-/// until the token is kept alive again. A token that was dropped never comes back.
+/// The token of a session. Call [`Self::keep_alive`] at least once every `silence`. Otherwise, and
+/// once the token is dropped, the arm brakes and holds, and every goal ends as held, until the
+/// token is kept alive again. A dropped token never returns.
 ///
-/// The control thread watches it by the robot's clock, whatever the rest of the program is busy
-/// with.
+/// The control thread watches the token by the robot's clock, independent of the rest of the
+/// program.
 #[derive(Debug)]
 #[must_use = "the arm is braked when it is dropped"]
 pub struct Deadman {
@@ -42,7 +42,7 @@ pub struct Deadman {
     silence: Duration,
 }
 
-/// The other end of a [`Deadman`], for the session that is bound to it. A clone is for another
+/// The other end of a [`Deadman`], for the session that is bound to it. A clone serves another
 /// session.
 #[derive(Clone, Debug)]
 pub struct DeadmanMonitor {
@@ -56,8 +56,8 @@ impl Deadman {
     /// The shortest silence that a session accepts.
     pub const SILENCE_MIN: Duration = Goal::SILENCE_MIN;
 
-    /// Returns a token that may be silent for `silence`, in whole milliseconds, and the end of it
-    /// for a session.
+    /// Returns a token that may be silent for `silence`, in whole milliseconds, and its end for a
+    /// session.
     pub fn new(silence: Duration) -> (Self, DeadmanMonitor) {
         let pulse = Arc::new(Pulse {
             beats: AtomicU64::new(0),
@@ -77,11 +77,11 @@ impl Deadman {
 
     /// Restarts the time of silence. Wait-free.
     pub fn keep_alive(&self) {
-        // Relaxed: the count is all that crosses.
+        // Relaxed: only the count crosses.
         self.pulse.beats.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// How long it may be silent.
+    /// Longest permitted silence.
     pub fn silence(&self) -> Duration {
         self.silence
     }
@@ -95,7 +95,7 @@ impl Drop for Deadman {
 }
 
 impl DeadmanMonitor {
-    /// How long the token may be silent.
+    /// Longest permitted silence of the token.
     pub fn silence(&self) -> Duration {
         self.silence
     }
@@ -106,8 +106,8 @@ impl DeadmanMonitor {
         self.pulse.beats.load(Ordering::Relaxed) == GONE
     }
 
-    /// True if the token lives at the robot's time `now`, `[ms]`. Its silence counts from the first
-    /// call on.
+    /// True if the token is alive at the robot's time `now`, `[ms]`. Its silence counts from the
+    /// first call.
     pub(crate) fn is_alive(&mut self, now: u64) -> bool {
         let beats = self.pulse.beats.load(Ordering::Relaxed);
         let since = match self.seen {
@@ -125,7 +125,7 @@ impl DeadmanMonitor {
         alive
     }
 
-    /// What is known of the token outside the control thread.
+    /// Returns the part of the token that is visible outside the control thread.
     pub fn pulse(&self) -> Arc<Pulse> {
         self.pulse.clone()
     }

@@ -1,24 +1,25 @@
-//! Deviation: an arm that is displaced too far is not swung back.
+//! Deviation: prevents an arm that was displaced too far from swinging back.
 //!
-//! The leash takes the reference along with an arm that is pushed, and the course begins again
-//! wherever it is let go. So nothing else bounds how far from its way an arm can be taken, and how
-//! far it then moves by itself.
+//! The leash moves the reference along with a pushed arm, and the course begins again wherever the
+//! arm is released. So only this guard bounds the displacement of the arm, and its motion after the
+//! release.
 
 use franka_model::{EndEffector, Frame, JointVector, Model, rotation};
 use nalgebra::{Isometry3, Vector3};
 
 use crate::session::{Target, rigid};
 
-/// How far the arm may be pushed off its way, measured from where the reference was last free and
-/// the way from there to the target. A motion whose arm is further off is given up. Infinite
-/// numbers switch it off; what is within the [`Leash`](crate::session::Leash) is never a deviation.
+/// Greatest displacement of the arm from its path. The path begins where the reference was last
+/// free and ends at the target. A motion with a greater displacement is given up. Infinite numbers
+/// switch the guard off. A distance within the [`Leash`](crate::session::Leash) is never a
+/// deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviation {
-    /// Of the end effector, `[m]`.
+    /// Translation of the end effector, `[m]`.
     pub translation: f64,
-    /// Of the end effector, `[rad]`.
+    /// Rotation of the end effector, `[rad]`.
     pub rotation: f64,
-    /// Of each joint, `[rad]`.
+    /// Displacement of each joint, `[rad]`.
     pub joints: f64,
 }
 
@@ -33,7 +34,7 @@ impl Default for Deviation {
     }
 }
 
-/// Remembers where the reference was before the leash took it along.
+/// Remembers the reference before the leash moved it along.
 #[derive(Debug)]
 pub(crate) struct Displacement {
     /// Joint positions of the reference when it was last free, `[rad]`.
@@ -41,19 +42,19 @@ pub(crate) struct Displacement {
 }
 
 impl Displacement {
-    /// Of a reference at `anchor`, `[rad]`.
+    /// Creates the guard for a reference at `anchor`, `[rad]`.
     pub(crate) fn at(anchor: JointVector) -> Self {
         Self { anchor }
     }
 
-    /// Notes a reference that its leash does not hold.
+    /// Records a reference that its leash does not hold.
     pub(crate) fn set_free(&mut self, reference: &JointVector) {
         self.anchor = *reference;
     }
 
-    /// True if the arm, at `q` and `measured`, is further than `most` from the way between where
-    /// the reference was last free and the target: an arm that comes along slowly is on its way,
-    /// and not displaced.
+    /// True if the arm, at `q` and `measured`, is further than `most` from the path between the
+    /// last free reference and the target. An arm that follows slowly is on its path, and not
+    /// displaced.
     pub(crate) fn is_exceeded(
         &self,
         model: &Model,
@@ -89,7 +90,7 @@ impl Displacement {
     }
 }
 
-/// Distance of a point from the line from the origin to `end`.
+/// Returns the distance of a point from the line from the origin to `end`.
 fn beside(point: &Vector3<f64>, end: &Vector3<f64>) -> f64 {
     let along = point.dot(end) / end.norm_squared().max(f64::MIN_POSITIVE);
     (point - end * along.clamp(0.0, 1.0)).norm()

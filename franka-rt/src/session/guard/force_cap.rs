@@ -1,27 +1,29 @@
-//! The force cap: spring and damper together press on a hand that holds the end effector with no
-//! more than this force.
+//! The force cap limits the force of springs and dampers together on a hand that holds the end
+//! effector.
 //!
-//! The leash bounds the spring alone. A quick push lets the damper add to it, and the springs of
-//! the joints press at the end effector too; this guard is about their sum, and about nothing else:
-//! what the motion itself takes, inertia and Coriolis torques, is added behind it.
+//! The leash bounds only the spring. In a quick push the damper adds to it, and the springs of the
+//! joints press at the end effector too. This guard limits their sum and nothing else: the torques
+//! of the motion itself, inertia and Coriolis torques, are added after it.
 //!
-//! The force is that with which the torques press on a hand that holds the end effector at a point,
-//! `Lambda J M^-1 tau` with the `J` and `Lambda` of its position alone. That is the force of the
-//! equations of motion for a point that does not move while the rest of the arm may; at rest
-//! against a wall it is the force on the wall. It does not count torques that only turn the hand or
-//! move the elbow. Near singularities, where a small torque may press with any force along the
-//! direction that is lost, it is damped and reads low. Those of the position are few. With the
-//! rotation held as well there are many more, and a joint's way between two postures leads through
-//! them: there every torque counts as thousands of newtons.
+//! The force is the one on a hand that holds the end effector at a point, `Lambda J M^-1 tau` with
+//! the `J` and `Lambda` of its position alone. It follows from the equations of motion for a point
+//! that does not move while the rest of the arm may. At rest against a wall it is the force on the
+//! wall. It does not count torques that only turn the hand or move the elbow.
+//!
+//! Near a singularity a small torque may cause any force along the lost direction. There the force
+//! is damped and reads low. Singularities of the position are few. If the rotation were held as
+//! well there would be many more, and a joint's path between two postures leads through them. There
+//! every torque would count as thousands of newtons.
 //!
 //! First the spring is cut down to the cap, then its sum with the damper. So at full force the
-//! damper still brakes an arm that goes back to its reference, and only what goes beyond the cap is
-//! lost: scaled together, spring and damper would be one constant force, under which nothing damps.
+//! damper still brakes an arm that returns to its reference, and only the excess over the cap is
+//! lost. If spring and damper were scaled together, they would be one constant force without
+//! damping.
 //!
-//! What goes beyond the cap is taken off as a force at the end effector, `J' (F - F')`. The torques
-//! that turn the hand and move the elbow stay, and so does the balance of an arm that leans on
-//! something. In the metric of the inertia, neither those of the springs nor those of the dampers
-//! grow.
+//! The excess over the cap is removed as a force at the end effector, `J' (F - F')`. The torques
+//! that turn the hand and move the elbow remain, and so does the balance of an arm that leans on
+//! something. In the metric of the inertia, neither the torques of the springs nor the torques of
+//! the dampers grow.
 
 use core::ops::RangeInclusive;
 
@@ -30,37 +32,38 @@ use nalgebra::Vector3;
 
 use crate::law::task_space::TaskSpace;
 
-/// How much force springs and dampers may press with at the end effector.
+/// Greatest force of springs and dampers at the end effector.
 ///
-/// Only the session's own law keeps it: a goal with [`Self::Newtons`] is refused where the robot's
+/// Only the session's own law keeps it. A goal with [`Self::Newtons`] is refused where the robot's
 /// controller turns setpoints into torques
 /// ([`Backend::RobotController`](crate::session::Backend::RobotController)).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum ForceCap {
-    /// [`Self::DEFAULT_NEWTONS`].
+    /// The cap is [`Self::DEFAULT_NEWTONS`].
     #[default]
     Default,
-    /// This much, `[N]`, in [`Self::RANGE`].
+    /// The cap, `[N]`, in [`Self::RANGE`].
     Newtons(f64),
-    /// As much as the springs and dampers come to.
+    /// No cap: springs and dampers exert their full force.
     Off,
 }
 
 impl ForceCap {
-    /// Force caps that a goal may have, `[N]`. Below, friction alone would keep the arm from
+    /// Accepted force caps, `[N]`. Below this range friction alone would keep the arm from
     /// following.
     pub const RANGE: RangeInclusive<f64> = 5.0..=200.0;
 
-    /// The force cap of goals that do not say another, `[N]`.
+    /// Default force cap of goals, `[N]`.
     ///
-    /// Just above the weight of the robot's whole payload of 3 kg, and above what the default gains
-    /// come to when the arm is held back without a push. Motions within the default budget do not
-    /// meet it (simulated: none of their cycles, also with 3 kg declared and with 0.5 kg
-    /// undeclared), while a hand that pushes against a held arm at 0.25 m/s would meet 40 to 54 N
-    /// without it, and 67 to 115 N if the joints are stiff.
+    /// It lies just above the weight of the robot's whole payload of 3 kg. It also lies above the
+    /// force of the default gains when the arm is held back without a push.
+    ///
+    /// Simulated motions within the default budget never reached it, even with 3 kg declared or 0.5
+    /// kg undeclared. A hand that pushes against a held arm at 0.25 m/s would otherwise meet 40 to
+    /// 54 N, and 67 to 115 N with stiff joints.
     pub const DEFAULT_NEWTONS: f64 = 30.0;
 
-    /// The cap, `[N]`, if there is one.
+    /// Returns the cap, `[N]`, if there is one.
     pub fn newtons(self) -> Option<f64> {
         match self {
             Self::Default => Some(Self::DEFAULT_NEWTONS),
@@ -69,7 +72,7 @@ impl ForceCap {
         }
     }
 
-    /// As a number: NaN for the default, infinity for none.
+    /// Encodes the cap as a number: NaN for the default, infinity for no cap.
     pub(crate) fn to_number(self) -> f64 {
         match self {
             Self::Default => f64::NAN,
@@ -87,8 +90,8 @@ impl ForceCap {
     }
 }
 
-/// Holds the force of the torques of `springs` and of `dampers`, `[N m]`, under `cap`, `[N]`; gives
-/// their sum, and tells whether it bound.
+/// Limits the force of the torques of `springs` and `dampers`, `[N m]`, to `cap`, `[N]`. Returns
+/// the sum of the torques, and true if the cap bound.
 pub(crate) fn hold(
     springs: &JointVector,
     dampers: &JointVector,
@@ -107,7 +110,7 @@ pub(crate) fn hold(
     (tau - jacobian.fixed_rows::<3>(0).tr_mul(&excess), true)
 }
 
-/// The force as it is, or `most` long.
+/// Shortens the force to `most`, if it is longer.
 fn within(force: &Vector3<f64>, most: f64) -> Vector3<f64> {
     let length = force.norm();
     if length <= most {
@@ -140,7 +143,8 @@ mod tests {
         mass.try_inverse().expect("a physical arm")
     }
 
-    /// The force on a hand that holds the end effector at a point, every matrix inverted in full.
+    /// Returns the force on a hand that holds the end effector at a point, with every matrix
+    /// inverted in full.
     fn force(tau: &JointVector, dynamics: &Dynamics) -> Vector3<f64> {
         let jacobian = dynamics.jacobian.fixed_rows::<3>(0).into_owned();
         let inverse = mobility(dynamics);

@@ -1,5 +1,5 @@
-//! The leash: the reference never runs further ahead of the measured arm than this, so that an arm
-//! that is held back is pulled by a bounded spring and does not leap when it is let go.
+//! The leash limits the distance of the reference ahead of the measured arm. An arm that is held
+//! back is pulled by a bounded spring, and does not leap when it is released.
 
 use franka_model::{JointVector, rotation};
 use franka_otg::PlanError;
@@ -11,15 +11,16 @@ use crate::session::pose::PoseGenerator;
 use crate::session::reference::Reference;
 use crate::session::running::Measured;
 
-/// How far the reference may be ahead of the measured arm: what holds the arm back feels the
-/// springs at that length, and no more. A shorter one than the arm lags behind by slows the motion.
+/// Greatest distance of the reference ahead of the measured arm. An obstacle that holds the arm
+/// back feels the springs at that length, and no more. A leash shorter than the normal lag of the
+/// arm slows the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leash {
-    /// Of the end effector, where the reference follows poses, `[m]`.
+    /// Translation of the end effector, where the reference follows poses, `[m]`.
     pub translation: f64,
-    /// Of the end effector, where the reference follows poses, `[rad]`.
+    /// Rotation of the end effector, where the reference follows poses, `[rad]`.
     pub rotation: f64,
-    /// Of each joint, `[rad]`.
+    /// Distance of each joint, `[rad]`.
     pub joints: f64,
 }
 
@@ -35,14 +36,14 @@ impl Default for Leash {
 }
 
 impl Leash {
-    /// The shortest that is accepted: arms that stick still come to their targets.
+    /// The shortest accepted leash: arms with friction still reach their targets.
     pub const LEAST: Self = Self {
         translation: 5e-3,
         rotation: 0.03,
         joints: 0.03,
     };
 
-    /// The longest that is accepted.
+    /// The longest accepted leash.
     pub const MOST: Self = Self {
         translation: 0.1,
         rotation: 0.6,
@@ -50,8 +51,8 @@ impl Leash {
     };
 }
 
-/// A leash that is changed goes evenly to its new length: one that were shortened at once would
-/// jerk a reference that is far ahead towards the arm.
+/// A leash fades to its new length. An immediate change to a shorter one would jerk a reference
+/// that is far ahead towards the arm.
 impl Blend for Leash {
     fn blend(&self, other: &Self, share: f64) -> Self {
         Self {
@@ -63,23 +64,24 @@ impl Blend for Leash {
 }
 
 /// Longest distance from the joint reference's end effector to the pose that it follows, `[m]`.
-/// Half a millimetre to five make little difference; this is the tolerance of a goal.
+/// Between half a millimetre and five the value makes little difference; this is the tolerance of a
+/// goal.
 const TRANSLATION_TETHER: f64 = 1e-3;
 
 /// Largest angle between the two, `[rad]`.
 const ROTATION_TETHER: f64 = 5e-3;
 
-/// What the leash has held in a cycle.
+/// Parts of the reference that the leash held in a cycle.
 #[derive(Debug)]
 pub(crate) struct Held {
-    /// The joints of the reference, which it may have moved.
+    /// Joints of the reference, which the leash may have moved.
     q: JointVector,
-    /// The pose that the reference is to follow on from, if it was too far ahead.
+    /// Pose from which the reference continues, if it was too far ahead.
     pose: Option<Isometry3<f64>>,
 }
 
-/// Holds the reference within the leash of the measured arm. Returns what it held, from which the
-/// course has to go on; `None` if it held nothing.
+/// Holds the reference within the leash of the measured arm. Returns the held parts, from which the
+/// course must continue; `None` if the leash held nothing.
 pub(crate) fn hold(
     leash: &Leash,
     course: &Course,
@@ -102,11 +104,11 @@ pub(crate) fn hold(
 }
 
 impl Held {
-    /// Moves the course to where the leash has held it. The course keeps its velocity and plans on
+    /// Moves the course to where the leash has held it. The course keeps its velocity and plans
     /// from there, so the arm follows smoothly once it is free.
     ///
     /// # Errors
-    /// [`PlanError`], by a defect only; the course goes on as planned.
+    /// [`PlanError`], by a defect only; the course continues as planned.
     pub(crate) fn move_course(self, course: &mut Course) -> Result<(), PlanError> {
         match (course, self.pose) {
             (Course::Joints(generator), _) => generator.set_positions(self.q.into()),
@@ -120,14 +122,14 @@ impl Held {
     }
 }
 
-/// Holds a pose that runs ahead of the joints that are to follow it, where their bounds keep them
-/// from `reached`, the pose of the joint reference; returns whether that moved it.
+/// Holds a pose that runs ahead of its joints, where the joints' bounds keep them from it.
+/// `reached` is the pose of the joint reference. Returns true if the pose moved.
 ///
-/// Without it the pose would go on to its target, and the joints would chase it off the line, all
-/// of them at their bounds.
+/// Without this the pose would continue to its target, and the joints would chase it off the line,
+/// all of them at their bounds.
 ///
 /// # Errors
-/// [`PlanError`], by a defect only; the pose goes on as planned.
+/// [`PlanError`], by a defect only; the pose continues as planned.
 pub(crate) fn tether(
     generator: &mut PoseGenerator,
     reached: &Isometry3<f64>,
@@ -138,14 +140,14 @@ pub(crate) fn tether(
     }
 }
 
-/// The pose nearest to `pose` that does not run ahead of the joints at `reached`, if that is
-/// another one.
+/// Returns the pose nearest to `pose` that does not run ahead of the joints at `reached`, if it
+/// differs from `pose`.
 pub(crate) fn tethered(pose: &Isometry3<f64>, reached: &Isometry3<f64>) -> Option<Isometry3<f64>> {
     within(pose, reached, TRANSLATION_TETHER, ROTATION_TETHER)
 }
 
-/// The pose nearest to `pose` within a leash of `anchor`, metres and radians long, if that is
-/// another one.
+/// Returns the pose nearest to `pose` within a leash of `anchor`, metres and radians long, if it
+/// differs from `pose`.
 pub(crate) fn within(
     pose: &Isometry3<f64>,
     anchor: &Isometry3<f64>,

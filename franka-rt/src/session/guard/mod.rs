@@ -1,4 +1,4 @@
-//! Guards: what holds a command back, each in a file of its own.
+//! Guards, which hold commands back, each in its own file.
 //!
 //! | guard | file |
 //! |---|---|

@@ -1,49 +1,50 @@
-//! The speed cap: no joint, flange or end effector goes faster, wherever the arm is.
+//! The speed cap limits the speed of all joints, the flange and the end effector, in every posture
+//! of the arm.
 //!
-//! On the way to a pose the reference keeps below it by a reserve: all its joints are slowed alike
-//! where one of its points would be faster, and with them the pose that they follow, so that the
-//! hand stays on its line and comes later. From [`ONSET`] of that on, what is asked for is
-//! approached without a corner:
+//! On the way to a pose the reference keeps below the cap by a reserve. All its joints are slowed
+//! alike where one of its points would be faster. The pose that they follow is slowed with them, so
+//! that the hand stays on its line and arrives later. From [`ONSET`] of that speed on, the limit
+//! sets in without a corner:
 //!
 //! ```text
 //! speed' = onset + (most - onset) (1 - exp(-(speed - onset) / (most - onset)))
 //! ```
 //!
-//! An arm that is faster than the cap all the same, on its way over joints or along a chunk, or
-//! because something throws it, gives up its goal and is braked.
+//! The arm may still exceed the cap on a path over joints or along a chunk, or because something
+//! throws it. It then gives up its goal and brakes.
 
 use franka_model::{EndEffector, Jacobian, JointVector, Model};
 
 /// Share of the cap that the reference keeps on the way to a pose. The rest is for the arm, which
-/// swings about it.
+/// swings about its reference.
 const SHARE: f64 = 0.94;
 
-/// What that leaves to the arm at least, `[m/s]`: one that sticks comes loose with a jolt, however
-/// slow it is to go.
+/// Least reserve for the arm, `[m/s]`: an arm with friction breaks loose with a jolt, even at low
+/// speeds.
 const RESERVE: f64 = 0.03;
 
-/// Share of what the reference keeps from which on it is slowed.
+/// Share of the kept speed from which on the reference is slowed.
 const ONSET: f64 = 0.9;
 
-/// The least that is accepted, `[m/s]`: measured joint velocities have noise.
+/// The lowest accepted cap, `[m/s]`: measured joint velocities have noise.
 pub(crate) const LEAST: f64 = 0.1;
 
-/// The greatest that is accepted, `[m/s]`: the robot's own limit of the end effector.
+/// The highest accepted cap, `[m/s]`: the robot's own limit of the end effector.
 pub(crate) const MOST: f64 = 3.0;
 
 /// The speed cap of a session.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpeedCap<'a> {
-    /// `[m/s]`
+    /// Cap, `[m/s]`.
     pub(crate) speed: f64,
-    /// As the robot's state has it.
+    /// The hand in the robot's state.
     pub(crate) hand: &'a EndEffector,
 }
 
 impl SpeedCap<'_> {
     /// Share of the velocities `dq`, `[rad/s]`, that joints at `q` may have; `None` if they may
-    /// have all. `jacobian` is that of what follows a pose: the hand, or an object in it, which
-    /// keeps to the cap, too.
+    /// have all. `jacobian` belongs to the frame that follows a pose: the hand, or an object in it.
+    /// That frame keeps the cap, too.
     pub(crate) fn share(
         self,
         model: &Model,
@@ -70,7 +71,7 @@ mod tests {
 
     use super::*;
 
-    /// The speed that is kept of one, `[m/s]`, under a cap of 0.5 m/s.
+    /// Returns the reduced speed, `[m/s]`, under a cap of 0.5 m/s.
     fn kept(speed: f64) -> f64 {
         let (model, hand) = (Model::fr3(), EndEffector::default());
         let jacobian = model.zero_jacobian(Frame::EndEffector, &READY, &hand);

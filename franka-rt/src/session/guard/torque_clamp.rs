@@ -1,8 +1,8 @@
-//! The torque clamp: no joint is driven with more torque than it may have.
+//! The torque clamp bounds the torque of each joint.
 
 use franka_model::JointVector;
 
-/// Bounds each torque by `most`, `[N m]`, and returns whether that changed any.
+/// Bounds each torque by `most`, `[N m]`. Returns true if that changed any.
 pub(crate) fn clamp(tau: &JointVector, most: &JointVector) -> (JointVector, bool) {
     let clamped = tau.zip_map(most, |tau, most| tau.clamp(-most, most));
     (clamped, clamped != *tau)
@@ -17,13 +17,13 @@ pub struct LimitedTorque {
     pub joint: usize,
     /// Its limit in [`Gains::torque_limits`](crate::law::Gains::torque_limits), `[N m]`.
     pub limit: f64,
-    /// What it would get without one, `[N m]`.
+    /// Torque that the joint would get without the limit, `[N m]`.
     pub asked: f64,
 }
 
 impl LimitedTorque {
-    /// The joint of which `most` leaves the smallest share of what is `asked` for, `[N m]`; `None`
-    /// if each gets all of it.
+    /// Returns the joint whose limit in `most` is the smallest share of its torque in `asked`, `[N
+    /// m]`; `None` if each joint gets its full torque.
     pub(crate) fn worst(asked: &JointVector, most: &JointVector) -> Option<Self> {
         let shares = asked.abs().component_div(most);
         let (joint, share) = shares.argmax();

@@ -1,5 +1,5 @@
 //! The torque-rate limit of target control: the commanded torque changes no faster than the robot
-//! accepts. Control functions have theirs, which can be off, in `control::shaper`; the arithmetic
+//! accepts. Control functions have a separate, optional limit in `control::shaper`. The arithmetic
 //! is in `shaping::limiter`, and the check of the simulated robot in `franka_sim`, `robot::motion`.
 
 use franka_model::JointVector;
@@ -7,11 +7,10 @@ use franka_model::limits::CLIENT_MARGIN;
 
 use crate::shaping::limiter;
 
-/// Keeps the change from the torques that the robot last took inside its rate limit, and returns
-/// whether that bound.
+/// Limits the change from the torques that the robot last took. Returns true if the limit bound.
 ///
-/// The usual margin is kept from `rate`, the robot's limit `[N m/s]`, and what an echo rounded to
-/// `f32` may hide of the last torques.
+/// Two margins are subtracted from `rate`, the robot's limit `[N m/s]`: the usual one, and the
+/// error that an echo rounded to `f32` may hide.
 pub(crate) fn limit_rate(
     tau: &JointVector,
     last: &JointVector,

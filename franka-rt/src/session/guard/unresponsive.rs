@@ -100,14 +100,14 @@ impl Unresponsive {
         self.still >= HOLD || self.refuses()
     }
 
-    /// True if the robot takes no setpoints: a reference that follows the robot's own setpoint
-    /// cannot come to rest then.
+    /// True if the robot accepts no setpoints. A reference that follows the robot's own setpoint
+    /// cannot stop then.
     pub(crate) fn refuses(&self) -> bool {
         self.refusing >= HOLD
     }
 
-    /// True if the robot's setpoint has not moved, and it has refused one a short time ago. Where
-    /// the backstop changed a setpoint, the robot has another one in any case.
+    /// True if the robot's setpoint has not moved, and the robot refused a setpoint a short time
+    /// ago. Where the backstop changed a setpoint, the robot's setpoint differs in any case.
     fn is_refused(&mut self, setpoint: &[f64; 7], differs: bool) -> bool {
         let setpoint = JointVector::from(*setpoint);
         let stays = core::mem::replace(&mut self.setpoint, setpoint) == setpoint;
@@ -125,7 +125,7 @@ fn distance(state: &RobotState) -> f64 {
     (at(state.commanded_pose()) - at(&state.O_T_EE)).norm()
 }
 
-/// Cycles after which a still arm counts as one that ignores its commands.
+/// Cycles after which an arm that stands still counts as unresponsive.
 const HOLD: u32 = 200;
 
 /// Cycles for which a refused setpoint counts. A slow motion that begins from rest again and again
@@ -145,8 +145,8 @@ const APART: f64 = 0.1;
 /// hardly holds the elbow.
 const AWAY: f64 = 0.05;
 
-/// External torque that is estimated at a joint which nothing touches, `[N m]`: friction at the
-/// link, bias of the sensor, a load that is not declared.
+/// External torque that the robot may estimate at an untouched joint, `[N m]`: friction at the
+/// link, bias of the sensor, an undeclared load.
 const FELT: [f64; 7] = [2.0, 2.0, 2.0, 2.0, 1.0, 1.0, 1.0];
 
 #[cfg(test)]
@@ -161,7 +161,8 @@ mod tests {
         }
     }
 
-    /// The first cycle, from 1, in which an arm is named that gets this command in each.
+    /// Returns the first cycle, from 1, in which the guard reports an arm that gets this command in
+    /// each cycle.
     fn named(state: &RobotState, commanded: Commanded<'_>) -> Option<u32> {
         let mut this = Unresponsive::default();
         (1..=1000).find(|_| this.watch(state, commanded))
@@ -176,7 +177,7 @@ mod tests {
         };
         assert_eq!(of(8.0, 0.5, 0.0), Some(HOLD));
         assert_eq!(of(-8.0, 0.5, 1e-3), Some(HOLD));
-        // Friction may hold it; something does; another joint moves; no estimate.
+        // Friction may hold it; something holds it; another joint moves; no estimate.
         for (torque, external, dq) in [
             (1.6, 0.0, 0.0),
             (-4.9, 0.0, 0.0),

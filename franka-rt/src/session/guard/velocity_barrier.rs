@@ -1,30 +1,30 @@
-//! The velocity barrier: a joint that comes near the robot's velocity limit is braked, whatever
-//! drives it.
+//! The velocity barrier brakes a joint that comes near the robot's velocity limit, regardless of
+//! the cause.
 //!
-//! The generators keep the reference inside the limits; the arm itself may be faster, thrown by a
-//! hand or by a spring that was stretched. The robot stops with a reflex then. From [`ONSET`] of
-//! the limit on, the torque of a joint is blended from that of the law to full braking, reached at
-//! the limit:
+//! The generators keep the reference inside the limits. The arm itself may be faster, thrown by a
+//! hand or by a stretched spring, and then the robot stops with a reflex. From [`ONSET`] of the
+//! limit on, the torque of a joint is blended from the law's torque to full braking, reached at the
+//! limit:
 //!
 //! ```text
 //! tau' = (1 - s) tau - s sign(dq) clamp        s = smoothstep((|dq| / limit - 0.85) / 0.15)
 //! ```
 //!
-//! So a law that drives the joint with all its torque is balanced half way. `s` and its slope are
-//! continuous.
+//! So even a law that drives the joint with its full torque is balanced half way. `s` and its slope
+//! are continuous.
 //!
-//! What the barrier can hold is bounded by the rate of the torque: the robot takes 1 N m per
-//! millisecond, and a torque `tau` on an inertia `I` gains `tau^2 / (2 I 1000 N m/s)` of speed
-//! while it is taken back. With the 0.39 rad/s above the onset at the shoulder that is at most 28 N
-//! m on 1 kg m^2, and 12 N m on 0.1 kg m^2 with the 0.79 rad/s at the wrist; the barrier begins
-//! gently, so that it holds a little less.
+//! The rate of the torque bounds the torque that the barrier can hold: the robot accepts 1 N m per
+//! millisecond. While a torque `tau` on an inertia `I` is removed, it adds `tau^2 / (2 I 1000 N
+//! m/s)` of speed. At the shoulder, 0.39 rad/s above the onset, that is at most 28 N m on 1 kg m^2.
+//! At the wrist, with 0.79 rad/s, it is 12 N m on 0.1 kg m^2. The barrier begins gently, so it
+//! holds a little less.
 
 use franka_model::JointVector;
 
 /// Share of the velocity limit from which on a joint is braked.
 pub const ONSET: f64 = 0.85;
 
-/// Brakes the joints that are too fast, and returns whether there were any. `dq` is measured and
+/// Brakes the joints that are too fast. Returns true if there were any. `dq` is measured and
 /// `limit` the robot's, `[rad/s]`; `most` is the torque of full braking, `[N m]`.
 pub(crate) fn brake(
     tau: &JointVector,
@@ -100,8 +100,9 @@ mod tests {
         }
     }
 
-    /// Links and rotors as they are about the ready pose, with what they can take of torque at the
-    /// rate that the robot accepts, through the filter and the rate limit of the cycle.
+    /// Uses the inertia of links and rotors near the ready pose. The torque is the greatest that
+    /// they tolerate at the robot's torque rate, through the filter and the rate limit of the
+    /// cycle.
     #[test]
     fn a_joint_that_is_driven_on_and_on_stays_under_the_limit() {
         let limits = Model::fr3().joint_limits();

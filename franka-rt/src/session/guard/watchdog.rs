@@ -1,24 +1,24 @@
-//! The watchdog: a goal whose targets stop coming is held at the last one, or braked. (States that
-//! come late: `stats::arrivals`. A silent robot: `driver::link_timeout`.)
+//! The watchdog: if the targets of a goal stop arriving, the arm holds the last target or brakes.
+//! (For late states see `stats::arrivals`, for a silent robot `driver::link_timeout`.)
 
 use core::time::Duration;
 
-/// Gives up a goal whose targets stop coming.
+/// Gives up a goal whose targets stop arriving.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Watchdog {
     /// The longest time without a target, by the robot's clock in whole milliseconds.
     pub silence: Duration,
-    /// What the arm does after that. The motion ends once it rests, unless its session goes from
-    /// goal to goal.
+    /// Action of the arm after that. The motion ends once the arm rests, unless its session
+    /// continues from goal to goal.
     pub on_timeout: OnTimeout,
 }
 
-/// What the arm does when its targets have stopped coming.
+/// Action of the arm when its targets have stopped arriving.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum OnTimeout {
-    /// Goes on to the last target and holds it.
+    /// Continues to the last target and holds it.
     Hold,
-    /// Brakes at once, and holds where it comes to rest.
+    /// Brakes at once, and holds where it stops.
     Brake,
 }

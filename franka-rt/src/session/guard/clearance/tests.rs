@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 
 use crate::session::{Budget, course};
 
-/// True if it is known that nothing is near within `turns` of `q`.
+/// True if nothing is known to be near within `turns` of `q`.
 fn is_clear(clearance: &Clearance, q: &JointVector, turns: &JointVector) -> bool {
     let known = clearance.known.as_ref();
     let candidates = known.map(|known| known.bound.candidates(&clearance.spacing, q, turns));
@@ -20,7 +20,7 @@ fn of(keep_out: KeepOut) -> Clearance {
     Clearance::new(Model::fr3(), true, keep_out)
 }
 
-/// What is left at a posture of every distance that is to be kept.
+/// Returns the margin of every checked distance at a posture.
 fn margins(keep_out: &KeepOut, q: &JointVector) -> Vec<f64> {
     let arm = Shape::vendor().with_hand().at(q);
     let far = |(a, b): (Body, Body)| b.number() - a.number() >= APART;
@@ -38,7 +38,7 @@ fn least(q: &JointVector) -> f64 {
     margins.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// How near it is: 0 for clear, 2 for too near.
+/// Ranks the result: 0 for clear, 2 for too near.
 fn nearness(ahead: Ahead) -> usize {
     match ahead {
         Ahead::Clear => 0,
@@ -47,7 +47,7 @@ fn nearness(ahead: Ahead) -> usize {
     }
 }
 
-/// How near [`Clearance::ahead`] is to say it is, by all distances at all three postures.
+/// Expected rank of [`Clearance::ahead`], from all distances at all three postures.
 fn plain(keep_out: &KeepOut, now: &JointVector, next: &JointVector, end: &JointVector) -> usize {
     let now = margins(keep_out, now);
     let judged = [(next + end) * 0.5, *end].map(|there| {
@@ -96,7 +96,7 @@ fn the_verdict_is_that_of_all_distances_wherever_the_arm_goes() {
             if cycle % 30 == 0 {
                 acceleration = JointVector::from_fn(|_, _| random.random_range(-3.0..3.0)) * pace;
             }
-            // Ten cycles at once: the way matters here, and not how smooth it is.
+            // Ten cycles at once: only the path matters here, not its smoothness.
             let dq = reference.dq + acceleration * 0.01;
             let next = Reference {
                 q: reference.q + dq * 0.01,
@@ -117,7 +117,7 @@ fn the_verdict_is_that_of_all_distances_wherever_the_arm_goes() {
     assert!(known > 25 * ways, "{known}");
 }
 
-/// The arm bent forwards at joint 2 until its distance to itself has this margin.
+/// Returns the arm bent forwards at joint 2 until its distance to itself has this margin.
 fn bent(margin: f64) -> JointVector {
     let at = |angle: f64| {
         let mut q = READY;
@@ -150,7 +150,7 @@ fn what_could_not_stop_in_time_is_too_near_and_what_could_is_slow() {
     assert_eq!(ahead(0.01, 0.001), Ahead::Near);
     assert_eq!(ahead(0.01, -0.001), Ahead::TooNear(None));
     assert_eq!(ahead(0.001, 0.01), Ahead::Clear);
-    // From inside only outwards.
+    // From inside, only outward motion is free.
     assert_eq!(ahead(-0.03, -0.02), Ahead::Clear);
     assert_eq!(ahead(-0.03, -0.031), Ahead::TooNear(None));
 }
@@ -163,13 +163,13 @@ fn what_is_clear_is_not_looked_at_again_before_the_joints_have_turned() {
     assert_eq!(clearance.ahead(&READY, &READY, &READY), Ahead::Clear);
     assert!(is_clear(&clearance, &READY, &JointVector::repeat(0.02)));
     assert!(!is_clear(&clearance, &READY, &JointVector::repeat(0.5)));
-    // Joint 1 moves nothing of the arm against the rest but the base.
+    // Joint 1 moves the arm only against the base.
     let mut turned = still;
     turned[0] = 0.2;
     assert!(is_clear(&clearance, &READY, &turned));
 }
 
-/// A block below the hand of the ready posture, this high.
+/// Returns a block below the hand of the ready posture, with this height.
 fn block(height: f64) -> Obstacle {
     Obstacle::Box {
         pose: Isometry3::translation(0.31, 0.0, height - 0.05),
@@ -182,7 +182,7 @@ fn regions_are_kept_out_of_by_their_own_distance() {
     let mut lower = READY;
     lower[1] += 0.02;
     let arm = Shape::covering(RobotKind::Fr3).with_hand().at(&lower);
-    // The block that is as near to the lower posture as it may be.
+    // Finds the block that is as near to the lower posture as allowed.
     let (mut low, mut high) = (0.2, 0.5);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
