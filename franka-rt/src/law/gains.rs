@@ -32,9 +32,9 @@ pub struct Gains {
     pub joint_stiffness: [f64; 7],
     /// Joint damping, `[N m s/rad]`.
     pub joint_damping: [f64; 7],
-    /// Weight of the reference velocity in the dampers, between 0 and 1. At 1 they oppose only the
-    /// velocity error, so the arm does not lag behind a moving reference by its damping; at 0 they
-    /// oppose all motion.
+    /// Weight of the reference velocity in the dampers, between 0 and 1. At 1 the dampers oppose
+    /// only the velocity error, so they do not make the arm lag behind a moving reference. At 0
+    /// they oppose all motion.
     pub feedforward: f64,
     /// Cutoff frequency of the first-order low-pass on that reference velocity, `[Hz]`; at 1000 it
     /// is off, as a filter of libfranka is.

@@ -78,9 +78,9 @@ pub enum Setpoints {
     /// refuses a stretched arm. Joint 4 stays on its side of [`FLIP_ANGLE`], because the robot
     /// keeps the elbow's side from the beginning.
     ///
-    /// The elbow determines the other joints poorly where joint 3 rests while the arm moves about
+    /// An elbow determines the other joints poorly where joint 3 rests while the arm moves about
     /// its pose, which requires wide turns of joints 3 and 5. There only the robot's own check
-    /// applies, and joint setpoints are the better choice.
+    /// applies. Joint setpoints are the better choice then.
     CartesianPoses,
     /// Twists of the end effector, which the robot integrates, each with its elbow. The notes on
     /// [`Self::CartesianPoses`] and [`Self::JointVelocities`] apply here.

@@ -215,8 +215,8 @@ mod tests {
             }
         }
 
-        /// Of a spring that is stretched too far the direction of the force stays, and a damper
-        /// brakes it with all it has.
+        /// A spring that is stretched too far keeps the direction of its force, and a damper brakes
+        /// it with its full force.
         #[test]
         fn a_damper_brakes_a_spring_at_full_force(
             offset in joints(0.4),

@@ -10,9 +10,10 @@ use crate::shaping::CYCLE;
 /// Share of each joint's velocity limit that the reference may use.
 const VELOCITY_CAP: f64 = 0.7;
 
-/// How much faster than its budget a joint may move for the sake of a pose. On a straight line near
-/// a singular posture joints have to turn fast while the hand hardly moves, which a person beside
-/// the arm does not expect. At 2 an arm that stretches at the default pace is held back needlessly.
+/// Factor by which a joint may exceed its budget's velocity on the way to a pose. On a straight
+/// line near a singular posture, joints turn fast while the hand hardly moves, which a person
+/// beside the arm does not expect. A factor of 2 holds back an arm needlessly that stretches at the
+/// default pace.
 const HASTE: f64 = 3.0;
 
 /// Share of each joint's acceleration limit that the reference may use.
@@ -29,26 +30,26 @@ const TAKE_OVER_JERK_CAP: f64 = 1.0 / 3.0;
 /// Distance kept from the ends of each joint's range, `[rad]`.
 const POSITION_MARGIN: f64 = 0.05;
 
-/// Deceleration, `[rad/s^2]`, with which a joint has to be able to stop before that margin. Less
-/// than half of what the robot's velocity envelope reckons with at joint 2, its gentlest (2.585):
-/// the arm is a spring behind the reference and swings past it where it slows down.
+/// Deceleration with which a joint must be able to stop before that margin, `[rad/s^2]`. It is less
+/// than half of the value in the robot's velocity envelope at joint 2, its gentlest (2.585). The
+/// arm is a spring behind the reference and swings past it where the reference slows down.
 pub(crate) const BRAKING: f64 = 1.2;
 
-/// What held joints back in a cycle.
+/// Bounds that held joints back in a cycle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct BoundsReached {
-    /// Their velocity.
+    /// Velocity of the joints.
     pub(crate) velocity: bool,
-    /// The ends of their ranges.
+    /// Ends of the joints' ranges.
     pub(crate) position: bool,
-    /// Their acceleration or jerk.
+    /// Acceleration or jerk of the joints.
     pub(crate) acceleration: bool,
-    /// The speed of a point of the arm: the share of their velocities that they kept.
+    /// Speed of a point of the arm: the share of the joints' velocities that remained.
     pub(crate) speed: Option<f64>,
 }
 
 impl BoundsReached {
-    /// True if anything did.
+    /// True if any bound did.
     pub(crate) fn any(self) -> bool {
         self != Self::default()
     }
@@ -56,19 +57,19 @@ impl BoundsReached {
 
 /// Velocities open to a joint in the next cycle.
 ///
-/// It keeps below its cap and able to stop before the end of its range, and it comes there with an
-/// acceleration that can be taken back in time. Where the bounds contradict each other jerk wins
-/// over acceleration, and both over velocity and position: those two act on the robot at once.
+/// The joint keeps below its cap and able to stop before the end of its range, with an acceleration
+/// that can be removed in time. If the bounds contradict each other, jerk wins over acceleration,
+/// and both win over velocity and position: those two act on the robot at once.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpenVelocities {
     pub(crate) lower: Bound,
     pub(crate) upper: Bound,
 }
 
-/// An end of an interval, and what put it there.
+/// An end of an interval, and its cause.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Bound {
-    /// `[rad/s]`.
+    /// Velocity, `[rad/s]`.
     pub(crate) velocity: f64,
     pub(crate) cause: Cause,
 }
@@ -81,8 +82,8 @@ pub(crate) enum Cause {
 }
 
 impl OpenVelocities {
-    /// Of the joint `i`, which so far was moved by a plan of the joints, or at rest, if this
-    /// `takes_over`.
+    /// Bounds for joint `i`. With `takes_over`, a plan of the joints moved it so far, or it was at
+    /// rest.
     pub(crate) fn of(
         i: usize,
         limits: &JointLimits,
@@ -125,8 +126,8 @@ impl OpenVelocities {
     }
 }
 
-/// How far each joint at `q` may turn down and up, `[rad]`, in whatever time: to the margin of its
-/// range, or not at all beyond that.
+/// Returns how far each joint at `q` may turn down and up, `[rad]`, without a limit of time: to the
+/// margin of its range, or not at all beyond the margin.
 pub(crate) fn room(limits: &JointLimits, q: &JointVector) -> (JointVector, JointVector) {
     let lower = limits.lower.add_scalar(POSITION_MARGIN) - q;
     let upper = limits.upper.add_scalar(-POSITION_MARGIN) - q;
@@ -136,7 +137,7 @@ pub(crate) fn room(limits: &JointLimits, q: &JointVector) -> (JointVector, Joint
     )
 }
 
-/// The first joint, from 1, that `q` has at an end of its range, less the margin.
+/// Returns the first joint, from 1, that is at an end of its range in `q`, minus the margin.
 pub(crate) fn at_end(limits: &JointLimits, q: &JointVector) -> Option<usize> {
     let (lower, upper) = room(limits, q);
     (0..7)
@@ -144,12 +145,12 @@ pub(crate) fn at_end(limits: &JointLimits, q: &JointVector) -> Option<usize> {
         .map(|i| i + 1)
 }
 
-/// The greatest acceleration of the next cycle, `[rad/s^2]`, after which a velocity that has `room`
-/// left, `[rad/s]`, does not exceed its bound, if the acceleration then falls by `ramp` a cycle.
-/// Without room, the one that brings it back.
+/// Returns the greatest acceleration of the next cycle, `[rad/s^2]`, for a velocity that has `room`
+/// left, `[rad/s]`. The velocity does not exceed its bound if the acceleration then falls by `ramp`
+/// per cycle. Without room, the acceleration returns the velocity to its bound.
 ///
-/// From an acceleration between `n` and `n + 1` ramps it takes `n` cycles to the last one that
-/// still accelerates, and `(n + 1) a - n (n + 1) / 2 ramp` is what all of them add up to.
+/// An acceleration between `n` and `n + 1` ramps falls for `n` cycles until the last positive
+/// acceleration. The sum of all of them is `(n + 1) a - n (n + 1) / 2 ramp`.
 fn fastest(room: f64, ramp: f64) -> f64 {
     let rate = room / CYCLE;
     if rate <= 0.0 {
@@ -159,8 +160,8 @@ fn fastest(room: f64, ramp: f64) -> f64 {
     (rate + ramp * n * (n + 1.0) / 2.0) / (n + 1.0)
 }
 
-/// The same below a bound that falls with the deceleration of a joint that stops. At the bound the
-/// joint need not slow down before it moves.
+/// Same as [`fastest`], below a bound that falls with the deceleration of a joint that stops. At
+/// the bound the joint need not slow down before it moves.
 fn towards_stop(room: f64, ramp: f64) -> f64 {
     (fastest(room, ramp) - BRAKING).max((room / CYCLE).min(0.0))
 }

@@ -1,5 +1,5 @@
 //! Lead: a streamed target that is far ahead of the arm is drawn nearer, so that one wrong target
-//! cannot take the arm far once the stream stops.
+//! cannot move the arm far once the stream stops.
 
 use franka_model::JointVector;
 use nalgebra::Isometry3;
@@ -7,28 +7,29 @@ use nalgebra::Isometry3;
 use crate::session::Target;
 use crate::session::guard::leash;
 
-/// How far ahead of the measured arm a target may be.
+/// Greatest distance of a target ahead of the measured arm.
 ///
-/// A target that is further ahead is drawn nearer on the straight line to it, in every cycle anew
-/// while targets come: for [`Self::FRESH_MS`] after the newest one,
-/// the same target again included. Then it stays where it was last drawn to. So an arm whose
-/// targets stop coming goes on by no more than this.
+/// A target that is further ahead is drawn nearer on the straight line to it. This repeats in every
+/// cycle while targets arrive: for [`Self::FRESH_MS`] after the newest target, including
+/// repetitions of the same target. Then the target stays where it was last drawn to. So an arm
+/// whose targets stop arriving continues by no more than this distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lead {
-    /// Of the end effector, for poses, `[m]`.
+    /// Translation of the end effector, for poses, `[m]`.
     pub translation: f64,
-    /// Of the end effector, for poses, `[rad]`.
+    /// Rotation of the end effector, for poses, `[rad]`.
     pub rotation: f64,
-    /// Of each joint, for joint positions, `[rad]`.
+    /// Distance of each joint, for joint positions, `[rad]`.
     pub joints: f64,
 }
 
 impl Lead {
-    /// Time after the newest target, `[ms]`, for which it is drawn anew. A stream of 5 Hz is
-    /// followed without a pause.
+    /// Time after the newest target for which it is drawn anew, `[ms]`. The arm follows a stream of
+    /// 5 Hz without a pause.
     pub const FRESH_MS: u64 = 200;
 
-    /// Where `target` is drawn to by an arm at `q` and `measured`; `None` if it is near enough.
+    /// Returns the place to which `target` is drawn for an arm at `q` and `measured`; `None` if it
+    /// is near enough.
     pub(crate) fn drawn(
         &self,
         target: &Target,

@@ -45,7 +45,7 @@ pub(crate) enum Commanded<'a> {
     /// A setpoint for a controller of the robot.
     Setpoint {
         controller: Controller,
-        /// True if the state has another setpoint than the last one that was sent.
+        /// True if the setpoint in the state differs from the last setpoint that was sent.
         differs: bool,
         /// True if the backstop changed the setpoint of this cycle.
         changed: bool,
@@ -132,8 +132,8 @@ const HOLD: u32 = 200;
 /// takes tens of cycles until its setpoint differs from the robot's by more than rounding.
 const REFUSED_WITHIN: u32 = 100;
 
-/// Difference of a commanded torque from the external one that friction and bias may explain,
-/// `[N m]`: the friction of the worst simulated arms and the bias of half a kilogram.
+/// Difference between commanded and external torque that friction and bias may explain, `[N m]`:
+/// the friction of the worst simulated arms and the bias of half a kilogram.
 const RESISTS: [f64; 7] = Gains::COMPENSATION;
 
 /// Distance of a joint from the robot's setpoint that friction does not explain, `[rad]`, unless

@@ -1,10 +1,10 @@
-//! Why waypoints are not a path.
+//! Reasons for refusing waypoints.
 
 use super::Waypoint;
 use super::reach::{OFF_ROTATION, OFF_TRANSLATION};
 use crate::session::GoalError;
 
-/// Why a path is not accepted. Nothing has moved. Waypoints count from 1.
+/// Reason for refusing a path. Nothing has moved. Waypoints count from 1.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PathError {
@@ -17,40 +17,42 @@ pub enum PathError {
         Waypoint::COUNT_MAX
     )]
     TooMany,
-    /// A waypoint is neither a pose nor joint positions, or not what the first one is.
+    /// A waypoint is neither a pose nor joint positions, or it is not of the same kind as the first
+    /// one.
     #[error(
         "waypoint {waypoint} is not of the kind of the first: expected all poses, or all joint positions"
     )]
     Kind {
-        /// Which.
+        /// The waypoint.
         waypoint: usize,
     },
-    /// The distance of a waypoint is not a number, or below zero.
+    /// The blend distance of a waypoint is not a number, or below zero.
     #[error("waypoint {waypoint} is to be rounded within {got}, expected 0 or more")]
     Blend {
-        /// Which.
+        /// The waypoint.
         waypoint: usize,
         /// The distance given.
         got: f64,
     },
-    /// The arm cannot go there.
+    /// The arm cannot reach the waypoint.
     #[error("waypoint {waypoint}: {error}")]
     Waypoint {
-        /// Which.
+        /// The waypoint.
         waypoint: usize,
-        /// Why.
+        /// The reason.
         #[source]
         error: GoalError,
     },
-    /// On the way to a waypoint the end effector turns so far that its direction is in doubt.
+    /// On the way to a waypoint the end effector turns so far that the direction of the turn is
+    /// ambiguous.
     #[error("{degrees} degrees on the way to waypoint {waypoint}: expected less than 170")]
     Turn {
-        /// Which.
+        /// The waypoint.
         waypoint: usize,
-        /// The angle.
+        /// Angle of the turn.
         degrees: u16,
     },
-    /// The arm cannot follow the way between two waypoints.
+    /// The arm cannot follow the path between two waypoints.
     #[error(
         "on the way from {} to waypoint {to}, at ({x:.3}, {y:.3}, {z:.3}) m, the end effector stays \
          {:.1} mm and {:.1} mrad off the way{}: expected at most {:.0} mm and {:.0} mrad",
@@ -62,21 +64,21 @@ pub enum PathError {
         OFF_ROTATION * 1e3
     )]
     Way {
-        /// The waypoint before; 0 is where the arm is when the path comes.
+        /// The previous waypoint; 0 is the place of the arm when the path arrives.
         from: usize,
-        /// The waypoint after.
+        /// The next waypoint.
         to: usize,
-        /// Where on the way, base frame, `[m]`.
+        /// Place on the path, base frame, `[m]`.
         x: f64,
         /// See `x`.
         y: f64,
         /// See `x`.
         z: f64,
-        /// How far off the way the arm stays there, `[m]`.
+        /// Distance of the arm from the path at that place, `[m]`.
         translation: f64,
-        /// The same of the orientation, `[rad]`.
+        /// Difference in orientation at that place, `[rad]`.
         rotation: f64,
-        /// The joint at the end of its range, from 1; `None` if it is the arm's reach that ends.
+        /// The joint at the end of its range, from 1; `None` if the limit is the arm's reach.
         joint: Option<usize>,
     },
 }

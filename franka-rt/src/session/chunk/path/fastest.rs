@@ -1,5 +1,5 @@
-//! A timed path as fast as its limits allow: a stretch between two stops that has corners is
-//! retimed, one straight line is the fastest already.
+//! Makes a timed path as fast as its limits allow. A stretch between two stops that has corners is
+//! retimed; a single straight line already is the fastest.
 
 use franka_otg::AxisLimits;
 use nalgebra::SMatrix;
@@ -12,11 +12,11 @@ use crate::session::chunk::curve_state::CurveState;
 /// Velocity or acceleration of a state: a column for each group of axes whose norm is limited.
 type Columns<const W: usize, const G: usize> = SMatrix<f64, W, G>;
 
-/// What a path is retimed within.
+/// Limits of a retimed path.
 pub(super) struct Limits<M, const W: usize, const G: usize> {
-    /// Of each group of axes.
+    /// Limits of each group of axes.
     pub(super) of_groups: [AxisLimits; G],
-    /// Velocity and acceleration of a state.
+    /// Returns velocity and acceleration of a state.
     pub(super) derivatives: fn(&M) -> [Columns<W, G>; 2],
 }
 
@@ -25,28 +25,28 @@ pub(super) struct Limits<M, const W: usize, const G: usize> {
 pub(super) struct Timed<M> {
     pub(super) times: Vec<f64>,
     pub(super) states: Vec<M>,
-    /// The leg that each state lies on: of a stop, the one that begins there.
+    /// The leg of each state; at a stop, the leg that begins there.
     pub(super) legs: Vec<usize>,
 }
 
-/// Nodes for each leg to begin with.
+/// Initial number of nodes for each leg.
 const NODES: usize = 32;
 
-/// The most nodes to begin with.
+/// Maximum number of initial nodes.
 const NODES_MAX: usize = 1024;
 
-/// How often parts are halved in which the acceleration changes.
+/// Number of times that parts are halved in which the acceleration changes.
 const REFINEMENTS: usize = 2;
 
-/// Shares of the duration by which the result may be above the least: before the last refinement,
-/// and after it.
+/// Permitted excess of the duration over the least one, as shares: before the last refinement, and
+/// after it.
 const GAPS: [f64; 2] = [0.03, 1e-3];
 
-/// Intervals of each part in which the limits are looked at once more in the end.
+/// Intervals of each part in which the limits are checked once more at the end.
 const CHECKS: usize = 4;
 
 impl<M: CurveState> Timed<M> {
-    /// The same way in the least time.
+    /// Returns the same path in the least time.
     pub(super) fn hurried<const W: usize, const G: usize>(self, limits: &Limits<M, W, G>) -> Self {
         let mut hurried = self.part(0, 0);
         let mut begin = 0;
@@ -70,7 +70,7 @@ impl<M: CurveState> Timed<M> {
         Curve::new(self.times, self.states)
     }
 
-    /// The states from one to another, from time zero on.
+    /// Returns the states from one to another, starting at time zero.
     fn part(&self, begin: usize, end: usize) -> Self {
         let times = &self.times[begin..=end];
         Self {
@@ -80,7 +80,7 @@ impl<M: CurveState> Timed<M> {
         }
     }
 
-    /// Goes on with `next`, which begins where this ends.
+    /// Appends `next`, which begins where this motion ends.
     fn append(&mut self, next: Self) {
         let end = self.end();
         let times = next.times.iter().skip(1);
@@ -93,7 +93,7 @@ impl<M: CurveState> Timed<M> {
         self.times[self.times.len() - 1]
     }
 
-    /// The state at the share `u` of the way in time from node `k` to the next.
+    /// Returns the state at the share `u` of the time from node `k` to the next.
     pub(super) fn between(&self, k: usize, u: f64) -> M {
         let duration = self.times[k + 1] - self.times[k];
         M::between(&self.states[k], &self.states[k + 1], duration, u * duration)
@@ -109,7 +109,7 @@ impl<M: CurveState> Timed<M> {
         }
     }
 
-    /// A stretch from rest to rest over this many legs in the least time.
+    /// Returns a stretch from rest to rest over this many legs in the least time.
     pub(super) fn retimed<const W: usize, const G: usize>(
         self,
         legs: usize,
@@ -133,12 +133,12 @@ impl<M: CurveState> Timed<M> {
             }
         }
         let next = stretch.at_rates(&spline);
-        // Between the places where the limits were kept they are exceeded by a few thousandths.
+        // Between the checked places the motion exceeds the limits by a few thousandths.
         let next = next.slower(next.excess(limits));
         if next.end() < self.end() { next } else { self }
     }
 
-    /// The same motion with each part divided evenly into as many.
+    /// Returns the same motion with each part divided evenly into the number in `counts`.
     fn divided(&self, counts: &[usize]) -> Self {
         let mut fine = self.part(0, 0);
         for (k, &count) in counts.iter().enumerate() {
@@ -156,13 +156,13 @@ impl<M: CurveState> Timed<M> {
         fine
     }
 
-    /// The derivatives in its parts.
+    /// Returns the derivatives in the parts.
     fn parts<const W: usize, const G: usize>(&self, limits: &Limits<M, W, G>) -> Vec<Part<W, G>> {
         let part = |k: usize| {
             let duration = self.times[k + 1] - self.times[k];
             let at = |u: f64| (limits.derivatives)(&self.between(k, u));
             let [[_, begin], [_, middle], [_, end]] = [0.0, 0.5, 1.0].map(at);
-            // The slope of the parabola through the three accelerations.
+            // Slope of the parabola through the three accelerations.
             let rise = (end - begin) / duration;
             let bend = (begin + end - middle * 2.0) * (2.0 / duration);
             PLACES.map(|u| {
@@ -174,7 +174,7 @@ impl<M: CurveState> Timed<M> {
         (0..self.times.len() - 1).map(part).collect()
     }
 
-    /// The same way at the rates of `spline`.
+    /// Returns the same path at the rates of `spline`.
     fn at_rates(&self, spline: &Spline) -> Self {
         let mut time = 0.0;
         let mut next = Self {
@@ -187,7 +187,7 @@ impl<M: CurveState> Timed<M> {
             next.times.push(time);
             next.states.push(state.paced(node.rate, node.change));
         }
-        // But for the sign of a zero they rest already.
+        // Except for the sign of a zero they rest already.
         let last = next.states.len() - 1;
         for end in [0, last] {
             next.states[end] = self.states[end].resting();
@@ -195,7 +195,7 @@ impl<M: CurveState> Timed<M> {
         next
     }
 
-    /// The same motion with its times longer by this factor.
+    /// Returns the same motion with its times multiplied by this factor.
     fn slower(&self, factor: f64) -> Self {
         Self {
             times: self.times.iter().map(|time| time * factor).collect(),
@@ -206,7 +206,7 @@ impl<M: CurveState> Timed<M> {
         }
     }
 
-    /// The factor by which the motion has to be slower to keep the limits, at least 1.
+    /// Returns the factor by which the motion must be slower to keep the limits, at least 1.
     fn excess<const W: usize, const G: usize>(&self, limits: &Limits<M, W, G>) -> f64 {
         let mut most = 1.0_f64;
         for k in 0..self.times.len() - 1 {

@@ -1,7 +1,7 @@
-//! The fastest motion along a way: the same curve, as fast as its limits allow, jerk included.
+//! The fastest motion along a path: the same curve, as fast as its limits allow, jerk included.
 //!
-//! A motion `q(t)` that keeps the limits is gone along at another rate. With `x = (dt/dT)^2`, `T`
-//! the new time, a dash for the derivative by `t` and `v, a, j` those of the motion given,
+//! A motion `q(t)` that keeps the limits is passed at another rate. With `x = (dt/dT)^2`, `T` the
+//! new time, a dash for the derivative by `t` and `v, a, j` the derivatives of the given motion,
 //!
 //! ```text
 //! new velocity     = sqrt(x) v
@@ -11,13 +11,15 @@
 //! ```
 //!
 //! `x` is a quadratic spline: `x''` is constant between two of its nodes. Where the motion begins
-//! or ends at rest it does so with a jerk, so that `x` is finite there too. All limits but that of
-//! the jerk are convex in `x`. That one is `|x j + ..| <= J / sqrt(x)`, whose right side is convex;
-//! the tangent of it at the present `x` lies below it, so that what keeps the tangent keeps the
-//! limit (the convex-concave procedure). The minimum is found by Newton's method behind logarithmic
-//! barriers (S. Boyd and L. Vandenberghe, Convex Optimization, chapter 11), with new tangents in
-//! every step: each step leads from a motion within the limits to a faster one. The result is the
-//! fastest motion near the one given. That there is no faster one far from it is not proven.
+//! or ends at rest it does so with a jerk, so that `x` is finite there too. All limits except the
+//! jerk's are convex in `x`. The jerk's limit is `|x j + ..| <= J / sqrt(x)`, with a convex right
+//! side. The tangent of that side at the present `x` lies below it, so a motion that keeps the
+//! tangent keeps the limit (the convex-concave procedure).
+//!
+//! The minimum is found by Newton's method behind logarithmic barriers (S. Boyd and L.
+//! Vandenberghe, Convex Optimization, chapter 11), with new tangents in every step. Each step leads
+//! from a motion within the limits to a faster one. The result is the fastest motion near the given
+//! one. It is not proven that no faster motion exists far from it.
 
 use franka_otg::AxisLimits;
 use nalgebra::{Matrix3, SMatrix, Vector3};
@@ -25,8 +27,8 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 use super::banded::Banded;
 use super::spline::Spline;
 
-/// The first three derivatives of a motion at one place of it: a column for each group of axes
-/// whose norm is limited.
+/// The first three derivatives of a motion at one place: a column for each group of axes whose norm
+/// is limited.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rates<const W: usize, const G: usize> {
     pub(super) v: SMatrix<f64, W, G>,
@@ -34,20 +36,20 @@ pub(super) struct Rates<const W: usize, const G: usize> {
     pub(super) j: SMatrix<f64, W, G>,
 }
 
-/// A part of the motion between two nodes, at the [`PLACES`] of it.
+/// A part of the motion between two nodes, at its [`PLACES`].
 pub(super) type Part<const W: usize, const G: usize> = [Rates<W, G>; PLACES.len()];
 
-/// Where in a part the limits are kept, in shares of it.
+/// Places in a part where the limits are kept, in shares of the part.
 pub(super) const PLACES: [f64; 4] = [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0];
 
-/// What is known of one place: three coefficients of the spline act there.
+/// Values at one place. Three coefficients of the spline act there.
 #[derive(Clone, Debug)]
 struct Place<const W: usize> {
-    /// `x` of the coefficients.
+    /// Contribution of each coefficient to `x`.
     value: Vector3<f64>,
-    /// The most that `x` may be for the velocity, inverted.
+    /// Inverse of the greatest `x` that the velocity limit allows.
     velocity: f64,
-    /// Accelerations of the coefficients, and jerks but for the root of `x`.
+    /// Accelerations of the coefficients, and jerks without the root of `x`.
     accelerations: Vec<SMatrix<f64, W, 3>>,
     jerks: Vec<SMatrix<f64, W, 3>>,
 }
@@ -56,15 +58,15 @@ struct Place<const W: usize> {
 struct Problem<const W: usize> {
     durations: Vec<f64>,
     places: Vec<[Place<W>; PLACES.len()]>,
-    /// `x` of the coefficients at the points at which the time is integrated.
+    /// Contribution of each coefficient to `x` at the points at which the time is integrated.
     gauss: Vec<[Vector3<f64>; 2]>,
 }
 
-/// Where the two points of Gauss's rule lie in a part.
+/// Places of the two points of Gauss's rule in a part.
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
-/// Adds a row unless one that is there binds wherever it does, and drops those that it makes
-/// superfluous.
+/// Adds a row, unless an existing row binds in every case where the new row does. Drops rows that
+/// the new row makes superfluous.
 fn keep<const W: usize>(rows: &mut Vec<SMatrix<f64, W, 3>>, row: SMatrix<f64, W, 3>) {
     let gram = row.tr_mul(&row);
     let size = gram.trace();
@@ -101,7 +103,7 @@ impl<const W: usize> Problem<W> {
                 for (g, limits) in limits.iter().enumerate() {
                     let (v, a, j) = (v.column(g), a.column(g), j.column(g));
                     velocity = velocity.max(v.norm_squared() / limits.velocity.powi(2));
-                    // At its begin a part has the acceleration of the end of the one before.
+                    // At its beginning a part has the acceleration at the end of the previous part.
                     if place > 0 {
                         let row = a * b.transpose() + v * (db * 0.5).transpose();
                         keep(&mut accelerations, row / limits.acceleration);
@@ -126,8 +128,8 @@ impl<const W: usize> Problem<W> {
         }
     }
 
-    /// The sum of the barriers' parameters: what the duration at the minimum of the barrier
-    /// function is above the least, at most, for a weight of 1.
+    /// Sum of the barriers' parameters: for a weight of 1, an upper bound on the excess of the
+    /// duration at the barrier function's minimum over the least duration.
     fn parameter(&self) -> f64 {
         let places = self.places.iter().flatten();
         places
@@ -146,7 +148,7 @@ impl<const W: usize> Problem<W> {
             .sum()
     }
 
-    /// The most that any limit is used, in powers of the rate's square: 1 at a limit.
+    /// Returns the greatest use of any limit, in powers of the rate's square: 1 at a limit.
     fn use_of_limits(&self, c: &[f64]) -> f64 {
         let mut most = 0.0_f64;
         for (k, places) in self.places.iter().enumerate() {
@@ -168,7 +170,7 @@ impl<const W: usize> Problem<W> {
         most
     }
 
-    /// Finds the coefficients of the least duration, to a share of `gap`, from `c` on.
+    /// Finds the coefficients of the least duration, to a share of `gap`, starting from `c`.
     fn minimise(&self, c: &mut Vec<f64>, gap: f64) {
         let used = self.use_of_limits(c);
         if used > BEGIN {
@@ -208,7 +210,7 @@ impl<const W: usize> Problem<W> {
         }
     }
 
-    /// The barrier function; `None` outside the limits.
+    /// Returns the barrier function; `None` outside the limits.
     fn value(&self, c: &[f64], weight: f64) -> Option<f64> {
         let mut product = Logs::default();
         for (k, places) in self.places.iter().enumerate() {
@@ -230,7 +232,7 @@ impl<const W: usize> Problem<W> {
         Some(weight * self.duration(c) - product.sum())
     }
 
-    /// Gradient and Hessian of the barrier function with the tangents at `c`.
+    /// Computes gradient and Hessian of the barrier function with the tangents at `c`.
     fn derivatives(&self, c: &[f64], weight: f64, system: &mut Banded) {
         system.clear();
         for (k, (places, gauss)) in self.places.iter().zip(&self.gauss).enumerate() {
@@ -255,7 +257,7 @@ impl<const W: usize> Problem<W> {
                     slope += pull;
                     curve += row.tr_mul(row) * (2.0 * left) + pull * pull.transpose();
                 }
-                // The tangent of 1 / sqrt(x).
+                // Tangent of 1 / sqrt(x).
                 let most = 1.0 / x.sqrt();
                 let falls = b * (-0.5 * most / x);
                 for row in &place.jerks {
@@ -272,7 +274,7 @@ impl<const W: usize> Problem<W> {
     }
 }
 
-/// The sum of logarithms, few of them taken.
+/// Sum of logarithms that computes only a few of them.
 #[derive(Debug)]
 struct Logs {
     sum: f64,
@@ -289,7 +291,7 @@ impl Default for Logs {
 }
 
 impl Logs {
-    /// Adds that of `x`; `None` unless it is positive.
+    /// Adds the logarithm of `x`; `None` unless `x` is positive.
     fn add(&mut self, x: f64) -> Option<()> {
         if x.is_nan() || x <= 0.0 {
             return None;
@@ -308,8 +310,8 @@ impl Logs {
 }
 
 /// Makes `spline` the fastest rate for the `parts` of a motion within the `limits` of its groups,
-/// to a share of `gap` of the duration. Returns which parts are too long for what the acceleration
-/// changes in them.
+/// to a share of `gap` of the duration. Returns the parts in which the acceleration changes too
+/// much for their length.
 pub(super) fn minimise<const W: usize, const G: usize>(
     spline: &mut Spline,
     parts: &[Part<W, G>],
@@ -329,11 +331,11 @@ pub(super) fn minimise<const W: usize, const G: usize>(
 /// Share of an acceleration limit by which the acceleration may change within a part.
 const SWITCH: f64 = 0.3;
 
-/// By how much the weight of the duration grows from one minimum to the next.
+/// Factor by which the weight of the duration grows from one minimum to the next.
 const GROWTH: f64 = 10.0;
 
 /// Steps of Newton's method for one weight.
 const STEPS_MAX: usize = 12;
 
-/// Share of the limits that the begin may use.
+/// Share of the limits that the beginning may use.
 const BEGIN: f64 = 0.95;

@@ -1,15 +1,15 @@
-//! The legs of a path: what each may have of the budget, and how far its corners are rounded.
+//! The legs of a path: their shares of the budget, and the rounding of their corners.
 
 use franka_otg::AxisLimits;
 use nalgebra::SVector;
 
 use super::timing::{self, Corner, Knot, Leg};
 
-/// Shares of the budget's velocity, acceleration and jerk that a path is planned with. What follows
-/// it has the rest, to get back to it.
+/// Shares of the budget's velocity, acceleration and jerk that a path is planned with. The follower
+/// uses the rest to return to the path.
 const SHARES: [f64; 3] = [0.99, 0.95, 0.9];
 
-/// What a path may have of these limits.
+/// Returns the share of these limits for a path.
 pub(super) fn share(limits: AxisLimits) -> AxisLimits {
     AxisLimits {
         velocity: SHARES[0] * limits.velocity,
@@ -18,7 +18,7 @@ pub(super) fn share(limits: AxisLimits) -> AxisLimits {
     }
 }
 
-/// The limits of a leg on which each of the `ways` has its limits.
+/// Returns the limits of a leg on which each of the `ways` keeps its limits.
 pub(super) fn limits_of_leg(ways: impl Iterator<Item = (f64, AxisLimits)>) -> AxisLimits {
     let free = AxisLimits {
         velocity: f64::INFINITY,
@@ -33,14 +33,14 @@ pub(super) fn limits_of_leg(ways: impl Iterator<Item = (f64, AxisLimits)>) -> Ax
         })
 }
 
-/// How far around a corner its blend goes, in shares of the legs of these lengths.
+/// Returns the length of a corner's blend on either side, as shares of legs of these lengths.
 fn shares(blend: f64, lengths: (f64, f64)) -> Option<(f64, f64)> {
     let share = |length: f64| (blend / length).min(0.5);
     (blend > 0.0).then(|| (share(lengths.0), share(lengths.1)))
 }
 
-/// Times the `legs` with corners between them. `lengths` are those of the legs in the unit of the
-/// `blends`, one of which belongs to each place; `duration` is as for [`Corner::new`].
+/// Times the `legs` with corners between them. `lengths` are the legs' lengths in the unit of the
+/// `blends`, with one blend for each place. `duration` is as for [`Corner::new`].
 pub(super) fn timed<const D: usize>(
     legs: &[Leg<D>],
     lengths: &[f64],

@@ -1,9 +1,10 @@
-//! Straight lines to a pose: whether the arm can follow one from where it is, and with which elbow.
+//! Straight lines to a pose: checks that the arm can follow a line from its present place, and
+//! finds the elbow for it.
 //!
-//! A pose within reach says nothing about the way there. The elbow is kept near where it is, and on
-//! a line that turns the hand far, joints may come to the ends of their ranges that way, while with
-//! the elbow elsewhere they would not. So the line is followed before anything moves, as a path is:
-//! first with the elbow kept, then drawn towards each of the postures that reach the pose.
+//! A reachable pose does not guarantee a straight path to it. With the elbow kept in its place,
+//! joints may reach the ends of their ranges on a line that turns the hand far, although they would
+//! not with another elbow. So the line is followed before anything moves, as for a path: first with
+//! the elbow kept, then drawn towards each of the postures that reach the pose.
 
 use core::ops::ControlFlow;
 
@@ -24,19 +25,18 @@ use crate::session::pose::PoseState;
 use crate::session::{Budget, Goal, GoalError, Hindrance, OnArrival, Target, rigid};
 
 impl Goal {
-    /// Looks for a way to the pose of a goal that is to arrive there, on a straight line from the
-    /// joint positions `q`, `[rad]`. If the arm cannot follow the line with its elbow kept near
-    /// `kept`, `[rad]`, but can with its elbow drawn to another posture, the goal asks for that
-    /// [posture](Self::posture) from then on.
+    /// Looks for a straight line from the joint positions `q`, `[rad]`, to the pose of a goal that
+    /// ends there. If the arm cannot follow the line with its elbow kept near `kept`, `[rad]`, but
+    /// can with its elbow drawn to another posture, the goal gets that [posture](Self::posture).
     ///
-    /// A goal that the arm gets to off the line is left as it is. So are goals that end elsewhere
-    /// than at a pose, on their way by a [reaction](Self::reaction), or with an object in the hand,
-    /// and goals that [`check`](Self::check) refuses. Regions to keep out of are not considered.
+    /// A goal that the arm reaches off the line stays as it is. The same applies to goals that do
+    /// not end at a pose, to goals with a [reaction](Self::reaction) or with an object in the hand,
+    /// and to goals that [`check`](Self::check) refuses. Keep-out regions are not considered.
     ///
-    /// It takes a millisecond as a rule, and up to ten. It is not for the control thread.
+    /// This usually takes a millisecond, and up to ten. It is not for the control thread.
     ///
     /// # Errors
-    /// [`GoalError::NoLine`] if the arm gets there with none of these postures.
+    /// [`GoalError::NoLine`] if the arm reaches the pose with none of these postures.
     pub fn plan_line(
         &mut self,
         q: &[f64; 7],
@@ -90,13 +90,13 @@ impl Goal {
     }
 }
 
-/// Postures towards which the elbow is led before a line is given up: the nearest ones.
+/// Number of postures that are tried for the elbow, nearest first.
 const LED: usize = 8;
 
-/// Steps along a line that a first look takes at once.
+/// Steps along a line that a first look combines.
 const GLANCE: f64 = 4.0;
 
-/// The most that a joint turns between two looks at how near the arm is to itself, `[rad]`.
+/// Greatest turn of a joint between two checks of the arm's distance to itself, `[rad]`.
 const TURN: f64 = 0.03;
 
 /// A straight line and a turn about one axis.
@@ -110,7 +110,7 @@ struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    /// From the joint positions `q` to the pose `there`; `None` if it has no plan.
+    /// Creates the line from the joint positions `q` to the pose `there`; `None` if it has no plan.
     fn new(
         there: &Isometry3<f64>,
         q: JointVector,
@@ -159,7 +159,7 @@ impl<'a> Line<'a> {
         way.break_value().map_or(Ok(()), Err)
     }
 
-    /// True if the arm comes to the end of the line, clear of itself, when it may leave the line.
+    /// True if the arm reaches the end of the line, clear of itself, when it may leave the line.
     fn ends_there(&self, posture: &Posture) -> bool {
         let (mut last, mut off) = (self.q, 0.0);
         let way = self.arm(posture, 1.0).along(&self.way, self.q, |step| {

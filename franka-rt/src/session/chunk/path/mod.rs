@@ -1,4 +1,4 @@
-//! Paths: places without times, which the arm goes through as fast as its budget allows.
+//! Paths: places without times. The arm moves through them as fast as its budget allows.
 //!
 //! ```text
 //! waypoints -> joints, poses -> timing  -> fastest       -> reach        -> chunk
@@ -35,7 +35,7 @@ use crate::session::geometry::reported_end_effector;
 use crate::session::kinematics::Posture;
 use crate::session::{Goal, Target, check, rigid};
 
-/// A place on a path, and how far from it the path may round its corner.
+/// A place on a path, and the distance at which the path may round its corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Waypoint {
     target: Target,
@@ -43,11 +43,11 @@ pub struct Waypoint {
 }
 
 impl Waypoint {
-    /// The most of one path.
+    /// Maximum number of waypoints on a path.
     pub const COUNT_MAX: usize = 100;
 
-    /// A pose of the end effector in the base frame, metres, or joint positions, `[rad]`, at which
-    /// the arm stops.
+    /// Creates a waypoint at which the arm stops: a pose of the end effector in the base frame,
+    /// metres, or joint positions, `[rad]`.
     pub fn new(target: impl Into<Target>) -> Self {
         let blend = 0.0;
         Self {
@@ -56,18 +56,20 @@ impl Waypoint {
         }
     }
 
-    /// Rounds the corner: the path leaves the straight line to this waypoint at this distance
-    /// before it, and is on the next line at this distance after it, or in the middle of a line
-    /// that is shorter than twice that. For poses `[m]` of the end effector, where a turn counts as
-    /// the way that the budget allows in the time of the turn; for joint positions `[rad]`, the
-    /// norm over the joints. The last waypoint of a path is stopped at all the same.
+    /// Rounds the corner. The path leaves the straight line to this waypoint at this distance
+    /// before it, and joins the next line at this distance after it. On a line shorter than twice
+    /// the distance it does so in the middle.
+    ///
+    /// For poses the unit is `[m]` of the end effector, and a turn counts as the distance that the
+    /// budget allows in the time of the turn. For joint positions it is `[rad]`, the norm over the
+    /// joints. The arm still stops at the last waypoint of a path.
     #[must_use]
     pub fn blend(mut self, distance: f64) -> Self {
         self.blend = distance;
         self
     }
 
-    /// Where it is.
+    /// Returns the target of the waypoint.
     pub fn target(&self) -> &Target {
         &self.target
     }
@@ -80,12 +82,13 @@ impl<T: Into<Target>> From<T> for Waypoint {
 }
 
 impl Chunk {
-    /// Through `waypoints` without times, within the budget of `goal`, from where the joints `q`
-    /// are, `[rad]`. It begins when it is taken up, waits while the arm is held back, and can be
-    /// paused.
+    /// Creates a path through `waypoints` without times, within the budget of `goal`, from the
+    /// joint positions `q`, `[rad]`. The path begins when it is taken up, waits while the arm is
+    /// held back, and can be paused.
     ///
-    /// It takes some milliseconds for each waypoint that is rounded, and is not for the control
-    /// thread. What is fastest, and to how much: `fastest`; what is checked: `reach`.
+    /// This takes some milliseconds for each rounded waypoint, and is not for the control thread.
+    /// The private module `fastest` defines how close the result is to the fastest motion, `reach`
+    /// what is checked.
     ///
     /// # Errors
     /// [`PathError`].
@@ -99,8 +102,8 @@ impl Chunk {
         Self::planned(waypoints, q, goal, model, state, |_, _| {})
     }
 
-    /// As [`Self::through`]; `pass` is called with the time, `[s]`, and the joint positions of
-    /// places all along the path, in their order, which are near each other.
+    /// Same as [`Self::through`]. `pass` is called with the time, `[s]`, and the joint positions of
+    /// closely spaced places along the whole path, in their order.
     fn planned(
         waypoints: &[Waypoint],
         q: &[f64; 7],
@@ -160,5 +163,5 @@ impl Chunk {
     }
 }
 
-/// Places to pass between two states of a path over joint positions.
+/// Number of places passed between two states of a path over joint positions.
 const SAMPLES: usize = 8;

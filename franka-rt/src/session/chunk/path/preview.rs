@@ -1,4 +1,4 @@
-//! What an arm does along a path, before it does it.
+//! Preview of the motion along a path.
 
 use core::time::Duration;
 
@@ -11,19 +11,19 @@ use crate::session::check::check_keep_out;
 use crate::session::guard::clearance::Clearance;
 use crate::session::{Chunk, Goal, GoalError};
 
-/// What an arm does along a path: its joint positions at times. Between two of them no joint turns
-/// by more than a few hundredths of a radian, and the end effector goes by 5 mm at most if the path
-/// is one of poses.
+/// Predicted motion of an arm along a path: its joint positions at times. Between two of them no
+/// joint turns by more than a few hundredths of a radian. If the path is one of poses, the end
+/// effector moves by at most 5 mm between them.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Preview {
-    /// Times from the begin of the motion on, which grow, and joint positions, `[rad]`. The first
-    /// are those of the begin, the last those at the end of the path.
+    /// Increasing times from the beginning of the motion, and joint positions, `[rad]`. The first
+    /// entry is the beginning, the last is the end of the path.
     pub postures: Vec<(Duration, [f64; 7])>,
 }
 
 impl Preview {
-    /// What an arm at the joint positions `q`, `[rad]`, would do. It takes as long as
+    /// Predicts the motion of an arm at the joint positions `q`, `[rad]`. It takes as long as
     /// [`Chunk::through`], and refuses the same paths.
     ///
     /// # Errors
@@ -37,7 +37,7 @@ impl Preview {
     ) -> Result<Self, PathError> {
         let mut postures = vec![(Duration::ZERO, *q)];
         Chunk::planned(waypoints, q, goal, model, state, |time, q: &JointVector| {
-            // Where nothing is to be done there is one place with the time of the begin.
+            // An empty motion has one place, with the time of the beginning.
             let time = Duration::try_from_secs_f64(time).unwrap_or_default();
             if postures.last().is_some_and(|(before, _)| time > *before) {
                 postures.push((time, (*q).into()));
@@ -46,17 +46,17 @@ impl Preview {
         Ok(Self { postures })
     }
 
-    /// Until the reference is at the end, if nothing holds it up: guards that bind and joints that
-    /// are asked for more than their limits do. The arm settles after that.
+    /// Time until the reference is at the end, if nothing delays it. Guards that bind delay it, and
+    /// so do poses that require more than a joint's limits. The arm settles after that.
     pub fn duration(&self) -> Duration {
         self.postures
             .last()
             .map_or(Duration::ZERO, |(time, _)| *time)
     }
 
-    /// Where the arm would come nearer than the guards allow to itself, or to one of the regions
-    /// that a session keeps out of; `None` if nowhere. The guards have the arm stop before that.
-    /// `state` says whether a hand is mounted.
+    /// Returns the place where the arm would come nearer than the guards allow to itself, or to a
+    /// keep-out region of a session; `None` if there is no such place. The guards stop the arm
+    /// before that place. `state` reports whether a hand is mounted.
     ///
     /// # Errors
     /// [`GoalError::KeepOut`], as for the session.
@@ -80,20 +80,20 @@ impl Preview {
         }))
     }
 
-    /// The joint positions at the end, `[rad]`.
+    /// Returns the joint positions at the end, `[rad]`.
     pub fn end(&self) -> [f64; 7] {
         self.postures.last().map_or([0.0; 7], |(_, q)| *q)
     }
 }
 
-/// Where an arm would come too near something.
+/// Place where an arm would come too near something.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Blocked {
-    /// Since the begin of the motion.
+    /// Time since the beginning of the motion.
     pub time: Duration,
     /// The joint positions there, `[rad]`.
     pub q: [f64; 7],
-    /// The region, from 1; `None` where a link comes near another.
+    /// Region, from 1; `None` where a link comes near another link.
     pub region: Option<usize>,
 }

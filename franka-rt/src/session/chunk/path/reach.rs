@@ -1,12 +1,13 @@
-//! Whether the arm can follow a path of poses, all along it.
+//! Checks that the arm can follow a path of poses along its whole length.
 //!
-//! The joints go along the whole way, rounded corners included, in small steps from where they are,
-//! by the inverse kinematics that the control cycle uses: with its damping, its rule for the arm's
-//! free direction, and the ends of the joints' ranges that it keeps. What the cycle has besides
-//! does not decide where an arm gets: velocities and accelerations of joints that a pose asks too
-//! much of hold the path up, and it waits.
+//! The joints follow the whole path, rounded corners included, in small steps from their present
+//! positions. They use the inverse kinematics of the control cycle: with its damping, its rule for
+//! the arm's free direction, and the ends of the joints' ranges. The cycle's other limits do not
+//! decide which poses the arm reaches. If a pose requires too much velocity or acceleration from
+//! joints, the path waits.
 //!
-//! Joint positions need no such check: where two of them are in range, all between them are.
+//! Joint positions need no such check: if two of them are in range, so are all positions between
+//! them.
 
 use core::ops::ControlFlow;
 
@@ -23,48 +24,49 @@ use crate::session::kinematics::Posture;
 use crate::session::pose::PoseState;
 use crate::session::rigid;
 
-/// How far off the way the end effector may stay, `[m]`: as far as a goal counts as arrived.
+/// Greatest distance of the end effector from the path, `[m]`: the tolerance of a goal.
 pub(super) const OFF_TRANSLATION: f64 = 1e-3;
 
-/// The same of its orientation, `[rad]`.
+/// Same for its orientation, `[rad]`.
 pub(super) const OFF_ROTATION: f64 = 5e-3;
 
-/// Longest step along the way, `[m]`.
+/// Longest step along the path, `[m]`.
 const STEP_TRANSLATION: f64 = 5e-3;
 
-/// The same of the orientation, `[rad]`.
+/// Same for the orientation, `[rad]`.
 const STEP_ROTATION: f64 = 0.02;
 
-/// Distance, in units of what it may be off, that counts as none.
+/// Distance that counts as zero, in units of the permitted distance.
 const THERE: f64 = 0.02;
 
-/// Attempts to come nearer to one place of the way, as long as the last ones may get there.
+/// Maximum number of attempts to get nearer to one place of the path, as long as the recent
+/// attempts make enough progress.
 const ATTEMPTS: usize = 60;
 
-/// Most steps between two states of a way: it has no more at the steps above, unless its numbers
-/// make no sense.
+/// Maximum number of steps between two states of a path. With the steps above a path has no more,
+/// unless its numbers make no sense.
 const STEPS_MAX: f64 = 1e4;
 
-/// The most that a joint turns in one attempt, `[rad]`.
+/// Greatest turn of a joint in one attempt, `[rad]`.
 const TURN: f64 = 0.1;
 
-/// A step of the joints along a way.
+/// A step of the joints along a path.
 #[derive(Debug)]
 pub(super) struct Step {
-    /// Since the begin of the way, `[s]`.
+    /// Time since the beginning of the path, `[s]`.
     pub(super) time: f64,
-    /// The leg that it lies on.
+    /// The leg of the step.
     pub(super) leg: usize,
-    /// Where the end effector is to be.
+    /// Wanted pose of the end effector.
     pub(super) pose: Isometry3<f64>,
-    /// Where the joints then are, `[rad]`.
+    /// Joint positions at that time, `[rad]`.
     pub(super) q: JointVector,
-    /// How far off the end effector stays.
+    /// Remaining distance of the end effector.
     pub(super) off: Off,
 }
 
-/// Checks that the arm follows `way` from the joint positions `q` on. `pass` is called with the
-/// time and the joint positions of each step.
+/// Checks that the arm follows `way` from the joint positions `q`. `pass` is called with the time
+/// and the joint positions of each step.
 pub(super) fn check(
     way: &Timed<PoseState>,
     q: JointVector,
@@ -91,7 +93,7 @@ pub(super) fn check(
     way.break_value().map_or(Ok(()), Err)
 }
 
-/// How far the end effector is off the way.
+/// Distance of the end effector from the path.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Off {
     twist: Twist,
@@ -110,26 +112,26 @@ impl Off {
         }
     }
 
-    /// In units of what it may be.
+    /// Size in units of the permitted distance.
     pub(super) fn size(&self) -> f64 {
         (self.translation / OFF_TRANSLATION).max(self.rotation / OFF_ROTATION)
     }
 }
 
-/// The arm that is to follow a way.
+/// The arm that follows a path.
 pub(super) struct Arm<'a> {
-    /// Where its free direction goes.
+    /// Posture for its free direction.
     pub(super) posture: &'a Posture,
-    /// How fast that may be.
+    /// Limits for its speed.
     pub(super) budget: &'a Budget,
     pub(super) model: &'a Model,
     pub(super) ee: &'a EndEffector,
-    /// How many of the steps below are taken at once: 1 for a check, more for a first look.
+    /// Number of steps that are taken at once: 1 for a check, more for a first look.
     pub(super) stride: f64,
 }
 
 impl Arm<'_> {
-    /// Moves the joints from `q` along `way`, until `each` breaks off.
+    /// Moves the joints from `q` along `way`, until `each` breaks.
     pub(super) fn along<B>(
         &self,
         way: &Timed<PoseState>,
@@ -167,8 +169,8 @@ impl Arm<'_> {
         ControlFlow::Continue(())
     }
 
-    /// The joints that follow those at `q` to the state `at` within `duration`, and how far off
-    /// they stay.
+    /// Returns the joint positions that follow `q` to the state `at` within `duration`, and their
+    /// distance from it.
     fn step(&self, q: JointVector, at: &PoseState, duration: f64) -> (JointVector, Off) {
         let speed = at.twist.fixed_rows::<3>(0).norm();
         let mut q = q;

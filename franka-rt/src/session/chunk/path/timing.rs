@@ -1,30 +1,29 @@
-//! When a path is where: as fast as its limits allow, with each corner rounded or stopped at.
+//! Timing of a path: as fast as its limits allow, with each corner rounded or stopped at.
 //!
 //! A leg is passed along its straight line, with a profile of constant jerks. Around a corner the
-//! velocity goes over from that of one leg to that of the next along a smoothstep, evenly in time:
+//! velocity changes from one leg's to the next leg's along a smoothstep, evenly in time:
 //!
 //! ```text
 //! v(t) = v1 + (v2 - v1) s(t / 2T)    from T before the corner to T after it, s(u) = 3 u^2 - 2 u^3
 //! ```
 //!
-//! Its integral leads from the one line to the other exactly, and its acceleration is zero at both
-//! ends. `T` is the least that the limits allow for a given size of the corner, and more where the
-//! legs beside it are too short to reach its speed or to brake to it.
+//! Its integral leads exactly from one line to the other, and its acceleration is zero at both
+//! ends. `T` is the shortest time that the limits allow for a given size of the corner. It is
+//! longer where the adjacent legs are too short to reach its speed or to brake to it.
 
 use franka_otg::AxisLimits;
 use nalgebra::SVector;
 
-/// One leg, seen from where it begins.
+/// One leg, seen from its beginning.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leg<const D: usize> {
-    /// From its begin to its end.
+    /// Vector from its beginning to its end.
     pub(super) way: SVector<f64, D>,
-    /// In shares of the leg: 1/s, 1/s^2, 1/s^3.
+    /// Limits in shares of the leg: 1/s, 1/s^2, 1/s^3.
     pub(super) limits: AxisLimits,
 }
 
-/// A corner that is rounded: shares of the legs before and after it, and half of the time that it
-/// takes, `[s]`.
+/// A rounded corner: its shares of the legs before and after it, and half of its time, `[s]`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
     pub(super) before: f64,
@@ -33,9 +32,9 @@ pub(super) struct Corner {
 }
 
 impl Corner {
-    /// The least half of its time, for `leg` and `next` beside it. `duration` says in what time a
-    /// way may be gone that takes 0.75 of it at the most acceleration over its square, and 1.5 of
-    /// it at the most jerk over its cube.
+    /// Creates the corner between `leg` and `next` with its shortest time. `duration` returns the
+    /// time for a vector: 0.75 of the vector over the square of the time is at most the
+    /// acceleration, 1.5 of it over the cube at most the jerk.
     pub(super) fn new<const D: usize>(
         (before, after): (f64, f64),
         (leg, next): (&Leg<D>, &Leg<D>),
@@ -51,16 +50,16 @@ impl Corner {
     }
 }
 
-/// Half of the time that a change of velocity over `way` in a corner takes, `[s]`.
+/// Returns half of the time for a change of velocity over `way` in a corner, `[s]`.
 pub(super) fn corner_time(way: f64, limits: &AxisLimits) -> f64 {
     let by_acceleration = (0.75 * way / limits.acceleration).sqrt();
     by_acceleration.max((1.5 * way / limits.jerk).cbrt())
 }
 
-/// A knot of the motion: between two of them the jerk is constant, or a corner is rounded.
+/// A knot of the motion. Between two knots the jerk is constant, or a corner is rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Knot {
-    /// `[s]`
+    /// Time, `[s]`.
     pub(super) time: f64,
     pub(super) leg: usize,
     /// Share of the leg, with two derivatives.
@@ -70,7 +69,7 @@ pub(super) struct Knot {
 }
 
 impl Knot {
-    /// At rest where a path begins.
+    /// At rest at the beginning of a path.
     pub(super) const START: Self = Self {
         time: 0.0,
         leg: 0,
@@ -81,9 +80,9 @@ impl Knot {
 }
 
 /// Times the `legs`, with `corners[i]` between leg `i` and the next; the arm stops where there is
-/// none. At least one leg; one corner less than legs.
+/// no corner. Requires at least one leg, and one corner less than legs.
 pub(super) fn time<const D: usize>(legs: &[Leg<D>], corners: &mut [Option<Corner>]) -> Vec<Knot> {
-    // What each leg can brake to, then what it can reach.
+    // First the speed that each leg can brake to, then the speed that it can reach.
     for i in (1..legs.len()).rev() {
         let (_, end) = speeds(i, corners);
         let most = fastest(end, span(i, corners), &legs[i].limits);
@@ -121,7 +120,7 @@ pub(super) fn time<const D: usize>(legs: &[Leg<D>], corners: &mut [Option<Corner
     knots
 }
 
-/// Shares per second at which leg `i` is begun and left along its line.
+/// Shares per second at the beginning and the end of the straight part of leg `i`.
 fn speeds(i: usize, corners: &[Option<Corner>]) -> (f64, f64) {
     let before = i.checked_sub(1).and_then(|before| corners[before]);
     let after = corners.get(i).copied().flatten();
@@ -131,7 +130,7 @@ fn speeds(i: usize, corners: &[Option<Corner>]) -> (f64, f64) {
     )
 }
 
-/// The share of leg `i` that is gone along its line.
+/// Share of leg `i` that is passed along its line.
 fn span(i: usize, corners: &[Option<Corner>]) -> f64 {
     let before = i.checked_sub(1).and_then(|before| corners[before]);
     let after = corners.get(i).copied().flatten();
@@ -139,14 +138,14 @@ fn span(i: usize, corners: &[Option<Corner>]) -> f64 {
     (1.0 - cut).max(0.0)
 }
 
-/// Way of a change from one speed to another, both without acceleration.
+/// Distance of a change from one speed to another, both without acceleration.
 fn way(from: f64, to: f64, limits: &AxisLimits) -> f64 {
     let (build_up, hold) = ramp(from, to, limits);
     0.5 * (from + to) * (2.0 * build_up + hold)
 }
 
-/// Time for which a change of speed builds its acceleration up, and takes it back, and time between
-/// the two.
+/// Time for building up or removing the acceleration in a change of speed, and time between the
+/// two.
 fn ramp(from: f64, to: f64, limits: &AxisLimits) -> (f64, f64) {
     let (change, full) = ((to - from).abs(), limits.acceleration / limits.jerk);
     if change < limits.acceleration * full {
@@ -156,12 +155,14 @@ fn ramp(from: f64, to: f64, limits: &AxisLimits) -> (f64, f64) {
     }
 }
 
-/// The greatest speed that can be reached from `from`, or braked from to it, within `span`.
+/// Returns the greatest speed that can be reached from `from`, or from which the motion can brake
+/// to `from`, within `span`.
 fn fastest(from: f64, span: f64, limits: &AxisLimits) -> f64 {
     most(from, limits.velocity, |to| way(from, to, limits) <= span)
 }
 
-/// The greatest number between two for which `holds`, which it does from the lower one on up to it.
+/// Returns the greatest number in an interval for which `holds` is true. `holds` is true from the
+/// lower end up to that number.
 fn most(lower: f64, upper: f64, holds: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (lower, upper.max(lower));
     if holds(high) {
@@ -178,13 +179,13 @@ fn most(lower: f64, upper: f64, holds: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// More than the digits of a number have.
+/// More halvings than a number has digits.
 const HALVINGS: usize = 64;
 
 /// Knots closer in time than this are one, `[s]`.
 const SAME: f64 = 1e-9;
 
-/// Goes along the line for `span` of a leg, as fast as the limits allow.
+/// Moves along the line for `span` of a leg, as fast as the limits allow.
 fn straight(knots: &mut Vec<Knot>, (begin, end): (f64, f64), span: f64, limits: &AxisLimits) {
     let first = knots[knots.len() - 1];
     let peak = most(begin.max(end), limits.velocity, |peak| {
@@ -196,7 +197,7 @@ fn straight(knots: &mut Vec<Knot>, (begin, end): (f64, f64), span: f64, limits: 
         glide(knots, cruise / peak, 0.0);
     }
     change(knots, (peak, end), limits);
-    // Exactly there: rounding has no say in it.
+    // Sets the exact end, so that rounding has no effect.
     if let Some(last) = knots.last_mut() {
         (last.s, last.v, last.a) = (first.s + span, end, 0.0);
     }
