@@ -25,7 +25,7 @@ use crate::session::{Budget, GoalId, Target, approach, rigid};
 pub(in crate::session) struct ChunkCourse {
     goal: GoalId,
     budget: Budget,
-    /// How far the reference is behind, in units of what it may be.
+    /// Distance of the reference behind the chunk, in units of the permitted distance.
     lag: f64,
     play: Play,
 }
@@ -40,25 +40,25 @@ enum Play {
         player: Player<PoseState>,
         state: PoseState,
         drift: Drift,
-        /// Of a path, which was checked with it: where the joints were when it was taken up.
+        /// For a path, which was checked with it: joint positions when the path was taken up.
         posture: Option<Posture>,
         translation: AxisLimits,
         rotation: AxisLimits,
     },
 }
 
-/// Where a chunk is taken up.
+/// Situation in which a chunk is taken up.
 #[derive(Debug)]
 pub(in crate::session) struct ChunkStart<'a> {
-    /// The reference in the answer before.
+    /// Reference in the previous answer.
     pub(in crate::session) reference: &'a Reference,
-    /// The pose that it follows, or that of its end effector.
+    /// Pose that the reference follows, or the pose of its end effector.
     pub(in crate::session) pose: PoseState,
-    /// What is left of a motion over the joints.
+    /// Remainder of a motion over the joints.
     pub(in crate::session) drift: Drift,
-    /// The chunk that was followed up to now.
+    /// The previous chunk.
     pub(in crate::session) before: Option<&'a ChunkCourse>,
-    /// The state that is to be answered, `message_id`.
+    /// Time of the state to answer, `message_id`.
     pub(in crate::session) now: u64,
 }
 
@@ -101,7 +101,7 @@ impl ChunkCourse {
                 Play::Poses {
                     player: Player::new(curve, asked, (&pose, wanted), now),
                     state: pose,
-                    // The way to another posture fades.
+                    // The motion to another posture fades.
                     drift: posture.map_or(drift, |_| Drift::of(reference.dq)),
                     posture,
                     translation: limits.translation,
@@ -117,7 +117,7 @@ impl ChunkCourse {
         }
     }
 
-    /// Where it wants the joints at the time `now`, if that is what it moves.
+    /// Returns the wanted joints at the time `now`, if the chunk moves joints.
     fn joints_at(&self, now: u64) -> Option<Reference> {
         match &self.play {
             Play::Joints { player, .. } => Some(player.at(now)),
@@ -125,7 +125,7 @@ impl ChunkCourse {
         }
     }
 
-    /// The same of the end effector.
+    /// Returns the wanted pose at the time `now`, if the chunk moves the end effector.
     fn pose_at(&self, now: u64) -> Option<PoseState> {
         match &self.play {
             Play::Joints { .. } => None,
@@ -133,8 +133,8 @@ impl ChunkCourse {
         }
     }
 
-    /// Goes on from `reference` within another budget. The chunk keeps its times: what a slower
-    /// budget leaves it behind by, it makes up for.
+    /// Continues from `reference` within another budget. The chunk keeps its times: a lag under a
+    /// slower budget is made up for.
     pub(in crate::session) fn keep_to(
         &mut self,
         model: &Model,
@@ -159,7 +159,7 @@ impl ChunkCourse {
         }
     }
 
-    /// Stops on a path, or goes on.
+    /// Stops on a path, or continues.
     pub(in crate::session) fn set_paused(&mut self, paused: bool) {
         match &mut self.play {
             Play::Joints { player, .. } => player.set_paused(paused),
@@ -167,7 +167,7 @@ impl ChunkCourse {
         }
     }
 
-    /// Goes on from `reference`, and the `pose` of its end effector, which something else has
+    /// Continues from `reference`, and the `pose` of its end effector, which something else has
     /// moved.
     pub(in crate::session) fn begin_again(
         &mut self,
@@ -181,7 +181,7 @@ impl ChunkCourse {
         self.keep_to(model, reference, self.budget);
     }
 
-    /// One cycle on, in the answer to the state `now`, from `reference`.
+    /// Advances by one cycle from `reference`, in the answer to the state `now`.
     pub(in crate::session) fn step(
         &mut self,
         model: &Model,
@@ -244,8 +244,8 @@ impl ChunkCourse {
         }
     }
 
-    /// The pose that the reference of the joints follows, if that is what the chunk moves, and what
-    /// is left of motions over the joints.
+    /// Returns the pose that the joint reference follows, if the chunk moves a pose, and the
+    /// remainder of motions over the joints.
     pub(in crate::session) fn pose(&self) -> Option<(PoseState, Drift)> {
         match &self.play {
             Play::Joints { .. } => None,
@@ -253,15 +253,15 @@ impl ChunkCourse {
         }
     }
 
-    /// Moves that pose to `pose` with its velocity kept. What this leaves it behind by, it makes up
-    /// for.
+    /// Moves that pose to `pose` with its velocity kept. The course makes up for the lag that this
+    /// causes.
     pub(in crate::session) fn reanchor(&mut self, pose: Isometry3<f64>) {
         if let Play::Poses { state, .. } = &mut self.play {
             state.pose = pose;
         }
     }
 
-    /// True if the chunk has come to its end by `now`.
+    /// True if the chunk has ended by `now`.
     pub(in crate::session) fn is_over(&self, now: u64) -> bool {
         match &self.play {
             Play::Joints { player, .. } => player.is_over(now),
@@ -277,7 +277,7 @@ impl ChunkCourse {
         }
     }
 
-    /// Where the chunk comes to rest.
+    /// Target at which the chunk ends at rest.
     pub(in crate::session) fn target(&self) -> Target {
         match &self.play {
             Play::Joints { player, .. } => Target::Joints(player.curve().last().q.into()),
@@ -285,7 +285,7 @@ impl ChunkCourse {
         }
     }
 
-    /// Gives the chunk back, as the course has ended by `now`.
+    /// Gives the chunk back, because the course has ended by `now`.
     pub(in crate::session) fn end(self, chunks: &mut ChunkReader, now: u64) {
         let fate = if self.is_over(now) {
             Fate::Ended
@@ -300,13 +300,15 @@ impl ChunkCourse {
     }
 }
 
-/// What the end effector may do on its way: its budget, unless it moves and does not keep that.
+/// Returns the limits of the end effector: its budget, unless its present motion exceeds the
+/// budget.
 fn pose_limits(model: &Model, now: &PoseState, budget: &Budget) -> Budget {
     budget.able_to_stop(&now.twist, &now.acceleration, model.cartesian_limits())
 }
 
-/// What each joint may do on the way through points of this `extent`: its budget, unless it moves
-/// and does not keep that, made gentle enough for the points nearest to the ends of its range.
+/// Returns the limits of each joint on a path through points of this `extent`. They are its budget,
+/// unless its present motion exceeds the budget. They are gentle enough for the points nearest to
+/// the ends of its range.
 fn joint_limits(
     robot: &JointLimits,
     extent: &JointExtent,
@@ -326,8 +328,8 @@ fn joint_limits(
     })
 }
 
-/// Each joint on its own. Where the motion between points leads out of a joint's range, the joint
-/// waits at the end of it.
+/// Follows with each joint alone. Where the motion between points leaves a joint's range, the joint
+/// waits at the end of the range.
 fn follow_joints(
     robot: &JointLimits,
     limits: &[AxisLimits; 7],
@@ -355,9 +357,9 @@ fn follow_joints(
     next
 }
 
-/// Translation and rotation, each by its norm. Angular velocity and acceleration are those in base
-/// axes, so that they keep the budget there; what a cycle's rotation vector lacks against them is
-/// of the third order.
+/// Follows translation and rotation, each by its norm. Angular velocity and acceleration are in
+/// base axes, so that they keep the budget there. The rotation vector of a cycle differs from them
+/// only in the third order.
 fn follow_pose(
     translation: &AxisLimits,
     turning: &AxisLimits,

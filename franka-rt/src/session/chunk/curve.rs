@@ -1,9 +1,9 @@
 //! The motion through the points of a chunk, twice continuously differentiable.
 //!
 //! Each point gets a velocity and an acceleration from its neighbours, and two points are joined by
-//! the fifth-degree polynomial that meets all six. Orientations are joined as rotation vectors in
-//! the chart around the earlier of the two, so none of them is singular whatever way the end
-//! effector turns in all. The motion rests at its last point.
+//! the fifth-degree polynomial that meets all six values. Orientations are joined as rotation
+//! vectors in the chart around the earlier of the two, so that no total turn of the end effector
+//! leads to a singularity. The motion rests at its last point.
 
 use super::curve_state::CurveState;
 
@@ -12,13 +12,14 @@ use super::curve_state::CurveState;
 pub(super) struct Curve<M: CurveState> {
     times: Vec<f64>,
     states: Vec<M>,
-    /// Found here, outside the thread: the cycle that takes a chunk up has no time for all points.
+    /// Computed here, outside the thread: the cycle that takes up a chunk has no time for all
+    /// points.
     extent: M::Extent,
 }
 
 impl<M: CurveState> Curve<M> {
     /// # Panics
-    /// If there are no states, or not as many as times.
+    /// Returns `None` if there are no states, or not as many as times.
     pub(super) fn new(times: Vec<f64>, mut states: Vec<M>) -> Self {
         assert!(!states.is_empty() && times.len() == states.len());
         let last = states.len() - 1;
@@ -43,12 +44,12 @@ impl<M: CurveState> Curve<M> {
         &self.states[0]
     }
 
-    /// At rest.
+    /// Returns the last state, at rest.
     pub(super) fn last(&self) -> &M {
         &self.states[self.states.len() - 1]
     }
 
-    /// The range that the points take up.
+    /// Returns the range of the points.
     pub(super) fn extent(&self) -> &M::Extent {
         &self.extent
     }
@@ -57,8 +58,8 @@ impl<M: CurveState> Curve<M> {
         &self.states
     }
 
-    /// The state at `t`, seconds from the origin: the first before the first point's time, the last
-    /// from the last one's on.
+    /// Returns the state at `t`, seconds from the origin. Before the first point's time it is the
+    /// first state, after the last point's time the last.
     pub(super) fn at(&self, t: f64) -> M {
         match self.times.partition_point(|&time| time <= t) {
             0 => *self.first(),

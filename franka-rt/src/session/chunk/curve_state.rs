@@ -1,5 +1,5 @@
-//! What moves along a chunk: joints, or a pose; how to go from one of their states to another, and
-//! how the distance between two is let go.
+//! States along a chunk: joints, or a pose. They define the transition between two states, and the
+//! fading of a distance between two.
 
 use franka_model::{JointVector, Twist, rotation};
 use nalgebra::{Isometry3, SVector, Translation3, Vector3};
@@ -10,54 +10,55 @@ use super::value::Points;
 use crate::session::pose::PoseState;
 use crate::session::reference::Reference;
 
-/// How far the reference may be behind on a path: from there on the path waits for it. `[m]`
+/// Greatest distance of the reference behind a path, `[m]`; at that distance the path waits.
 const LAG_TRANSLATION: f64 = 0.005;
 
-/// The same of the end effector's rotation, and of each joint, `[rad]`.
+/// Same for the end effector's rotation, and for each joint, `[rad]`.
 const LAG_ROTATION: f64 = 0.01;
 
-/// A state with its first two derivatives that chunks can be made of.
+/// A state with its first two derivatives, as a point of chunks.
 pub(super) trait CurveState: Copy {
-    /// How far one state is from another, with derivatives.
+    /// Distance between two states, with derivatives.
     type Gap: Copy + core::fmt::Debug;
 
-    /// The range that several states take up.
+    /// Range of several states.
     type Extent: Clone + core::fmt::Debug + PartialEq;
 
-    /// The state at `t` on the way from `from` at 0 to `to` at `duration`, seconds.
+    /// Returns the state at `t` between `from` at 0 and `to` at `duration`, seconds.
     fn between(from: &Self, to: &Self, duration: f64, t: f64) -> Self;
 
-    /// What lies between this state and `base`.
+    /// Returns the distance from `base` to this state.
     fn gap_from(&self, base: &Self) -> Self::Gap;
 
-    /// This state, as far off as `gap` still is at `t` if it closes within `duration`.
+    /// Returns this state, displaced by the rest of `gap` at `t` if the gap closes within
+    /// `duration`.
     fn displaced(&self, gap: &Self::Gap, duration: f64, t: f64) -> Self;
 
-    /// In the same place, with the time slowed down to `rate`, which changes by `change`, `[1/s]`.
+    /// Returns the same place, with the time slowed down to `rate`, which changes by `change`,
+    /// `[1/s]`.
     fn paced(&self, rate: f64, change: f64) -> Self;
 
-    /// How far it is behind `target`, or beside the way of that, in units of what an arm on a path
-    /// may be.
+    /// Distance behind `target`, or beside its path, in units of the permitted distance on a path.
     fn lag(&self, target: &Self) -> f64;
 
-    /// How far away from `other` it is, in the same units.
+    /// Distance from `other`, in the same units.
     fn distance(&self, other: &Self) -> f64;
 
-    /// In the same place, with the motion of `other`.
+    /// Returns the same place, with the motion of `other`.
     fn moving_as(&self, other: &Self) -> Self;
 
-    /// At rest in the same place.
+    /// Returns the same place, at rest.
     fn resting(&self) -> Self;
 
-    /// The range that `states` take up.
+    /// Returns the range of `states`.
     fn extent(states: &[Self]) -> Self::Extent;
 
-    /// A curve of such states as the points of a chunk.
+    /// Returns a curve of such states as the points of a chunk.
     fn points(curve: Curve<Self>) -> Points;
 }
 
-/// The length of `gap` to something that moves at `velocity`, without what lies ahead of that: a
-/// path that waited for who is ahead of it would drive it further ahead.
+/// Length of `gap` to a point that moves at `velocity`, without the part ahead of that point. If a
+/// path waited for a reference ahead of it, it would drive the reference further ahead.
 fn behind<const D: usize>(gap: &SVector<f64, D>, velocity: &SVector<f64, D>) -> f64 {
     let along = gap.dot(velocity);
     let ahead = if along < 0.0 {
@@ -173,8 +174,8 @@ impl CurveState for PoseState {
     type Gap = PoseGap;
     type Extent = ();
 
-    /// The rotation goes in the chart around the orientation of `from`, which the one of `to` has
-    /// to be less than half a turn away from.
+    /// The rotation is in the chart around the orientation of `from`. The orientation of `to` must
+    /// be less than half a turn away.
     fn between(from: &Self, to: &Self, duration: f64, t: f64) -> Self {
         let start = PointState {
             p: Vector3::zeros(),
@@ -283,8 +284,8 @@ impl PoseState {
         }
     }
 
-    /// Angular velocity and acceleration, which are those of the rotation vector in the chart
-    /// around this orientation.
+    /// Angular velocity and acceleration, which equal the derivatives of the rotation vector in the
+    /// chart around this orientation.
     pub(super) fn rotation(&self) -> PointState<3> {
         PointState {
             p: Vector3::zeros(),
@@ -293,7 +294,7 @@ impl PoseState {
         }
     }
 
-    /// The state that is at `turn` in the chart around this orientation, and at `way`.
+    /// Returns the state at `turn` in the chart around this orientation, and at `way`.
     fn turned(&self, turn: &PointState<3>, way: &PointState<3>) -> Self {
         let omega = rotation::angular_velocity(&turn.p, &turn.v);
         let alpha = rotation::angular_acceleration(&turn.p, &turn.v, &turn.a);
@@ -308,7 +309,7 @@ impl PoseState {
     }
 }
 
-/// The rotation of `state` in the chart around the orientation of `anchor`.
+/// Returns the rotation of `state` in the chart around the orientation of `anchor`.
 fn in_chart(state: &PoseState, anchor: &PoseState) -> PointState<3> {
     let phi = rotation::error(&state.pose.rotation, &anchor.pose.rotation);
     let turning = state.rotation();
@@ -320,7 +321,7 @@ fn in_chart(state: &PoseState, anchor: &PoseState) -> PointState<3> {
     }
 }
 
-/// Angular velocity and acceleration of `base`, turned by `phi`.
+/// Returns the angular velocity and acceleration of `base`, turned by `phi`.
 fn carried(base: &PoseState, phi: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     let (turn, turning) = (rotation::exp(phi), base.rotation());
     (turn * turning.v, turn * turning.a)
@@ -356,7 +357,7 @@ mod tests {
             && (a.acceleration - b.acceleration).norm() < tolerance
     }
 
-    /// Velocity and acceleration against differences of pose and velocity.
+    /// Compares velocity and acceleration with differences of pose and velocity.
     fn check_derivatives(at: impl Fn(f64) -> PoseState, t: f64) {
         let h = 1e-5;
         let (before, now, after) = (at(t - h), at(t), at(t + h));

@@ -5,18 +5,18 @@
 
 use nalgebra::SVector;
 
-/// The most samples that one derivative is made of.
+/// Maximum number of samples in one derivative.
 const SAMPLES: usize = 5;
 
-/// The largest ratio of two intervals over which five samples are used: on wilder grids a
+/// Greatest ratio of two intervals for which five samples are used: on less even grids a
 /// fourth-degree polynomial swings.
 const EVEN: f64 = 3.0;
 
-/// First and second derivative at sample `i` of the values at `times`. `value` gives a sample in
-/// coordinates of the caller's choice.
+/// Returns first and second derivative at sample `i` of the values at `times`. `value` returns a
+/// sample in coordinates of the caller's choice.
 ///
-/// Five samples where there are two on each side at similar distances, else three, or the slope of
-/// two. One sample has no motion.
+/// Uses five samples where there are two on each side at similar distances, otherwise three, or the
+/// slope of two. A single sample has no motion.
 pub(super) fn at<const D: usize>(
     times: &[f64],
     i: usize,
@@ -51,7 +51,7 @@ fn window(times: &[f64], i: usize) -> core::ops::Range<usize> {
     first..(first + 3).min(times.len())
 }
 
-/// Weights of the values at `nodes` in the first and second derivative at `z`.
+/// Returns the weights of the values at `nodes` in the first and second derivative at `z`.
 fn weights(nodes: &[f64], z: f64) -> [[f64; 2]; SAMPLES] {
     let mut c = [[0.0; 3]; SAMPLES];
     c[0][0] = 1.0;

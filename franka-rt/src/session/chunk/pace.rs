@@ -1,17 +1,17 @@
-//! The pace of a path: a time of its own, which stops while the path is paused and waits while the
+//! The pace of a path: a separate time, which stops while the path is paused and waits while the
 //! arm is held back.
 
 use franka_otg::{AxisLimits, Generator, Limits, State};
 
 use crate::shaping::CYCLE;
 
-/// How fast the time of a path may stop and go on, in parts of the robot's.
+/// Limits for stopping and resuming the time of a path, in parts of the robot's time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pace(AxisLimits);
 
 impl Pace {
-    /// For motions that are this fast at most and have these limits: stopping the time takes half
-    /// of them.
+    /// Computes the pace for motions with these speeds at most and these limits. Stopping the time
+    /// uses half of the limits.
     pub(super) fn of(motions: impl Iterator<Item = (f64, AxisLimits)>) -> Self {
         let gentle = AxisLimits {
             velocity: 1.0 / STOP_MIN,
@@ -24,35 +24,35 @@ impl Pace {
             acceleration: pace.acceleration.min(0.5 * limits.jerk / speed),
             jerk: 0.0,
         });
-        // The change of the pace has reached its most within a tenth of the time that it may take.
+        // The change of the pace reaches its greatest value within a tenth of its permitted time.
         let jerk = 10.0 * pace.acceleration * pace.velocity.max(pace.acceleration / pace.velocity);
         Self(AxisLimits { jerk, ..pace })
     }
 
-    /// What leads from a constant pace to others.
+    /// Returns a generator that leads from a constant pace to others.
     fn at(self, pace: f64) -> Option<Generator<1>> {
         let limits = Limits::per_axis([self.0]).ok()?;
         Generator::towards(State::at_rest([pace]), limits, Some(&[pace])).ok()
     }
 }
 
-/// Shortest time in which the time of a path stops, `[s]`.
+/// Shortest time for stopping the time of a path, `[s]`.
 const STOP_MIN: f64 = 0.05;
 
 /// The time of a path.
 #[derive(Debug)]
 pub(super) struct PathTime {
-    /// Seconds of the path.
+    /// Time, seconds of the path.
     pub(super) time: f64,
     pace: Pace,
     /// 1 at full pace, 0 when paused.
     axis: Generator<1>,
-    /// What is left of the pace where the arm lags.
+    /// Remaining share of the pace while the arm lags.
     share: f64,
 }
 
 impl PathTime {
-    /// From the begin of a path on.
+    /// Starts at the beginning of a path.
     pub(super) fn new(pace: Pace) -> Option<Self> {
         Some(Self {
             time: -CYCLE,
@@ -62,7 +62,7 @@ impl PathTime {
         })
     }
 
-    /// Stops the time, or lets it go on. A path that has not begun does not begin.
+    /// Stops or resumes the time. A path that has not begun does not begin.
     pub(super) fn set_paused(&mut self, paused: bool) {
         if paused
             && self.time < 0.0
@@ -75,19 +75,19 @@ impl PathTime {
         let _ = self.axis.set_target(&[wanted]);
     }
 
-    /// One cycle on, of an arm that is behind by `lag` in units of what it may be.
+    /// Advances by one cycle, for an arm that is behind by `lag` in units of the permitted lag.
     pub(super) fn step(&mut self, lag: f64) {
         self.share = (1.0 - (lag - 0.1) / 0.9).clamp(0.0, 1.0);
         self.axis.step();
         self.time += CYCLE * self.rate();
     }
 
-    /// Seconds of the path in one of the robot.
+    /// Returns the seconds of the path in one second of the robot.
     pub(super) fn rate(&self) -> f64 {
         self.axis.state().position[0].clamp(0.0, 1.0) * self.share
     }
 
-    /// Its derivative, `[1/s]`, but for that of the lag.
+    /// Derivative of [`rate`](Self::rate), `[1/s]`, without the part from the lag.
     pub(super) fn change(&self) -> f64 {
         self.axis.state().velocity[0] * self.share
     }

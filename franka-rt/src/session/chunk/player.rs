@@ -1,4 +1,4 @@
-//! Where the chunk that is in force wants the arm to be, at each time of the robot.
+//! Computes the place that the chunk in force wants, at each time of the robot.
 
 use core::time::Duration;
 
@@ -8,31 +8,31 @@ use super::pace::{Pace, PathTime};
 use super::value::{Chunk, Origin, milliseconds};
 use crate::shaping::CYCLE;
 
-/// Time, `[s]`, in which the motion before is let go on the way to a first point that lies later
-/// than this: the motion would go on until half of the way there is over.
+/// Time in which the previous motion fades, `[s]`, if the first point lies later than this.
+/// Otherwise the previous motion would continue for half of the time to that point.
 const LET_GO: f64 = 1.0;
 
-/// A chunk that has been taken up.
+/// A chunk that was taken up.
 #[derive(Debug)]
 pub(super) struct Player<M: CurveState> {
     curve: Curve<M>,
-    /// Time of the robot that the curve's times count from, `message_id`.
+    /// Robot time of the curve's origin, `message_id`.
     origin: u64,
-    /// As the chunk had it, to give it back with.
+    /// Original values of the chunk, for giving it back.
     asked: (Origin, Duration, Option<Pace>),
-    /// The time of a path.
+    /// Time of a path.
     own: Option<PathTime>,
     entry: Entry<M>,
 }
 
-/// How the motion before goes over into the curve. Times as the curve's.
+/// Transition from the previous motion into the curve, with times as in the curve.
 #[derive(Debug)]
 enum Entry<M: CurveState> {
-    /// At once.
+    /// Immediate.
     Turn,
-    /// The first point lies in the future: on the way to it since `since`.
+    /// The first point lies in the future. The arm approaches it since `since`.
     Approach { from: M, since: f64 },
-    /// The distance from the curve at `since` is let go in `duration`.
+    /// The distance from the curve at `since` fades out in `duration`.
     Blend {
         gap: M::Gap,
         since: f64,
@@ -41,14 +41,15 @@ enum Entry<M: CurveState> {
 }
 
 impl<M: CurveState> Player<M> {
-    /// Takes up a chunk through `curve` in the answer to the state `now`, from a reference that was
-    /// at `reference` in the answer before, where a chunk before this one wanted it at `wanted`.
+    /// Takes up a chunk through `curve` in the answer to the state `now`. In the previous answer
+    /// the reference was at `reference`, and the previous chunk wanted it at `wanted`.
     ///
-    /// The way begins at the one of the two places that is nearer to the chunk. What the reference
-    /// lags behind the chunk before, it makes up for within its limits, and goes on to do so: to be
-    /// on a new chunk in time, from where it is, would ask for more than the limits allow, and each
-    /// chunk would add to the swing. A chunk that begins where the arm is goes on from there. The
-    /// velocity is that of the reference: a chunk may want any.
+    /// The motion begins at the one of the two places that is nearer to the chunk. The reference
+    /// makes up for its lag behind the previous chunk within its limits, and continues to do so.
+    /// Reaching a new chunk in time from the lagging reference would require more than the limits
+    /// allow, and each chunk would amplify the swing. A chunk that begins at the arm's place
+    /// continues from there. The velocity is the reference's, because a chunk may want any
+    /// velocity.
     pub(super) fn new(
         curve: Curve<M>,
         (origin, blend, pace): (Origin, Duration, Option<Pace>),
@@ -84,7 +85,7 @@ impl<M: CurveState> Player<M> {
         }
     }
 
-    /// Where to be in the answer to the state `now`.
+    /// Returns the wanted state in the answer to the state `now`.
     pub(super) fn at(&self, now: u64) -> M {
         let t = self.time(now);
         let there = match &self.entry {
@@ -107,22 +108,22 @@ impl<M: CurveState> Player<M> {
         }
     }
 
-    /// Lets the time of a path go on by one cycle, for an arm that is behind by `lag` in units of
-    /// what it may be.
+    /// Advances the time of a path by one cycle, for an arm that is behind by `lag` in units of the
+    /// permitted lag.
     pub(super) fn step(&mut self, lag: f64) {
         if let Some(own) = &mut self.own {
             own.step(lag);
         }
     }
 
-    /// Stops the time of a path, or lets it go on. Points that have times do not wait.
+    /// Stops or resumes the time of a path. Points that have times do not wait.
     pub(super) fn set_paused(&mut self, paused: bool) {
         if let Some(own) = &mut self.own {
             own.set_paused(paused);
         }
     }
 
-    /// Seconds from the curve's origin.
+    /// Returns the seconds from the curve's origin.
     fn time(&self, now: u64) -> f64 {
         match &self.own {
             Some(own) => own.time,
@@ -130,7 +131,7 @@ impl<M: CurveState> Player<M> {
         }
     }
 
-    /// True if nothing moves any more from `now` on.
+    /// True if nothing moves any more after `now`.
     pub(super) fn is_over(&self, now: u64) -> bool {
         let t = self.time(now);
         let entered = match self.entry {
@@ -151,7 +152,7 @@ impl<M: CurveState> Player<M> {
         &self.curve
     }
 
-    /// The chunk as it came, but for what nobody asks for any more.
+    /// Returns the original chunk, without the parts that no caller needs any more.
     pub(super) fn into_chunk(self) -> Chunk {
         let (origin, blend, pace) = self.asked;
         Chunk {
@@ -163,7 +164,7 @@ impl<M: CurveState> Player<M> {
     }
 }
 
-/// On the way from one state to another, `t` after its begin.
+/// Returns the state between two others, `t` after the beginning.
 fn approach<M: CurveState>(from: &M, to: &M, duration: f64, t: f64) -> M {
     if duration <= LET_GO {
         return M::between(from, to, duration, t);
@@ -192,7 +193,7 @@ mod tests {
         }
     }
 
-    /// A line of 1 rad/s, points 40 ms apart from 40 to 400 ms.
+    /// Returns a line of 1 rad/s with points 40 ms apart, from 40 to 400 ms.
     fn line() -> Chunk {
         let point = |k: u32| (Duration::from_millis(40) * k, [0.04 * f64::from(k); 7]);
         Chunk::joints((1..=10).map(point)).unwrap()
@@ -248,7 +249,7 @@ mod tests {
         };
         assert!(distance(&blended(0.119), &before) < 1e-9);
         assert!(distance(&blended(0.219), &player.curve.at(0.219)) < 1e-9);
-        // One millisecond at a time nothing jumps: velocities and accelerations are those of the
+        // In steps of one millisecond nothing jumps: velocities and accelerations match the
         // positions.
         for now in 1121..1300 {
             let (a, b, c) = (player.at(now - 1), player.at(now), player.at(now + 1));

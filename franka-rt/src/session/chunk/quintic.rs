@@ -21,7 +21,7 @@ impl<const D: usize> PointState<D> {
         }
     }
 
-    /// After `t` seconds of constant `jerk`.
+    /// Returns the state after `t` seconds of constant `jerk`.
     pub(super) fn after(&self, jerk: &SVector<f64, D>, t: f64) -> Self {
         Self {
             p: self.p + (self.v + (self.a + jerk * (t / 3.0)) * (0.5 * t)) * t,
@@ -31,7 +31,8 @@ impl<const D: usize> PointState<D> {
     }
 }
 
-/// The state at `t` of the motion that is at `from` at 0 and at `to` at `duration`, seconds.
+/// Returns the state at `t` of the motion that is at `from` at 0 and at `to` at `duration`,
+/// seconds.
 pub(super) fn between<const D: usize>(
     from: &PointState<D>,
     to: &PointState<D>,
@@ -41,7 +42,7 @@ pub(super) fn between<const D: usize>(
     // In units of the duration.
     let (s, d) = (t / duration, duration);
     let (v, a) = (from.v * d, from.a * (0.5 * d * d));
-    // What is missing at the end if the acceleration of the start goes on.
+    // Difference at the end if the acceleration of the start continues.
     let p1 = to.p - from.p - v - a;
     let v1 = to.v * d - v - a * 2.0;
     let a1 = to.a * (0.5 * d * d) - a;

@@ -1,26 +1,26 @@
-//! The two rings by which chunks cross into the thread and back: the heap memory of their points
-//! may be neither allocated nor freed there.
+//! Two rings by which chunks cross into the thread and back, because the thread may neither
+//! allocate nor free the heap memory of their points.
 //!
 //! ```text
 //! ChunkWriter -> ring of chunks  -> ChunkReader: drained in each cycle, the newest counts
 //!             <- ring of returns <-              what is done with, and what became of it
 //! ```
 //!
-//! Every chunk that went in comes back, so the writer knows how many are out. It lets no more out
-//! than the way back holds, and the thread's end of it is never full.
+//! Every chunk that went in comes back, so the writer knows how many are out. It sends no more than
+//! the return ring holds, so the thread's end of that ring is never full.
 
 use super::value::Chunk;
 use crate::queue::{self, Receiver, Sender};
 use crate::session::GoalId;
 use crate::shaping::CYCLE;
 
-/// A chunk that waited, and may have been superseded since.
+/// A chunk that waited, and that another chunk may have superseded since.
 #[derive(Clone, Copy, Debug)]
 struct Waiting {
     goal: GoalId,
-    /// When it was to begin, by the robot's clock.
+    /// Due time of its beginning, by the robot's clock.
     begin: u64,
-    /// For how long it was to wait, `[s]`.
+    /// Planned waiting time, `[s]`.
     wait: f64,
 }
 
@@ -31,41 +31,43 @@ pub(super) struct Sent {
     pub(super) chunk: Chunk,
 }
 
-/// What became of a chunk.
+/// Fate of a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Fate {
-    /// The arm followed it until a newer one took its place, or another goal did.
+    /// The arm followed the chunk until a newer chunk or another goal replaced it.
     Replaced,
-    /// The arm followed it to its end.
+    /// The arm followed the chunk to its end.
     Ended,
-    /// A newer one of its goal came before it was taken up.
+    /// A newer chunk of the same goal arrived before this one was taken up.
     Superseded,
-    /// All of its points had passed when it was to be taken up.
+    /// All of its points had passed when it could have been taken up.
     Late,
-    /// Its goal follows no chunk any more, or a chunk of another goal came before it was taken up.
+    /// Its goal no longer follows a chunk, or a chunk of another goal arrived before this one was
+    /// taken up.
     Obsolete,
 }
 
-/// A chunk that the thread is done with.
+/// A chunk that the thread no longer needs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Returned {
-    /// The goal that it belonged to.
+    /// Goal of the chunk.
     pub goal: GoalId,
-    /// What became of it.
+    /// Fate of the chunk.
     pub fate: Fate,
     /// The chunk.
     pub chunk: Chunk,
 }
 
-/// There is no room for another chunk: the thread has not taken up or given back those sent before.
+/// The ring has no room for another chunk: the thread has not taken up or given back the earlier
+/// chunks.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "{} chunks are under way already, send fewer at once",
     Chunk::UNDER_WAY_MAX
 )]
 pub struct Full(
-    /// The chunk that was to be sent.
+    /// The chunk that was not sent.
     pub Chunk,
 );
 
@@ -82,13 +84,13 @@ pub struct ChunkWriter {
 pub struct ChunkReader {
     chunks: Receiver<Sent>,
     returns: Sender<Returned>,
-    /// The newest chunk, until it is taken up.
+    /// The newest chunk, until the session takes it up.
     newest: Option<Sent>,
-    /// Of the chunks that waited since one was taken up, the one that was to begin first.
+    /// The chunk with the earliest begin among those that waited since the last take-up.
     due: Option<Waiting>,
 }
 
-/// The two ends of a way for chunks.
+/// Creates the two ends of a channel for chunks.
 pub fn chunk_ring() -> (ChunkWriter, ChunkReader) {
     let (sender, receiver) = queue::queue(Chunk::UNDER_WAY_MAX);
     let (back, collector) = queue::queue(Chunk::UNDER_WAY_MAX);
@@ -107,13 +109,13 @@ pub fn chunk_ring() -> (ChunkWriter, ChunkReader) {
 }
 
 impl ChunkWriter {
-    /// Sends `chunk` for `goal`. It takes the place of the chunk before it.
+    /// Sends `chunk` for `goal`. It replaces the previous chunk.
     ///
-    /// Send the first chunk of a goal before its goal is written to the goals' slot: it is kept
-    /// until that goal is in force, or another chunk comes.
+    /// Send the first chunk of a goal before its goal is written to the goals' slot. It is kept
+    /// until that goal is in force, or another chunk arrives.
     ///
     /// # Errors
-    /// [`Full`] with the chunk if [`Chunk::UNDER_WAY_MAX`] of them have not been
+    /// [`Full`] with the chunk if [`Chunk::UNDER_WAY_MAX`] chunks have not been
     /// [collected](Self::collect).
     #[expect(
         clippy::result_large_err,
@@ -137,28 +139,31 @@ impl ChunkWriter {
         self.under_way < Chunk::UNDER_WAY_MAX
     }
 
-    /// The next chunk that the thread is done with, if there is one.
+    /// Returns the next chunk that the thread no longer needs, if any.
     pub fn collect(&mut self) -> Option<Returned> {
         let returned = self.returns.pop()?;
         self.under_way -= 1;
         Some(returned)
     }
 
-    /// True if the session is gone, so that no chunk will be taken up any more.
+    /// True if the session is gone. It will take up no chunk any more.
     pub fn is_abandoned(&self) -> bool {
         self.chunks.is_abandoned()
     }
 }
 
 impl ChunkReader {
-    /// The newest chunk for `goal`, the one in force at the robot's time `now`, if it is new and
-    /// may begin: that is, if its first point's time has come, or `idle`, as no other chunk runs.
-    /// If it has superseded one whose time has come, it may begin before its own, by as long as
-    /// that one was to wait: a policy that predicts more often than its first point is ahead would
-    /// never be followed.
+    /// Returns the newest chunk for `goal`, the goal in force at the robot's time `now`, if the
+    /// chunk is new and may begin. It may begin once its first point is due, or if `idle`, because
+    /// no other chunk runs.
     ///
-    /// What that makes superfluous goes back. A chunk of another goal is kept, which may be one to
-    /// come: names of goals have no order, as a goal may be named long before it is written.
+    /// If it has superseded a chunk whose time has come, it may begin early, by at most the waiting
+    /// time of that chunk. Otherwise the arm would never follow a policy whose first point lies
+    /// further ahead than its next prediction.
+    ///
+    /// Chunks that this makes superfluous go back. A chunk of another goal is kept, because that
+    /// goal may be still to come. Names of goals have no order: a goal may be named long before it
+    /// is written.
     pub(in crate::session) fn poll(&mut self, goal: GoalId, now: u64, idle: bool) -> Option<Chunk> {
         self.receive();
         let chunk = self.take_newest(goal)?;
@@ -186,7 +191,7 @@ impl ChunkReader {
         None
     }
 
-    /// Gives back what has come for `goal`: it takes up no chunk any more.
+    /// Gives back the chunks that have arrived for `goal`, which takes up no chunk any more.
     pub(in crate::session) fn discard(&mut self, goal: GoalId) {
         self.receive();
         self.due = None;
@@ -195,7 +200,7 @@ impl ChunkReader {
         }
     }
 
-    /// Takes the chunk of `goal` out that has not been taken up, for a session that has ended.
+    /// Removes the chunk of `goal` that was not taken up, for a session that has ended.
     pub(in crate::session) fn take(&mut self, goal: GoalId) -> Option<Chunk> {
         self.receive();
         self.take_newest(goal)
@@ -207,7 +212,8 @@ impl ChunkReader {
     }
 
     fn receive(&mut self) {
-        // At most as many as are under way: the writer cannot add to them without collecting.
+        // At most as many chunks as are under way: the writer cannot add to them without
+        // collecting.
         for _ in 0..Chunk::UNDER_WAY_MAX {
             let Some(sent) = self.chunks.pop() else { break };
             let goal = sent.goal;
@@ -221,11 +227,11 @@ impl ChunkReader {
         }
     }
 
-    /// Gives back a chunk that is done with.
+    /// Gives back a chunk that is no longer needed.
     pub(super) fn give_back(&mut self, goal: GoalId, chunk: Chunk, fate: Fate) {
         let returned = Returned { goal, fate, chunk };
         if let Err(queue::Full(returned)) = self.returns.push(returned) {
-            // The writer lets out as many as fit. If not, memory is leaked rather than freed on
+            // The writer sends only as many as fit. If not, memory is leaked rather than freed on
             // this thread.
             core::mem::forget(returned);
         }
@@ -239,7 +245,7 @@ mod tests {
 
     const GOAL: GoalId = GoalId(5);
 
-    /// Points at 10 and 60 ms after the origin.
+    /// Returns points at 10 and 60 ms after the origin.
     fn chunk() -> Chunk {
         let at = |ms| (Duration::from_millis(ms), [0.0; 7]);
         Chunk::joints([at(10), at(60)]).unwrap()
@@ -315,7 +321,8 @@ mod tests {
         }
         writer.send(GOAL, chunk().observed_at(110)).unwrap();
         assert!(reader.poll(GOAL, 110, false).is_some());
-        // One that begins much later comes no earlier than by what the first one waited.
+        // A chunk that begins much later arrives no earlier than by the waiting time of the first
+        // chunk.
         for origin in [120, 3120] {
             writer.send(GOAL, chunk().observed_at(origin)).unwrap();
             assert_eq!(reader.poll(GOAL, 121, false), None);
@@ -323,7 +330,7 @@ mod tests {
         assert_eq!(reader.poll(GOAL, 3120, false), None);
         assert!(reader.poll(GOAL, 3121, false).is_some());
         fates(&mut writer);
-        // A sooner one counts, and one that was late no more.
+        // An earlier chunk counts. A late one counts no more.
         for origin in [9000, 3130] {
             writer.send(GOAL, chunk().observed_at(origin)).unwrap();
             assert_eq!(reader.poll(GOAL, 3130, false), None);
@@ -349,7 +356,7 @@ mod tests {
             if writer.send(GOAL, chunk()).is_err() {
                 break;
             }
-            // Superseded ones wait for the writer: they count.
+            // Superseded chunks wait for the writer: they count.
             reader.poll(GoalId(0), 0, false);
         }
         let Full(refused) = writer.send(GOAL, chunk().observed_at(7)).unwrap_err();

@@ -1,4 +1,4 @@
-//! How a reference follows a target that moves, and keeps the limits whatever the target does.
+//! How a reference follows a moving target and keeps the limits for every motion of the target.
 //!
 //! ```text
 //! wanted velocity      = target's velocity + approach(distance)          within the velocity limit
@@ -7,20 +7,21 @@
 //! ```
 //!
 //! On the target, a target that keeps the limits is followed exactly: all of its motion is fed
-//! forward. Off it, the distance dies out, evenly decelerated from afar and exponentially in the
-//! end.
+//! forward. Off the target, the distance decays, evenly decelerated from afar and exponentially at
+//! the end.
 //!
-//! A generator that plans anew in each cycle to be at the target of the next one does not do this:
-//! a micrometre off, it cannot be there in one millisecond, and passes through where the target was
-//! later, or all axes wait for the last one and come again. A plan to a later point of the chunk
-//! would arrive early where the chunk is slow.
+//! A generator that plans anew in each cycle for the target of the next cycle does not do this. A
+//! micrometre off, it cannot get there in one millisecond. It passes through the target's place
+//! later, or all axes wait for the slowest one and start again. A plan to a later point of the
+//! chunk would arrive early where the chunk is slow.
 //!
-//! **Limits.** A state is admissible if acceleration and velocity keep their limits and still do if
-//! the acceleration is taken back as fast as the jerk allows, in whole cycles. Taking it back leads
-//! from an admissible state to an admissible one, so that there is always a jerk that does. The
-//! wanted jerk is used as far towards that one as it takes. All limits bind norms, which keeps this
-//! true for any number of axes: while the acceleration is taken back along its line, the velocity
-//! runs on a straight line between two admissible ones.
+//! **Limits.** A state is admissible if acceleration and velocity keep their limits, and still do
+//! while the acceleration is removed as fast as the jerk allows, in whole cycles. Removing the
+//! acceleration leads from an admissible state to another, so that an admissible jerk always
+//! exists. The wanted jerk is moved towards that jerk only as far as necessary.
+//!
+//! All limits bind norms, which keeps this true for any number of axes. While the acceleration is
+//! removed along its line, the velocity moves on a straight line between two admissible velocities.
 
 use franka_otg::AxisLimits;
 use nalgebra::SVector;
@@ -28,25 +29,25 @@ use nalgebra::SVector;
 use super::quintic::PointState;
 use crate::shaping::CYCLE;
 
-/// Largest rate, `[1/s]`, at which a missing velocity is made up for.
+/// Greatest rate at which a missing velocity is made up for, `[1/s]`.
 const RATE_MAX: f64 = 100.0;
 
-/// Share of the quotient of jerk and acceleration that the rate takes: what the acceleration can
-/// change at.
+/// Share of the quotient of jerk and acceleration that the rate uses: the rate at which the
+/// acceleration can change.
 const RATE_SHARE: f64 = 0.5;
 
-/// How much slower the distance dies out than the velocity that is missing. At 3 nothing swings.
+/// Ratio between the decay times of the distance and of the missing velocity. At 3 nothing swings.
 const SLOWER: f64 = 3.0;
 
-/// Share of the acceleration that an approach from afar brakes with. The rest is for the target's
+/// Share of the acceleration with which an approach from afar brakes. The rest is for the target's
 /// own acceleration.
 const BRAKING_SHARE: f64 = 0.35;
 
-/// Halvings of the interval between the wanted jerk and the one that takes the acceleration back.
+/// Halvings of the interval between the wanted jerk and the jerk that removes the acceleration.
 const HALVINGS: usize = 12;
 
-/// One cycle on from `now`, towards `target`, where the target is to be in that cycle. `bound`
-/// takes a velocity to the nearest one that the place allows.
+/// Advances by one cycle from `now` towards `target`, the target's state in that cycle. `bound`
+/// maps a velocity to the nearest one that the place allows.
 pub(super) fn follow<const D: usize>(
     now: &PointState<D>,
     target: &PointState<D>,
@@ -54,7 +55,7 @@ pub(super) fn follow<const D: usize>(
     bound: impl Fn(SVector<f64, D>) -> SVector<f64, D>,
 ) -> PointState<D> {
     let rate = (RATE_SHARE * limits.jerk / limits.acceleration).min(RATE_MAX);
-    // Against where the motion leads without a jerk: then what is on the target stays on it.
+    // Compares with the motion without a jerk, so that a reference on the target stays on it.
     let ahead = now.after(&SVector::zeros(), CYCLE);
     let distance = target.p - ahead.p;
     let (approach, growth) = approach(
@@ -68,15 +69,16 @@ pub(super) fn follow<const D: usize>(
     let fed_forward = if wanted == asked {
         target.a + growth
     } else {
-        SVector::zeros() // no motion of the target's, but one along the limit
+        SVector::zeros() // not the target's motion, but a motion along the limit
     };
     let acceleration = shortened(fed_forward + (wanted - ahead.v) * rate, limits.acceleration);
     let jerk = shortened((acceleration - now.a) / CYCLE, limits.jerk);
     admissible(now, jerk, limits)
 }
 
-/// Velocity at which the distance to the target is made up for, and its derivative while the
-/// distance changes at `change`: `rate` times the distance, and from afar what `braking` can stop.
+/// Returns the velocity at which the distance to the target is made up for, and its derivative
+/// while the distance changes at `change`. The velocity is `rate` times the distance. From afar it
+/// is the velocity that `braking` can stop.
 fn approach<const D: usize>(
     distance: &SVector<f64, D>,
     change: &SVector<f64, D>,
@@ -97,14 +99,14 @@ fn approach<const D: usize>(
     )
 }
 
-/// The state after one cycle of `jerk`, or of the one nearest to it on the way to taking the
-/// acceleration back that leads to an admissible state.
+/// Returns the state after one cycle of `jerk`. If that state is not admissible, the jerk is moved
+/// towards the one that removes the acceleration, until the state is.
 fn admissible<const D: usize>(
     now: &PointState<D>,
     jerk: SVector<f64, D>,
     limits: &AxisLimits,
 ) -> PointState<D> {
-    // From outside the limits the way leads back, never further out.
+    // From outside the limits the motion leads back, never further out.
     let velocity = limits
         .velocity
         .max(now.v.norm())
@@ -137,18 +139,18 @@ fn admissible<const D: usize>(
     now.after(&(back + (jerk - back) * kept), CYCLE)
 }
 
-/// The velocity left when the acceleration has been taken back.
+/// Returns the velocity left when the acceleration has been removed.
 fn coasting<const D: usize>(state: &PointState<D>, jerk: f64) -> SVector<f64, D> {
     state.v + state.a * (0.5 * CYCLE * cycles(state, jerk))
 }
 
-/// Whole cycles that it takes to take the acceleration back.
+/// Returns the number of whole cycles for removing the acceleration.
 fn cycles<const D: usize>(state: &PointState<D>, jerk: f64) -> f64 {
     // A remainder of rounding is not another cycle.
     (state.a.norm() / (jerk * CYCLE) - 1e-9).ceil().max(0.0)
 }
 
-/// `vector`, no longer than `length`.
+/// Returns `vector`, shortened to `length` if longer.
 fn shortened<const D: usize>(vector: SVector<f64, D>, length: f64) -> SVector<f64, D> {
     let norm = vector.norm();
     if norm > length {

@@ -25,7 +25,7 @@ mod replanning;
 
 const GOAL: GoalId = GoalId(1);
 
-/// One arm that does what its reference says, and the session's part in following chunks.
+/// An arm that follows its reference exactly, and the session's part in following chunks.
 struct Arm {
     model: &'static Model,
     budget: Budget,
@@ -54,7 +54,7 @@ impl Arm {
         Self::new(Budget::of(Model::fr3().joint_limits()))
     }
 
-    /// The state `later` milliseconds on, and what answers it.
+    /// Answers the state `later` milliseconds after the last one.
     fn cycle(&mut self, later: u64) {
         self.now += later;
         let idle = self
@@ -109,14 +109,14 @@ fn ms(ms: u64) -> Duration {
     Duration::from_millis(ms)
 }
 
-/// A chunk that no program should send: wherever points may be, however far apart.
+/// A chunk that no program should send: points anywhere, at any distance.
 #[derive(Clone, Debug)]
 struct Wild {
-    /// Milliseconds after the point before, and seven numbers in -1..1.
+    /// Milliseconds after the previous point, and seven numbers in -1..1.
     points: Vec<(u64, [f64; 7])>,
     latency: u64,
     blend: u64,
-    /// Cycles until the next chunk, each with the milliseconds since the state before.
+    /// Cycles until the next chunk, each with the milliseconds since the previous state.
     cycles: Vec<u64>,
     size: f64,
 }
@@ -160,7 +160,8 @@ impl Wild {
 
     fn poses(&self, from: &Isometry3<f64>) -> Chunk {
         let pose = |x: &[f64; 7]| {
-            // At most 80 degrees from the start, so that no two poses are half a turn apart.
+            // At most 80 degrees from the start, so that any two poses are less than half a turn
+            // apart.
             let turn = Vector3::new(x[3], x[4], x[5]) * 0.8;
             Isometry3::from_parts(
                 Translation3::from(from.translation.vector + Vector3::new(x[0], x[1], x[2]) * 0.3),
@@ -171,7 +172,7 @@ impl Wild {
     }
 }
 
-/// A little more than 1: what rounding makes of a limit.
+/// A little more than 1, for a limit with rounding.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
 fn cases(count: u32) -> ProptestConfig {
@@ -234,14 +235,14 @@ proptest! {
     }
 }
 
-/// Joint positions that a policy has in mind for the robot's time `now`: all joints on sines of 0.1
-/// rad and 2 s.
+/// Joint positions that a policy wants at the robot's time `now`: all joints on sines of 0.1 rad
+/// and 2 s.
 fn sine(now: u64) -> [f64; 7] {
     let phase = core::f64::consts::PI * (now as f64 * 1e-3);
     (READY + JointVector::repeat(0.1 * phase.sin())).into()
 }
 
-/// What a policy predicts at `observed`: 16 points, 50 ms apart.
+/// Prediction of a policy at `observed`: 16 points, 50 ms apart.
 fn prediction(observed: u64) -> Vec<(Duration, [f64; 7])> {
     let point = |k: u64| (ms(50 * k), sine(observed + 50 * k));
     (0..16).map(point).collect()
@@ -272,8 +273,8 @@ fn a_policy_of_10_hz_and_150_ms_latency_follows_a_sine_to_a_tenth_of_a_milliradi
     assert!(naive > 300.0 * worst, "{worst} against {naive}");
 }
 
-/// The same policy, whose points are set one by one as targets, each for its 50 ms, from the time
-/// of their arrival on.
+/// Error of the same policy if its points are set one by one as targets, each for 50 ms from its
+/// arrival.
 fn naive_error() -> f64 {
     let budget = Budget::of(Model::fr3().joint_limits());
     let limits = Limits::per_axis(budget.joints).unwrap();
@@ -356,7 +357,7 @@ fn a_chunk_of_poses_is_walked_to_its_end_and_rests_there() {
     assert!(arm.reference.dq.amax() < 5e-3, "{}", arm.reference.dq);
 }
 
-/// A session whose arm is wherever its reference is.
+/// A session whose arm is always at its reference.
 struct Session {
     session: TargetSession,
     goals: SlotWriter<Goal>,
@@ -411,7 +412,7 @@ impl Session {
             .collect()
     }
 
-    /// A smooth way of 0.1 rad over a second.
+    /// Returns a smooth motion of 0.1 rad over a second.
     fn way() -> Chunk {
         let point = |k: u64| {
             let s = k as f64 / 20.0;
@@ -443,7 +444,7 @@ fn a_session_follows_the_chunks_of_its_goal_and_arrives_where_they_end() {
         "{event:?}"
     );
     assert_eq!(session.fates(), [Fate::Ended]);
-    // Another one sets it in motion again.
+    // Another chunk sets it in motion again.
     session.chunks.send(GOAL, Session::way()).unwrap();
     session.run(300);
     assert!(JointVector::from(session.state.dq).amax() > 0.01);

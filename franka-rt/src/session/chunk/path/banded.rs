@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 /// A gradient and a Hessian of which three diagonals are not zero.
 pub(super) struct Banded {
     gradient: Vec<f64>,
-    /// Of each row, the diagonal and the two entries right of it.
+    /// For each row, the diagonal and the two entries right of it.
     rows: Vec<[f64; 3]>,
 }
 
@@ -31,10 +31,10 @@ impl Banded {
         }
     }
 
-    /// The step of Newton's method and the square of its length, in place of the Hessian.
+    /// Returns the step of Newton's method and the square of its length. Overwrites the Hessian.
     pub(super) fn step(&mut self) -> (Vec<f64>, f64) {
         let n = self.rows.len();
-        // LDL' from the first row on.
+        // LDL', starting at the first row.
         for i in 0..n {
             let [d, first, second] = self.rows[i];
             let d = d.max(f64::MIN_POSITIVE);

@@ -12,7 +12,7 @@ use crate::session::chunk::pace::Pace;
 use crate::session::reference::Reference;
 use crate::session::{Budget, Target};
 
-/// Straight lines over the joints, from `start` on.
+/// Plans straight lines over the joints, beginning at `start`.
 pub(super) fn through_joints(
     waypoints: &[Waypoint],
     start: JointVector,
@@ -78,7 +78,7 @@ pub(super) fn through_joints(
     timed.hurried(&within(limits))
 }
 
-/// How fast the time of a path through these states may stop.
+/// Returns the pace at which the time of a path through these states may stop.
 pub(super) fn pace(states: &[Reference], budget: &Budget) -> Pace {
     let fastest = |i: usize| {
         states
@@ -89,7 +89,7 @@ pub(super) fn pace(states: &[Reference], budget: &Budget) -> Pace {
     Pace::of((0..7).map(|i| (fastest(i), budget.joints[i])))
 }
 
-/// Each joint within its limits.
+/// Keeps each joint within its limits.
 pub(super) fn within(limits: [AxisLimits; 7]) -> Limits<Reference, 1, 7> {
     Limits {
         of_groups: limits,

@@ -142,7 +142,7 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// Follows the line to its end, in steps `stride` times as long as those of a check.
+    /// Follows the line to its end, in steps `stride` times as long as the steps of a check.
     fn follow(&self, posture: &Posture, stride: f64) -> Result<(), Hindrance> {
         let mut last = self.q;
         let way = self.arm(posture, stride).along(&self.way, self.q, |step| {

@@ -1,17 +1,18 @@
-//! The least time in which a motion's way can be gone if only velocity and acceleration are
-//! limited: a lower bound for all that are limited in jerk too.
+//! The least time for the path of a motion if only velocity and acceleration are limited. It is a
+//! lower bound for all motions that are also limited in jerk.
 //!
-//! Reachability analysis over the length of the way (H. Pham and Q.-C. Pham, 2018): backwards, how
-//! fast each place may be passed so that the arm can still brake; then forwards, as fast as that.
+//! Reachability analysis over the length of the path (H. Pham and Q.-C. Pham, 2018). The backward
+//! pass finds the speed at each place from which the arm can still brake. The forward pass moves as
+//! fast as that speed allows.
 
 use franka_otg::AxisLimits;
 use nalgebra::SMatrix;
 
-/// A place of a way. `x` is the square of the speed along it.
+/// A place of a path. `x` is the square of the speed along it.
 struct Place<const W: usize, const G: usize> {
     /// Length to the next place.
     step: f64,
-    /// The most that `x` may be; 0 at a stop.
+    /// Greatest permitted `x`; 0 at a stop.
     most: f64,
     /// Direction and curvature, in units of the acceleration limits: a column for each group of
     /// axes.
@@ -22,11 +23,12 @@ struct Place<const W: usize, const G: usize> {
 /// Speed below which a motion rests.
 const REST: f64 = 1e-12;
 
-/// Speed below which it goes along a line, as it does near a stop.
+/// Speed below which a motion follows a line, as near a stop.
 const STRAIGHT: f64 = 1e-3;
 
 impl<const W: usize, const G: usize> Place<W, G> {
-    /// Of a motion with this velocity and acceleration, which goes on for `duration`.
+    /// Creates the place for a motion with this velocity and acceleration, which continues for
+    /// `duration`.
     fn new(
         [v, a]: &[SMatrix<f64, W, G>; 2],
         duration: f64,
@@ -58,7 +60,7 @@ impl<const W: usize, const G: usize> Place<W, G> {
         }
     }
 
-    /// The accelerations along the way that are open at `x`.
+    /// Returns the accelerations along the path that are open at `x`.
     fn open(&self, x: f64) -> Option<(f64, f64)> {
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         for (d, c) in self
@@ -80,7 +82,7 @@ impl<const W: usize, const G: usize> Place<W, G> {
         (low <= high).then_some((low, high))
     }
 
-    /// The most `x` from which the next place can be passed at `next` at most.
+    /// Returns the greatest `x` from which the next place can be passed at `next` at most.
     fn brakable(&self, next: f64) -> f64 {
         let holds = |x: f64| {
             let open = self.open(x);
@@ -102,7 +104,7 @@ impl<const W: usize, const G: usize> Place<W, G> {
     }
 }
 
-/// The least duration of the way of a motion that rests at its ends only. Its `rates` are
+/// Returns the least duration for the path of a motion that rests only at its ends. Its `rates` are
 /// velocities and accelerations, `duration` apart.
 pub(super) fn least_duration<const W: usize, const G: usize>(
     rates: &[[SMatrix<f64, W, G>; 2]],
@@ -120,7 +122,7 @@ pub(super) fn least_duration<const W: usize, const G: usize>(
     }
     let (mut x, mut time) = (0.0_f64, 0.0);
     for (k, (place, brakable)) in places.iter().zip(&brakable[1..]).enumerate() {
-        // A stop has no direction: the motion leaves it in that of the place after it.
+        // A stop has no direction: the motion leaves it in the direction of the next place.
         let moving = if place.most > 0.0 { k } else { k + 1 };
         let high = places[moving].open(x).map_or(0.0, |(_, high)| high);
         let next = (x + 2.0 * place.step * high).min(*brakable);

@@ -14,8 +14,8 @@ use crate::session::chunk::value::TURN_MAX;
 use crate::session::pose::PoseState;
 use crate::session::{Budget, Target};
 
-/// Lines and turns about one axis, from `start` on. A waypoint at the place of the one before it
-/// makes no leg.
+/// Plans lines and turns about one axis, beginning at `start`. A waypoint at the place of the
+/// previous one makes no leg.
 pub(super) fn through_poses(
     waypoints: &[Waypoint],
     start: Isometry3<f64>,
@@ -82,7 +82,7 @@ pub(super) fn through_poses(
     Ok(timed.hurried(&within([translation, turning])))
 }
 
-/// The norms of translation and rotation within their limits.
+/// Keeps the norms of translation and rotation within their limits.
 pub(super) fn within(limits: [AxisLimits; 2]) -> Limits<PoseState, 3, 2> {
     Limits {
         of_groups: limits,
@@ -93,7 +93,7 @@ pub(super) fn within(limits: [AxisLimits; 2]) -> Limits<PoseState, 3, 2> {
     }
 }
 
-/// How fast the time of a path through these states may stop.
+/// Returns the pace at which the time of a path through these states may stop.
 pub(super) fn pace(states: &[PoseState], budget: &Budget) -> Pace {
     let fastest = |part: fn(&Twist) -> Vector3<f64>| {
         let speeds = states.iter().map(|state| part(&state.twist).norm());

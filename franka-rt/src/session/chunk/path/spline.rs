@@ -1,16 +1,16 @@
-//! The rate along a motion: a quadratic spline over the parts of it.
+//! The rate along a motion: a quadratic spline over its parts.
 
 use nalgebra::Vector3;
 
-/// The square of the rate, `x`: each of its coefficients acts in three parts, and each part has
-/// three of them.
+/// Square of the rate, `x`. Each of its coefficients acts in three parts, and each part has three
+/// coefficients.
 #[derive(Clone, Debug)]
 pub(super) struct Spline {
     pub(super) durations: Vec<f64>,
     pub(super) c: Vec<f64>,
 }
 
-/// The rate at a node: `dt/dT`, its derivative by `T`, and the new time since the node before.
+/// Rate at a node: `dt/dT`, its derivative by `T`, and the new time since the previous node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Node {
     pub(super) rate: f64,
@@ -19,19 +19,19 @@ pub(super) struct Node {
 }
 
 impl Spline {
-    /// The rate of the motion given, with parts of these durations.
+    /// Returns the rate of the given motion, with parts of these durations.
     pub(super) fn one(durations: Vec<f64>) -> Self {
         let c = vec![1.0; durations.len() + 2];
         Self { durations, c }
     }
 
-    /// The three coefficients of a part.
+    /// Returns the three coefficients of a part.
     pub(super) fn of_part(c: &[f64], k: usize) -> Vector3<f64> {
         Vector3::new(c[k], c[k + 1], c[k + 2])
     }
 
-    /// What the three coefficients of part `k` add to the value at the share `u` of it, and to its
-    /// first and second derivative.
+    /// Returns the contributions of part `k`'s three coefficients to the value at the share `u` of
+    /// the part, and to its first and second derivative.
     pub(super) fn basis(&self, k: usize, u: f64) -> [Vector3<f64>; 3] {
         let neighbour = |k: Option<usize>| k.and_then(|k| self.durations.get(k)).unwrap_or(&0.0);
         let h = self.durations[k];
@@ -46,14 +46,14 @@ impl Spline {
         ]
     }
 
-    /// The value at the share `u` of part `k`, and its first derivative.
+    /// Returns the value at the share `u` of part `k`, and its first derivative.
     pub(super) fn at(&self, k: usize, u: f64) -> [f64; 2] {
         let [value, slope, _] = self.basis(k, u);
         let c = Self::of_part(&self.c, k);
         [value.dot(&c), slope.dot(&c)]
     }
 
-    /// The same spline with the parts halved for which `halved` is true.
+    /// Returns the same spline with those parts halved for which `halved` is true.
     pub(super) fn refined(&self, halved: &[bool]) -> Self {
         let last = self.durations.len() - 1;
         let (mut durations, mut c) = (Vec::new(), vec![self.at(0, 0.0)[0]]);
@@ -72,7 +72,7 @@ impl Spline {
         Self { durations, c }
     }
 
-    /// The rates at all nodes.
+    /// Returns the rates at all nodes.
     pub(super) fn nodes(&self) -> Vec<Node> {
         let node = |[x, slope]: [f64; 2], duration: f64| Node {
             rate: x.sqrt(),
@@ -88,7 +88,7 @@ impl Spline {
     }
 }
 
-/// Gauss's rule with four points: where, and their weights.
+/// Gauss's rule with four points: places and weights.
 const GAUSS: [[f64; 2]; 4] = [
     [0.069_431_844_202_973_7, 0.173_927_422_568_726_9],
     [0.330_009_478_207_571_9, 0.326_072_577_431_273_1],

@@ -1,4 +1,4 @@
-//! Tests of paths: limits, corners, how near they are to the least time, and where arms can go.
+//! Tests of paths: limits, corners, closeness to the least time, and reachable places.
 
 use franka_model::collision::Obstacle;
 use franka_model::{EndEffector, READY, rotation};
@@ -58,7 +58,7 @@ fn vector(random: &mut SmallRng) -> Vector3<f64> {
     Vector3::from_fn(|_, _| number(random))
 }
 
-/// Joint positions about the ready pose, with random corners, of `least` at least.
+/// Returns joint positions about the ready pose, with random corners of at least `least`.
 fn random_joints(random: &mut SmallRng, spread: f64, least: f64) -> Vec<(JointVector, f64)> {
     let count = random.random_range(2..8);
     let place = |_| {
@@ -68,7 +68,7 @@ fn random_joints(random: &mut SmallRng, spread: f64, least: f64) -> Vec<(JointVe
     (0..count).map(place).collect()
 }
 
-/// Poses in front of the arm, with random corners, of `least` at least.
+/// Returns poses in front of the arm, with random corners of at least `least`.
 fn random_poses(random: &mut SmallRng, least: f64) -> Vec<(Isometry3<f64>, f64)> {
     let down = UnitQuaternion::from_euler_angles(core::f64::consts::PI, 0.0, 0.0);
     let count = random.random_range(2..8);
@@ -101,7 +101,7 @@ fn curve_of_poses(chunk: &Chunk) -> &Curve<PoseState> {
     }
 }
 
-/// Each state of a curve and the one before it, [`STEP`] apart.
+/// Returns each state of a curve and the state before it, [`STEP`] apart.
 fn steps<M: CurveState>(curve: &Curve<M>) -> impl Iterator<Item = (M, M)> {
     let at = |step: u32| curve.at(f64::from(step) * STEP);
     (1..=(curve.end() / STEP) as u32).map(move |step| (at(step - 1), at(step)))
@@ -189,7 +189,7 @@ fn a_path_of_one_straight_line_takes_as_long_as_the_plan_of_a_goal() {
     );
 }
 
-/// The duration of a goal's plan from the ready pose.
+/// Returns the duration of a goal's plan from the ready pose.
 fn duration_of_plan(budget: &Budget, there: &JointVector) -> f64 {
     let limits = franka_otg::Limits::per_axis(budget.joints.map(share)).unwrap();
     let start = franka_otg::State::at_rest(READY.into());
@@ -228,7 +228,8 @@ fn a_line_that_is_gone_too_slowly_is_made_as_fast_as_the_plan_of_a_goal() {
     }
 }
 
-/// How much longer paths take than they would without a limit of jerk: median, 95 % and most.
+/// Ratios of the duration of paths to their duration without a limit of jerk: median, 95 % and
+/// maximum.
 #[derive(Debug)]
 struct Ratios([f64; 3]);
 
@@ -240,7 +241,7 @@ impl Ratios {
     }
 }
 
-/// The least duration along `curve` if only velocity and acceleration are limited.
+/// Returns the least duration along `curve` if only velocity and acceleration are limited.
 fn least_duration<M: CurveState, const W: usize, const G: usize>(
     curve: &Curve<M>,
     limits: &fastest::Limits<M, W, G>,
@@ -252,7 +253,7 @@ fn least_duration<M: CurveState, const W: usize, const G: usize>(
     oracle::least_duration(&rates, step, &limits.of_groups)
 }
 
-/// Ratios of random paths, with the jerks of the budget times a factor.
+/// Returns the ratios of random paths, with the jerks of the budget times a factor.
 fn ratios(over_the_joints: bool, jerk: f64) -> Ratios {
     let mut random = SmallRng::seed_from_u64(5);
     let model = Model::fr3();
@@ -298,16 +299,16 @@ fn random_paths_take_hardly_longer_than_a_lower_bound() {
     }
 }
 
-/// What the control cycle makes of a path.
+/// Result of a path in the control cycle.
 #[derive(Debug)]
 struct Gone {
-    /// Whether it comes to the end.
+    /// True if the arm reaches the end.
     arrives: bool,
-    /// The farthest that its joints stay off the way, in units of what is accepted.
+    /// Greatest distance of its joints from the path, in units of the permitted distance.
     off: f64,
 }
 
-/// Goes along `way` from the joint positions `q` as the control cycle does.
+/// Moves along `way` from the joint positions `q` as the control cycle does.
 fn go(way: Timed<PoseState>, q: JointVector, budget: &Budget, model: &Model) -> Gone {
     let ee = EndEffector::default();
     let pose_of = |q: &JointVector| rigid(&model.pose(Frame::EndEffector, q, &ee));
@@ -345,7 +346,7 @@ fn go(way: Timed<PoseState>, q: JointVector, budget: &Budget, model: &Model) -> 
         reference = course
             .step(model, &ee, (&posture, None), &reference, now)
             .reference;
-        // The nearest place of the way, from the last one on.
+        // Nearest place of the path, starting at the last one.
         while near + 1 < samples.len()
             && off(&reference.q, &samples[near + 1]) <= off(&reference.q, &samples[near])
         {
@@ -464,7 +465,7 @@ fn a_preview_goes_all_along_the_path_in_its_time_and_refuses_what_is_refused() {
     let refused = Preview::of(&far, &q, &goal, model, &state());
     let error = Chunk::through(&far, &q, &goal, model, &state()).unwrap_err();
     assert_eq!(refused, Err(error));
-    // Where it is already there is nothing to do.
+    // At its present place the arm has nothing to do.
     let stays = Preview::of(&[here.into()], &q, &goal, model, &state()).expect("a path");
     assert_eq!(
         (stays.duration(), stays.end()),
@@ -477,7 +478,7 @@ fn a_preview_says_where_the_guards_stop_the_arm() {
     let (model, ee) = (Model::fr3(), EndEffector::default());
     let q: [f64; 7] = READY.into();
     let here = rigid(&model.pose(Frame::EndEffector, &READY, &ee));
-    // A block whose top is so far below the flange.
+    // A block whose top is `below` the flange.
     let blocked = |z: f64, below: f64| {
         let there = [Waypoint::new(Translation3::new(0.0, 0.0, z) * here)];
         let preview = Preview::of(&there, &q, &goal(model, 1.0), model, &state()).expect("a path");
@@ -501,7 +502,7 @@ fn a_preview_says_where_the_guards_stop_the_arm() {
     let sunk = here.translation.z - height;
     assert!((0.05..0.2).contains(&sunk), "{sunk}");
     assert!(found.time < preview.duration());
-    // From too near the block the way out is free, and no other.
+    // From too near the block, only the way out is free.
     assert_eq!(blocked(0.1, 0.01).0, None);
     assert!(blocked(-0.01, 0.01).0.is_some());
     let too_many = vec![Obstacle::floor(0.0); 5];

@@ -1,4 +1,4 @@
-//! Policies that predict anew while the arm is still behind what they have predicted.
+//! Policies that predict anew while the arm is still behind their last prediction.
 
 use core::f64::consts::TAU;
 
@@ -9,12 +9,12 @@ use super::{Arm, GOAL, Session, ms, start};
 use crate::session::chunk::Chunk;
 use crate::session::{OnArrival, Target};
 
-/// When a policy predicts, and what its chunks are like, in milliseconds.
+/// Times of a policy's predictions and chunks, in milliseconds.
 #[derive(Clone, Copy, Debug)]
 struct Rhythm {
     period: u64,
     latency: u64,
-    /// From point to point, and from the observation to the first one.
+    /// Time between points, and from the observation to the first point.
     step: u64,
     points: u64,
     blend: u64,
@@ -41,25 +41,25 @@ const fn rhythm(period: u64, latency: u64, step: u64, points: u64, blend: u64) -
 }
 
 impl Rhythm {
-    /// What was observed by a policy whose chunk comes in this cycle, if one does.
+    /// Returns the observation of the policy whose chunk arrives in this cycle, if any.
     fn observed(&self, cycle: u64) -> Option<u64> {
         let observed = cycle.checked_sub(self.latency)?;
         observed.is_multiple_of(self.period).then_some(observed)
     }
 
-    /// When the points of a chunk are, after its observation.
+    /// Returns the times of a chunk's points after its observation.
     fn offsets(&self) -> impl Iterator<Item = u64> + use<> {
         let step = self.step;
         (1..=self.points).map(move |k| step * k)
     }
 }
 
-/// What a policy moves.
+/// Axis that a policy moves.
 #[derive(Clone, Copy, Debug)]
 enum Axis {
-    /// The place along y, `[m]`.
+    /// Translation along y, `[m]`.
     Along,
-    /// The rotation about x, by 2 rad where the place moves by 1 m.
+    /// Rotation about x, by 2 rad for 1 m of translation.
     About,
 }
 
@@ -83,8 +83,8 @@ impl Axis {
     }
 }
 
-/// Runs a policy whose points are `predict(what it saw, when, s)`, each at its time, s. Returns
-/// where the reference was in each cycle.
+/// Runs a policy whose points are `predict(observation, time, s)`, each at its time, s. Returns the
+/// place of the reference in each cycle.
 fn run(
     axis: Axis,
     rhythm: Rhythm,
@@ -111,7 +111,7 @@ fn run(
     seen
 }
 
-/// A sine of 0.4 Hz, which begins in motion: the arm is behind at first.
+/// Sine of 0.4 Hz, which begins in motion: the arm is behind at first.
 fn sine(amplitude: f64, t: f64) -> f64 {
     amplitude * (TAU * 0.4 * t).sin()
 }
@@ -139,7 +139,7 @@ fn what_the_arm_lags_behind_does_not_grow_from_chunk_to_chunk() {
     }
 }
 
-/// The same for joints, and through a session.
+/// Same for joints, and through a session.
 #[test]
 fn joints_that_lag_behind_do_not_swing_in_a_session() {
     let rhythm = rhythm(50, 150, 20, 50, 50);
@@ -166,7 +166,7 @@ fn joints_that_lag_behind_do_not_swing_in_a_session() {
     assert!((0.099..0.101).contains(&most), "{most} rad of 0.1");
 }
 
-/// The figures of the book's chapter on chunks.
+/// Checks the figures of the book's chapter on chunks.
 #[test]
 fn what_asks_for_more_than_the_limits_is_overshot_by_20_to_60_mm() {
     for rhythm in RHYTHMS {
@@ -176,7 +176,7 @@ fn what_asks_for_more_than_the_limits_is_overshot_by_20_to_60_mm() {
     }
 }
 
-/// The figures of the same chapter.
+/// Checks the figures of the same chapter.
 #[test]
 fn a_chunk_that_ends_in_motion_is_passed_and_come_back_to() {
     for (speed, points, passed) in [(0.1, 40, 0.013), (0.2, 20, 0.062)] {
@@ -204,8 +204,8 @@ fn a_policy_that_predicts_from_where_the_arm_is_gets_on() {
     }
 }
 
-/// A chunk may jump, and the next one come at any time of the jump: the arm stays between them, and
-/// stays where it is if the next one says so.
+/// A chunk may jump, and the next chunk may arrive at any time of the jump. The arm stays between
+/// the two, and stays in its place if the next chunk wants that.
 #[test]
 fn a_jump_that_another_chunk_cuts_off_is_not_carried_on() {
     let cases = [480, 510, 525, 540, 560]
