@@ -1,4 +1,4 @@
-//! Computes the place that the chunk in force wants, at each time of the robot.
+//! Computes the wanted state of the chunk in force at each time of the robot.
 
 use core::time::Duration;
 
@@ -8,8 +8,8 @@ use super::pace::{Pace, PathTime};
 use super::value::{Chunk, Origin, milliseconds};
 use crate::shaping::CYCLE;
 
-/// Time in which the previous motion fades, `[s]`, if the first point lies later than this.
-/// Otherwise the previous motion would continue for half of the time to that point.
+/// Longest time in which the previous motion fades on the way to the first point, `[s]`. Without
+/// this limit the previous motion would continue for half of the time to a distant point.
 const LET_GO: f64 = 1.0;
 
 /// A chunk that was taken up.

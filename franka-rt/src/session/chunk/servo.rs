@@ -1,4 +1,4 @@
-//! How a reference follows a moving target and keeps the limits for every motion of the target.
+//! Follows a moving target, and keeps the limits for every motion of the target.
 //!
 //! ```text
 //! wanted velocity      = target's velocity + approach(distance)          within the velocity limit

@@ -1,5 +1,5 @@
 //! Conditions over the state of the robot and the time, which the control thread checks in every
-//! cycle: what a motion goes on until.
+//! cycle. A motion continues until its condition is true.
 //!
 //! ```
 //! use std::time::Duration;
@@ -18,12 +18,13 @@
 //!
 //! # Thresholds of forces
 //!
-//! The robot's estimate of the external force shows the friction of its joints, too. Simulated arms
-//! with the friction of real ones, moving at up to 0.1 m/s with nothing touched, show up to 7.1 N
-//! along z and 8.8 N in all, and bad ones twice as much. A threshold below 8 N along z, or 10 N
-//! along another axis or for the norm, reacts to nothing on some arm; at the default pace they have
-//! to be a quarter higher. Tool and payload have to be declared, or their weight counts, too: see
-//! [`Condition::relative`].
+//! The robot's estimate of the external force also shows the friction of its joints. Simulated arms
+//! with the friction of real ones, moving at up to 0.1 m/s without contact, show up to 7.1 N along
+//! z and 8.8 N in all. Bad arms show twice as much.
+//!
+//! A threshold reacts to nothing on some arm if it is below 8 N along z, or below 10 N along
+//! another axis or for the norm. At the default pace thresholds must be a quarter higher. Tool and
+//! payload must be declared, or their weight counts, too: see [`Condition::relative`].
 
 mod quantity;
 #[cfg(test)]
@@ -40,29 +41,29 @@ use crate::tare::WrenchTare;
 
 pub(super) use watch::{Observed, Watch};
 
-/// What has to be the case in a state: comparisons of [quantities](Quantity), flags of the robot
-/// and the time since the goal began, joined by `&`, `|` and `!`.
+/// A predicate over a state: comparisons of [quantities](Quantity), flags of the robot and the time
+/// since the goal began, joined by `&`, `|` and `!`.
 ///
-/// A small value without memory of its own; it has room for [`Self::ROOM`] comparisons and
-/// operators. What does not fit, or cannot be, is refused when the motion begins: see
+/// A condition is a small value without heap memory, with room for [`Self::ROOM`] comparisons and
+/// operators. A condition that does not fit or is invalid is refused when the motion begins: see
 /// [`Self::check`].
 ///
-/// A quantity that is not finite, which a robot does not send, fulfils no comparison and no
-/// negation of one.
+/// A robot does not send quantities that are not finite. Such a quantity fulfils neither a
+/// comparison nor its negation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
-    /// In postfix order; [`Node::UNUSED`] beyond the length.
+    /// Nodes in postfix order; [`Node::UNUSED`] beyond the length.
     nodes: [Node; Self::ROOM],
-    /// How many nodes it takes: more than there is room for, and it is refused.
+    /// Number of nodes; the condition is refused if there is no room for them.
     length: usize,
-    /// What tared comparisons take off.
+    /// Offset that tared comparisons subtract.
     tare: Offset,
 }
 
 /// Wrench at the stiffness frame, in axes of the base, and joint torques.
 type Offset = [f64; 13];
 
-/// What a comparison is of.
+/// Reference of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Since {
     /// The value.
@@ -73,47 +74,47 @@ enum Since {
     Tare,
 }
 
-/// An operand or an operator.
+/// An operand or operator.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Node {
     Compare {
         quantity: Quantity,
         bound: Bound,
-        /// What it is compared with.
+        /// Threshold.
         value: f64,
         since: Since,
     },
     Flag(Flag),
-    /// So many milliseconds since the goal began.
+    /// Milliseconds since the goal began.
     Elapsed(u64),
-    /// The operand has been true for so many milliseconds.
+    /// Milliseconds for which the operand has been true.
     HeldFor(u64),
     Not,
     And,
     Or,
 }
 
-/// On which side of a value a quantity has to be.
+/// Side of the threshold on which the quantity must be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Bound {
     Above,
     Below,
-    /// Its magnitude above.
+    /// The magnitude is above the threshold.
     Beyond,
 }
 
-/// What the robot itself says of contacts.
+/// The robot's own reports of contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Flag {
-    /// Of any joint, or along or about any axis.
+    /// Contact of any joint, or along or about any axis.
     Contact,
     JointContact(u8),
     CartesianContact,
-    /// Of any joint, or along or about any axis.
+    /// Collision of any joint, or along or about any axis.
     Collision,
 }
 
-/// Why a condition is not accepted.
+/// Reason for refusing a condition.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConditionError {
@@ -123,13 +124,13 @@ pub enum ConditionError {
         Condition::ROOM
     )]
     TooLong {
-        /// How many it has.
+        /// Number of comparisons and operators.
         got: usize,
     },
-    /// A threshold is not finite, or that of a magnitude not above zero.
+    /// A threshold is not finite, or the threshold of a magnitude is not above zero.
     #[error("threshold {got} for {quantity:?}, expected a finite number, above 0 for a magnitude")]
     Threshold {
-        /// Of what.
+        /// Quantity of the comparison.
         quantity: Quantity,
         /// The value given.
         got: f64,
@@ -143,13 +144,13 @@ pub enum ConditionError {
     /// The tare is not finite, or the condition has two different ones.
     #[error("expected one tare of finite numbers for all comparisons of a condition")]
     Tare,
-    /// What follows the reaction cannot be hand guiding.
+    /// The target after the reaction cannot be hand guiding.
     #[error("a reaction goes on to joint positions, a pose or rest, not to hand guiding")]
     Guided,
 }
 
-/// True while the external force along x is at or beyond `newtons`, in either direction; as are its
-/// siblings along y and z. [`Quantity`] has comparisons with a sign, and more to compare.
+/// True while the external force along x is at or beyond `newtons`, in either direction. Its
+/// siblings compare y and z. [`Quantity`] has comparisons with a sign, and more quantities.
 pub fn force_x(newtons: f64) -> Condition {
     Quantity::Force(Axis::X).beyond(newtons)
 }
@@ -164,13 +165,12 @@ pub fn force_z(newtons: f64) -> Condition {
     Quantity::Force(Axis::Z).beyond(newtons)
 }
 
-/// True while the external force, whatever its direction, is at or beyond `newtons`.
+/// True while the norm of the external force is at or beyond `newtons`.
 pub fn force(newtons: f64) -> Condition {
     Quantity::ForceNorm.beyond(newtons)
 }
 
-/// True while the external torque at the end effector, whatever its axis, is at or beyond
-/// `newton_metres`.
+/// True while the norm of the external torque at the end effector is at or beyond `newton_metres`.
 pub fn torque(newton_metres: f64) -> Condition {
     Quantity::TorqueNorm.beyond(newton_metres)
 }
@@ -180,8 +180,8 @@ pub fn joint_torques(newton_metres: f64) -> Condition {
     Quantity::LargestJointTorque.beyond(newton_metres)
 }
 
-/// True while the robot reports any contact, of a joint or at the end effector: while an estimate
-/// is above a lower threshold of its collision behaviour.
+/// True while the robot reports any contact, of a joint or at the end effector: an estimate is
+/// above a lower threshold of its collision behaviour.
 pub fn contact() -> Condition {
     Node::Flag(Flag::Contact).into()
 }
@@ -196,30 +196,30 @@ pub fn cartesian_contact() -> Condition {
     Node::Flag(Flag::CartesianContact).into()
 }
 
-/// True while the robot reports any collision. It stops itself for those in motion, which ends the
-/// motion with an error: a reaction to a [`contact`] comes earlier.
+/// True while the robot reports any collision. In motion the robot stops itself for a collision,
+/// which ends the motion with an error. A reaction to a [`contact`] comes earlier.
 pub fn collision() -> Condition {
     Node::Flag(Flag::Collision).into()
 }
 
-/// True from `time` after the first state of the goal on, by the robot's clock, whole milliseconds.
+/// True from `time` after the first state of the goal, by the robot's clock, whole milliseconds.
 pub fn elapsed(time: Duration) -> Condition {
     Node::Elapsed(milliseconds(time)).into()
 }
 
 impl Condition {
-    /// The number of comparisons and operators that a condition has room for, `&`, `|`, `!` and
+    /// Maximum number of comparisons and operators in a condition, `&`, `|`, `!` and
     /// [`held_for`](Self::held_for) included: twelve comparisons, joined.
     pub const ROOM: usize = 24;
 
-    /// Compares the changes since the first state of the goal instead of the values, in every
-    /// comparison of this condition; of norms, the norm of the change.
+    /// Compares changes since the first state of the goal instead of values, in every comparison of
+    /// this condition. For norms, it compares the norm of the change.
     ///
-    /// For loads that the robot does not know of, whose weight shows in its estimate; for
-    /// displacements; and for what a torque sensor is off by. Friction changes as the arm begins to
+    /// Use this for undeclared loads, whose weight shows in the robot's estimate, for
+    /// displacements, and for offsets of torque sensors. Friction changes as the arm begins to
     /// move, so a force needs the same threshold as without: see the [module](self). A goal that
-    /// takes over in mid-motion, in a session, compares with the friction in motion, and needs
-    /// about two thirds of it.
+    /// takes over in mid-motion, in a session, compares with the friction in motion. It needs about
+    /// two thirds of that threshold.
     #[must_use]
     pub fn relative(mut self) -> Self {
         for node in &mut self.nodes {
@@ -230,13 +230,14 @@ impl Condition {
         self
     }
 
-    /// Takes a tare off the forces, moments and joint torques of this condition; what else it
-    /// compares stays as it is, and so do changes: what is [`relative`](Self::relative), made so
-    /// before or after, has no tare. The moment is then about the origin of the stiffness frame.
+    /// Subtracts a tare from the forces, moments and joint torques of this condition. Other
+    /// comparisons stay as they are. Changes have no tare, so [`relative`](Self::relative)
+    /// comparisons ignore it, whichever call comes first. The moment is then about the origin of
+    /// the stiffness frame.
     ///
-    /// A tare belongs to the posture in which it was taken: see [`tare`](crate::tare). Where the
-    /// robot has no estimate, near a singularity, no tared comparison of the wrench is true, and no
-    /// negation of one.
+    /// A tare belongs to the posture in which it was taken: see [`tare`](crate::tare). Near a
+    /// singularity the robot has no estimate. No tared comparison of the wrench is true there, and
+    /// no negation of one.
     #[must_use]
     pub fn tared(mut self, tare: &WrenchTare) -> Self {
         for node in &mut self.nodes {
@@ -257,17 +258,16 @@ impl Condition {
     }
 
     /// True once this condition has been true for `time` without a break, by the robot's clock,
-    /// whole milliseconds. Of states that were lost it is assumed that they were like those around
-    /// them.
+    /// whole milliseconds. Lost states are assumed to be like the states around them.
     #[must_use]
     pub fn held_for(self, time: Duration) -> Self {
         self.then_node(Node::HeldFor(milliseconds(time)))
     }
 
-    /// Checks that there is room for the condition and that its thresholds can be.
+    /// Checks that there is room for the condition and that its thresholds are valid.
     ///
     /// # Errors
-    /// [`ConditionError`] names the first thing that is wrong.
+    /// [`ConditionError`] names the first problem.
     pub fn check(&self) -> Result<(), ConditionError> {
         if self.length > Self::ROOM {
             return Err(ConditionError::TooLong { got: self.length });
@@ -360,7 +360,7 @@ impl Not for Condition {
 }
 
 impl Node {
-    /// Fills the room that a condition does not need.
+    /// Fills the unused room of a condition.
     const UNUSED: Self = Self::Or;
 
     fn compare(quantity: Quantity, bound: Bound, value: f64) -> Self {

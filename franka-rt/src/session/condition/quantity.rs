@@ -1,4 +1,4 @@
-//! The numbers that a condition can be about.
+//! Numbers that a condition can compare.
 
 use franka_model::{JointVector, Twist};
 
@@ -16,11 +16,11 @@ pub enum Axis {
     Z,
 }
 
-/// A number that changes while the arm moves: what a condition compares.
+/// A number that changes while the arm moves, for comparisons in conditions.
 ///
 /// Forces and torques are the robot's estimates, and positive where the arm exerts them on its
-/// surroundings: one that presses on a table shows a negative force along z. Axes are those of the
-/// base frame.
+/// surroundings. An arm that presses on a table shows a negative force along z. All axes belong to
+/// the base frame.
 ///
 /// ```
 /// use franka_rt::session::condition::{Axis, Quantity};
@@ -36,14 +36,14 @@ pub enum Quantity {
     Force(Axis),
     /// Norm of the force, `[N]`.
     ForceNorm,
-    /// Torque about an axis through the origin of the stiffness frame, `[N m]`: that of
-    /// `K_F_ext_hat_K`. `O_F_ext_hat_K` has it about the origin of the base.
+    /// Torque about an axis through the origin of the stiffness frame, `[N m]`: the torque of
+    /// `K_F_ext_hat_K`. In contrast, the torque of `O_F_ext_hat_K` is about the origin of the base.
     Torque(Axis),
-    /// Norm of that torque, `[N m]`.
+    /// Norm of the torque, `[N m]`.
     TorqueNorm,
     /// External torque of a joint, 1 to 7, `tau_ext_hat_filtered`, `[N m]`.
     JointTorque(u8),
-    /// The largest magnitude of these, `[N m]`.
+    /// The largest magnitude of the external joint torques, `[N m]`.
     LargestJointTorque,
     /// Position of the end effector along an axis, from the measured joints, `[m]`.
     Position(Axis),
@@ -72,12 +72,12 @@ impl Quantity {
         Node::compare(self, Bound::Below, value).into()
     }
 
-    /// True while its magnitude is at or above `value`, which has to be above zero.
+    /// True while its magnitude is at or above `value`, which must be above zero.
     pub fn beyond(self, value: f64) -> Condition {
         Node::compare(self, Bound::Beyond, value).into()
     }
 
-    /// True if it is one of the robot's estimates, which a tare may be taken off.
+    /// True if it is one of the robot's estimates, which accept a tare.
     pub(super) fn is_estimate(self) -> bool {
         matches!(
             self,
@@ -90,7 +90,7 @@ impl Quantity {
         )
     }
 
-    /// The joint that it is about, if it is about one.
+    /// Joint of the quantity, if it has one.
     pub(super) fn joint(self) -> Option<u8> {
         match self {
             Self::JointTorque(joint) | Self::JointPosition(joint) | Self::JointVelocity(joint) => {
@@ -100,7 +100,7 @@ impl Quantity {
         }
     }
 
-    /// Its value in a sample; not finite where the sample is not, or has no such joint.
+    /// Value in a sample; not finite where the sample is not, or has no such joint.
     pub(super) fn of(self, sample: &Sample) -> f64 {
         let along = |first: usize, axis: Axis| sample.0[first + axis as usize];
         let joint = |first: usize, joint: u8| match joint {
@@ -135,11 +135,11 @@ impl Quantity {
     }
 }
 
-/// What the quantities of one state come from.
+/// Source of all quantities of one state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample([f64; LENGTH]);
 
-/// Where each part of a sample begins.
+/// Beginning of each part of a sample.
 const FORCE: usize = 0;
 const TORQUE: usize = 3;
 const JOINT_TORQUE: usize = 6;
@@ -166,7 +166,7 @@ impl Sample {
         Self(sample)
     }
 
-    /// What has changed since a tare; the wrench is not finite where the robot has no estimate.
+    /// Returns the change since a tare; the wrench is not finite where the robot has no estimate.
     pub(super) fn tared(&self, tare: &Offset) -> Self {
         let mut sample = *self;
         for (number, offset) in sample.0.iter_mut().zip(tare) {
@@ -178,12 +178,12 @@ impl Sample {
         sample
     }
 
-    /// What has changed since `before`.
+    /// Returns the change since `before`.
     pub(super) fn since(&self, before: &Self) -> Self {
         Self(core::array::from_fn(|i| self.0[i] - before.0[i]))
     }
 
-    /// Takes from `newer` what is not finite.
+    /// Replaces numbers that are not finite with those of `newer`.
     pub(super) fn complete_from(&mut self, newer: &Self) {
         for (number, newer) in self.0.iter_mut().zip(&newer.0) {
             if !number.is_finite() {

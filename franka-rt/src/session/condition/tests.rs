@@ -56,7 +56,8 @@ const MS: Duration = Duration::from_millis(1);
 #[test]
 fn every_quantity_is_the_number_of_the_state_that_it_names() {
     let mut arm = Arm::new();
-    // The torque is that about the stiffness frame, here a half turn about z from the base's axes.
+    // The torque is about the stiffness frame, which is turned by half a turn about z from the
+    // base's axes here.
     arm.state.O_F_ext_hat_K = [3.0, -4.0, 12.0, 5.0, 6.0, 7.0];
     arm.state.K_F_ext_hat_K = [-3.0, 4.0, 12.0, -0.3, 0.4, 1.2];
     (arm.state.EE_T_K[0], arm.state.EE_T_K[5]) = (-1.0, -1.0);
@@ -149,8 +150,8 @@ fn flags_are_what_the_robot_reports() {
     assert_eq!(seen(&arm), [false, false, false, true]);
 }
 
-/// A random condition of so many nodes at most, and what it comes to if operands come to `values`,
-/// computed by recursion.
+/// Returns a random condition with at most this number of nodes, and its result if operands
+/// evaluate to `values`, computed by recursion.
 fn random_condition(
     random: &mut SmallRng,
     nodes: usize,
@@ -170,7 +171,7 @@ fn random_condition(
             let first = random.random_range(1..nodes - 1);
             let (a, a_is) = random_condition(random, first, values);
             let (b, b_is) = random_condition(random, nodes - 1 - first, values);
-            // The value of one that decides whatever the other is.
+            // Result of an operand that decides alone.
             let decisive = kind == 1;
             let joined = if decisive { a | b } else { a & b };
             let value = match (a_is, b_is) {
@@ -423,7 +424,7 @@ fn every_condition_survives_its_words() {
     }
 }
 
-/// Of an arm whose stiffness frame is turned by half a turn about x against the base.
+/// Uses an arm whose stiffness frame is turned by half a turn about x against the base.
 #[test]
 fn tared_comparisons_are_of_what_has_changed_since_the_tare() {
     let mut arm = Arm::new();
@@ -444,27 +445,27 @@ fn tared_comparisons_are_of_what_has_changed_since_the_tare() {
         (force_y(0.1), false),
         (force(5.0), true),
         (force(5.1), false),
-        // The moment of the stiffness frame, not that of the base.
+        // The moment of the stiffness frame, not of the base.
         (torque(0.2), true),
         (torque(0.25), false),
         (Quantity::Torque(Axis::Y).above(0.19), true),
         (joint_torques(0.1), false),
-        // No tare is taken off these.
+        // These have no tare.
         (position.above(0.49), true),
         (position.above(0.51), false),
     ] {
         assert_eq!(arm.meets(condition.tared(&tare)), met, "{condition:?}");
-        // As it is on the other side of the slot.
+        // Reads the condition on the other side of the slot.
         let mut words = [u64::MAX; Condition::WORDS];
         let tared = condition.tared(&tare);
         tared.store(&mut words);
         assert_eq!(Condition::load(&words), tared);
     }
-    // A change has no tare, whichever is said first.
+    // A change has no tare, in either order of the calls.
     let (change, tared) = (force_z(1.0).relative(), force_z(1.0).tared(&tare));
     assert_eq!(change.tared(&tare), tared.relative());
     assert!(arm.meets(tared) && !arm.meets(tared.relative()));
-    // Joined with others, which see the whole wrench.
+    // Joined with other comparisons, which see the whole wrench.
     let both = force_z(4.9).tared(&tare) & force_z(3.9) & !force_z(4.1);
     assert!(arm.meets(both));
     assert!(arm.meets(!force_z(5.1) & force_z(4.9).tared(&tare)));

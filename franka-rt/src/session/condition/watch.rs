@@ -6,14 +6,15 @@ use super::quantity::Sample;
 use super::{Bound, Condition, Flag, Node, Since};
 use crate::session::running::Measured;
 
-/// What conditions need of a state, beside the joints and the pose that the session measures.
+/// Parts of a state that conditions need, besides the joints and the pose that the session
+/// measures.
 ///
-/// Copied before the answer to the state leaves; what it comes to is computed afterwards.
+/// Copied before the answer to the state leaves, and evaluated afterwards.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::session) struct Observed {
-    /// In base axes, its torque about the origin of the stiffness frame.
+    /// Wrench in base axes, with its torque about the origin of the stiffness frame.
     pub(in crate::session) wrench: [f64; 6],
-    /// `tau_ext_hat_filtered`
+    /// Joint torques, `tau_ext_hat_filtered`.
     pub(super) joint_torques: [f64; 7],
     pub(super) dq: [f64; 7],
     joint_contact: [f64; 7],
@@ -36,21 +37,21 @@ impl Observed {
     }
 }
 
-/// A condition under watch: what it remembers from state to state.
+/// A condition with its memory from state to state.
 #[derive(Debug)]
 pub(in crate::session) struct Watch {
     condition: Condition,
     is_tared: bool,
-    /// When the goal began, `message_id` of the state.
+    /// Beginning of the goal, `message_id` of the state.
     since: u64,
     /// The first state of the goal.
     first: Option<Sample>,
-    /// Since when the operand of a node has been true, `message_id` of the state.
+    /// Time since which the operand of a node has been true, `message_id` of the state.
     held: [Option<u64>; Condition::ROOM],
 }
 
 impl Watch {
-    /// For a goal that begins with the state `since`, `message_id`.
+    /// Watches a condition for a goal that begins with the state `since`, `message_id`.
     pub(in crate::session) fn new(condition: Condition, since: u64) -> Self {
         Self {
             condition,
@@ -61,8 +62,8 @@ impl Watch {
         }
     }
 
-    /// True if the condition is true in this state, with the arm as it was measured in it. Bounded
-    /// work, the same in every cycle.
+    /// True if the condition is true in this state, with the arm as measured in it. Bounded work,
+    /// the same in every cycle.
     pub(in crate::session) fn is_met(&mut self, state: &Observed, arm: &Measured) -> bool {
         let now = Sample::of(state, arm);
         let first = self.first.get_or_insert(now);
@@ -127,7 +128,7 @@ impl Bound {
 }
 
 impl Flag {
-    /// `None` if a number that decides is not one.
+    /// `None` if a number that decides is NaN.
     fn is_set(self, state: &Observed) -> Option<bool> {
         let any = |flags: &[f64]| {
             let set = flags.iter().any(|&flag| flag > 0.0);
@@ -151,8 +152,8 @@ impl Flag {
     }
 }
 
-/// The operands on the way through a condition, the newest in bit 0: true, false or, without either
-/// bit, unknown.
+/// Operands during the evaluation of a condition, the newest in bit 0: true, false or, without
+/// either bit, unknown.
 #[derive(Debug, Default)]
 struct Stack {
     yes: u32,

@@ -1,13 +1,13 @@
-//! The form of a condition in the slot that crosses into the thread.
+//! Encoding of a condition in the slot to the control thread.
 //!
-//! A word for the length, then two for each node: what it is, and its number; then the tare. What a
-//! node is takes a byte each, from the lowest: the kind of node; the kind of quantity or flag; its
-//! axis or joint; the kind of bound; what the change is counted from.
+//! A word for the length comes first, then two for each node: its kind, and its number. The tare
+//! follows. The kind has five bytes, from the lowest: the kind of node; the kind of quantity or
+//! flag; its axis or joint; the kind of bound; the reference of a change.
 
 use super::{Axis, Bound, Condition, Flag, Node, Quantity, Since};
 use crate::slot::Words;
 
-/// Words of the length and the nodes.
+/// Words for the length and the nodes.
 const NODES: usize = 1 + 2 * Condition::ROOM;
 
 impl Words for Condition {

@@ -1,4 +1,4 @@
-//! An object that the hand holds, alone or with the arms of a team.
+//! An object in the hand, carried alone or with the arms of a team.
 
 use franka_model::rotation;
 use franka_otg::AxisLimits;
@@ -10,31 +10,30 @@ use crate::session::reference::Reference;
 use crate::session::{Budget, Goal, Target, Tolerance};
 use crate::team::Carrying;
 
-/// Distance of the arm from its reference, `[m]`, from which on it lags. Realistic arms that
+/// Distance of the arm from its reference at which it counts as lagging, `[m]`. Realistic arms that
 /// nothing holds stay within half of it: 7.4 mm at most (as for [`NEAR`], at full speed).
 const LAG: f64 = 0.015;
 
-/// Distance within which it no longer does, `[m]`: arms that nothing holds come to rest within
-/// 5.0 mm of it, where they disagree.
+/// Distance within which the arm no longer lags, `[m]`. Arms that nothing holds stop within 5.0 mm
+/// of the reference, where they disagree.
 const CAUGHT_UP: f64 = 0.012;
 
-/// Joint velocity, `[rad/s]`, that a reference may be put to rest from at once: 0.1 rad/s^2 in one
-/// cycle.
+/// Joint velocity at which a reference may be stopped at once, `[rad/s]`: 0.1 rad/s^2 in one cycle.
 const AT_REST: f64 = 1e-4;
 
 /// Deceleration of a reference that halts for another arm, `[m/s^2]` and `[rad/s^2]`: a quarter of
-/// what either robot allows.
+/// either robot's limit.
 const HALT: [f64; 2] = [2.5, 4.0];
 
-/// Time in which it is built up, `[s]`.
+/// Time for building up that deceleration, `[s]`.
 const RAMP: f64 = 0.025;
 
-/// What a turn counts, `[m/rad]`.
+/// Length that corresponds to a turn, `[m/rad]`.
 const LEVER: f64 = 0.2;
 
-/// How near arms that hold one object come to their targets at least. What they know of themselves
-/// differs, so the object keeps them from being there all at once: 3.1 mm and 5.3 mrad at most on
-/// 48 ways of 12 pairs of realistic arms (`tests/lockstep/carrying`), with their force caps at
+/// Least tolerance of arms that hold one object. Their calibrations differ, so the object keeps
+/// them from reaching their targets all at once. In 48 motions of 12 pairs of realistic arms
+/// (`tests/lockstep/carrying`) the errors were at most 3.1 mm and 5.3 mrad. Their force caps were
 /// 20 N.
 const NEAR: Tolerance = Tolerance {
     translation: 5e-3,
@@ -42,8 +41,8 @@ const NEAR: Tolerance = Tolerance {
 };
 
 impl RunningSession {
-    /// Goes on from the object that the goal names, or from the hand: the joint reference stays as
-    /// it is, and where the goal leads is planned from there.
+    /// Continues from the object of the goal, or from the hand. The joint reference stays as it is,
+    /// and the goal is planned from there.
     pub(super) fn take_hold(&mut self) {
         let grasp = self.goal.grasp;
         if grasp == self.grasp {
@@ -53,14 +52,14 @@ impl RunningSession {
         self.place_object();
         self.leave_pose_course();
         self.lags = false;
-        // Arms at rest plan the same way of the same object. What rounding has left of a motion
-        // would give it another direction, and limits of its own, on each.
+        // Arms at rest plan the same motion of the same object. A remaining motion from rounding
+        // would give each arm's plan another direction and other limits.
         if self.reference.dq.amax() < AT_REST {
             self.reference = Reference::at_rest(self.reference.q);
         }
     }
 
-    /// Halts the reference on its line, or lets it go on.
+    /// Halts the reference on its line, or resumes it.
     pub(super) fn wait_for_team(&mut self, waits: bool) {
         if waits != self.waits {
             self.waits = waits;
@@ -68,7 +67,7 @@ impl RunningSession {
         }
     }
 
-    /// How near an arm has arrived that holds an object with others and comes to rest out of the
+    /// Returns the tolerance of an arm that holds an object with others and stops outside its own
     /// tolerance.
     pub(super) fn tolerance_with_others(&self) -> Option<Tolerance> {
         let Goal {
@@ -78,7 +77,7 @@ impl RunningSession {
         with_others.then_some(NEAR)
     }
 
-    /// How far it is with the object that it carries; `None` if it carries none.
+    /// Returns the progress with the carried object; `None` if the arm carries none.
     pub(in crate::session) fn carrying(&mut self) -> Option<Carrying> {
         self.grasp?;
         let (Course::Pose(generator, _), Target::Pose(target)) =
@@ -98,9 +97,9 @@ impl RunningSession {
     }
 }
 
-/// The budget of a reference that halts for another arm: it is to be ahead of that one by as little
-/// as the joints take without a jolt. From 0.3 m/s it rests after about 25 mm, with the default
-/// budget after about 90 mm.
+/// Returns the budget of a reference that halts for another arm. The reference should get as little
+/// ahead of the other arm as the joints allow without a jolt. From 0.3 m/s it stops after about 25
+/// mm, and with the default budget after about 90 mm.
 pub(super) fn quick_to_halt(budget: Budget) -> Budget {
     let raised = |limits: AxisLimits, acceleration: f64| AxisLimits {
         acceleration: limits.acceleration.max(acceleration),

@@ -1,4 +1,4 @@
-//! Chunks of a session: taken up, gone on from, given back.
+//! Chunks of a session: take-up, continuation and return.
 
 use franka_model::Model;
 
@@ -9,14 +9,14 @@ use crate::session::course::Course;
 use crate::session::{OnArrival, Target};
 
 impl RunningSession {
-    /// Takes up a newer chunk of the goal if there is one, and goes on to rest from one that is
-    /// over.
+    /// Takes up a newer chunk of the goal if there is one, and continues to rest after a chunk that
+    /// is over.
     pub(super) fn follow_chunks(&mut self, model: &Model, chunks: &mut ChunkReader, now: u64) {
         if let Some(retired) = self.route.retired_chunk.take() {
             retired.end(chunks, now);
         }
         let gone = self.stage.lets_go();
-        // A goal that was taken back, perhaps before it was seen, follows nothing.
+        // A goal that was taken back, perhaps before it was seen, follows no chunk.
         let follows =
             self.goal.along_path || self.goal.on_arrival == OnArrival::Hold || self.is_given_up();
         if gone || !follows || self.is_given_up_for_good() {
@@ -39,7 +39,7 @@ impl RunningSession {
             if let Some(before) = before {
                 before.end(chunks, now);
             }
-            // A goal that had fallen silent was to be held until a newer one.
+            // A goal that had fallen silent was held until a newer chunk.
             if self.is_given_up() {
                 self.standing = Standing::InForce;
                 self.goal.on_arrival = OnArrival::Hold;
@@ -54,7 +54,7 @@ impl RunningSession {
         }
     }
 
-    /// The target at which the reference is to come to rest.
+    /// Target at which the reference will stop.
     pub(super) fn heading(&self) -> Target {
         match &self.route.course {
             Course::Chunk(chunk) => chunk.target(),

@@ -1,10 +1,11 @@
 //! Poses as the robot reports them.
 //!
-//! Goals lead the hand to a pose that the robot reports as theirs. The robot computes its poses
-//! with a geometry of its own, so the frame that goals lead is the hand moved by a correction: it
-//! is taken where a goal begins, and once more where the reference has arrived. Under Cartesian
-//! setpoints it is that of the setpoint, which the robot follows in its own geometry: it is taken
-//! where the reference is taken from the robot.
+//! Goals lead the hand to a pose in the robot's own report. The robot computes its poses with its
+//! own geometry, so goals lead a frame that is the hand moved by a correction. The correction is
+//! taken where a goal begins, and once more where the reference has arrived.
+//!
+//! Under Cartesian setpoints the robot follows the setpoint in its own geometry, so the correction
+//! belongs to the setpoint. It is taken where the reference is taken from the robot.
 
 use nalgebra::Isometry3;
 
@@ -13,24 +14,24 @@ use crate::session::Target;
 use crate::session::course::Course;
 use crate::session::geometry::{self, RESIDUAL_MAX};
 
-/// How far the report may be off where the reference has arrived, `[m]`, turns at 0.1 m: more is
-/// worth another move.
+/// Greatest error of the report where the reference has arrived, `[m]`, turns at 0.1 m. A greater
+/// error is worth another move.
 const REFINED: f64 = 1e-5;
 
 impl Measured {
-    /// The pose of the hand as the robot reports it.
+    /// Pose of the hand as the robot reports it.
     pub(super) fn as_reported(&self) -> Isometry3<f64> {
         self.modelled * geometry::correction(&self.modelled, &self.reported)
     }
 }
 
 impl RunningSession {
-    /// Takes the correction anew if the present one does not fit the newest state.
+    /// Renews the correction if it does not fit the newest state.
     pub(super) fn renew_correction(&mut self) {
         self.renew_correction_beyond(RESIDUAL_MAX);
     }
 
-    /// The same if it is off by more than `most`, `[m]`. Returns whether it is.
+    /// Same if the error exceeds `most`, `[m]`. Returns true if it does.
     fn renew_correction_beyond(&mut self, most: f64) -> bool {
         let commanded = match &self.drive {
             Drive::Torques(_) => false,
@@ -45,8 +46,8 @@ impl RunningSession {
         true
     }
 
-    /// Makes goals lead the hand moved by `correction`. The joint reference stays as it is, and
-    /// where the goal leads has to be planned from there.
+    /// Makes goals lead the hand moved by `correction`. The joint reference stays as it is, and the
+    /// goal must be planned from there.
     pub(super) fn correct(&mut self, correction: Isometry3<f64>) {
         self.correction = correction;
         self.place_object();
@@ -60,15 +61,15 @@ impl RunningSession {
         self.ee = geometry::corrected(&self.hand, &(self.correction * object));
     }
 
-    /// Ends a course whose plan is one for the frame before.
+    /// Ends a course whose plan belongs to the previous frame.
     pub(super) fn leave_pose_course(&mut self) {
         if matches!(self.route.course, Course::Pose(..)) {
             self.route.course = Course::Rest;
         }
     }
 
-    /// Moves on to a pose at which the reference has arrived, if the robot's report is off there:
-    /// once for each target. Returns whether it does.
+    /// Moves on to a pose at which the reference has arrived, if the robot's report is off there,
+    /// once for each target. Returns true if it does.
     pub(super) fn refine(&mut self, heading: &Target) -> bool {
         if self.is_refined || !matches!(heading, Target::Pose(_)) || self.is_given_up() {
             return false;

@@ -1,4 +1,4 @@
-//! Goals: taken up, tuned, headed for.
+//! Goals: take-up, tuning, aim.
 
 use franka_model::Model;
 
@@ -18,7 +18,7 @@ impl RunningSession {
         let taken_back = goal.target == Target::Rest && goal.on_arrival != OnArrival::Hold;
         // Tuning leaves the revision as it is.
         let tuned = goal.revision == self.goal.revision;
-        // The caller has not yet seen the abort or the reaction: ignore where the update leads.
+        // The caller has not yet seen the abort or the reaction: ignore the target of the update.
         let aborted = !taken_back && self.is_given_up_for_good();
         if named && (tuned || aborted) {
             return self.tune(goal);
@@ -48,8 +48,8 @@ impl RunningSession {
         self.set_out();
     }
 
-    /// Keeps the target, and takes budget, gains, tolerance and guards from `goal`. Gains for
-    /// guiding would release an arm that is held by now.
+    /// Keeps the target, and uses budget, gains, tolerance and guards from `goal`. Gains for
+    /// guiding would release an arm that is already held.
     fn tune(&mut self, goal: &Goal) {
         let Goal {
             target, on_arrival, ..
@@ -74,7 +74,7 @@ impl RunningSession {
         }
     }
 
-    /// Starts the fade of gains, force cap and leash to those of the goal.
+    /// Starts the fade of gains, force cap and leash to the goal's values.
     pub(super) fn fade(&mut self) {
         self.leash.towards(self.goal.leash);
         if let Drive::Torques(effort) = &mut self.drive {
@@ -82,7 +82,7 @@ impl RunningSession {
         }
     }
 
-    /// Sets out for the target of the goal; along a path once that is there.
+    /// Sets out for the target of the goal, or along its path once that has arrived.
     pub(super) fn set_out(&mut self) {
         self.stage = GoalStage::UnderWay;
         self.is_refined = false;
@@ -94,27 +94,27 @@ impl RunningSession {
         });
     }
 
-    /// Ends the course, and has the next one planned to `target`.
+    /// Ends the course, so that the next one is planned to `target`.
     pub(super) fn turn_to(&mut self, target: Target) {
         self.route.turn();
         self.aim = target;
         self.halted = false;
     }
 
-    /// What the reference heads for, where that is at `now`.
+    /// Present target of the reference, at its place at `now`.
     pub(super) fn target_at(&self, now: u64) -> Target {
         let since = now.saturating_sub(self.heard).min(Target::MOVES_ON_MS);
         self.aim.after(since)
     }
 
-    /// What the reference heads for at `now`, and how. A goal that is slow on purpose is left
-    /// quickly after a reaction.
+    /// Present aim of the reference at `now`. After a reaction a deliberately slow goal is left
+    /// quickly.
     pub(super) fn aim(&self, model: &Model, now: u64) -> Aim {
         let mut aim = Aim {
             goal: self.goal.id,
             target: self.target_at(now),
             budget: self.goal.budget,
-            // A stop is not to be paused.
+            // A stop cannot be paused.
             paused: (self.goal.paused || self.waits) && self.aim != Target::Rest || self.halted,
             leash: self.leash.now(),
         };

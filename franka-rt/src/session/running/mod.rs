@@ -1,7 +1,8 @@
-//! A session under way: the reference, what moves it, and the torques that follow it.
+//! A session under way: the reference, the course that moves it, and the torques that follow it.
 //!
-//! What needs the newest state answers it: the law, the leash, the judgement of the arrival. All
-//! that does not is prepared after the answer before: goals, plans and the reference's next step.
+//! The law, the leash and the judgement of the arrival need the newest state, so they run in its
+//! answer. Everything else is prepared after the previous answer: goals, plans and the reference's
+//! next step.
 
 mod carry;
 mod chunks;
@@ -47,12 +48,12 @@ use super::{
 use react::Reacting;
 use stages::GoalStage;
 
-/// The part of a session that exists from its first state on.
+/// The part of a session that exists from its first state.
 #[derive(Debug)]
 pub(super) struct RunningSession {
-    /// As the robot's state has it. Springs and dampers act there.
+    /// Hand as in the robot's state. Springs and dampers act there.
     hand: EndEffector,
-    /// What goals lead somewhere: the hand as the robot reports it, or an object in it.
+    /// Frame that goals lead: the hand as the robot reports it, or an object in it.
     ee: EndEffector,
     /// Pose of the reported hand in the hand.
     correction: Isometry3<f64>,
@@ -60,73 +61,73 @@ pub(super) struct RunningSession {
     is_refined: bool,
     grasp: Option<Isometry3<f64>>,
     load: Load,
-    /// The joint positions that it began with, `[rad]`: the posture of goals without one.
+    /// Joint positions at the beginning, `[rad]`: the posture of goals without one.
     posture: JointVector,
     pub(super) goal: Goal,
     /// The arm in the newest state that was answered.
     arm: Measured,
-    /// For the answer to the next state, once it is prepared.
+    /// Prepared values for the answer to the next state.
     next: Option<Next>,
-    /// On its way to that of the goal.
+    /// Leash, fading to the goal's value.
     leash: Fade<Leash>,
-    /// What the leash held in the last answer, if it did.
+    /// Parts that the leash held in the last answer, if any.
     held: Option<Held>,
-    /// When the goal was first seen, `message_id` of the state.
+    /// Time when the goal was first seen, `message_id` of the state.
     since: u64,
-    /// What the reference heads for: the goal's target, or one nearer, or rest.
+    /// Aim of the reference: the goal's target, or a nearer one, or rest.
     aim: Target,
-    /// True if the target moved on and no news of it came for too long.
+    /// True if a moving target got no update for too long.
     halted: bool,
     route: Route,
     reference: Reference,
     drive: Drive,
     displacement: Displacement,
     response: Unresponsive,
-    /// True if the arm ignores its commands, by the last answer.
+    /// True if the arm ignored its commands in the last answer.
     ignores: bool,
-    /// What follows a goal that is held and has to be given up.
+    /// Action after a held goal had to be given up.
     afterwards: OnArrival,
     stage: GoalStage,
-    /// When the session last heard of its goal, `message_id` of the state.
+    /// Time of the last update of the goal, `message_id` of the state.
     heard: u64,
     standing: Standing,
     /// The reaction of the goal, until its condition was true.
     reacting: Option<Reacting>,
-    /// Whether the arm comes to rest, or rests, on what it may have met in a reaction.
+    /// True if the arm stops or rests on something that it may have met in a reaction.
     yields: bool,
-    /// Grows by 1 in a cycle in which the course is held back, and falls by 1 in any other.
+    /// Grows by 1 in a cycle in which the course is held back, and falls by 1 in any other cycle.
     held_back: u64,
-    /// The same for cycles in which the leash is what holds it back.
+    /// Same for cycles in which the leash holds it back.
     leashed: u64,
-    /// True if that is how its goal came to land short of its target.
+    /// True if for that reason its goal landed short of its target.
     obstructed: bool,
-    /// True if the reference waits for the others that carry the same object.
+    /// True if the reference waits for the other arms that carry the same object.
     waits: bool,
-    /// True if the arm is held back from the reference of an object that is carried.
+    /// True if the arm is held back from the reference of a carried object.
     lags: bool,
     /// Greatest speed of any point of the arm, `[m/s]`.
     speed_cap: Option<f64>,
 }
 
-/// How the goal stands.
+/// State of the goal.
 #[derive(Clone, Copy, Debug)]
 enum Standing {
     /// It is pursued.
     InForce,
-    /// It was changed to one of coming to rest. Chunks that wait for their time are discarded.
+    /// It was replaced by a stop. Chunks that wait for their time are discarded.
     TakenBack,
-    /// It was given up for `cause`: the arm holds the last target, or brakes.
+    /// It was given up for `cause`. The arm holds the last target, or brakes.
     GivenUp {
         action: OnTimeout,
         cause: Lapse,
-        /// If its condition had been true by then.
+        /// Set if its condition had been true by then.
         reacted: Option<Reacted>,
     },
-    /// Its condition was true: the arm brakes, and goes on to the other target if there is one.
+    /// Its condition was true. The arm brakes, and continues to the other target if there is one.
     Reacted(Reacted),
 }
 
-/// What follows the reference.
+/// Follower of the reference.
 #[derive(Debug)]
 #[expect(
     clippy::large_enum_variant,
@@ -137,31 +138,31 @@ enum Drive {
     Setpoints(SetpointStream),
 }
 
-/// What was prepared for the answer to the next state.
+/// Prepared values for the answer to the next state.
 #[derive(Debug, Default)]
 struct Next {
-    /// The step of the course; none where the course goes with the measured arm.
+    /// Step of the course; none where the course follows the measured arm.
     step: Option<CourseStep>,
     /// The guards that have bound so far.
     bindings: Bindings,
 }
 
-/// The arm as it was measured.
+/// The arm as measured.
 #[derive(Debug)]
 pub(super) struct Measured {
     /// `message_id` of the state.
     pub(super) time: u64,
     pub(super) q: JointVector,
     pub(super) dq: JointVector,
-    /// The pose that the model has.
+    /// Pose in the model.
     pub(super) modelled: Isometry3<f64>,
     /// `O_T_EE`, column-major, unchecked.
     pub(super) reported: [f64; 16],
-    /// The pose of the hand as the robot reports it, from the model and the correction.
+    /// Pose of the hand as the robot reports it, computed from the model and the correction.
     pub(super) pose: Isometry3<f64>,
-    /// The pose of what goals lead somewhere: the object in the hand, or the same.
+    /// Pose of the frame that goals lead: the object in the hand, or the hand.
     pub(super) object: Isometry3<f64>,
-    /// Of the end effector in the base frame.
+    /// Jacobian of the end effector in the base frame.
     pub(super) jacobian: Jacobian,
 }
 
@@ -196,7 +197,7 @@ impl RunningSession {
             drive,
             aim: goal.target,
             halted: false,
-            // The state shows that a tool is mounted, but not which one: the Hand is assumed.
+            // The state shows that a tool is mounted, but not its shape: the Hand is assumed.
             route: Route::new(
                 Clearance::new(model, state.m_ee > 0.0, keep_out),
                 goal.budget,
@@ -260,7 +261,7 @@ impl RunningSession {
         self.next.is_some()
     }
 
-    /// Begins with what is known of the arm.
+    /// Begins with the known values of the arm.
     pub(super) fn knowing(mut self, known: Learned) -> Self {
         if let Drive::Torques(effort) = &mut self.drive {
             effort.know(known);
@@ -268,13 +269,13 @@ impl RunningSession {
         self
     }
 
-    /// Keeps every point of the arm to a speed, `[m/s]`.
+    /// Caps the speed of every point of the arm, `[m/s]`.
     pub(super) fn no_faster_than(mut self, speed_cap: Option<f64>) -> Self {
         self.speed_cap = speed_cap;
         self
     }
 
-    /// What is known of the arm by now, of which so much was known before.
+    /// Returns the values learned about the arm so far. `known` are the values at the beginning.
     pub(super) fn learned(&self, known: Learned) -> Learned {
         match &self.drive {
             Drive::Torques(effort) => effort.learned(),
@@ -282,10 +283,11 @@ impl RunningSession {
         }
     }
 
-    /// Prepares the answer to the state `now`, `message_id`: takes up a `newer` goal, if there is
-    /// one, plans, and moves the reference by one step. `alive` is false once the deadman of the
-    /// session is silent or dropped; `stop` is there in the cycle that sees that its team has
-    /// stopped, and the reference `waits` for others that carry the same object.
+    /// Prepares the answer to the state `now`, `message_id`. It takes up a `newer` goal, if there
+    /// is one, plans, and moves the reference by one step. `alive` is false once the deadman of the
+    /// session is silent or dropped. `stop` is present in the cycle that sees that the session's
+    /// team has stopped. `waits` is true while the reference waits for others that carry the same
+    /// object.
     pub(super) fn prepare(
         &mut self,
         model: &Model,
@@ -368,7 +370,7 @@ impl RunningSession {
         step
     }
 
-    /// How far the arm was from its target when it had been let go.
+    /// Distance of the arm from its target at its release.
     pub(super) fn released(&self) -> Option<PoseError> {
         match self.stage {
             GoalStage::Finished(released) => released,
@@ -376,7 +378,7 @@ impl RunningSession {
         }
     }
 
-    /// Answers one state, once the answer is prepared.
+    /// Answers one state, after the answer was prepared.
     pub(super) fn answer(
         &mut self,
         model: &Model,
@@ -411,7 +413,7 @@ impl RunningSession {
         let at_rest = dq.amax() < landing::REST_VELOCITY;
         self.advance_stage(model, at_rest, state.message_id, event);
         self.observe(state);
-        // Under the robot's own controller the reference is anchored on that one's setpoint.
+        // Under the robot's own controller the reference is anchored at the robot's setpoint.
         if let Drive::Torques(_) = self.drive {
             self.held = leash::hold(
                 &self.leash.now(),
@@ -491,8 +493,8 @@ impl RunningSession {
         }
     }
 
-    /// Puts the reference at the setpoint that the robot's controller has, if that differs, and
-    /// plans the course anew from there. Returns whether it did.
+    /// Moves the reference to the setpoint of the robot's controller, if the two differ, and plans
+    /// the course anew from there. Returns true if it did.
     fn reanchor(&mut self, model: &Model, state: &RobotState) -> bool {
         let Drive::Setpoints(stream) = &mut self.drive else {
             return false;

@@ -1,4 +1,4 @@
-//! What a session does when the condition of its goal becomes true.
+//! Reaction of a session when the condition of its goal becomes true.
 
 use core::time::Duration;
 
@@ -13,12 +13,13 @@ use crate::session::{Goal, OnArrival, OnTimeout, Reacted, Reaction, Target};
 pub(super) struct Reacting {
     watch: Watch,
     then: Target,
-    /// The newest state that was answered, until the condition has been checked in it.
+    /// The newest answered state, until the condition has been checked in it.
     newest: Option<Observed>,
 }
 
 impl Reacting {
-    /// Of a goal that begins with the state `since`, `message_id`, if it has one.
+    /// Returns the reaction of a goal that begins with the state `since`, `message_id`, if it has
+    /// one.
     pub(super) fn to(goal: &Goal, since: u64) -> Option<Self> {
         let Reaction { condition, then } = goal.reaction?;
         Some(Self {
@@ -30,15 +31,15 @@ impl Reacting {
 }
 
 impl RunningSession {
-    /// Takes note of the newest state, for [`Self::react`] after the answer.
+    /// Records the newest state, for [`Self::react`] after the answer.
     pub(super) fn observe(&mut self, state: &RobotState) {
         if let Some(reacting) = &mut self.reacting {
             reacting.newest = Some(Observed::of(state));
         }
     }
 
-    /// Checks the condition in the newest state, which `self.arm` was measured in. If it is true,
-    /// brakes, and has the goal end at rest or at the other target.
+    /// Checks the condition in the newest state, in which `self.arm` was measured. If it is true,
+    /// brakes, and makes the goal end at rest or at the other target.
     pub(super) fn react(&mut self) {
         let watched = self.is_watched();
         let Some(reacting) = &mut self.reacting else {
@@ -75,7 +76,8 @@ impl RunningSession {
         self.reacting = None;
     }
 
-    /// True if a condition of the goal counts: until the goal was reported, taken back or braked.
+    /// True if a condition of the goal still counts: until the goal was reported, taken back or
+    /// braked.
     fn is_watched(&self) -> bool {
         let pursued = match self.standing {
             Standing::InForce => true,
@@ -85,13 +87,12 @@ impl RunningSession {
         pursued && matches!(self.stage, GoalStage::UnderWay | GoalStage::Landing(_))
     }
 
-    /// True if what the arm has come to the end of is the brake of a reaction, before its way to
-    /// `heading`.
+    /// True if the arm has finished the brake of a reaction, and not yet its motion to `heading`.
     pub(super) fn has_braked_before(&self, heading: &Target) -> bool {
         self.has_reacted() && self.aim == Target::Rest && *heading != Target::Rest
     }
 
-    /// What was seen when the condition of the goal was true, also if it was given up since.
+    /// Observations when the condition of the goal was true, even if the goal was given up since.
     pub(super) fn reacted(&self) -> Option<Reacted> {
         match self.standing {
             Standing::Reacted(reacted) => Some(reacted),
@@ -100,7 +101,7 @@ impl RunningSession {
         }
     }
 
-    /// True if the goal ends otherwise since its condition was true.
+    /// True if the goal has a different end because its condition was true.
     pub(super) fn has_reacted(&self) -> bool {
         matches!(self.standing, Standing::Reacted(_))
     }

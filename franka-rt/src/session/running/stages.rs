@@ -10,30 +10,30 @@ use crate::session::{
     Lapse, OnArrival, OnTimeout, STALL_TIMEOUT, SessionEvent, Settlement, Target, Tolerance, rigid,
 };
 
-/// Joint velocity, `[rad/s]`, below which the reference may be stopped in one cycle. Joints at
-/// their bounds may still creep after a pose has come to its end.
+/// Joint velocity below which the reference may be stopped in one cycle, `[rad/s]`. Joints at their
+/// bounds may still creep after a pose has arrived.
 const REFERENCE_REST: f64 = 1e-3;
 
-/// What the session does about its goal.
+/// Stage of the session's goal.
 #[derive(Debug)]
 pub(super) enum GoalStage {
-    /// The reference moves, or holds a goal that is to be held.
+    /// The reference moves, or holds a goal that stays in force.
     UnderWay,
     /// The reference has arrived; the arm settles.
     Landing(Landing),
-    /// The goal has come to its end, and is held.
+    /// The goal has ended, and is held.
     Staying,
     /// The spring is being released, so that the torques end at zero.
     Releasing(Release),
-    /// It was released and the arm does not rest: the robot is told to stop.
+    /// The arm was released and does not rest: the robot must stop it.
     Restless,
-    /// The last command is out. How far the arm was from its target when it had been let go, if it
-    /// was.
+    /// The last command was sent. The value is the distance of the arm from its target at the
+    /// release, if it was released.
     Finished(Option<PoseError>),
 }
 
 impl GoalStage {
-    /// True if the arm is being let go, or was.
+    /// True if the arm is being released, or was.
     pub(super) fn lets_go(&self) -> bool {
         match self {
             Self::Releasing(_) | Self::Restless | Self::Finished(_) => true,
@@ -43,8 +43,8 @@ impl GoalStage {
 }
 
 impl RunningSession {
-    /// Moves through the stages of a goal that is to come to an end. The only place where the stage
-    /// advances. What there is to report of it is left in `event`.
+    /// Moves through the stages of a goal that ends. The stage advances only here. The report is
+    /// left in `event`.
     pub(super) fn advance_stage(
         &mut self,
         model: &Model,
@@ -56,8 +56,8 @@ impl RunningSession {
             GoalStage::UnderWay => self.end_way(model),
             GoalStage::Landing(landing) => {
                 let working = matches!(&self.drive, Drive::Torques(effort) if effort.is_working());
-                // By the robot's own report: under its Cartesian controllers the correction is
-                // that of the setpoint, from where the last one was taken up.
+                // The robot's own report decides. Under its Cartesian controllers the correction
+                // belongs to the setpoint, at the place of the last take-up.
                 let measured = self.arm.as_reported();
                 let (mut settlement, held) = match landing.judge(&measured, at_rest, working) {
                     Verdict::Settling => return,
@@ -140,7 +140,7 @@ impl RunningSession {
         }
     }
 
-    /// Lets the goal land once the reference has arrived, or has been held back for too long.
+    /// Begins the landing once the reference has arrived, or was held back for too long.
     fn end_way(&mut self, model: &Model) {
         let stalled = u128::from(self.held_back) >= STALL_TIMEOUT.as_millis();
         let heading = self.heading();
@@ -152,11 +152,11 @@ impl RunningSession {
         if self.has_braked_before(&heading) {
             return self.turn_to(heading);
         }
-        // The hand may have come to its target before the elbow has.
+        // The hand may have reached its target before the elbow has.
         let turns =
             self.goal.posture.is_some() && self.reference.dq.amax() > landing::REST_VELOCITY;
-        // A reference that halts on its way rests, too. An arm that others wait for gives
-        // up when it has been held back for too long.
+        // A reference that halts on its way rests, too. An arm that others wait for gives up when
+        // it was held back for too long.
         let arrived = done && !turns && !(pursued && self.waits);
         let stalled = stalled && !(pursued && self.waits && !self.lags);
         let paused = pursued && self.goal.paused;
@@ -171,15 +171,15 @@ impl RunningSession {
                 self.turn_to(Target::Rest);
             }
             let target = match heading {
-                // It counts as held at any place.
+                // The goal counts as held at any place.
                 _ if self.is_given_up() => None,
                 Target::Rest | Target::Guide(_) => None,
                 Target::Pose(pose) | Target::MovingPose { pose, .. } => {
-                    // Where the hand has to be: at an object its lever would not count.
+                    // Target of the hand: at an object its lever would not count.
                     Some(pose * self.grasp.unwrap_or_default().inverse())
                 }
                 Target::Joints(q) | Target::MovingJoints { q, .. } => {
-                    // The report is not to count the way's change of the correction as an error.
+                    // The report must not count the correction's change along the way as an error.
                     self.renew_correction();
                     Some(rigid(&model.pose(Frame::EndEffector, &q.into(), &self.ee)))
                 }

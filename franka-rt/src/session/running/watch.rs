@@ -1,4 +1,4 @@
-//! The guards that draw a goal's target nearer or give the goal up: lead, deviation, speed cap,
+//! The guards that draw a goal's target nearer or give up the goal: lead, deviation, speed cap,
 //! response, watchdog and deadman.
 
 use core::time::Duration;
@@ -12,7 +12,7 @@ use crate::session::{Lapse, OnArrival, OnTimeout, Target};
 use crate::team::TeamStop;
 
 impl RunningSession {
-    /// Draws a target nearer that is too far ahead of the arm. Returns whether it is.
+    /// Draws a target nearer that is too far ahead of the arm. Returns true if it is.
     pub(super) fn draw_nearer(&mut self, now: u64) -> bool {
         let Some(lead) = self.goal.lead else {
             return false;
@@ -35,8 +35,8 @@ impl RunningSession {
         self.aim != self.goal.target
     }
 
-    /// Halts on the way of a target that moves and of which no news have come for so long, or which
-    /// was given up, that it no longer counts as moving.
+    /// Halts if the target no longer counts as moving: it got no update for too long, or was given
+    /// up.
     pub(super) fn halt_without_news(&mut self, now: u64) {
         let silent = now.saturating_sub(self.heard) >= Target::MOVES_ON_MS;
         if self.aim.moves() && !self.halted && (silent || self.is_given_up()) {
@@ -45,7 +45,7 @@ impl RunningSession {
         }
     }
 
-    /// Gives the goal up, and brakes.
+    /// Gives up the goal, and brakes.
     pub(super) fn give_up(&mut self, lapse: Lapse) {
         self.goal = self.goal.at_rest(self.goal.on_arrival);
         self.fade();
@@ -53,7 +53,7 @@ impl RunningSession {
         self.lapse(OnTimeout::Brake, lapse);
     }
 
-    /// True if neither an update nor a chunk brings back a goal that was given up or has reacted.
+    /// True if neither an update nor a chunk can resume a goal that was given up or has reacted.
     pub(super) fn is_given_up_for_good(&self) -> bool {
         let settled = matches!(self.stage, GoalStage::Staying) || self.stage.lets_go();
         match self.standing {
@@ -63,12 +63,12 @@ impl RunningSession {
         }
     }
 
-    /// True if the goal was given up, for good or until an update comes.
+    /// True if the goal was given up, for good or until the next update.
     pub(super) fn is_given_up(&self) -> bool {
         matches!(self.standing, Standing::GivenUp { .. })
     }
 
-    /// Lets the goal end where the arm comes to rest.
+    /// Ends the goal where the arm stops.
     fn lapse(&mut self, action: OnTimeout, cause: Lapse) {
         if self.goal.on_arrival == OnArrival::Hold {
             self.goal.on_arrival = self.afterwards;
@@ -81,7 +81,7 @@ impl RunningSession {
         };
     }
 
-    /// Gives up a goal whose arm is displaced. Returns whether it is.
+    /// Gives up a goal whose arm is displaced. Returns true if it is.
     pub(super) fn watch_deviation(&mut self, model: &Model, leashed: bool) -> bool {
         if !leashed {
             self.displacement.set_free(&self.reference.q);
@@ -112,7 +112,7 @@ impl RunningSession {
         exceeded
     }
 
-    /// Gives up a goal on whose way the arm was faster than the cap. Returns whether it was.
+    /// Gives up a goal if the arm was faster than the cap. Returns true if it was.
     pub(super) fn watch_speed(&mut self, model: &Model) -> bool {
         let arm = &self.arm;
         let fastest = || model.fastest_point(&arm.q, &arm.dq, &self.hand);
@@ -129,7 +129,7 @@ impl RunningSession {
         let over = self.stage.lets_go();
         if self.ignores && !over && !self.is_given_up() && self.heading() != Target::Rest {
             self.give_up(Lapse::Unresponsive);
-            // A reference that follows the setpoint of a robot that refuses others goes nowhere.
+            // A reference that follows the setpoint of a robot that refuses others does not move.
             if !self.response.refuses() {
                 self.return_to_arm();
             }
@@ -137,8 +137,8 @@ impl RunningSession {
         self.ignores
     }
 
-    /// Moves a reference that is ahead of a still arm back to it. Otherwise an arm that comes free
-    /// would leap.
+    /// Moves a reference that is ahead of a still arm back to it. Otherwise the arm would leap when
+    /// it comes free.
     fn return_to_arm(&mut self) {
         if (self.reference.q - self.arm.q).amax() < NEAR {
             return;
@@ -151,8 +151,8 @@ impl RunningSession {
         self.turn_to(back);
     }
 
-    /// Gives the goal up if the team has just stopped and the arm goes anywhere. One that was given
-    /// up before keeps its own cause.
+    /// Gives up the goal if the team has just stopped and the arm is not at rest. A goal that was
+    /// given up before keeps its own cause.
     pub(super) fn stop_with_team(&mut self, stop: Option<TeamStop>) {
         let over = self.stage.lets_go();
         if let Some(stop) = stop
@@ -174,7 +174,7 @@ impl RunningSession {
         )
     }
 
-    /// Whether the goal was given up and the arm brakes, or has braked, for that.
+    /// True if the goal was given up and the arm brakes, or has braked, for that reason.
     pub(in crate::session) fn has_braked(&self) -> bool {
         matches!(
             self.standing,
@@ -185,10 +185,10 @@ impl RunningSession {
         )
     }
 
-    /// Gives the goal up if its updates stay away or its deadman is silent.
+    /// Gives up the goal if its updates stay away or its deadman is silent.
     pub(super) fn watch(&mut self, alive: bool, now: u64) {
         let braked = self.has_braked();
-        // A goal of coming to rest needs no deadman.
+        // A goal that stops the arm needs no deadman.
         let comes_to_rest =
             self.heading() == Target::Rest && self.goal.on_arrival != OnArrival::Hold;
         if braked || comes_to_rest || self.stage.lets_go() {
@@ -212,5 +212,5 @@ impl RunningSession {
     }
 }
 
-/// Distance of a reference from which an arm that comes free does not leap, `[rad]`.
+/// Distance from the reference at which an arm that comes free does not leap, `[rad]`.
 const NEAR: f64 = 2e-3;
