@@ -1,13 +1,14 @@
-//! What a course is planned to.
+//! Aim of a course.
 
 use franka_otg::AxisLimits;
 
 use super::{Budget, GoalId, Leash, Target};
 
-/// What the reference heads for now, and how. A goal has more; this is copied in each cycle.
+/// Present aim of the reference: its target and limits. A goal has more; this is copied in each
+/// cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Aim {
-    /// The goal that it belongs to.
+    /// Goal of the aim.
     pub(super) goal: GoalId,
     pub(super) target: Target,
     pub(super) budget: Budget,
@@ -18,8 +19,8 @@ pub(super) struct Aim {
 }
 
 impl Aim {
-    /// Returns the aim with its velocities scaled by `share`; those of the joints only for a joint
-    /// target.
+    /// Returns the aim with its velocities scaled by `share`; the joints' velocities only for a
+    /// joint target.
     pub(super) fn slowed(&self, share: f64) -> Self {
         let slow = |limits: AxisLimits| AxisLimits {
             velocity: limits.velocity * share,

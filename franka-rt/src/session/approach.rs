@@ -1,29 +1,31 @@
-//! How a joint may approach a target near the end of its range.
+//! Approach of a joint to a target near the end of its range.
 //!
-//! Towards the end of a joint's range the robot allows less and less speed: the braking parabola of
-//! its velocity envelope, less an offset. A plan that brakes evenly into a target at a distance
-//! `room` from that end keeps inside the envelope if, at every speed `v` of its braking,
+//! Towards the end of a joint's range the robot allows less and less speed. The limit is the
+//! braking parabola of its velocity envelope, minus an offset. A plan that brakes evenly into a
+//! target at a distance `room` from that end keeps inside the envelope if, at every speed `v` of
+//! its braking,
 //!
 //! ```text
 //! (v + offset)^2 / (2 envelope deceleration)  <=  v^2 / (2 plan acceleration) + room
 //! ```
 //!
-//! which is what the envelope needs to stop on the left, and what the plan has on the right. A plan
-//! that does not keep to it brakes more gently: with
-//! `acceleration <= deceleration - offset^2 / (2 room)` it holds at every speed. Within some
-//! milliradians of the end of the range no acceleration does.
+//! The left side is the distance that the envelope needs to stop, the right side the distance that
+//! the plan has. A plan that does not keep this condition brakes more gently: with `acceleration <=
+//! deceleration - offset^2 / (2 room)` it holds at every speed. Within some milliradians of the end
+//! of the range no acceleration is gentle enough.
 
 use franka_model::limits::JointLimits;
 use franka_otg::AxisLimits;
 
-/// Speed kept from the envelope, `[rad/s]`: the measured velocity is not quite that of the plan.
+/// Speed margin to the envelope, `[rad/s]`: the measured velocity differs slightly from the plan's.
 const MARGIN: f64 = 0.02;
 
 /// Least acceleration of a plan, `[rad/s^2]`. A target that asks for a gentler approach is not
 /// accepted.
 const GENTLEST: f64 = 0.3;
 
-/// The limits of a plan from `q` to `target`, made gentle enough for the end of the joint's range.
+/// Returns the limits of a plan from `q` to `target`, made gentle enough for the end of the joint's
+/// range.
 pub(super) fn limits(
     i: usize,
     robot: &JointLimits,
@@ -50,20 +52,21 @@ pub(super) fn limits(
     }
 }
 
-/// Joint targets that sessions accept: least and greatest position of each joint, `[rad]`. They are
-/// the joint's own range, less some milliradians where its velocity envelope allows no speed.
+/// Returns the joint targets that sessions accept: least and greatest position of each joint,
+/// `[rad]`. They are the joint's own range, minus some milliradians where its velocity envelope
+/// allows no speed.
 pub fn target_range(robot: &JointLimits) -> [(f64, f64); 7] {
     core::array::from_fn(|i| range(i, robot))
 }
 
-/// As [`target_range`], for plans that brake with these accelerations, `[rad/s^2]`, and not more
-/// gently near the end of a range.
+/// Same as [`target_range`], for plans that brake with these accelerations, `[rad/s^2]`, and not
+/// more gently near the end of a range.
 pub fn target_range_of(robot: &JointLimits, acceleration: &[f64; 7]) -> [(f64, f64); 7] {
     core::array::from_fn(|i| range_of(i, robot, acceleration[i]))
 }
 
-/// The range of targets, `[rad]`, that plans can approach. If nothing is left, the middle; never
-/// crossed.
+/// Range of targets that plans can approach, `[rad]`. If the range is empty, both ends are its
+/// middle; they never cross.
 pub(super) fn range(i: usize, robot: &JointLimits) -> (f64, f64) {
     range_of(i, robot, GENTLEST)
 }
@@ -71,7 +74,7 @@ pub(super) fn range(i: usize, robot: &JointLimits) -> (f64, f64) {
 fn range_of(i: usize, robot: &JointLimits, acceleration: f64) -> (f64, f64) {
     let room = robot.envelope.as_ref().map_or(0.0, |envelope| {
         let offset = envelope.offset[i] + MARGIN;
-        // A deceleration of no more than the plan's leaves nothing.
+        // A deceleration that does not exceed the plan's leaves no range.
         0.5 * offset * offset / (envelope.deceleration[i] - acceleration).max(f64::MIN_POSITIVE)
     });
     let lower = robot.lower[i].max(robot.hard_lower[i] + room);
@@ -88,8 +91,8 @@ fn keeps(deceleration: f64, offset: f64, room: f64, plan: &AxisLimits) -> bool {
     let excess = |v: f64| {
         0.5 * (v + offset) * (v + offset) / deceleration - 0.5 * v * v / plan.acceleration - room
     };
-    // The excess is a parabola in the speed. It is greatest at an end of the interval or, if it
-    // opens downwards, here.
+    // The excess is a parabola in the speed. Its maximum is at an end of the interval or, if the
+    // parabola opens downwards, here.
     let closest = offset * plan.acceleration / (deceleration - plan.acceleration);
     let inside = closest > 0.0 && closest < plan.velocity;
     excess(0.0) <= 0.0 && excess(plan.velocity) <= 0.0 && !(inside && excess(closest) > 0.0)
@@ -100,7 +103,7 @@ mod tests {
     use super::*;
     use franka_model::{Model, READY};
 
-    /// How close the braking of a plan into `target` comes to the envelope, `[rad/s]`; negative
+    /// Distance of the braking of a plan into `target` from the envelope, `[rad/s]`; negative
     /// beyond it.
     fn clearance(i: usize, target: f64, plan: &AxisLimits) -> f64 {
         let limits = Model::fr3().joint_limits();
@@ -159,7 +162,7 @@ mod tests {
                 };
                 assert!(clearance(i, upper, &plan) > -1e-9, "joint {}", i + 1);
                 if share < 0.9 && upper < robot.upper[i] - 1e-9 {
-                    // None is lost without need.
+                    // No range is lost without need.
                     assert!(clearance(i, upper + 1e-3, &plan) < 0.0, "joint {}", i + 1);
                 }
             }

@@ -1,5 +1,5 @@
-//! Checks of a goal where it is accepted, outside the thread: what passes here cannot fail in the
-//! cycle.
+//! Checks of a goal where it is accepted, outside the thread. A goal that passes here cannot fail
+//! in the cycle.
 
 use core::time::Duration;
 
@@ -20,7 +20,7 @@ impl Goal {
     /// Checks the goal for a robot in `state`.
     ///
     /// # Errors
-    /// [`GoalError`] names the first thing that is wrong, what was got and what was expected.
+    /// [`GoalError`] names the first problem, the value and the accepted values.
     pub fn check(&self, model: &Model, state: &RobotState) -> Result<(), GoalError> {
         check_budget(&self.budget, model)?;
         self.gains.check()?;
@@ -42,7 +42,7 @@ impl Goal {
         if let Some(reaction) = &self.reaction {
             reaction.check(model, state)?;
         }
-        // What is finite with masses in single precision is finite in every version.
+        // Values that are finite with masses in single precision are finite in every version.
         super::load_of(state, Version::V10).ok_or(GoalError::Tool)?;
         if let Some(grasp) = &self.grasp {
             let finite = grasp.to_homogeneous().iter().all(|x| x.is_finite());
@@ -121,7 +121,7 @@ impl Goal {
     }
 }
 
-/// Checks that a robot in `state` can get to a target.
+/// Checks that a robot in `state` can reach a target.
 pub(super) fn target(to: &Target, model: &Model, state: &RobotState) -> Result<(), GoalError> {
     let ee = reported_end_effector(model, state).ok_or(GoalError::Tool)?;
     match to {
@@ -157,7 +157,7 @@ pub(super) fn target(to: &Target, model: &Model, state: &RobotState) -> Result<(
     }
 }
 
-/// Checks regions to keep out of, and gives them the form of a session.
+/// Checks keep-out regions, and converts them to the form of a session.
 pub(crate) fn check_keep_out(regions: &[Obstacle]) -> Result<KeepOut, GoalError> {
     let mut checked = KeepOut::default();
     for (i, region) in regions.iter().enumerate() {
@@ -201,14 +201,14 @@ pub(crate) fn check_speed_cap(got: f64) -> Result<(), GoalError> {
     })
 }
 
-/// Checks that the joints of this robot can be as fast as what they are to follow, `[rad/s]`.
+/// Checks that the joints of this robot can follow a target at this speed, `[rad/s]`.
 pub(super) fn joint_speeds(dq: &[f64; 7], model: &Model) -> Result<(), GoalError> {
     let most = model.joint_limits().velocity;
     let mut each = dq.iter().zip(&most);
     each.try_for_each(|(dq, &most)| speed("speed of a joint", "rad/s", dq.abs(), most))
 }
 
-/// Checks that the end effector of this robot can be as fast as what it is to follow, `[m/s]` and
+/// Checks that the end effector of this robot can follow a target at this speed, `[m/s]` and
 /// `[rad/s]`.
 pub(super) fn speeds(twist: &Twist, model: &Model) -> Result<(), GoalError> {
     let most = model.cartesian_limits();
@@ -232,7 +232,7 @@ fn speed(what: &'static str, unit: &'static str, got: f64, most: f64) -> Result<
     })
 }
 
-/// Checks the silence that a watchdog or a deadman bears.
+/// Checks the timeout of a watchdog or a deadman.
 pub(crate) fn check_silence(got: Duration) -> Result<(), GoalError> {
     if got < Goal::SILENCE_MIN {
         return Err(GoalError::Silence { got });
@@ -247,7 +247,7 @@ fn check_joints(q: &[f64; 7], model: &Model, state: &RobotState) -> Result<(), G
             let what = "joint positions";
             return Err(GoalError::NotFinite { what });
         }
-        // An arm that stands nearer to the end of its range than it could go may stay there, or
+        // An arm that stands nearer to the end of its range than a plan could go may stay there, or
         // leave.
         let (lower, upper) = approach::range(i, limits);
         let stands = state.q[i].min(limits.upper[i]).max(limits.lower[i]);
@@ -275,7 +275,7 @@ fn check_reach(
         .map_err(|_| ())
 }
 
-/// How far the length of a quaternion may be from 1: products of many drift.
+/// Greatest distance of a quaternion's length from 1: products of many quaternions drift.
 const LENGTH_ERROR: f64 = 1e-3;
 
 fn check_budget(budget: &Budget, model: &Model) -> Result<(), GoalError> {

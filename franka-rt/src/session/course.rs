@@ -1,4 +1,4 @@
-//! The course that the reference takes: over the joints, or over the pose of the end effector.
+//! The course of the reference: over the joints, or over the pose of the end effector.
 
 use franka_model::limits::JointLimits;
 use franka_model::{EndEffector, Frame, GRAVITY_EARTH, JointVector, Load, Model};
@@ -22,10 +22,10 @@ const _: () = assert!(
     "generators advance by the control cycle"
 );
 
-/// What moves the reference.
+/// Motion of the reference.
 #[derive(Debug)]
 pub(super) enum Course {
-    /// The reference rests where it is.
+    /// The reference stays at rest.
     Rest,
     Joints(JointGenerator),
     Pose(PoseGenerator, Drift),
@@ -33,7 +33,7 @@ pub(super) enum Course {
     Chunk(ChunkCourse),
 }
 
-/// What a course does in one cycle.
+/// Result of a course in one cycle.
 #[derive(Debug)]
 pub(super) struct CourseStep {
     pub(super) reference: Reference,
@@ -41,14 +41,14 @@ pub(super) struct CourseStep {
     pub(super) bounds: BoundsReached,
     /// True if the pose was held at joints that did not keep up.
     pub(super) held: bool,
-    /// True if a leash of the course's own moved the reference with the arm.
+    /// True if the course's own leash moved the reference with the arm.
     pub(super) leashed: bool,
-    /// True if no plan could be made for a pose that was held.
+    /// True if no plan could be made for a held pose.
     pub(super) failed: bool,
 }
 
 impl CourseStep {
-    /// A step that no bound changed.
+    /// Returns a step that no bound changed.
     pub(super) fn free(reference: Reference) -> Self {
         Self {
             reference,
@@ -61,13 +61,13 @@ impl CourseStep {
 }
 
 impl Course {
-    /// Turns towards a new aim from wherever the reference is and however it moves.
+    /// Turns towards a new aim from the reference's present place and motion.
     ///
-    /// Courses are some kilobytes large: one of the same kind is planned anew in place.
+    /// Courses take some kilobytes: a course of the same kind is planned anew in place.
     ///
     /// # Errors
-    /// [`PlanError`], by a defect only: goals are checked where they are accepted. The course goes
-    /// on to where it was heading, which is safe and ends short of the aim.
+    /// [`PlanError`], by a defect only: goals are checked where they are accepted. The course
+    /// continues to its previous aim, which is safe and ends short of the new aim.
     pub(super) fn head_for(
         &mut self,
         model: &Model,
@@ -139,7 +139,7 @@ impl Course {
         }
     }
 
-    /// Comes to rest on the way to its target.
+    /// Stops on the way to its target.
     fn halt(&mut self) -> Result<(), PlanError> {
         match self {
             Self::Joints(generator) => generator.halt(),
@@ -148,8 +148,8 @@ impl Course {
         }
     }
 
-    /// Time from `now` until the target is met, or until rest if there is none, `[s]`; zero where
-    /// neither is planned.
+    /// Returns the time from `now` until the target is met, `[s]`, or until rest without a target;
+    /// zero where neither is planned.
     pub(super) fn remaining(&self, now: u64) -> f64 {
         match self {
             Self::Joints(generator) => generator.remaining(),
@@ -228,7 +228,7 @@ impl Course {
         }
     }
 
-    /// True if the course has come to its end.
+    /// True if the course has ended.
     pub(super) fn is_done(&self) -> bool {
         match self {
             Self::Rest => true,
@@ -239,7 +239,7 @@ impl Course {
     }
 }
 
-/// Where the joints of a moving reference come to rest, `[rad]`, if it is braked now.
+/// Returns the positions at which the joints of a moving reference stop, `[rad]`, if it brakes now.
 pub(super) fn end_of_brake(model: &Model, reference: &Reference, budget: &Budget) -> JointVector {
     let robot = model.joint_limits();
     JointVector::from_fn(|i, _| {
@@ -253,9 +253,9 @@ pub(super) fn end_of_brake(model: &Model, reference: &Reference, budget: &Budget
     })
 }
 
-/// The limits of one joint's plan: those of the budget (and of `robot`, if they are narrower: a
-/// backend may allow less than the robot does), unless the joint moves and is only to stop, keeps
-/// another budget than this one, or would stop too late for the end of its range.
+/// Returns the limits of one joint's plan. They are the budget's limits, or `robot`'s if these are
+/// narrower: a backend may allow less than the robot does. A moving joint may exceed the budget if
+/// it only has to stop, keeps another budget, or would stop too late for the end of its range.
 pub(super) fn limits_of_joint(
     i: usize,
     robot: &JointLimits,
@@ -279,8 +279,8 @@ pub(super) fn limits_of_joint(
     } else {
         q - robot.lower[i]
     };
-    // Twice the even deceleration to the end of the range: part of the way goes by while it is
-    // built up.
+    // Twice the even deceleration to the end of the range: part of the distance passes while the
+    // deceleration is built up.
     let last_moment = dq * dq > limits.acceleration * room;
     if stop || last_moment || !budget::keeps(&limits, dq, ddq) {
         let deceleration = if last_moment {
@@ -294,7 +294,7 @@ pub(super) fn limits_of_joint(
     }
 }
 
-/// The end effector of a moving reference.
+/// Returns the state of a moving reference's end effector.
 pub(super) fn end_effector(model: &Model, ee: &EndEffector, reference: &Reference) -> PoseState {
     let dynamics = model.dynamics(&reference.q, &reference.dq, ee, &Load::NONE, &GRAVITY_EARTH);
     PoseState {

@@ -1,5 +1,4 @@
-//! From a reference to torques: the law, then the guards of the torques, then what the robot
-//! accepts.
+//! From a reference to torques: the law, then the guards of the torques, then the robot's limits.
 //!
 //! ```text
 //! springs, dampers, compensation -> clamp -> force cap -> + coriolis + M ddq_ref -> clamp -> velocity barrier -> low-pass -> rate
@@ -23,7 +22,7 @@ use crate::session::reference::Reference;
 use crate::session::{Bindings, Goal, Guard};
 use crate::shaping::filter;
 
-/// What the law remembers between cycles.
+/// Memory of the law between cycles.
 #[derive(Debug)]
 pub(super) struct Effort {
     fade: Fade<BlendedGains>,
@@ -31,9 +30,9 @@ pub(super) struct Effort {
     feedforward: JointVector,
     inertia: Inertia,
     compensation: Compensation,
-    /// What it came to in the last cycle, `[N m]`.
+    /// Compensation in the last cycle, `[N m]`.
     compensated: JointVector,
-    /// Torques of springs, dampers and compensation in the last cycle, behind clamp and force cap,
+    /// Torques of springs, dampers and compensation in the last cycle, after clamp and force cap,
     /// `[N m]`.
     interaction: JointVector,
     /// Torques of springs and compensation in the last cycle, before the clamp, `[N m]`.
@@ -44,25 +43,25 @@ pub(super) struct Effort {
     bound: bool,
 }
 
-/// What the law does about what holds an arm back at rest.
+/// Response of the law to an obstacle that holds back an arm at rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Resistance {
-    /// It takes it for friction, and overcomes it.
+    /// The law assumes friction, and overcomes it.
     Overcome,
-    /// The arm rests on what it has met, and presses on it with its springs alone.
+    /// The arm rests on the obstacle, and presses on it with its springs alone.
     Yield,
-    /// The motion ends, and the torques with it.
+    /// The motion ends, and its torques fade.
     Release,
 }
 
 /// The acceleration that is fed forward as a torque.
 ///
-/// While the leash moves the reference with an arm that is pushed, the reference accelerates as
-/// fast as the joints' bounds allow, and torques for that would push back. So the feedforward fades
-/// out there, and in again while the reference is free.
+/// While the leash moves the reference with a pushed arm, the reference accelerates as fast as the
+/// joints' bounds allow, and torques for that would push back. So the feedforward fades out there.
+/// It fades in again while the reference is free.
 #[derive(Debug)]
 struct Inertia {
-    /// `[rad/s^2]`.
+    /// Acceleration, `[rad/s^2]`.
     acceleration: JointVector,
     /// Cycles since the leash held the reference.
     free: u32,
@@ -89,8 +88,8 @@ const SINGULAR: f64 = 1e-6;
 /// Cycles of a free reference after which its whole acceleration counts again.
 const RETURN: u32 = 300;
 
-/// Share of the way to its new value that the acceleration goes in a cycle meanwhile: it fades in
-/// about ten.
+/// Share of the difference to its new value by which the acceleration changes in a cycle: it fades
+/// in about ten.
 const FADE: f64 = 0.1;
 
 impl Effort {
@@ -112,17 +111,17 @@ impl Effort {
         }
     }
 
-    /// Takes what is known of the arm.
+    /// Sets the known values of the arm.
     pub(super) fn know(&mut self, learned: Learned) {
         self.compensation = Compensation::new(learned);
     }
 
-    /// What was learned of the arm.
+    /// Returns the values learned about the arm.
     pub(super) fn learned(&self) -> Learned {
         self.compensation.learned()
     }
 
-    /// What friction and bias were compensated by in the last cycle, `[N m]`.
+    /// Returns the torques that compensated friction and bias in the last cycle, `[N m]`.
     pub(super) fn compensated(&self) -> JointVector {
         self.compensated
     }
@@ -140,8 +139,8 @@ impl Effort {
         damped.cholesky().map_or(pull, |factor| factor.solve(&pull))
     }
 
-    /// The joint that a torque limit kept most from the torque of its springs and compensation in
-    /// the last cycle, if one was.
+    /// Returns the joint that a torque limit reduced most in the last cycle, compared with the
+    /// torque of its springs and compensation, if any.
     pub(super) fn limited(&self) -> Option<LimitedTorque> {
         let most = JointVector::from(self.fade.now().torque_limits);
         LimitedTorque::worst(&self.asked, &most)
@@ -158,8 +157,8 @@ impl Effort {
             .towards(BlendedGains::new(&goal.gains, goal.force_cap.newtons()));
     }
 
-    /// The torques of one cycle, `[N m]`; `dynamics` is taken at the measured positions and
-    /// velocities. `met` is whether the goal has reacted to something that it has met.
+    /// Returns the torques of one cycle, `[N m]`; `dynamics` is taken at the measured positions and
+    /// velocities. `met` is true if the goal has reacted to contact or another condition.
     pub(super) fn step(
         &mut self,
         reference: &Reference,
@@ -230,8 +229,8 @@ impl Effort {
     }
 }
 
-/// Low-passes `tau`, of which `share` counts, against the torques that the robot last took,
-/// `tau_J_d` of its state.
+/// Low-passes `tau`, with weight `share`, against the torques that the robot last took, `tau_J_d`
+/// of its state.
 pub(super) fn low_pass(share: f64, tau: &JointVector, last: &JointVector) -> JointVector {
     tau.zip_map(last, |tau, last| filter::mix(share, tau, last))
 }

@@ -1,7 +1,7 @@
-//! The model's poses against those that the robot reports.
+//! Comparison between the model's poses and the poses that the robot reports.
 //!
-//! A robot computes its poses with lengths and joint frames of its own, and users read them. Goals
-//! lead the end effector to a pose as the robot reports it.
+//! A robot computes its poses with its own lengths and joint frames, and users read these poses.
+//! Goals lead the end effector to a pose as the robot reports it.
 
 use franka_model::{EndEffector, Frame, JointVector, Model, transform};
 use franka_proto::RobotState;
@@ -9,27 +9,27 @@ use nalgebra::Isometry3;
 
 use super::tool::{end_effector_of, rigid};
 
-/// Residual up to which the robot's poses count as those of the model, `[m]`. States of protocol 10
-/// are `f32`, which makes up to 0.5 µm; other lengths make 100 µm and more.
+/// Residual up to which the robot's poses count as equal to the model's, `[m]`. States of protocol
+/// 10 are `f32`, which causes up to 0.5 µm; other lengths cause 100 µm and more.
 pub const RESIDUAL_MAX: f64 = 2e-6;
 
-/// Distance from the end effector at which its rotation counts, `[m]`.
+/// Distance from the end effector at which its rotation is measured, `[m]`.
 const LEVER: f64 = 0.1;
 
-/// How far the pose that `model` has at the joint positions of `state` is from its `O_T_EE`, `[m]`:
-/// the distance, or the largest difference of an element of the rotation matrices times 0.1 m,
-/// whichever is greater.
+/// Returns the distance between the pose that `model` computes at the joint positions of `state`,
+/// and its `O_T_EE`, `[m]`. It is the greater of two values: the distance of the positions, and the
+/// largest difference of an element of the rotation matrices times 0.1 m.
 ///
-/// `None` if there is nothing to compare: `O_T_EE` or a frame of the tool is no rigid
-/// transformation, `O_T_EE` is the identity (no end effector is there; the state has no pose), or a
-/// joint position is not finite.
+/// `None` if the poses cannot be compared. That is so if `O_T_EE` or a frame of the tool is no
+/// rigid transformation, or if a joint position is not finite. It is also so if `O_T_EE` is the
+/// identity: no end effector is there, so the state has no pose.
 pub fn residual(model: &Model, state: &RobotState) -> Option<f64> {
     let (models, robots) = poses(model, state)?;
     Some(distance(&models, &robots))
 }
 
-/// The end effector of `state` as the robot reports it: the frame of the model that has the pose
-/// `O_T_EE` at the joint positions of the state. `None` if a frame of the tool is no rigid
+/// Returns the end effector of `state` as the robot reports it: the frame of the model that has the
+/// pose `O_T_EE` at the joint positions of the state. `None` if a frame of the tool is no rigid
 /// transformation.
 pub fn reported_end_effector(model: &Model, state: &RobotState) -> Option<EndEffector> {
     let ee = end_effector_of(state)?;
@@ -37,11 +37,11 @@ pub fn reported_end_effector(model: &Model, state: &RobotState) -> Option<EndEff
     Some(corrected(&ee, &correction.unwrap_or_default()))
 }
 
-/// Pose of the reported end effector, column-major, in that of the model. The identity if the two
-/// agree, or if there is nothing to compare.
+/// Returns the pose of the reported end effector, column-major, relative to the model's. It is the
+/// identity if the two agree, or if they cannot be compared.
 ///
-/// It depends on the posture: with errors of the geometry of 1 mm and 3 mrad it changes by some
-/// 0.1 mm on a way of 5 cm.
+/// The correction depends on the posture: with errors of the geometry of 1 mm and 3 mrad it changes
+/// by some 0.1 mm over 5 cm.
 pub(super) fn correction(models: &Isometry3<f64>, reported: &[f64; 16]) -> Isometry3<f64> {
     match read(reported) {
         Some(robots) if distance(models, &robots) > RESIDUAL_MAX => models.inverse() * robots,
@@ -49,7 +49,7 @@ pub(super) fn correction(models: &Isometry3<f64>, reported: &[f64; 16]) -> Isome
     }
 }
 
-/// The end effector `ee` moved by a correction, in its own axes.
+/// Returns the end effector `ee` moved by a correction, in its own axes.
 pub(super) fn corrected(ee: &EndEffector, correction: &Isometry3<f64>) -> EndEffector {
     EndEffector {
         f_t_ee: ee.f_t_ee * transform::matrix(correction),
@@ -57,7 +57,7 @@ pub(super) fn corrected(ee: &EndEffector, correction: &Isometry3<f64>) -> EndEff
     }
 }
 
-/// The model's pose and the robot's.
+/// Returns the model's pose and the robot's.
 fn poses(model: &Model, state: &RobotState) -> Option<(Isometry3<f64>, Isometry3<f64>)> {
     let robots = read(&state.O_T_EE)?;
     let q = JointVector::from(state.q);
@@ -73,7 +73,7 @@ fn read(reported: &[f64; 16]) -> Option<Isometry3<f64>> {
     (pose != Isometry3::identity()).then_some(pose)
 }
 
-/// Distance of two poses, `[m]`, as [`residual`] has it.
+/// Distance of two poses, `[m]`, as in [`residual`].
 pub(super) fn distance(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
     let way = (a.translation.vector - b.translation.vector).norm();
     let [a, b] = [a, b].map(|pose| pose.rotation.to_rotation_matrix().into_inner());
@@ -89,7 +89,8 @@ mod tests {
 
     use super::*;
 
-    /// A state with the vendor's Hand, whose frame has 0.7071 for `sqrt(1/2)`, reported as it is.
+    /// Returns a state with the vendor's Hand, whose frame has 0.7071 for `sqrt(1/2)`, with the
+    /// pose of the model.
     #[expect(clippy::approx_constant, reason = "four digits are reported")]
     fn state(model: &Model, q: JointVector) -> RobotState {
         let mut hand = transform::array(&Isometry3::translation(0.0, 0.0, 0.1034));
@@ -123,7 +124,7 @@ mod tests {
             let right = residual(&recorded, &state).unwrap();
             assert!(right < 0.5 * RESIDUAL_MAX, "{right:e} m");
             let other = residual(&described, &state).unwrap();
-            // A folded forearm makes up for the upper arm, but never quite.
+            // A folded forearm almost makes up for the upper arm, but never exactly.
             assert!(other > 5.0 * RESIDUAL_MAX, "{other:e} m");
             let ee = end_effector_of(&state).unwrap();
             assert_eq!(reported_end_effector(&recorded, &state).unwrap(), ee);

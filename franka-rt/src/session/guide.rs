@@ -1,4 +1,4 @@
-//! Hand guiding: the reference goes with the arm, except along the axes that are to stay.
+//! Hand guiding: the reference follows the arm, except along the fixed axes.
 
 use franka_model::{JointVector, Twist, rotation};
 use nalgebra::{Isometry3, Matrix6, Vector3};
@@ -10,16 +10,16 @@ use crate::law::Gains;
 use crate::session::joints::JointGenerator;
 use crate::session::reference::Reference;
 
-/// Cycles over which the spring of the goal before is let go.
+/// Cycles over which the spring of the previous goal is released.
 const LET_GO: u32 = 300;
 
-/// Square of the damping in the inverse of the Jacobian. It bounds the offset of a joint near a
-/// singular posture to some fifty times that of the end effector.
+/// Square of the damping in the inverse of the Jacobian. Near a singular posture it limits the
+/// offset of a joint to some fifty times the offset of the end effector.
 const SQUARED_DAMPING: f64 = 1e-4;
 
 impl Gains {
-    /// For hand guiding: springs at the end effector as by [`Self::cartesian`] on the axes that are
-    /// not free, and a light damping of the joints. Nothing is compensated.
+    /// Gains for hand guiding: springs at the end effector as in [`Self::cartesian`] on the axes
+    /// that are not free, and a light damping of the joints. Nothing is compensated.
     pub fn guiding(free: Free) -> Self {
         let preset = Self::cartesian();
         let locked =
@@ -34,7 +34,7 @@ impl Gains {
     }
 }
 
-/// Brings the reference to rest, then lets it follow the arm.
+/// Stops the reference, then lets it follow the arm.
 #[derive(Debug)]
 pub(super) struct Guide {
     free: Free,
@@ -53,12 +53,11 @@ enum GuideStage {
 
 #[derive(Debug)]
 struct Floating {
-    /// Where the axes stay that are not free.
+    /// Pose in which the fixed axes stay.
     pose: Isometry3<f64>,
-    /// Where the joints stay, as far as the end effector lets them.
+    /// Positions in which the joints stay, to the extent that the end effector allows.
     q: JointVector,
-    /// Offset of the reference from the arm when it was let go, at the joints and at the end
-    /// effector.
+    /// Offset of the reference from the arm at the release, at the joints and at the end effector.
     offset: JointVector,
     offset_at_ee: Twist,
     cycle: u32,
@@ -73,7 +72,7 @@ impl Guide {
         }
     }
 
-    /// Frees other axes. The rest is held where the arm is now.
+    /// Frees other axes. The other axes are held where the arm is now.
     pub(super) fn free(&mut self, free: Free) {
         if free != self.free {
             self.free = free;
@@ -83,7 +82,7 @@ impl Guide {
         }
     }
 
-    /// Advances by one nominal millisecond. Returns also whether the arm was pushed off a held axis
+    /// Advances by one nominal millisecond. Also returns true if the arm was pushed off a held axis
     /// by more than the leash.
     pub(super) fn step(
         &mut self,
@@ -127,7 +126,7 @@ impl Floating {
         }
     }
 
-    /// The distance of the reference from the arm, and whether the leash held it.
+    /// Returns the distance of the reference from the arm, and true if the leash held it.
     fn step(&mut self, free: Free, leash: &Leash, arm: &Measured) -> (JointVector, bool) {
         let remaining = 1.0 - f64::from(self.cycle.min(LET_GO)) / f64::from(LET_GO);
         self.cycle = (self.cycle + 1).min(LET_GO);
@@ -140,19 +139,20 @@ impl Floating {
         } else {
             let away = self.q - arm.q;
             let held = away.map(|away| away.clamp(-leash.joints, leash.joints));
-            // Like the leash: pushed further, the elbow stays where it has been pushed.
+            // As with the leash: pushed further, the elbow stays where it has been pushed.
             self.q = arm.q + held;
             leashed |= held != away;
             held
         };
         let away = along + elbow - inverse.solve(arm, &(arm.jacobian * elbow));
-        // Near a singular posture a small way of the end effector is a long one of the joints.
+        // Near a singular posture a small displacement of the end effector is a large one of the
+        // joints.
         let held = away.map(|away| away.clamp(-leash.joints, leash.joints));
         (held, leashed || held != away)
     }
 
-    /// The leash, and what the reference was ahead of the arm by beyond it, which `remaining` is
-    /// left of: the goal before may have had another leash, or none at the end effector.
+    /// Returns the leash, extended by `remaining` of the reference's initial excess ahead of the
+    /// arm. The previous goal may have had another leash, or none at the end effector.
     fn slack(&self, leash: &Leash, remaining: f64) -> Leash {
         let at_ee = |part| remaining * self.offset_at_ee.fixed_rows::<3>(part).norm();
         Leash {
@@ -162,7 +162,7 @@ impl Floating {
         }
     }
 
-    /// The same at the end effector. Axes that stay are held as by the leash.
+    /// Same at the end effector. Fixed axes are held as by the leash.
     fn at_end_effector(
         &mut self,
         free: Free,
@@ -197,7 +197,7 @@ impl Floating {
     }
 }
 
-/// The damped inverse of the Jacobian: the smallest change of the joints for one of the end
+/// Damped inverse of the Jacobian: the smallest change of the joints for a change of the end
 /// effector.
 struct Inverse(Option<nalgebra::Cholesky<f64, nalgebra::U6>>);
 
@@ -207,7 +207,7 @@ impl Inverse {
         Self((square + Matrix6::identity() * SQUARED_DAMPING).cholesky())
     }
 
-    /// Zero for non-finite numbers, which have no inverse.
+    /// Returns zero for non-finite numbers, which have no inverse.
     fn solve(&self, arm: &Measured, change: &Twist) -> JointVector {
         let solved = self.0.as_ref().map(|square| square.solve(change));
         solved.map_or_else(JointVector::zeros, |solved| arm.jacobian.tr_mul(&solved))

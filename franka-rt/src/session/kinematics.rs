@@ -12,49 +12,49 @@ use crate::session::reference::Reference;
 use crate::session::{Budget, rigid};
 use crate::shaping::CYCLE;
 
-/// Rate, `[1/s]`, at which an error between the joints and the pose that they follow dies out. It
-/// is fed only by rounding and by bounds that bound; a faster rate would turn those into jerks.
+/// Rate at which an error between the joints and the pose that they follow decays, `[1/s]`. Only
+/// rounding and active bounds cause such errors. A faster rate would turn them into jerks.
 const FEEDBACK: f64 = 100.0;
 
-/// Where the arm's free direction goes, which a pose says nothing about.
+/// Posture for the arm's free direction, which a pose does not determine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Posture {
     q: JointVector,
-    /// True if a goal asks for it. If not, it is only kept while the end effector moves: the rate
+    /// True if a goal requests it. Otherwise it is only kept while the end effector moves: the rate
     /// fades with the speed, so that an arm at its target rests.
     asked: bool,
 }
 
 impl Posture {
-    /// Rate, `[1/s]`, at which the free direction goes back to a posture that is kept.
+    /// Rate at which the free direction returns to a kept posture, `[1/s]`.
     const KEPT: f64 = 1.0;
 
-    /// Speed of the end effector, `[m/s]`, from which on that rate is the full one.
+    /// Speed of the end effector from which that rate applies in full, `[m/s]`.
     const SPEED: f64 = 0.1;
 
-    /// Rate, `[1/s]`, at which it goes to a posture that is asked for, near its end.
+    /// Rate at which the free direction approaches a requested posture, near the end, `[1/s]`.
     const ASKED: f64 = 4.0;
 
-    /// Share of the joints' budget that it takes at most on the way there.
+    /// Greatest share of the joints' budget for the motion to the posture.
     const SHARE: f64 = 0.5;
 
-    /// The posture where a session began, `[rad]`.
+    /// Posture at the beginning of a session, `[rad]`.
     pub(super) fn kept(q: JointVector) -> Self {
         Self { q, asked: false }
     }
 
-    /// The posture that a goal asks for, `[rad]`.
+    /// Posture requested by a goal, `[rad]`.
     pub(super) fn asked(q: JointVector) -> Self {
         Self { q, asked: true }
     }
 
-    /// True if a goal asks for it.
+    /// True if a goal requests it.
     pub(super) fn is_asked(&self) -> bool {
         self.asked
     }
 
-    /// The velocity, `[rad/s]`, at which joints at `q` go to it, once they do so evenly, while the
-    /// end effector moves at `speed`, `[m/s]`.
+    /// Returns the velocity at which joints at `q` move to the posture, `[rad/s]`, once they do so
+    /// evenly, while the end effector moves at `speed`, `[m/s]`.
     pub(super) fn velocity(
         &self,
         q: &JointVector,
@@ -69,27 +69,28 @@ impl Posture {
         }
     }
 
-    /// The velocity, `[rad/s]`, at which joints go back to one that is kept.
+    /// Returns the velocity at which joints return to a kept posture, `[rad/s]`.
     fn back(&self, q: &JointVector, speed: f64) -> JointVector {
         (self.q - q) * (Self::KEPT * (speed / Self::SPEED).min(1.0))
     }
 
-    /// The velocity, `[rad/s]`, at which joints go to one that is asked for and `away` from them.
+    /// Returns the velocity at which joints move to a requested posture that is `away` from them,
+    /// `[rad/s]`.
     fn there(away: &JointVector, jacobian: &Jacobian, budget: &Budget) -> JointVector {
         let free = in_null_space(away, jacobian);
         let joints = free.iter().zip(&budget.joints);
         let longest = joints
             .map(|(free, limits)| free.abs() / (Self::SHARE * limits.velocity))
             .fold(0.0, f64::max);
-        // As fast as it may be far away, at the rate near its end, smoothly from one to the other.
+        // At full speed far away, at the rate near its end, with a smooth transition.
         free / longest.hypot(1.0 / Self::ASKED)
     }
 }
 
-/// Share of a posture below which it does not count as asked for.
+/// Share of a posture below which it does not count as requested.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// The part of a motion of the joints that does not move the end effector.
+/// Returns the part of a joint motion that does not move the end effector.
 fn in_null_space(motion: &JointVector, jacobian: &Jacobian) -> JointVector {
     let damped = jacobian * jacobian.transpose() + Matrix6::identity() * SQUARED_DAMPING;
     let moving = damped
@@ -103,28 +104,28 @@ fn in_null_space(motion: &JointVector, jacobian: &Jacobian) -> JointVector {
 /// Square of the damping in the inverse of the Jacobian, for singular postures.
 const SQUARED_DAMPING: f64 = 1e-6;
 
-/// Time, `[s]`, in which a motion of the arm's free direction fades that a pose takes over from
-/// joints.
+/// Time in which a motion of the arm's free direction fades after a pose takes over from joints,
+/// `[s]`.
 const FADE: f64 = 0.3;
 
-/// Share of the way to its new value that each stage of [`Drift::ease`] goes in a cycle: another
-/// posture sets the elbow going within some 100 ms.
+/// Share of the difference by which each stage of [`Drift::ease`] changes in a cycle: another
+/// posture moves the elbow within some 100 ms.
 const EASE: f64 = 0.02;
 
-/// The motion of the arm's free direction, which the pose says nothing about: what is left of a
-/// motion over the joints that a pose has taken over, which fades, and the way to the posture.
-/// Either would step if it were changed at once.
+/// Motion of the arm's free direction, which the pose does not determine. It has two parts: the
+/// rest of a joint motion that a pose has taken over, which fades, and the motion to the posture.
+/// An immediate change of either would be a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Drift {
     velocity: JointVector,
     cycle: u32,
-    /// How far the posture is away, `[rad]`, and whether it is asked for, behind two low-passes.
+    /// Distance to the posture, `[rad]`, and weight of a request, after two low-passes.
     away: [JointVector; 2],
     asked: [f64; 2],
 }
 
 impl Drift {
-    /// Of joints that move at `velocity`, `[rad/s]`.
+    /// Drift of joints that move at `velocity`, `[rad/s]`.
     pub(super) fn of(velocity: JointVector) -> Self {
         Self {
             velocity,
@@ -139,14 +140,15 @@ impl Drift {
         self.cycle == 0
     }
 
-    /// The share that remains in the next cycle: from 1 to 0, at either end without a slope.
+    /// Share that remains in the next cycle: from 1 to 0, with zero slope at both ends.
     fn share(&mut self) -> f64 {
         self.cycle = self.cycle.saturating_add(1);
         let gone = (f64::from(self.cycle) * CYCLE / FADE).min(1.0);
         1.0 - gone * gone * (3.0 - 2.0 * gone)
     }
 
-    /// How far `posture` is from `q`, and how much of it counts as asked for, in the next cycle.
+    /// Returns the distance from `q` to `posture`, and the weight of its request, in the next
+    /// cycle.
     fn ease(&mut self, posture: &Posture, q: &JointVector) -> (JointVector, f64) {
         let [away, smooth] = &mut self.away;
         *away += (posture.q - q - *away) * EASE;
@@ -157,7 +159,8 @@ impl Drift {
         (*smooth, *weight)
     }
 
-    /// Velocity of the joints in the next cycle, `[rad/s]`, as far as the pose leaves them free.
+    /// Returns the velocity of the joints in the next cycle, `[rad/s]`, in the direction that the
+    /// pose leaves free.
     fn step(
         &mut self,
         posture: &Posture,
@@ -179,7 +182,7 @@ impl Drift {
     }
 }
 
-/// Moves the joints of `reference` towards `pose` for one cycle. Returns also which bounds held
+/// Moves the joints of `reference` towards `pose` for one cycle. Also returns the bounds that held
 /// them back.
 pub(super) fn follow(
     model: &Model,
@@ -236,9 +239,9 @@ pub(super) fn follow(
         None => solution.velocity,
     };
     let next = Reference {
-        // The same rule as in a plan of the joints, which may have come before: the robot
-        // differences positions, and would see a change of rule as half of the acceleration in one
-        // cycle.
+        // Uses the same rule as a plan of the joints, which may have come before. The robot
+        // differences positions, so it would see a change of rule as half of the acceleration in
+        // one cycle.
         q: reference.q + (reference.dq + dq) * (0.5 * CYCLE),
         dq,
         ddq: (dq - reference.dq) / CYCLE,
@@ -253,7 +256,7 @@ mod tests {
     use franka_model::READY;
     use nalgebra::{Isometry3, Translation3, Vector3};
 
-    /// A pose that moves on from that of `reference` as its joints move it.
+    /// Returns a pose that continues the motion of `reference`'s end effector.
     fn taken_up(model: &Model, ee: &EndEffector, reference: &Reference) -> MovingPose {
         let twist = model.zero_jacobian(Frame::EndEffector, &reference.q, ee) * reference.dq;
         let now = rigid(&model.pose(Frame::EndEffector, &reference.q, ee));
@@ -289,7 +292,7 @@ mod tests {
                 &budget,
             );
             assert!(!held.any(), "{held:?}");
-            // What is left is the fading drift, and the curvature of the way.
+            // The rest is the fading drift, and the curvature of the path.
             assert!(next.ddq.amax() < 0.3, "{}", next.ddq);
         }
     }
@@ -330,7 +333,7 @@ mod tests {
                 }
                 let mut drift = Drift::of(reference.dq);
                 for _ in 0..4 {
-                    // More than the joints can do, the way they go or back.
+                    // More than the joints can do, in either direction.
                     let hurried = Reference {
                         dq: dq * (20.0 * on),
                         ..reference

@@ -1,6 +1,6 @@
-//! How far gains are from the first oscillation.
+//! Distance of gains from the first oscillation.
 //!
-//! Between a torque that is wanted and one that acts lie the cycle of the client, the robot's
+//! Four delays lie between a wanted torque and its effect: the cycle of the client, the robot's
 //! delay, the lag of its torque loop and the low-pass of the commands. With inertia `M`, dampers
 //! `D` and springs `K` in joint space, every mode of the arm obeys
 //!
@@ -8,10 +8,10 @@
 //! m s^2 + (d s + k) exp(-s DELAY) / ((1 + s LAG) (1 + s FILTER)) = 0
 //! ```
 //!
-//! to first order. A damper alone drives a mode from that `d / m` on at which the phases of
+//! to first order. A damper alone makes a mode oscillate from the `d / m` at which the phases of
 //! delay and lags add up to a quarter of a turn. A slow spring needs `d > k (DELAY + LAG +
-//! FILTER)`. Friction, which helps, and the elasticity of the joints, which does not, are left out;
-//! the margins were compared with what simulated arms do (`cargo xtask arms --gain`).
+//! FILTER)`. Friction, which helps, and the elasticity of the joints, which does not, are left out.
+//! The margins were compared with simulated arms (`cargo xtask arms --gain`).
 
 use core::f64::consts::{FRAC_PI_2, TAU};
 
@@ -25,29 +25,29 @@ use crate::law::interaction::Interaction;
 use crate::law::task_space::{ROTORS, TaskSpace};
 use crate::shaping::MAX_CUTOFF_FREQUENCY;
 
-/// How far gains are from the first oscillation of an arm that delays and lags like the slowest
-/// realistic one that is simulated (`franka_sim::arm::Family::realistic`). Bad arms have less: they
+/// Distance of gains from the first oscillation of an arm that delays and lags like the slowest
+/// realistic simulated arm (`franka_sim::arm::Family::realistic`). Bad arms have less margin: they
 /// lag twice as long, and their joints are softer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margin {
-    /// The factor by which all dampers may grow.
+    /// Factor by which all dampers may grow.
     pub damping: f64,
-    /// The factor by which all springs may grow while the dampers stay.
+    /// Factor by which all springs may grow while the dampers stay.
     pub stiffness: f64,
 }
 
 impl Margin {
-    /// The least that gains should have, on either side.
+    /// Least recommended margin, for both factors.
     pub const WANTED: f64 = 2.0;
 
-    /// True if both are as wanted.
+    /// True if both factors reach the recommended margin.
     pub fn is_wanted(&self) -> bool {
         self.damping >= Self::WANTED && self.stiffness >= Self::WANTED
     }
 
-    /// That of these gains on an arm of this model where it is in `state`, with the end effector
-    /// and the load that the robot knows of. `None` for gains that are out of their bounds, and if
-    /// the tool is no rigid body.
+    /// Returns the margin of these gains on an arm of this model in `state`, with the end effector
+    /// and the load that the robot knows. `None` for gains that are out of their bounds, and if the
+    /// tool is no rigid body.
     pub fn of(gains: &Gains, model: &Model, state: &RobotState, version: Version) -> Option<Self> {
         gains.check().ok()?;
         let (ee, load) = (end_effector_of(state)?, load_of(state, version)?);
@@ -76,7 +76,8 @@ impl Margin {
     }
 }
 
-/// The greatest eigenvalue of `over^-1 of`, both symmetric; infinite where `over` is not positive.
+/// Returns the greatest eigenvalue of `over^-1 of`, both symmetric; infinite where `over` is not
+/// positive.
 fn greatest_ratio(of: MassMatrix, over: MassMatrix) -> f64 {
     let floor = MassMatrix::identity() * 1e-9;
     let ratio = (over + floor).cholesky().and_then(|factor| {
@@ -86,20 +87,20 @@ fn greatest_ratio(of: MassMatrix, over: MassMatrix) -> f64 {
     ratio.map_or(f64::INFINITY, |ratio| ratio.symmetric_eigenvalues().max())
 }
 
-/// What lies between a torque that is wanted and one that acts.
+/// Delays between a wanted torque and its effect.
 struct Lateness {
     /// Time constants of the torque loop and of the low-pass of the commands, `[s]`.
     lags: [f64; 2],
 }
 
 impl Lateness {
-    /// The client's cycle and two of the robot, `[s]`.
+    /// Delay of the client's cycle and two cycles of the robot, `[s]`.
     const DELAY: f64 = 3e-3;
 
-    /// Of the robot's torque loop, `[s]`.
+    /// Time constant of the robot's torque loop, `[s]`.
     const LAG: f64 = 5e-3;
 
-    /// With a low-pass of this cutoff frequency, `[Hz]`.
+    /// Delays with a low-pass of this cutoff frequency, `[Hz]`.
     fn of(cutoff: f64) -> Self {
         let filter = if cutoff < MAX_CUTOFF_FREQUENCY {
             1.0 / (TAU * cutoff)
@@ -116,9 +117,9 @@ impl Lateness {
         self.lags.iter().fold(Self::DELAY, |sum, lag| sum + lag)
     }
 
-    /// Ratio of damper to inertia at which a mode begins to oscillate, `[1/s]`: where the phases
-    /// add up to a quarter of a turn, over what the lags let pass there. With the default low-pass
-    /// 257, at 182 rad/s.
+    /// Ratio of damper to inertia at which a mode begins to oscillate, `[1/s]`. At that frequency
+    /// the phases add up to a quarter of a turn, and the gain of the lags is divided out. With the
+    /// default low-pass the ratio is 257, at 182 rad/s.
     fn damped(&self) -> f64 {
         let phase = |frequency: f64| {
             let lags = self.lags.iter().map(|lag| (frequency * lag).atan());
@@ -175,8 +176,8 @@ mod tests {
         }
     }
 
-    /// What simulated arms did: `arms --law joint --scaled joint-damping --gain F` was quiet with a
-    /// factor of 2.4 and was not with 3; all gains of the default were quiet with 4.
+    /// Results of simulated arms: `arms --law joint --scaled joint-damping --gain F` was quiet with
+    /// a factor of 2.4 and was not with 3. With all gains of the default it was quiet with 4.
     #[test]
     fn it_is_what_simulated_arms_have() {
         let margin = of(Gains::joint()).damping;
@@ -197,7 +198,7 @@ mod tests {
         for (more, less) in [(off, default), (default, least)] {
             assert!(more.damping > less.damping && more.stiffness > less.stiffness);
         }
-        // The softest filter that is accepted takes a third of the presets' margin.
+        // The softest accepted filter uses a third of the presets' margin.
         assert!(default.is_wanted() && !least.is_wanted());
         assert!(least.damping > 1.5 && least.stiffness > 1.5, "{least:?}");
         assert!((Lateness::of(100.0).damped() - 257.0).abs() < 1.0);

@@ -1,4 +1,4 @@
-//! A course that keeps clear of the arm itself and of the regions to keep out of.
+//! A course that keeps clear of the arm itself and of the keep-out regions.
 
 use franka_model::{EndEffector, Model};
 
@@ -12,10 +12,10 @@ use crate::session::reference::Reference;
 use crate::session::running::Measured;
 use crate::session::{Budget, Chunk, Lapse, Target};
 
-/// Share of its velocity that a goal keeps where something is near.
+/// Share of its velocity that a goal keeps near an obstacle.
 const SLOW: f64 = 0.3;
 
-/// Cycles without anything near ahead after which a goal has its full velocity again.
+/// Cycles without an obstacle ahead after which a goal has its full velocity again.
 const CLEAR: u32 = 100;
 
 /// Cycles from a brake to the next attempt at the aim.
@@ -24,28 +24,28 @@ const RETRY: u32 = 100;
 /// Cycles for which a course counts as hindered after a brake.
 const HINDERED: u32 = 250;
 
-/// Moves the reference along a course, and brakes it before anything too near.
+/// Moves the reference along a course, and brakes it before any obstacle that is too near.
 #[derive(Debug)]
 pub(super) struct Route {
     pub(super) course: Course,
     clearance: Clearance,
     pace: Pace,
-    /// True if the course has to be planned anew before its next step: for another target, budget
-    /// or pace.
+    /// True if the course must be planned anew before its next step: for another target, budget or
+    /// pace.
     stale: bool,
-    /// Cycles for which it still counts as hindered.
+    /// Cycles for which the course still counts as hindered.
     hindered: u32,
-    /// What it was last braked before: the region with this index, or the arm itself.
+    /// Obstacle of the last brake: the region with this index, or the arm itself.
     obstacle: Option<usize>,
-    /// The budget with which the way to rest was last found clear.
+    /// Budget with which the path to rest was last found clear.
     judged: Budget,
     /// A chunk whose course has been replaced. It is returned in the next cycle, to be freed
     /// outside the thread.
     pub(super) retired_chunk: Option<ChunkCourse>,
-    /// Where the goal's last chunk has ended, if none runs.
+    /// Target at which the goal's last chunk has ended, if no chunk runs.
     pub(super) chunk_end: Option<Target>,
-    /// True if a brake has ended the chunk on its way. The straight line to its end is no way that
-    /// anybody asked for: the course rests until another target or chunk comes.
+    /// True if a brake has ended the chunk before its end. The caller did not ask for the straight
+    /// line to its end, so the course rests until another target or chunk arrives.
     left_chunk: bool,
     /// True if a plan could not be made since the last answer.
     failed: bool,
@@ -53,16 +53,15 @@ pub(super) struct Route {
 
 #[derive(Debug)]
 enum Pace {
-    /// As the goal asks.
+    /// The goal's own pace.
     Full,
-    /// Slowly; the number of cycles without anything near ahead.
+    /// Slow. The value is the number of cycles without an obstacle ahead.
     Slow(u32),
-    /// Braked before something too near; the number of cycles since.
+    /// Braked before an obstacle that was too near. The value is the number of cycles since then.
     Braked(u32),
 }
 
-/// Joint velocity, `[rad/s]`, that a reference may be put to rest from at once: 0.1 rad/s^2 in one
-/// cycle.
+/// Joint velocity at which a reference may be stopped at once, `[rad/s]`: 0.1 rad/s^2 in one cycle.
 const AT_REST: f64 = 1e-4;
 
 impl Route {
@@ -83,7 +82,7 @@ impl Route {
         }
     }
 
-    /// Has the course planned anew before its next step.
+    /// Makes the course be planned anew before its next step.
     pub(super) fn outdate(&mut self) {
         self.stale = true;
     }
@@ -115,18 +114,18 @@ impl Route {
         }
     }
 
-    /// Plans the course towards `aim`, or notes that no plan could be made.
+    /// Plans the course towards `aim`, or records that no plan could be made.
     fn plan(&mut self, model: &Model, ee: &EndEffector, reference: &Reference, aim: &Aim) {
         let planned = self.course.head_for(model, ee, reference, aim);
         self.failed |= planned.is_err();
     }
 
-    /// True if a plan could not be made since this was asked last.
+    /// True if a plan could not be made since the last call.
     pub(super) fn take_failure(&mut self) -> bool {
         core::mem::take(&mut self.failed)
     }
 
-    /// Follows a chunk towards its end, `aim`, at the present pace. Returns the chunk before it.
+    /// Follows a chunk towards its end, `aim`, at the present pace. Returns the previous chunk.
     pub(super) fn follow(
         &mut self,
         model: &Model,
@@ -158,8 +157,8 @@ impl Route {
         }
     }
 
-    /// Returns `aim` with less velocity if something is near. Also ends a brake: the goal goes on
-    /// slowly, and may be paced anew.
+    /// Returns `aim` with less velocity if an obstacle is near. Also ends a brake: the goal
+    /// continues slowly, and its pace may change again.
     fn paced(&mut self, aim: &Aim) -> Aim {
         self.stale = false;
         if matches!(self.pace, Pace::Braked(_)) {
@@ -172,8 +171,8 @@ impl Route {
         }
     }
 
-    /// Returns `aim` with its joint limits raised to those of the last clear check, where they are
-    /// lower: the way of the brake is then no longer than the one that was checked.
+    /// Returns `aim` with its joint limits raised to the limits of the last clear check, where they
+    /// are lower. The braking distance is then no longer than the checked distance.
     fn braking(&self, aim: &Aim) -> Aim {
         let mut budget = aim.budget;
         for (joint, judged) in budget.joints.iter_mut().zip(&self.judged.joints) {
@@ -208,7 +207,7 @@ impl Route {
         }
     }
 
-    /// Ends the way to the target before, and has the next one planned.
+    /// Ends the motion to the previous target, so that the next one is planned.
     pub(super) fn turn(&mut self) {
         self.retire_chunk();
         self.left_chunk = false;
@@ -246,7 +245,7 @@ impl Route {
     }
 
     /// Advances by one nominal millisecond towards `aim`, for the answer to the state `now`, or
-    /// brakes before something too near.
+    /// brakes before an obstacle that is too near.
     #[expect(clippy::too_many_arguments, reason = "each is of another type")]
     pub(super) fn step(
         &mut self,
@@ -269,7 +268,7 @@ impl Route {
             self.head_for(model, ee, reference, aim);
         }
         let step = self.course.step(model, ee, posture, reference, guided, now);
-        // The way of a brake was checked before the step that it begins from. Hand guiding is not
+        // The path of a brake was checked before the step at which it begins. Hand guiding is not
         // checked.
         if matches!(aim.target, Target::Rest | Target::Guide(_)) {
             return step;
@@ -303,18 +302,18 @@ impl Route {
         step
     }
 
-    /// True if something near slows the course down or keeps it from its aim.
+    /// True if an obstacle slows the course down or keeps it from its aim.
     pub(super) fn is_bound(&self) -> bool {
         !matches!(self.pace, Pace::Full)
     }
 
-    /// What keeps the course from its goal by being too near, or did a moment ago.
+    /// Obstacle that keeps the course from its goal, or did so a moment ago.
     pub(super) fn hindrance(&self) -> Option<Lapse> {
         let region = self.obstacle.map(|index| index + 1);
         (self.hindered > 0).then_some(Lapse::Blocked { region })
     }
 
-    /// True if the course has come to the end of its way.
+    /// True if the course has ended.
     pub(super) fn is_done(&self) -> bool {
         !self.stale && self.course.is_done() && !matches!(self.pace, Pace::Braked(_))
     }

@@ -1,4 +1,4 @@
-//! The stream of setpoints to the robot's own controller, and where it goes on after lost commands.
+//! The stream of setpoints to the robot's own controller, and its continuation after lost commands.
 
 mod distance;
 #[cfg(test)]
@@ -19,14 +19,14 @@ use crate::session::rigid;
 use crate::shaping::{CYCLE, MAX_CUTOFF_FREQUENCY};
 use distance::{apart, differs, is_off, joint_drift, pose_drift, unchanged};
 
-/// Share that is kept of what the limiter lets pass when joints are held back: it is found along a
+/// Share of the limiter's result that is kept when joints are held back: the limiter works along a
 /// straight line.
 const EASE: f64 = 0.95;
 
-/// Times that joints are held back anew in a cycle.
+/// Number of times that joints are held back anew in a cycle.
 const EASINGS: usize = 3;
 
-/// Part of a drift that velocities make up for in a second, `[1/s]`.
+/// Share of a drift that velocities make up for per second, `[1/s]`.
 const RETURN: f64 = 10.0;
 
 /// Streams setpoints to the robot's controller.
@@ -37,21 +37,20 @@ pub(super) struct SetpointStream {
     shaper: Shaper,
     /// The setpoint of the last reference; `None` before the first.
     last: Option<MotionCommand>,
-    /// The joint positions that velocities set out from: those of the last reference, or the
-    /// robot's own.
+    /// Start of the velocities: joint positions of the last reference, or the robot's own.
     from: JointVector,
-    /// What velocities make up for.
+    /// Drift that velocities make up for.
     drift: Drift,
 }
 
-/// How far the robot's integrated position is from the reference, as far as that matters.
+/// Distance of the robot's integrated position from the reference, in the coordinates that matter.
 #[derive(Clone, Copy, Debug)]
 enum Drift {
-    /// `[rad]`
+    /// Drift of the joints, `[rad]`.
     Joints(JointVector),
-    /// Base axes, `[m, rad]`.
+    /// Drift of the pose, base axes, `[m, rad]`.
     Pose(Twist),
-    /// It is at the reference, or is no matter of velocities.
+    /// No drift: the robot is at the reference, or the setpoints are not velocities.
     None,
 }
 
@@ -86,12 +85,12 @@ impl SetpointStream {
         )
     }
 
-    /// Returns the robot's own commanded pose in that of `hand` at the joint positions `q`, which
-    /// were taken from the robot: poses and twists continue it with an end effector that is moved
-    /// by that. `None` for setpoints of joints, and if it is no rigid transform.
+    /// Returns the robot's own commanded pose relative to the pose of `hand` at the joint positions
+    /// `q`, which came from the robot. Poses and twists continue from it with an end effector moved
+    /// by this correction. `None` for setpoints of joints, and if it is no rigid transform.
     ///
-    /// It counts until the reference is taken from the robot again: a correction that followed the
-    /// robot would hide a drift.
+    /// The correction applies until the reference is taken from the robot again: a correction that
+    /// followed the robot would hide a drift.
     pub(super) fn correction(
         &self,
         model: &Model,
@@ -103,11 +102,11 @@ impl SetpointStream {
         commanded.map(|commanded| pose_of(model, hand, q).inverse() * commanded)
     }
 
-    /// Returns the setpoint as the robot has it, if it differs from that of `reference`, the last
-    /// one that was sent. Cartesian setpoints are compared as commanded, and the robot's own joints
-    /// are taken over.
+    /// Returns the robot's setpoint, if it differs from the setpoint of `reference`, the last one
+    /// sent. Cartesian setpoints are compared as commanded, and the robot's own joints are taken
+    /// over.
     ///
-    /// What the robot has integrated may differ a little, which the next velocities make up for.
+    /// The robot's integrated position may differ slightly; the next velocities make up for it.
     pub(super) fn echo(
         &mut self,
         model: &Model,
@@ -136,8 +135,8 @@ impl SetpointStream {
         if differs {
             (self.from, self.drift) = (q, Drift::None);
         }
-        // The robot's velocity is the mean of its last cycle, the reference's that at the end of
-        // it.
+        // The robot's velocity is the mean of its last cycle, the reference's is the velocity at
+        // the end of the cycle.
         differs.then(|| Reference {
             q,
             dq: dq + ddq * (0.5 * CYCLE),
@@ -145,9 +144,10 @@ impl SetpointStream {
         })
     }
 
-    /// The command for `reference`, and whether the backstop changed it. A command that cannot be
-    /// shaped, as from a non-finite reference, is the one that holds the arm. The `last` velocity
-    /// of a motion is zero: it is repeated until the robot has ended the motion.
+    /// Returns the command for `reference`, and true if the backstop changed it. If a command
+    /// cannot be shaped, as from a non-finite reference, the command that holds the arm is
+    /// returned. The `last` velocity of a motion is zero: it is repeated until the robot has ended
+    /// the motion.
     pub(super) fn command(
         &mut self,
         model: &Model,
@@ -192,7 +192,8 @@ impl SetpointStream {
         (command, changed)
     }
 
-    /// The setpoint that leads to the joint positions `q`; velocities set out from the pose `from`.
+    /// Returns the setpoint that leads to the joint positions `q`; velocities start at the pose
+    /// `from`.
     fn setpoint(
         &self,
         model: &Model,
@@ -230,11 +231,12 @@ impl SetpointStream {
     }
 }
 
-/// The setpoint of `reference` within the limits of pose and elbow, and whether that took a change.
+/// Returns the setpoint of `reference` within the limits of pose and elbow, and true if that
+/// required a change.
 ///
-/// A pose changed by the limiter would make the robot find other joints, with no limits applied. So
-/// the joints are held back instead, towards where they get from the last reference `from` without
-/// a jerk, by as much as the limiter held back their pose.
+/// If the limiter changed a pose, the robot would find other joints, with no limits applied. So the
+/// joints are held back instead: towards the place that they reach from the last reference `from`
+/// without a jerk, by the share by which the limiter held back their pose.
 fn eased(
     wish: impl Fn(&JointVector) -> MotionCommand,
     shape: impl Fn(&MotionCommand) -> MotionCommand,
@@ -263,7 +265,7 @@ fn eased(
     (shaped, true)
 }
 
-/// The model's pose at these joint positions.
+/// Returns the model's pose at these joint positions.
 fn pose_of(model: &Model, ee: &EndEffector, q: &JointVector) -> Isometry3<f64> {
     rigid(&model.pose(Frame::EndEffector, q, ee))
 }
@@ -273,7 +275,7 @@ fn commanded_pose(state: &RobotState) -> Option<Isometry3<f64>> {
     transform::isometry_from_array(state.commanded_pose())
 }
 
-/// Displacement and rotation vector from one pose to another, base axes, `[m, rad]`.
+/// Returns displacement and rotation vector from one pose to another, base axes, `[m, rad]`.
 fn twist(to: &Isometry3<f64>, from: &Isometry3<f64>) -> Twist {
     let way = to.translation.vector - from.translation.vector;
     let turn = rotation::error(&to.rotation, &from.rotation);

@@ -7,7 +7,7 @@ use franka_model::{JointVector, READY, transform};
 use franka_otg::AxisLimits;
 use nalgebra::Isometry3;
 
-/// The size of a sample: the first with `FRANKA_THOROUGH=1`, as in the nightly run.
+/// Size of a sample: the first value with `FRANKA_THOROUGH=1`, as in the nightly run.
 pub(crate) fn sample(thorough: usize, otherwise: usize) -> usize {
     match std::env::var("FRANKA_THOROUGH") {
         Ok(value) if value == "1" => thorough,
@@ -15,12 +15,12 @@ pub(crate) fn sample(thorough: usize, otherwise: usize) -> usize {
     }
 }
 
-/// A session whose arm is wherever its reference is.
+/// A session whose arm is always at its reference.
 struct Arm {
     session: TargetSession,
     goals: SlotWriter<Goal>,
     state: RobotState,
-    /// What the newest answer reported.
+    /// Report of the newest answer.
     event: Option<SessionEvent>,
 }
 
@@ -41,7 +41,7 @@ impl Arm {
         }
     }
 
-    /// Asks for a turn of joint 1, `[rad]`, from the ready posture.
+    /// Sets a goal that turns joint 1 from the ready posture, `[rad]`.
     fn turn(&mut self, id: u64, by: f64) {
         let mut q: [f64; 7] = READY.into();
         q[0] += by;
@@ -50,7 +50,7 @@ impl Arm {
         self.goals.write(&goal);
     }
 
-    /// The answer to the next state.
+    /// Answers the next state.
     fn answer(&mut self, gate: Gate) -> SessionStep {
         self.state.message_id += 1;
         self.event = None;
@@ -60,7 +60,7 @@ impl Arm {
         step
     }
 
-    /// How the next goal ends.
+    /// Returns the end of the next goal.
     fn settles(&mut self, gate: Gate) -> (GoalId, Settlement) {
         for _ in 0..10_000 {
             self.session.prepare();
@@ -143,7 +143,8 @@ fn a_goal_that_comes_as_its_common_start_breaks_is_not_taken_for_the_one_that_wa
     }
 }
 
-/// A goal for a turn of joint 1 that reacts to 5 N along z, or after so many milliseconds.
+/// Returns a goal for a turn of joint 1 that reacts to 5 N along z, or after a number of
+/// milliseconds.
 fn watched(by: f64, milliseconds: u64) -> Goal {
     let mut q: [f64; 7] = READY.into();
     q[0] += by;
@@ -194,7 +195,7 @@ fn a_goal_that_waits_for_its_common_start_does_not_react_before_it() {
         if let Some(SessionEvent::Settled { reacted, .. }) = arm.event {
             let reacted = reacted.expect("a reaction");
             assert_eq!(reacted.after, Duration::from_millis(100));
-            // The first state of the goal is the second one that finds the gate open.
+            // The first state of the goal is the second state that finds the gate open.
             assert_eq!(reacted.time - opens, 102);
             return;
         }
@@ -202,7 +203,7 @@ fn a_goal_that_waits_for_its_common_start_does_not_react_before_it() {
     panic!("no reaction");
 }
 
-/// A budget that a goal may not have, by a session that does not look at it.
+/// Uses a budget that goals may not have, in a session that does not check it.
 #[test]
 fn a_time_too_long_for_a_duration_does_not_panic() {
     let mut arm = Arm::new();

@@ -1,4 +1,4 @@
-//! How far setpoints are apart, and from when on that matters.
+//! Distances of setpoints, and the thresholds from which they matter.
 
 use franka_model::{JointVector, Twist};
 use franka_proto::RobotState;
@@ -9,39 +9,41 @@ use crate::control::{
 };
 use crate::shaping::CYCLE;
 
-/// How far the robot's setpoint may be from the one that it was sent for the two to count as the
-/// same: more than its echo is rounded by, and less than any cycle of a motion that matters.
+/// Greatest distance of the robot's setpoint from the sent setpoint at which the two count as the
+/// same. It is more than the rounding of the robot's echo, and less than any cycle of a motion that
+/// matters.
 mod echo {
-    /// `[rad]`
+    /// Distance of joint positions, `[rad]`.
     pub(super) const JOINTS: f64 = 2e-6;
 
-    /// `[rad/s]`: what is overlooked here comes back as a jerk of 100 rad/s^3.
+    /// Distance of joint velocities, `[rad/s]`: an overlooked difference returns as a jerk of 100
+    /// rad/s^3.
     pub(super) const JOINT_VELOCITIES: f64 = 1e-4;
 
-    /// Of a pose and an elbow, `[m, rad]`. No backstop limits the joints behind a pose: what is
-    /// overlooked here comes back in them as a jerk, at most a fifth of what the gentlest joint may
-    /// have.
+    /// Distance of poses and elbows, `[m, rad]`. No backstop limits the joints behind a pose. An
+    /// overlooked difference returns in them as a jerk, at most a fifth of the gentlest joint's
+    /// limit.
     pub(super) const POSE: f64 = 3e-7;
 
-    /// Of a twist, `[m/s, rad/s]`: the joints behind it feel some ten times as much.
+    /// Distance of twists, `[m/s, rad/s]`: the difference at the joints is some ten times as large.
     pub(super) const TWIST: f64 = 1e-5;
 }
 
-/// How far what the robot integrates may be from the reference before that is put where the robot
-/// is; less is made up for.
+/// Distance of the robot's integrated position at which the reference moves to the robot's place.
+/// Velocities make up for smaller distances.
 pub(super) mod is_off {
-    /// `[rad]`
+    /// Distance of joint positions, `[rad]`.
     pub(crate) const JOINTS: f64 = 2e-5;
 
-    /// `[m, rad]`
+    /// Distance of poses, `[m, rad]`.
     pub(crate) const POSE: f64 = 3e-6;
 }
 
-/// How little the limiter may change a pose and an elbow, `[m, rad]`, for them to count as
-/// unchanged: the joints behind them feel some ten times as much, a jerk of 100 rad/s^3.
+/// Greatest change of a pose and an elbow by the limiter, `[m, rad]`, for them to count as
+/// unchanged. The change at the joints is some ten times as large, a jerk of 100 rad/s^3.
 const SAME: f64 = 1e-8;
 
-/// True if the robot has another setpoint than `sent`. Where velocities have led is not compared.
+/// True if the robot's setpoint differs from `sent`. The integral of velocities is not compared.
 pub(super) fn differs(sent: &MotionCommand, state: &RobotState) -> bool {
     let far = |a: &[f64], b: &[f64]| {
         a.iter()
@@ -68,7 +70,7 @@ pub(super) fn differs(sent: &MotionCommand, state: &RobotState) -> bool {
     }
 }
 
-/// True if the limiter has left `asked` as it was, but for rounding.
+/// True if the limiter has left `asked` unchanged, except for rounding.
 pub(super) fn unchanged(shaped: &MotionCommand, asked: &MotionCommand) -> bool {
     let most = match asked {
         MotionCommand::JointPositions(_) => echo::JOINTS,
@@ -78,8 +80,8 @@ pub(super) fn unchanged(shaped: &MotionCommand, asked: &MotionCommand) -> bool {
     apart(shaped, asked).amax() <= most
 }
 
-/// How far two setpoints of the same kind lead apart: in the joints, `[rad]`; or in translation,
-/// in the elements of their rotation, in the elbow, `[m, rad]`.
+/// Distance between two setpoints of the same kind: in the joints, `[rad]`; or in translation, in
+/// the elements of their rotation, in the elbow, `[m, rad]`.
 pub(super) fn apart(a: &MotionCommand, b: &MotionCommand) -> Vector3<f64> {
     let squares = |a: &[f64], b: &[f64]| -> f64 {
         let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
@@ -114,12 +116,13 @@ pub(super) fn apart(a: &MotionCommand, b: &MotionCommand) -> Vector3<f64> {
     }
 }
 
-/// What is to be made up for of a drift of the joints, `[rad]`: nothing of what rounding explains.
+/// Returns the part of a joint drift to make up for, `[rad]`: zero where rounding explains the
+/// drift.
 pub(super) fn joint_drift(drift: &JointVector) -> JointVector {
     drift.map(|x| x - x.clamp(-echo::JOINTS, echo::JOINTS))
 }
 
-/// The same of a drift of the pose, base axes, `[m, rad]`.
+/// Same for a drift of the pose, base axes, `[m, rad]`.
 pub(super) fn pose_drift(drift: &Twist) -> Twist {
     drift.map(|x| x - x.clamp(-echo::POSE, echo::POSE))
 }

@@ -1,4 +1,4 @@
-//! Robots that integrate velocities otherwise than they were sent.
+//! Robots that integrate velocities differently from the sent ones.
 
 use std::sync::Arc;
 
@@ -28,9 +28,9 @@ fn resting() -> RobotState {
     state
 }
 
-/// Turns joint 1 by 0.3 rad under velocities, of which the robot integrates so much too little, and
-/// steps back once by so much. Returns how far it ends beside the target, `[rad]`, and its last
-/// command.
+/// Turns joint 1 by 0.3 rad under velocities. The robot integrates them too short by the share
+/// `slip`, and steps back once by `step`. Returns the final distance from the target, `[rad]`, and
+/// the robot's last command.
 fn turned(slip: f64, step: f64) -> (f64, [f64; 7]) {
     let mut q: [f64; 7] = READY.into();
     q[0] += 0.3;
@@ -124,7 +124,7 @@ fn twists_make_up_for_a_small_drift_and_go_on_from_a_large_one() {
     }
 }
 
-/// What a lost command leaves: the robot is where the reference is, and moves otherwise.
+/// State after a lost command: the robot is at the reference, and moves differently.
 #[test]
 fn velocities_go_on_from_those_of_the_robot() {
     let model = Model::fr3();
@@ -147,8 +147,8 @@ fn velocities_go_on_from_those_of_the_robot() {
     }
 }
 
-/// The robot's poses are off the model's, and it fills in the commanded fields or leaves them at
-/// zero.
+/// The robot's poses differ from the model's, and it fills in the commanded fields or leaves them
+/// at zero.
 #[test]
 fn cartesian_setpoints_begin_and_go_on_where_the_robot_is() {
     let model = Model::fr3();
