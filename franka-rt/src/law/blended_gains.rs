@@ -1,11 +1,11 @@
-//! Gains as the cycle uses them: numbers only, so that they may stand between two goals'.
+//! Gains as the cycle uses them: only numbers, so that values between two goals exist.
 
 use crate::law::fade::{Blend, mix};
 use crate::law::{Gains, Law};
 use crate::shaping::{CYCLE, MAX_CUTOFF_FREQUENCY, filter};
 
-/// Gains and force cap in numbers: a choice is a weight between 0 and 1, so that all of it may
-/// stand between two goals.
+/// Gains and force cap as numbers. A choice is a weight between 0 and 1, so that all values can lie
+/// between two goals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BlendedGains {
     pub(crate) cartesian_stiffness: [f64; 6],
@@ -15,11 +15,12 @@ pub(crate) struct BlendedGains {
     pub(crate) feedforward: f64,
     /// Share of the newest reference velocity in the filtered one; 1 where the filter is off.
     pub(crate) feedforward_share: f64,
-    /// How much of the null-space projection applies to the joints' springs.
+    /// Weight of the null-space projection of the joints' springs.
     pub(crate) projection: f64,
-    /// Weight of the operational-space law against the hybrid one.
+    /// Weight of the operational-space law against the hybrid law.
     pub(crate) operational: f64,
-    /// One over the force cap, `[1/N]`: 0 without one, which no other number continues to.
+    /// One over the force cap, `[1/N]`: 0 without a cap, the only number that fades continuously to
+    /// no cap.
     pub(crate) inverse_force_cap: f64,
     pub(crate) compensation: [f64; 7],
     pub(crate) torque_limits: [f64; 7],
@@ -58,7 +59,7 @@ impl BlendedGains {
         self.projection > 0.0 || self.operational > 0.0 || self.inverse_force_cap > 0.0
     }
 
-    /// The force cap, `[N]`, if there is one.
+    /// Returns the force cap, `[N]`, if there is one.
     pub(crate) fn force_cap(&self) -> Option<f64> {
         (self.inverse_force_cap > 0.0).then(|| self.inverse_force_cap.recip())
     }

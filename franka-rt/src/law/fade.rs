@@ -1,20 +1,21 @@
-//! The fade from what one goal asks for to what the next one does.
+//! The fade from the values of one goal to the values of the next.
 
-/// Cycles that it takes.
+/// Duration in cycles.
 pub(crate) const CROSS_FADE: u32 = 300;
 
-/// Numbers that may stand between two goals'.
+/// Numbers that can lie between the values of two goals.
 pub(crate) trait Blend: Copy + PartialEq {
-    /// At `share` of the way to `other`, linearly: each number stays between its two ends.
+    /// Interpolates linearly at `share` of the difference to `other`: each number stays between its
+    /// two ends.
     fn blend(&self, other: &Self, share: f64) -> Self;
 }
 
-/// The number at `share` of the way.
+/// Interpolates between two numbers.
 pub(crate) fn mix(from: f64, to: f64, share: f64) -> f64 {
     from + share * (to - from)
 }
 
-/// Numbers on their way from one goal's to the next.
+/// Numbers that fade from one goal's values to the next goal's.
 #[derive(Debug)]
 pub(crate) struct Fade<T> {
     from: T,
@@ -23,7 +24,7 @@ pub(crate) struct Fade<T> {
 }
 
 impl<T: Blend> Fade<T> {
-    /// A fade that is over from the start.
+    /// Returns a fade that is over from the start.
     pub(crate) fn at(value: T) -> Self {
         Self {
             from: value,
@@ -32,7 +33,7 @@ impl<T: Blend> Fade<T> {
         }
     }
 
-    /// Heads for `to` from where it stands.
+    /// Fades to `to` from the present value.
     pub(crate) fn towards(&mut self, to: T) {
         if to != self.to {
             *self = Self {
@@ -49,7 +50,7 @@ impl<T: Blend> Fade<T> {
         self.now()
     }
 
-    /// As of the last step.
+    /// Returns the value of the last step.
     pub(crate) fn now(&self) -> T {
         if self.cycle >= CROSS_FADE {
             self.to

@@ -7,24 +7,23 @@ use crate::law::blended_gains::BlendedGains;
 use crate::law::operational;
 use crate::law::task_space::TaskSpace;
 
-/// The springs of a law, or its dampers, in one cycle: at the posture in which the arm was
-/// measured.
+/// The springs of a law, or its dampers, in one cycle, at the measured posture.
 #[derive(Debug)]
 pub(crate) struct Interaction<'a> {
-    /// At the end effector, base axes.
+    /// Matrix at the end effector, base axes.
     cartesian: Matrix6<f64>,
-    /// At the joints.
+    /// Gains at the joints.
     joint: JointVector,
-    /// How much of the null-space projection applies to those at the joints.
+    /// Weight of the null-space projection of the gains at the joints.
     projection: f64,
     jacobian: &'a Jacobian,
     space: Option<&'a TaskSpace>,
 }
 
 impl<'a> Interaction<'a> {
-    /// The springs: errors are positions, `[rad]`.
+    /// Returns the springs: errors are positions, `[rad]`.
     ///
-    /// `space` has to be there if the gains [need](BlendedGains::needs_task_space) it; without it
+    /// `space` must be present if the gains [need](BlendedGains::needs_task_space) it; without it
     /// the law is the hybrid one.
     pub(crate) fn springs(
         gains: &BlendedGains,
@@ -35,7 +34,7 @@ impl<'a> Interaction<'a> {
         Self::new(diagonals, gains, jacobian, space)
     }
 
-    /// The dampers: errors are velocities, `[rad/s]`. `space` as for the springs.
+    /// Returns the dampers: errors are velocities, `[rad/s]`. `space` as for the springs.
     pub(crate) fn dampers(
         gains: &BlendedGains,
         jacobian: &'a Jacobian,
@@ -67,7 +66,7 @@ impl<'a> Interaction<'a> {
         }
     }
 
-    /// Returns their torques for an error of the joints, `[N m]`.
+    /// Returns the torques for an error of the joints, `[N m]`.
     pub(crate) fn torques(&self, error: &JointVector) -> JointVector {
         let at_joints = self.joint.component_mul(error);
         let mut at_end_effector = self.cartesian * (self.jacobian * error);
@@ -88,8 +87,8 @@ mod tests {
     use nalgebra::Matrix3;
     use proptest::prelude::*;
 
-    /// How far the arm is from its reference, `[rad]`, and how much slower than the dampers let
-    /// pass, `[rad/s]`.
+    /// Distance of the arm from its reference, `[rad]`, and its velocity error in the dampers,
+    /// `[rad/s]`.
     struct Errors {
         q: JointVector,
         dq: JointVector,
@@ -109,14 +108,14 @@ mod tests {
         Model::fr3().dynamics(q, dq, &EndEffector::default(), &load, &GRAVITY_EARTH)
     }
 
-    /// `S Lambda S` of one block, its inertia formed by inverting in full.
+    /// Returns `S Lambda S` of one block, its inertia formed by inverting in full.
     fn coupled(block: Matrix3<f64>, gains: &[f64]) -> Matrix3<f64> {
         let inertia = block.try_inverse().expect("regular");
         let root = |i: usize| (gains[i] / inertia[(i, i)]).sqrt();
         Matrix3::from_fn(|i, j| root(i) * inertia[(i, j)] * root(j))
     }
 
-    /// The law as its definition has it, every matrix formed in full.
+    /// The law as defined, with every matrix formed in full.
     fn definition(gains: &Gains, errors: &Errors, dynamics: &Dynamics) -> JointVector {
         let jacobian = &dynamics.jacobian;
         let inverse = mobility(dynamics);
@@ -206,7 +205,7 @@ mod tests {
             }
         }
 
-        /// What is projected does not accelerate the end effector.
+        /// A projected torque does not accelerate the end effector.
         #[test]
         fn projected_joint_gains_do_not_move_the_end_effector(offset in joints(0.4)) {
             let q = READY + offset;
@@ -221,8 +220,7 @@ mod tests {
             prop_assert!(tau.amax() > 1e-3);
         }
 
-        /// Also where the arm is stretched out or folded, where inertias at the end effector have
-        /// no bound.
+        /// Includes stretched and folded arms, where inertias at the end effector have no bound.
         #[test]
         fn is_bounded_at_every_pose(q in anywhere(), stretch in 0.0..1.0f64, error in joints(0.1)) {
             let mut q = q;
@@ -238,10 +236,10 @@ mod tests {
                 let tau = springs.torques(&error);
                 prop_assert!(tau.iter().all(|tau| tau.is_finite()));
                 // Correlations are at most one: each axis adds at most the geometric mean of its
-                // gain and the other's.
+                // gain and the other axis's gain.
                 let wrench = springs.cartesian * pose;
                 prop_assert!(wrench.amax() <= 750.0 * pose.abs().sum() * 1.01);
-                // In the metric of the inertia a projection is no longer than what is projected.
+                // In the metric of the inertia a projection is no longer than its argument.
                 let length = |tau: &JointVector| (tau.dot(&(mobility(&dynamics) * tau))).sqrt();
                 let joints = JointVector::from(gains.joint_stiffness).component_mul(&error);
                 let rest = tau - dynamics.jacobian.tr_mul(&wrench);
@@ -249,8 +247,8 @@ mod tests {
             }
         }
 
-        /// Springs give back no more than they took, dampers only take: the matrices at the end
-        /// effector are symmetric and not negative.
+        /// Springs return no more energy than they took, and dampers only dissipate: the matrices
+        /// at the end effector are symmetric and not negative.
         #[test]
         fn the_dampers_at_the_end_effector_only_take_energy(q in anywhere(), dq in joints(1.0)) {
             let dynamics = dynamics_at(&q, &dq);
@@ -278,8 +276,8 @@ mod tests {
         }
     }
 
-    /// The middle of a fade between two laws is the mean of their torques, so the way from one to
-    /// the other is even.
+    /// The middle of a fade between two laws is the mean of their torques, so the transition is
+    /// even.
     #[test]
     fn a_change_of_law_goes_evenly_from_torque_to_torque() {
         let dynamics = dynamics_at(&READY, &JointVector::zeros());

@@ -1,25 +1,25 @@
-//! The inertia at the end effector, factorised once a cycle for law and guards.
+//! The inertia at the end effector, factorised once per cycle for law and guards.
 //!
 //! With the joint-space inertia `M` and the Jacobian `J`, `W = J M^-1 J'` is the mobility of the
 //! end effector and `Lambda = W^-1` its inertia (Khatib, IEEE Journal on Robotics and Automation
-//! 3(1), 1987). The torques `tau` press with the wrench `Lambda J M^-1 tau` on a support that
-//! holds the end effector still.
+//! 3(1), 1987). The torques `tau` exert the wrench `Lambda J M^-1 tau` on a support that holds the
+//! end effector still.
 //!
-//! `W` is taken as it is where the arm can move in all directions. Near a singularity it is damped:
-//! as the inertia along any axis goes beyond that in [`GREATEST_INERTIA`], damping grows from zero,
-//! smoothly, to one over it. So nothing jumps and nothing divides by zero, and no inertia along an
-//! axis exceeds four thirds of the greatest.
+//! `W` is exact where the arm can move in all directions. Near a singularity it is damped. As the
+//! inertia along any axis exceeds its value in [`GREATEST_INERTIA`], damping grows smoothly from
+//! zero to one over that value. So nothing jumps and nothing divides by zero, and no inertia along
+//! an axis exceeds four thirds of the greatest.
 
 use franka_model::{Dynamics, Jacobian, JointVector, MassMatrix, Wrench};
 use nalgebra::{Cholesky, Const, Matrix3, SMatrix};
 
-/// Inertia, x y z `[kg]` and about x y z `[kg m^2]`, from which on a direction counts as lost. At
-/// the ready pose the arm has 11 kg and 0.5 kg m^2 with all other directions held.
+/// Inertia at which a direction counts as lost, x y z `[kg]` and about x y z `[kg m^2]`. At the
+/// ready pose the arm has 11 kg and 0.5 kg m^2 with all other directions held.
 const GREATEST_INERTIA: [f64; 6] = [100.0, 100.0, 100.0, 5.0, 5.0, 5.0];
 
-/// Inertia of the rotors, felt at the joints, `[kg m^2]`, which is not in the robot's model. About
-/// the mean of what `mujoco_menagerie` has for both arms: 0.195 (joints 1 to 4) and 0.074 (5 to 7)
-/// of `franka_fr3`, 0.1 of `franka_emika_panda`. Not measured on a robot.
+/// Inertia of the rotors, felt at the joints, `[kg m^2]`, which the robot's model does not contain.
+/// It is about the mean of the values in `mujoco_menagerie` for both arms. `franka_fr3` has 0.195
+/// (joints 1 to 4) and 0.074 (5 to 7), `franka_emika_panda` has 0.1. Not measured on a robot.
 pub(crate) const ROTORS: [f64; 7] = [0.15, 0.15, 0.15, 0.15, 0.09, 0.09, 0.09];
 
 /// Inertia at the end effector, in base axes.
@@ -30,19 +30,19 @@ pub(crate) struct TaskSpace {
     /// `L^-1 J'`.
     root: SMatrix<f64, 7, 6>,
     inertia: Cholesky<f64, Const<6>>,
-    /// Of position and of rotation, each with the other left free.
+    /// Inertia of position and of rotation, each with the other left free.
     blocks: [Matrix3<f64>; 2],
 }
 
 impl TaskSpace {
-    /// Of the links and the rotors together.
+    /// Computes the inertia of links and rotors together.
     #[inline]
     pub(crate) fn of(dynamics: &Dynamics) -> Self {
         let rotors = MassMatrix::from_diagonal(&ROTORS.into());
         Self::new(&dynamics.jacobian, &(dynamics.mass + rotors))
     }
 
-    /// An unphysical `mass`, as of an impossible load, is replaced by the identity: the geometry
+    /// An unphysical `mass`, as from an impossible load, is replaced by the identity: the geometry
     /// remains.
     fn new(jacobian: &Jacobian, mass: &MassMatrix) -> Self {
         let mass = Cholesky::new(*mass)
@@ -64,8 +64,8 @@ impl TaskSpace {
         }
     }
 
-    /// The wrench with which `tau` presses on a support that holds the end effector still,
-    /// `Lambda J M^-1 tau`.
+    /// Returns the wrench that `tau` exerts on a support that holds the end effector still, `Lambda
+    /// J M^-1 tau`.
     pub(crate) fn reaction(&self, tau: &JointVector) -> Wrench {
         let mut half = *tau;
         self.mass
@@ -74,12 +74,12 @@ impl TaskSpace {
         self.inertia.solve(&self.root.tr_mul(&half))
     }
 
-    /// How the joints move of themselves when the end effector is moved and its rotation left free,
-    /// `M^-1 J' Lambda` of the position alone, `[rad/m]`: of all motions that do it the one of the
-    /// least kinetic energy.
+    /// Returns the joints' own motion when the end effector is moved and its rotation left free,
+    /// `M^-1 J' Lambda` of the position alone, `[rad/m]`. Of all such motions it has the least
+    /// kinetic energy.
     ///
-    /// Its transpose gives the force, `[N]`, with which torques press on a hand that holds the
-    /// end effector at a point.
+    /// Its transpose maps torques to the force on a hand that holds the end effector at a point,
+    /// `[N]`.
     pub(crate) fn yielding(&self) -> SMatrix<f64, 7, 3> {
         let mut yielding = self.root.fixed_columns::<3>(0) * self.blocks[0];
         self.mass
@@ -99,15 +99,15 @@ impl TaskSpace {
     }
 }
 
-/// The factorisation of a mobility, damped where some inertia exceeds the `greatest`.
+/// Returns the factorisation of a mobility, damped where some inertia exceeds the `greatest`.
 fn damped<const N: usize>(
     mobility: &SMatrix<f64, N, N>,
     greatest: &[f64; N],
 ) -> Cholesky<f64, Const<N>> {
     let factor = Cholesky::new(*mobility);
-    // The greatest against the inertia along each axis, all others held: above zero where the
-    // mobility is not singular. A pivot of the factorisation holds only the axes before it, and
-    // does not see what is lost along several at once.
+    // The greatest inertia against the inertia along each axis, with all others held: above zero
+    // where the mobility is not singular. A pivot of the factorisation holds only the axes before
+    // it. It does not detect a loss along several axes at once.
     let room = factor.as_ref().map_or(0.0, |factor| {
         let mut root = SMatrix::<f64, N, N>::identity();
         factor
@@ -150,8 +150,8 @@ mod tests {
         assert!((reaction - wrench).amax() < 1e-10, "{reaction}");
     }
 
-    /// The wrench of the constraint that keeps the end effector from accelerating, from the
-    /// equations of motion in full.
+    /// Computes the wrench of the constraint that keeps the end effector from accelerating from the
+    /// full equations of motion.
     #[test]
     fn the_reaction_holds_the_end_effector_still() {
         let (space, jacobian, mass) = space_at(&READY);
@@ -172,7 +172,7 @@ mod tests {
         assert!((space.rotational() - rotational).amax() < 1e-9);
     }
 
-    /// Through the straight elbow, where the arm cannot reach further.
+    /// Passes the straight elbow, where the arm cannot reach further.
     #[test]
     fn the_damping_sets_in_without_a_jump() {
         let tau = JointVector::from([5.0, -3.0, 2.0, 7.0, 1.0, -0.5, 0.3]);
@@ -192,8 +192,8 @@ mod tests {
         assert!(greatest < 1e3, "{greatest}");
     }
 
-    /// On a way between two postures of the joints, where no pivot of the factorisation tells that
-    /// a direction is lost.
+    /// Moves between two postures of the joints where no pivot of the factorisation shows the loss
+    /// of a direction.
     #[test]
     fn a_direction_that_is_lost_along_several_axes_is_damped() {
         let q = JointVector::from(OBLIQUE);

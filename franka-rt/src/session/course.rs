@@ -254,8 +254,9 @@ pub(super) fn end_of_brake(model: &Model, reference: &Reference, budget: &Budget
 }
 
 /// Returns the limits of one joint's plan. They are the budget's limits, or `robot`'s if these are
-/// narrower: a backend may allow less than the robot does. A moving joint may exceed the budget if
-/// it only has to stop, keeps another budget, or would stop too late for the end of its range.
+/// narrower: a backend may allow less than the robot does. A moving joint may exceed them in three
+/// cases: it only has to stop, its motion exceeds them already, or it would stop too late for the
+/// end of its range.
 pub(super) fn limits_of_joint(
     i: usize,
     robot: &JointLimits,

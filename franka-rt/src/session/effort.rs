@@ -158,7 +158,7 @@ impl Effort {
     }
 
     /// Returns the torques of one cycle, `[N m]`; `dynamics` is taken at the measured positions and
-    /// velocities. `met` is true if the goal has reacted to contact or another condition.
+    /// velocities. `met` is true if the goal has reacted to something that the arm has met.
     pub(super) fn step(
         &mut self,
         reference: &Reference,

@@ -1,5 +1,5 @@
-//! The generator of joint positions. A target that moves is at rest in a frame that moves with it;
-//! the plan is made there.
+//! The generator of joint positions. A moving target is at rest in a frame that moves with it, and
+//! the plan is made in that frame.
 
 use franka_model::limits::JointLimits;
 use franka_otg::{AxisLimits, Generator, Limits, PlanError, State};
@@ -9,11 +9,11 @@ use crate::session::reference::Reference;
 use crate::session::{Budget, Target, approach, budget};
 use crate::shaping::CYCLE;
 
-/// Time for which the motion of a joint's target has to stay inside its range, `[s]`: what it may
-/// move on by itself, and as long for the stop that follows.
+/// Time for which the motion of a joint's target must stay inside its range, `[s]`: the time of its
+/// extrapolation, and the same again for the stop that follows.
 const ROOM: f64 = 2e-3 * Target::MOVES_ON_MS as f64;
 
-/// Where the joints are to go: positions `[rad]`, and the velocities of these `[rad/s]`.
+/// Target of the joints: positions `[rad]`, and their velocities `[rad/s]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct MovingJoints {
     pub(super) q: [f64; 7],
@@ -23,18 +23,18 @@ pub(super) struct MovingJoints {
 /// Moves the joints to their target, one nominal millisecond per step.
 #[derive(Debug)]
 pub(super) struct JointGenerator {
-    /// In a frame that moves at `drift` and was at rest at zero when the plan was made.
+    /// Axes in a frame that moves at `drift` and was at rest at zero when the plan was made.
     axes: Generator<7>,
-    /// `[rad/s]`
+    /// Velocity of the frame, `[rad/s]`.
     drift: [f64; 7],
     /// Cycles since the plan was made.
     cycles: u32,
-    /// What the plan was made for, if it leads to a target that moves.
+    /// Target and budget of the plan, if the target moves.
     planned: Option<(MovingJoints, Budget)>,
 }
 
 impl JointGenerator {
-    /// Begins at `reference`, and heads for `target`, or for rest in the least time.
+    /// Begins at `reference`, and heads for `target`, or stops in the least time.
     ///
     /// # Errors
     /// As for [`Generator`]; goals are checked where they are accepted, so only a defect can cause
@@ -54,11 +54,11 @@ impl JointGenerator {
         })
     }
 
-    /// Heads for another target from `reference` on, or for rest. A motion of the target that goes
-    /// on as before leaves the plan as it is.
+    /// Heads for another target from `reference`, or stops. If the target's motion continues as
+    /// before, the plan stays as it is.
     ///
     /// # Errors
-    /// See [`Self::new`]; the motion in progress goes on.
+    /// See [`Self::new`]; the motion in progress continues.
     pub(super) fn head_for(
         &mut self,
         robot: &JointLimits,
@@ -80,7 +80,7 @@ impl JointGenerator {
         Ok(())
     }
 
-    /// True if the plan leads to the very motion of `target` already, but for rounding.
+    /// True if the plan already leads to the motion of `target`, except for rounding.
     fn is_followed(
         &self,
         target: &MovingJoints,
@@ -96,10 +96,10 @@ impl JointGenerator {
             && (0..7).all(near)
     }
 
-    /// Comes to rest within the limits of the plan, on its line if it moves on one.
+    /// Stops within the limits of the plan, on its line if it moves on one.
     ///
     /// # Errors
-    /// See [`Self::new`]; the motion in progress goes on.
+    /// See [`Self::new`]; the motion in progress continues.
     pub(super) fn halt(&mut self) -> Result<(), PlanError> {
         self.planned = None;
         if self.drift == [0.0; 7] {
@@ -119,10 +119,10 @@ impl JointGenerator {
         Ok(())
     }
 
-    /// Moves the joints to `q`, `[rad]`, with their velocities kept, and plans anew from there.
+    /// Moves the joints to `q`, `[rad]`, keeps their velocities, and plans anew from there.
     ///
     /// # Errors
-    /// See [`Self::new`]; the motion in progress goes on.
+    /// See [`Self::new`]; the motion in progress continues.
     pub(super) fn set_positions(&mut self, q: [f64; 7]) -> Result<(), PlanError> {
         let t = self.time();
         self.axes.set_state(State {
@@ -162,22 +162,22 @@ impl JointGenerator {
         self.axes.is_done()
     }
 
-    /// Where a plan that leads to rest ends, `[rad]`.
+    /// Returns the end of a plan that leads to rest, `[rad]`.
     #[cfg(test)]
     pub(super) fn end(&self) -> [f64; 7] {
         *self.axes.end()
     }
 
-    /// Time until the target is met, or until rest if there is none, `[s]`.
+    /// Returns the time until the target is met, or until rest without a target, `[s]`.
     pub(super) fn remaining(&self) -> f64 {
         self.axes.time_to_target()
     }
 }
 
-/// Distance of two places of the same motion, `[rad]`, that rounding explains.
+/// Distance of two places of the same motion that rounding explains, `[rad]`.
 const ROUNDING: f64 = 1e-9;
 
-/// What the generator begins with, in the frame that moves with the target.
+/// Start of the generator, in the frame that moves with the target.
 struct Plan {
     state: State<7>,
     limits: Limits<7>,

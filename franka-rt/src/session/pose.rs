@@ -1,15 +1,14 @@
 //! The generator of end-effector poses: three axes of translation, three of rotation, one
 //! synchronised plan.
 //!
-//! The orientation is generated in a chart around the orientation where the plan began,
-//! `R = exp(phi) R_anchor`, so that a rotation from rest turns about one fixed axis. Rotation
-//! vector and angular velocity are related by the left Jacobian of the rotation group,
-//! `omega = J(phi) phi'`; at `phi = 0` it is the identity and has no influence on the acceleration
-//! either. So a plan that begins in motion is seeded exactly by re-anchoring the chart where it
-//! begins.
+//! The orientation is generated in a chart around the orientation where the plan began, `R =
+//! exp(phi) R_anchor`, so that a rotation from rest turns about one fixed axis. Rotation vector and
+//! angular velocity are related by the left Jacobian of the rotation group, `omega = J(phi) phi'`.
+//! At `phi = 0` it is the identity and does not influence the acceleration either. So a plan that
+//! begins in motion starts exactly if the chart is anchored at its beginning.
 //!
-//! A target that moves is at rest in a frame that moves with it, and the plan is made there: what
-//! has arrived in that frame moves with the target.
+//! A moving target is at rest in a frame that moves with it, and the plan is made there. Once a
+//! pose has arrived in that frame, it moves with the target.
 
 use franka_model::Twist;
 use franka_model::limits::CartesianLimits;
@@ -29,11 +28,11 @@ pub(crate) struct PoseState {
     pub(crate) pose: Isometry3<f64>,
     /// Velocity of the frame's origin and angular velocity, base axes.
     pub(crate) twist: Twist,
-    /// Their derivatives.
+    /// Derivatives of the twist.
     pub(crate) acceleration: Twist,
 }
 
-/// A pose and its velocity, for the joints that follow it.
+/// A pose and its velocity, as the target of the joints.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MovingPose {
     /// `O_T_EE`, `[m]`.
@@ -43,7 +42,7 @@ pub(crate) struct MovingPose {
 }
 
 impl From<Isometry3<f64>> for MovingPose {
-    /// At rest.
+    /// Returns the pose at rest.
     fn from(pose: Isometry3<f64>) -> Self {
         let twist = Twist::zeros();
         Self { pose, twist }
@@ -51,7 +50,7 @@ impl From<Isometry3<f64>> for MovingPose {
 }
 
 impl MovingPose {
-    /// Where it is `t` seconds later.
+    /// Returns the pose `t` seconds later.
     fn after(self, t: f64) -> Self {
         if self.twist == Twist::zeros() {
             return self;
@@ -60,7 +59,7 @@ impl MovingPose {
         Self { pose, ..self }
     }
 
-    /// Whether `other` is the same: exactly, or but for rounding if it moves.
+    /// True if `other` is the same: exactly at rest, except for rounding in motion.
     fn is(&self, other: &Self) -> bool {
         let apart = || {
             let way = self.pose.translation.vector - other.pose.translation.vector;
@@ -72,11 +71,11 @@ impl MovingPose {
     }
 }
 
-/// Distance of two places of the same motion, in metres and radians, that rounding explains.
+/// Distance of two places of the same motion that rounding explains, in metres and radians.
 const ROUNDING: f64 = 1e-9;
 
 impl PoseState {
-    /// All but the acceleration.
+    /// Returns the state without its acceleration.
     pub(crate) fn moving(&self) -> MovingPose {
         MovingPose {
             pose: self.pose,
@@ -88,24 +87,24 @@ impl PoseState {
 /// Moves the pose to its target, one nominal millisecond per step.
 #[derive(Debug)]
 pub(crate) struct PoseGenerator {
-    /// In a frame that moves at `twist` and was the base frame when the plan was made.
+    /// Axes in a frame that moves at `twist` and was the base frame when the plan was made.
     axes: Generator<6>,
     anchor: UnitQuaternion<f64>,
     twist: Twist,
     /// Cycles since the plan was made.
     cycles: u32,
-    /// Where the plan leads; `None` once it leads to rest.
+    /// Target of the plan; `None` once the plan leads to rest.
     target: Option<MovingPose>,
     budget: Budget,
-    /// What the robot allows at most.
+    /// Limits of the robot.
     most: &'static CartesianLimits,
 }
 
 impl PoseGenerator {
     /// Begins at `start` and heads for `target` within `budget`. A start that moves faster than the
     /// budget allows is braked with more than the budget's acceleration, up to the robot's `most`.
-    /// A target that moves as fast as the budget allows, or faster, is followed with what the
-    /// budget has less a reserve.
+    /// For a target that moves at the budget's speed or faster, the pose follows at the budget's
+    /// speed minus a reserve.
     ///
     /// # Errors
     /// As for [`Generator`]; goals are checked where they are accepted, so only a defect can cause
@@ -128,10 +127,11 @@ impl PoseGenerator {
         })
     }
 
-    /// Heads for another target, at another pace. The same target and pace leave the plan as it is.
+    /// Heads for another target, at another pace. With the same target and pace the plan stays as
+    /// it is.
     ///
     /// # Errors
-    /// See [`Self::new`]; the motion in progress goes on.
+    /// See [`Self::new`]; the motion in progress continues.
     pub(crate) fn retarget(&mut self, target: MovingPose, budget: Budget) -> Result<(), PlanError> {
         let before = self.target.map(|before| before.after(self.time()));
         let same = before.is_some_and(|before| before.is(&target));
@@ -142,10 +142,10 @@ impl PoseGenerator {
         Ok(())
     }
 
-    /// Moves the pose to `pose` with its velocity kept, and plans anew from there.
+    /// Moves the pose to `pose`, keeps its velocity, and plans anew from there.
     ///
     /// # Errors
-    /// See [`Self::new`]; the motion in progress goes on.
+    /// See [`Self::new`]; the motion in progress continues.
     pub(crate) fn reanchor(&mut self, pose: Isometry3<f64>) -> Result<(), PlanError> {
         let start = PoseState {
             pose,
@@ -157,10 +157,10 @@ impl PoseGenerator {
         self.begin_again(&start, target.after(self.time()), self.budget)
     }
 
-    /// Goes on at `share` of its velocity, on its line if it moves on one.
+    /// Continues at `share` of its velocity, on its line if it moves on one.
     ///
     /// # Errors
-    /// See [`Self::new`]; the motion in progress goes on.
+    /// See [`Self::new`]; the motion in progress continues.
     pub(crate) fn slow_down(&mut self, share: f64) -> Result<(), PlanError> {
         if self.twist == Twist::zeros() {
             return self.axes.slow_down(share);
@@ -176,10 +176,10 @@ impl PoseGenerator {
         }
     }
 
-    /// Comes to rest within the budget, on its line if it moves on one.
+    /// Stops within the budget, on its line if it moves on one.
     ///
     /// # Errors
-    /// See [`Self::new`]; the motion in progress goes on.
+    /// See [`Self::new`]; the motion in progress continues.
     pub(crate) fn halt(&mut self) -> Result<(), PlanError> {
         if self.twist == Twist::zeros() {
             self.axes.brake();
@@ -237,7 +237,7 @@ impl PoseGenerator {
         within(self.turn() * omega) + self.twist
     }
 
-    /// How far the frame has turned since the plan was made.
+    /// Returns the turn of the frame since the plan was made.
     fn turn(&self) -> UnitQuaternion<f64> {
         rotation::exp(&(parts(&self.twist).1 * self.time()))
     }
@@ -247,7 +247,7 @@ impl PoseGenerator {
         f64::from(self.cycles) * CYCLE
     }
 
-    /// The pose now.
+    /// Returns the present pose.
     pub(crate) fn pose(&self) -> Isometry3<f64> {
         let position = &self.axes.state().position;
         let in_frame = Isometry3::from_parts(
@@ -260,12 +260,12 @@ impl PoseGenerator {
         moved(&in_frame, &self.twist, self.time())
     }
 
-    /// How fast the target may be approached.
+    /// Limits of the approach to the target.
     pub(crate) fn budget(&self) -> &Budget {
         &self.budget
     }
 
-    /// Time until the target is met, or until rest if there is none, `[s]`.
+    /// Returns the time until the target is met, or until rest without a target, `[s]`.
     pub(crate) fn remaining(&self) -> f64 {
         self.axes.time_to_target()
     }
@@ -275,7 +275,7 @@ impl PoseGenerator {
         self.axes.is_done()
     }
 
-    /// How the pose moves now.
+    /// Returns the present state of the pose.
     pub(crate) fn state(&self) -> PoseState {
         let State {
             position,
@@ -290,7 +290,7 @@ impl PoseGenerator {
         if self.twist != Twist::zeros() {
             let (_, omega) = parts(&twist);
             let (_, frame) = parts(&self.twist);
-            // That of the frame itself drops out of the second factor.
+            // The frame's own acceleration cancels in the second factor.
             alpha = self.turn() * alpha + frame.cross(&omega);
         }
         PoseState {
@@ -301,17 +301,17 @@ impl PoseGenerator {
     }
 }
 
-/// What the generator of the six axes begins with, in the frame that moves with the target.
+/// Start of the generator of the six axes, in the frame that moves with the target.
 struct Plan {
     state: State<6>,
     limits: Limits<6>,
     to: [f64; 6],
-    /// Of the frame.
+    /// Twist of the frame.
     twist: Twist,
 }
 
 impl Plan {
-    /// With the chart anchored at the orientation of `start`.
+    /// Creates the start with the chart anchored at the orientation of `start`.
     fn new(
         start: &PoseState,
         target: &MovingPose,
@@ -362,7 +362,7 @@ impl Plan {
     }
 }
 
-/// The linear and the angular part.
+/// Returns the linear and the angular part.
 fn parts(twist: &Twist) -> (Vector3<f64>, Vector3<f64>) {
     let axes = &(*twist).into();
     (translational(axes), rotational(axes))

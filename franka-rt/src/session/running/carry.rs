@@ -31,10 +31,10 @@ const RAMP: f64 = 0.025;
 /// Length that corresponds to a turn, `[m/rad]`.
 const LEVER: f64 = 0.2;
 
-/// Least tolerance of arms that hold one object. Their calibrations differ, so the object keeps
-/// them from reaching their targets all at once. In 48 motions of 12 pairs of realistic arms
-/// (`tests/lockstep/carrying`) the errors were at most 3.1 mm and 5.3 mrad. Their force caps were
-/// 20 N.
+/// Least tolerance of arms that hold one object. Their knowledge of themselves differs, so the
+/// object keeps them from reaching their targets all at once. In 48 motions of 12 pairs of
+/// realistic arms (`tests/lockstep/carrying`) the errors were at most 3.1 mm and 5.3 mrad. Their
+/// force caps were 20 N.
 const NEAR: Tolerance = Tolerance {
     translation: 5e-3,
     rotation: 10e-3,

@@ -39,7 +39,7 @@ impl RunningSession {
             if let Some(before) = before {
                 before.end(chunks, now);
             }
-            // A goal that had fallen silent was held until a newer chunk.
+            // A goal that fell silent was a held goal: it is held again until a newer goal.
             if self.is_given_up() {
                 self.standing = Standing::InForce;
                 self.goal.on_arrival = OnArrival::Hold;

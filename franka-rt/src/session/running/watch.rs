@@ -151,8 +151,8 @@ impl RunningSession {
         self.turn_to(back);
     }
 
-    /// Gives up the goal if the team has just stopped and the arm is not at rest. A goal that was
-    /// given up before keeps its own cause.
+    /// Gives up the goal if the team has just stopped and the arm is under way to a target. A goal
+    /// that was given up before keeps its own cause.
     pub(super) fn stop_with_team(&mut self, stop: Option<TeamStop>) {
         let over = self.stage.lets_go();
         if let Some(stop) = stop
