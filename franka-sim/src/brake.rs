@@ -1,10 +1,10 @@
-//! Coming to rest: the time-optimal stop of each joint under bounded acceleration and jerk.
+//! The time-optimal stop of each joint under bounded acceleration and jerk.
 
 use franka_model::JointVector;
 
 use crate::signal::JointSignal;
 
-/// A stop under way. Every joint stops in its own least time.
+/// A stop under way. Every joint stops in its own shortest time.
 #[derive(Debug, Clone)]
 pub(crate) struct Brake {
     axes: [AxisStop; 7],
@@ -33,7 +33,7 @@ impl Brake {
         }
     }
 
-    /// Where the joints are `dt` seconds later.
+    /// State of the joints `dt` seconds later.
     pub(crate) fn advance(&mut self, dt: f64) -> JointSignal {
         self.elapsed += dt;
         let mut signal = JointSignal::resting(JointVector::zeros());
@@ -49,7 +49,7 @@ impl Brake {
     }
 }
 
-/// Three phases of constant jerk: towards the peak deceleration, along it, back to none.
+/// Three phases of constant jerk: towards the peak deceleration, along it, and back to zero.
 #[derive(Debug, Clone, Copy)]
 struct AxisStop {
     position: f64,
@@ -61,13 +61,13 @@ struct AxisStop {
 
 impl AxisStop {
     fn plan(position: f64, velocity: f64, acceleration: f64, limit: f64, jerk: f64) -> Self {
-        // The velocity left over if the acceleration were taken off at once decides which way the
-        // peak points; mirrored so that it is positive and the peak therefore negative.
+        // The sign of the velocity that remains if the acceleration ended now decides the direction
+        // of the peak. Mirrored so that this velocity is positive and the peak therefore negative.
         let left = velocity + acceleration * acceleration.abs() / (2.0 * jerk);
         let side = if left < 0.0 { -1.0 } else { 1.0 };
         let (v, a) = (side * velocity, side * acceleration);
         let peak = (jerk * v + a * a / 2.0).max(0.0).sqrt().max(-a);
-        // An acceleration beyond the limit cannot be avoided, only left.
+        // An acceleration beyond the limit cannot be avoided; it can only be reduced.
         let peak = peak.min(limit.max(-a));
         let ramp = ((a + peak) / jerk).max(0.0);
         let release = peak / jerk;
@@ -131,7 +131,7 @@ mod tests {
                     assert!((now.0 - last.0).abs() <= 2.7e-3, "{v} {a}");
                     last = now;
                 }
-                // The analytic end of the last phase is rest, not only the snap to it.
+                // The analytic end of the last phase is at rest, not only the snap to it.
                 let (_, v_end, a_end) = stop.at(duration - 1e-9);
                 assert!(
                     v_end.abs() < 1e-6 && a_end.abs() < 1e-4,

@@ -18,48 +18,49 @@ use crate::arm::Arm;
 /// ready pose, as strict as a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Config {
-    /// Which arm, and with it which protocol version.
+    /// Kind of the robot, which also sets the protocol version.
     pub kind: RobotKind,
     /// Joint positions at the start, `[rad]`.
     pub q: JointVector,
-    /// What is mounted on the flange and known to the robot, as set up in Desk.
+    /// Tool on the flange that the robot knows, as set up in Desk.
     pub tool: Tool,
-    /// What the flange carries besides, undeclared; a client declares it with `SetLoad`.
+    /// Undeclared load on the flange besides the tool; a client declares it with `SetLoad`.
     pub payload: Load,
-    /// The arm: friction, drives, sensors, and how it differs from its model. `None` for the
-    /// [ideal](Arm::ideal) one of its kind, which no real arm is like; robots of
-    /// [`Sim::fr3`](crate::Sim::fr3) and [`Sim::fer`](crate::Sim::fer) name a realistic one.
+    /// The arm: friction, drives, sensors, and differences from its model. `None` for the
+    /// [ideal](Arm::ideal) arm of its kind, unlike any real arm. Robots of
+    /// [`Sim::fr3`](crate::Sim::fr3) and [`Sim::fer`](crate::Sim::fer) have a realistic arm.
     pub arm: Option<Arm>,
     /// Seed of all randomness: the same seed and the same input give the same states.
     pub seed: u64,
     /// `message_id` of the last cycle before the first: milliseconds since the robot started.
     pub clock: u64,
-    /// True if commands and motion outside the limits end in a reflex. Without, the arm does what
+    /// True if commands and motion outside the limits end in a reflex. If false, the arm does what
     /// it physically can.
     pub enforce_limits: bool,
-    /// Factor on the bounds of acceleration and jerk that commands have to keep in the joints:
-    /// above 1 for clients that are rougher than a robot allows. 1 by default.
+    /// Factor on the bounds of acceleration and jerk for commanded joints. Use a value above 1 for
+    /// clients that are rougher than a robot allows. Default 1.
     pub joint_discontinuity_scale: f64,
-    /// True if 20 lost commands in a row end in a reflex. Without, a cycle that has no command is
-    /// no cycle for the motion generator: it keeps its setpoint until the next command, so that
-    /// a client may be slower than 1 kHz or stand in a debugger.
+    /// True if 20 lost commands in a row end in a reflex. If false, the motion generator ignores a
+    /// cycle without a command and keeps its setpoint until the next command. A client may then be
+    /// slower than 1 kHz or stopped in a debugger.
     pub enforce_communication: bool,
-    /// The description that the robot serves instead of its own (protocol 10), whatever it says:
-    /// for clients' tests.
+    /// Description that the robot serves instead of the built-in one (protocol 10), without any
+    /// check: for clients' tests.
     pub urdf: Option<String>,
     /// The model library that the robot serves to every architecture and system (protocol 5). The
-    /// vendor's is not ours to give: without one the robot answers with an error.
+    /// vendor's library cannot be distributed here; without a library the robot answers with an
+    /// error.
     pub model_library: Option<Bytes>,
-    /// Virtual walls, as set up in Desk, by the number that a client asks for (protocol 5). The end
+    /// Virtual walls, as set up in Desk, by the number that a client requests (protocol 5). The end
     /// effector stays inside the cuboid of each active one, which reaches from the origin of its
     /// frame to its corner.
     pub walls: Vec<(i32, VirtualWall)>,
-    /// What is assumed where nothing is published.
+    /// Assumptions where nothing is published.
     pub unpublished: Unpublished,
 }
 
 impl Config {
-    /// The arm, ideal unless [`arm`](Self::arm) is another one.
+    /// The arm: [`arm`](Self::arm), or the ideal one.
     pub fn chosen_arm(&self) -> Arm {
         self.arm.clone().unwrap_or_else(|| Arm::ideal(self.kind))
     }
@@ -91,10 +92,10 @@ impl Default for Config {
 pub struct Tool {
     /// Pose of the nominal end effector in the flange frame, `F_T_NE`.
     pub f_t_ne: Matrix4<f64>,
-    /// Its mass, centre of mass and inertia: `m_ee`, `F_x_Cee`, `I_ee`.
+    /// Mass, centre of mass and inertia of the tool: `m_ee`, `F_x_Cee`, `I_ee`.
     pub load: Load,
-    /// True if it has the shape of the Franka Hand, which the robot keeps off itself. It knows the
-    /// shape of no other tool.
+    /// True if the tool has the shape of the Franka Hand, which the robot includes in its
+    /// self-collision check. It does not know the shape of any other tool.
     pub has_hand_shape: bool,
 }
 

@@ -1,5 +1,5 @@
-//! The connection of one client to a device: the handshake is answered; stream bytes in, requests
-//! out.
+//! The connection of one client to a device. It answers the handshake and turns stream bytes into
+//! requests.
 
 use std::collections::VecDeque;
 
@@ -8,20 +8,20 @@ use franka_proto::framing::{FrameError, Message};
 use franka_proto::server::{Event, Session};
 use franka_proto::{Command, CommandId, Protocol, ServiceCommand, Violation};
 
-/// Why a client is disconnected; `C` are the commands of its device.
+/// Reason why a client is disconnected; `C` are the commands of its device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SessionError<C: ServiceCommand = Command> {
-    /// It sent bytes that are not a message.
+    /// The client sent bytes that are not a message.
     #[error("{0}")]
     Frame(FrameError),
-    /// Its messages are not allowed.
+    /// The client's messages are not allowed.
     #[error("{0}")]
     Violation(Violation<C>),
-    /// It speaks another version, and is told so.
+    /// The client announced another version, and was notified.
     #[error("it speaks protocol {announced}, which is not understood here")]
     Incompatible {
-        /// The version that it announces.
+        /// The announced version.
         announced: u16,
     },
 }
@@ -38,10 +38,10 @@ pub struct Datagram<'a> {
 /// Cuts the first message off a stream: `None` while it is incomplete.
 pub(crate) type Framing = fn(&[u8]) -> Result<Option<Message<'_>>, FrameError>;
 
-/// A request, and the id to answer to.
+/// A request, and the id for its answer.
 pub(crate) type Received<P> = (CommandId, <P as Protocol>::Request);
 
-/// A client, from its first byte to its last.
+/// A client, from its first to its last byte.
 pub(crate) struct Connection<P: Protocol> {
     pub(crate) session: Session<P>,
     framing: Framing,
@@ -59,7 +59,7 @@ impl<P: Protocol> Connection<P> {
         }
     }
 
-    /// Where to send states; unknown before the handshake.
+    /// The UDP port for states; unknown before the handshake.
     pub(crate) fn udp_port(&self) -> Option<u16> {
         self.udp_port
     }
@@ -69,8 +69,8 @@ impl<P: Protocol> Connection<P> {
         self.received.extend_from_slice(bytes);
     }
 
-    /// The next request that has been received whole. Handshakes, and requests that no device
-    /// takes, are answered here, through `replies`.
+    /// Returns the next complete request. Handshakes, and requests that no device accepts, are
+    /// answered here, through `replies`.
     pub(crate) fn next_request(
         &mut self,
         replies: &mut VecDeque<Bytes>,

@@ -5,39 +5,41 @@ use nalgebra::{Isometry3, Vector3};
 
 use super::{StateGeometry, SystemLimits};
 
-/// How the arm's body differs from the controllers' model, and that model from the clients'. The
-/// robot's controllers and its state compute with [`state_geometry`](Self::state_geometry); the
-/// physics and what touches the arm have the errors on top.
+/// Differences between the arm's body and the controllers' model, and between that model and the
+/// clients'. The robot's controllers and its state compute with
+/// [`state_geometry`](Self::state_geometry); the physics and everything that touches the arm add
+/// the errors on top.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
-    /// Error of each link's mass as a part of it; its inertia is off by the same part. Source: a
-    /// third to a half of the torque residuals at rest depends on the pose; one averaged model
-    /// for all robots (franka_ros issue 404).
+    /// Error of each link's mass as a fraction; the error of its inertia is the same fraction.
+    /// Source: a third to a half of the torque residuals at rest depends on the pose; one averaged
+    /// model for all robots (franka_ros issue 404).
     pub mass_error: [f64; 7],
-    /// Error of each link's centre of mass in the link's axes, `[m]`. Source: as there.
+    /// Error of each link's centre of mass in the link's axes, `[m]`. Source: see
+    /// [`mass_error`](Self::mass_error).
     pub com_error: [Vector3<f64>; 7],
     /// Geometry of `O_T_EE`, of the controllers and of the served description.
     pub state_geometry: StateGeometry,
     /// Pose of each joint's true frame in the frame that `state_geometry` has there. `O_T_EE` does
     /// not show it. Source: MUKCa (TU Delft), five Pandas: 1 to 5 mrad, 0.2 to 1 mm.
     pub kinematic_error: [Isometry3<f64>; 7],
-    /// What the flange carries besides tool and payload, undeclared, `[kg]`; at the centre of mass
-    /// of the tool. Source: the sag at a session's start excludes 0.2 kg on two FERs.
+    /// Undeclared mass on the flange besides tool and payload, `[kg]`, at the centre of mass of the
+    /// tool. Source: the sag at a session's start excludes 0.2 kg on two FERs.
     pub undeclared_mass: f64,
     /// Error of the tool's centre of mass in the flange frame, `[m]`. An estimate.
     pub load_com_error: Vector3<f64>,
-    /// Gravitational acceleration in the base frame, `[m/s²]`: that of the physics alone. The
-    /// controllers' model has the arm upright, and so does the state (`O_ddP_O`); with another
-    /// value here they estimate a load that is not there. See [`tilted`](Self::tilted).
+    /// Gravitational acceleration in the base frame, `[m/s²]`. Only the physics uses it. The
+    /// controllers' model and the state (`O_ddP_O`) assume an upright arm; with another value here
+    /// they estimate a load that does not exist. See [`tilted`](Self::tilted).
     pub gravity_earth: Vector3<f64>,
     /// Mechanical end stops.
     pub stops: EndStops,
 }
 
 impl Body {
-    /// An arm that is as its model says and stands upright.
+    /// An upright arm without errors against its model.
     pub fn exact(kind: RobotKind) -> Self {
-        // The metal is the same under every system: the widest limits are inside the stops.
+        // The metal is the same under every system: the stops are outside the widest limits.
         let limits = SystemLimits::default().joints(kind);
         Self {
             mass_error: [0.0; 7],
@@ -51,8 +53,8 @@ impl Body {
         }
     }
 
-    /// On a base that is turned by this rotation vector against an upright one, `[rad]`. An
-    /// estimate of real mountings: 0.25 degrees about each horizontal axis.
+    /// Tilts the base by this rotation vector against an upright one, `[rad]`. An estimate of real
+    /// mountings: 0.25 degrees about each horizontal axis.
     #[must_use]
     pub fn tilted(mut self, rotation: Vector3<f64>) -> Self {
         let turn = nalgebra::UnitQuaternion::from_scaled_axis(rotation);
@@ -73,7 +75,7 @@ impl Body {
             .with_deviations(&self.kinematic_error)
     }
 
-    /// What the flange carries with this tool and this payload.
+    /// Load on the flange with this tool and this payload.
     pub(crate) fn load(&self, tool: &Load, payload: &Load) -> Load {
         let carried = Load {
             mass: tool.mass + self.undeclared_mass,
@@ -87,17 +89,17 @@ impl Body {
 /// A stiff spring and damper beyond each end of a joint's range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndStops {
-    /// Where the lower stops begin, `[rad]`.
+    /// Start of the lower stops, `[rad]`.
     pub lower: JointVector,
-    /// Where the upper stops begin, `[rad]`.
+    /// Start of the upper stops, `[rad]`.
     pub upper: JointVector,
-    /// Stiffness beyond them, `[N·m/rad]`.
+    /// Stiffness of the stops, `[N·m/rad]`.
     pub stiffness: f64,
-    /// Damping beyond them, `[N·m·s/rad]`.
+    /// Damping of the stops, `[N·m·s/rad]`.
     pub damping: f64,
 }
 
-/// How far the mechanical stops stand outside the limits that the interface enforces, `[rad]`.
+/// Distance of the mechanical stops outside the limits that the interface enforces, `[rad]`.
 const CLEARANCE: f64 = 0.04;
 
 impl EndStops {
@@ -122,8 +124,9 @@ impl EndStops {
         damping: 0.0,
     };
 
-    /// The stops' torques over a step of `dt` seconds that begins at `q`, `dq`, to be subtracted,
-    /// `[N·m]`, and by how much they grow with the velocity at its end, `[N·m·s/rad]`.
+    /// Returns the stops' torques over a step of `dt` seconds that begins at `q`, `dq`, to be
+    /// subtracted, `[N·m]`. The second value is their growth with the velocity at the end of the
+    /// step, `[N·m·s/rad]`.
     pub(crate) fn resistance(
         &self,
         q: &JointVector,
@@ -141,7 +144,7 @@ impl EndStops {
         (torque, slope)
     }
 
-    /// How deep joint `i` at `q` is in a stop: negative in the lower, positive in the upper one,
+    /// Depth of joint `i` at `q` in a stop: negative in the lower, positive in the upper one,
     /// `[rad]`.
     fn depth(&self, i: usize, q: f64) -> f64 {
         (q - self.upper[i]).max(0.0) + (q - self.lower[i]).min(0.0)

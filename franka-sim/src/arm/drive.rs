@@ -2,22 +2,22 @@
 
 use franka_model::{JointVector, RobotKind, joint_vector};
 
-/// What is between a commanded torque and the link.
+/// Everything between a commanded torque and the link.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
-    /// Rotor inertia felt at each joint while nothing controls its torque, `[kg·m²]`. Source: the
-    /// README of Drake's FR3 model, "given by Franka".
+    /// Rotor inertia at each joint without torque control, `[kg·m²]`. Source: the README of Drake's
+    /// FR3 model, "given by Franka".
     pub rotor_inertia: JointVector,
     /// Gain of the inner loop that makes the torque between gear and link follow the command. The
-    /// rotor inertia that is felt is `rotor_inertia / (1 + gain)`. Source: 2 makes of the wrist's
-    /// 0.2055 the 0.074 that franka-rs and `mujoco_menagerie` have.
+    /// apparent rotor inertia is `rotor_inertia / (1 + gain)`. Source: a gain of 2 turns the
+    /// wrist's 0.2055 into the 0.074 of franka-rs and `mujoco_menagerie`.
     pub torque_loop_gain: f64,
-    /// Time constant with which the torque follows a command of the torque interface, a
-    /// first-order lag, `[s]`. No source; a force bandwidth of 10 Hz and the gains that run on
-    /// real arms bound it.
+    /// Time constant with which the torque follows a command of the torque interface, a first-order
+    /// lag, `[s]`. No source. Bounded by a force bandwidth of 10 Hz and by the gains that run on
+    /// real arms.
     pub torque_lag: f64,
-    /// Cycles from a state to the cycle in which its answer acts, at least 1. Source: the
-    /// protocol for 1.
+    /// Cycles from a state to the cycle in which its answer acts, at least 1. The value 1 is from
+    /// the protocol.
     pub command_delay: u32,
     /// Elasticity between gear and link; `None` for rigid joints.
     pub elasticity: Option<Elasticity>,
@@ -31,8 +31,8 @@ pub struct Elasticity {
     /// `[N·m/rad]`. Source: `theta − q = tau_J / K` in published states: 14250 (joints 1 to 4) and
     /// 9000 (5 to 7) on two FERs, 7000 in the oldest sample of the documentation.
     pub stiffness: JointVector,
-    /// `[N·m·s/rad]`. A two-mass check: 30 and 5 keep libfranka's example gains about stable and
-    /// let a wrist damping of 30 to 40 ring, as reported.
+    /// `[N·m·s/rad]`. A two-mass check: with 30 and 5, libfranka's example gains are about stable.
+    /// A wrist damping of 30 to 40 rings, as users report.
     pub damping: JointVector,
 }
 
@@ -41,7 +41,7 @@ pub struct Elasticity {
 pub struct Ripple {
     /// `[N·m]`. Source: the log of Gaz et al., 0.1 to 0.25 (joints 1 to 4), 0.02 (5 and 6).
     pub amplitude: JointVector,
-    /// Periods per turn of the joint. Source: as there, 241 to 243 and 160.
+    /// Periods per turn of the joint. Source: the same log, 241 to 243 and 160.
     pub order: JointVector,
 }
 
@@ -51,7 +51,8 @@ pub struct Ripple {
 /// with which a torque client's damping above 0.24 N·m·s/rad is unstable at 1 kHz.
 const IDEAL_FR3: JointVector = joint_vector([0.195, 0.195, 0.195, 0.195, 0.074, 0.074, 0.074]);
 
-/// That of a Franka Emika Robot. Source: `mujoco_menagerie`, `franka_emika_panda`.
+/// Rotor inertia of a Franka Emika Robot under its torque loop, `[kg·m²]`. Source:
+/// `mujoco_menagerie`, `franka_emika_panda`.
 const IDEAL_FER: JointVector = joint_vector([0.1; 7]);
 
 impl Drive {
@@ -71,7 +72,7 @@ impl Drive {
         }
     }
 
-    /// Rotor inertia that is felt at the joints, `[kg·m²]`.
+    /// Apparent rotor inertia at the joints, `[kg·m²]`.
     pub fn felt_inertia(&self) -> JointVector {
         self.rotor_inertia / (1.0 + self.torque_loop_gain)
     }
@@ -89,7 +90,7 @@ impl Drive {
 }
 
 impl Ripple {
-    /// None.
+    /// No ripple.
     pub const NONE: Self = Self {
         amplitude: joint_vector([0.0; 7]),
         order: joint_vector([0.0; 7]),

@@ -17,9 +17,9 @@ use crate::noise::Random;
 
 /// The distributions that the parameters of an arm are drawn from.
 ///
-/// Units are SI. Where nothing else is said, a parameter is drawn for each joint (or link), and
-/// the numbers of its distribution are one for all or seven. With the feature `serde` a family is
-/// read from JSON, which has every field:
+/// Units are SI. Unless noted otherwise, a parameter is drawn for each joint (or link), and its
+/// distribution has one number for all or seven. With the feature `serde` a family can be read from
+/// JSON, which must have every field:
 ///
 #[cfg_attr(feature = "serde", doc = "```")]
 #[cfg_attr(not(feature = "serde"), doc = "```ignore")]
@@ -60,11 +60,11 @@ pub struct Family {
     pub rotor_inertia: Distribution,
     /// Drawn once.
     pub torque_loop_gain: Distribution,
-    /// `[s]`, drawn once.
+    /// Delay in whole cycles, at least 1, drawn once.
     pub torque_lag: Distribution,
     /// Whole cycles, at least 1, drawn once.
     pub command_delay: Distribution,
-    /// Of the joints; `null` for rigid ones.
+    /// Elasticity of the joints; `null` for rigid ones.
     // `Option::deserialize`, since a plain `Option` may be missing.
     #[cfg_attr(
         feature = "serde",
@@ -89,13 +89,13 @@ pub struct Family {
     pub velocity_noise_in_motion: Distribution,
     /// Standard deviation, `[rad]`.
     pub position_noise: Distribution,
-    /// As a part of the link's mass.
+    /// Error as a fraction of the link's mass.
     pub mass_error: Distribution,
-    /// Of each coordinate of a link's centre of mass, `[m]`.
+    /// Error of each coordinate of a link's centre of mass, `[m]`.
     pub com_error: Distribution,
-    /// Of each coordinate of the rotation vector of a joint's frame, `[rad]`.
+    /// Error of each coordinate of the rotation vector of a joint's frame, `[rad]`.
     pub axis_error: Distribution,
-    /// Of each coordinate of the position of a joint's frame, `[m]`.
+    /// Error of each coordinate of the position of a joint's frame, `[m]`.
     pub length_error: Distribution,
     /// Length of upper arm and forearm above the vendor's description, in the states of a Franka
     /// Research 3 and in the description that it serves, `[m]`, drawn once; 0.2 mm makes
@@ -109,14 +109,14 @@ pub struct Family {
     pub state_length_error: Distribution,
     /// `[kg]`, drawn once.
     pub undeclared_mass: Distribution,
-    /// Of each coordinate of the tool's centre of mass, `[m]`.
+    /// Error of each coordinate of the tool's centre of mass, `[m]`.
     pub load_com_error: Distribution,
-    /// About each horizontal axis, `[rad]`.
+    /// Tilt about each horizontal axis, `[rad]`.
     pub base_tilt: Distribution,
-    /// Stalls of the network interface per second, of a Franka Emika Robot, drawn once: a
-    /// Franka Research 3 has none. Their length is that of [`Stalls::FER`].
+    /// Stalls of the network interface per second, for a Franka Emika Robot, drawn once. A Franka
+    /// Research 3 has none. [`Stalls::FER`] has their lengths.
     pub stalls_per_second: Distribution,
-    /// Zero error of the motors' positions, of a Franka Research 3, `[rad]`: a Franka Emika Robot
+    /// Zero error of the motors' positions, for a Franka Research 3, `[rad]`. A Franka Emika Robot
     /// has none.
     pub motor_offset: Distribution,
     /// Joint limits of a Franka Research 3: `"5.9"` or `"before-5.9"`.
@@ -134,11 +134,11 @@ pub struct Elastic {
     pub damping: Distribution,
 }
 
-/// Why a text describes no family of arms.
+/// Reason why a text describes no family of arms.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FamilyError {
-    /// It is not JSON, or has other fields or types.
+    /// The text is not JSON, or has other fields or types.
     #[error("{0}")]
     Unreadable(String),
     /// A value that no arm has.
@@ -146,9 +146,9 @@ pub enum FamilyError {
     Invalid {
         /// The field's name.
         field: &'static str,
-        /// What it says.
+        /// The value in the text.
         got: String,
-        /// What it may say.
+        /// The permitted values.
         expected: String,
     },
 }
@@ -157,8 +157,8 @@ impl Family {
     /// Reads a family.
     ///
     /// # Errors
-    /// [`FamilyError`] if the text is not JSON, lacks a field or has one that is unknown, or if a
-    /// distribution has values that no arm has.
+    /// [`FamilyError`] if the text is not JSON, lacks a field or has an unknown one, or if a
+    /// distribution has impossible values.
     #[cfg(feature = "serde")]
     pub fn from_json(text: &str) -> Result<Self, FamilyError> {
         let mut reader = serde_json::Deserializer::from_str(text);
@@ -177,7 +177,7 @@ impl Family {
         serde_json::to_string_pretty(self).expect("plain data")
     }
 
-    /// Checks what every arm of the family would have.
+    /// Checks the parameters that every arm of the family would have.
     ///
     /// # Errors
     /// [`FamilyError::Invalid`] for the first field that is wrong.
@@ -262,12 +262,12 @@ impl Family {
         Ok(())
     }
 
-    /// The arm of this seed, or the central one.
+    /// Returns the arm of this seed, or the central arm.
     pub(super) fn arm(&self, kind: RobotKind, seed: Option<u64>) -> Arm {
         let mut draw = Draw {
             random: seed.map(Random::new),
         };
-        // The order of the draws is part of what a seed means.
+        // The same seed must give the same arm, so the order of the draws must not change.
         let scale = draw.once(&self.static_friction_scale);
         let static_torque = draw.joints(&self.static_friction) * scale;
         let friction = Friction {
@@ -391,7 +391,7 @@ impl Draw {
         self.number(distribution, 0)
     }
 
-    /// A whole number, each between the ends equally likely.
+    /// A whole number, with equal probability for each between the ends.
     fn whole(&mut self, distribution: &Distribution) -> u32 {
         let wide = match *distribution {
             Distribution::Uniform { low, high } if self.random.is_some() => Distribution::Uniform {

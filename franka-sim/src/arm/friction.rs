@@ -2,50 +2,50 @@
 
 use franka_model::{JointVector, RobotKind, joint_vector};
 
-/// Friction of the joints, as it opposes a torque command: what the control box compensates of a
-/// motor's friction is not in here.
+/// Friction of the joints, as it opposes a torque command. The part of a motor's friction that the
+/// control box compensates is not included.
 ///
-/// With a [`Bristle`], a joint sticks: see there. Without, the torque at velocity `v` is
-/// `kinetic · tanh(v / stribeck_speed) + viscous · v`, which has no stiction.
+/// With a [`Bristle`], a joint sticks. Without one, the torque at velocity `v` is `kinetic · tanh(v
+/// / stribeck_speed) + viscous · v`, which has no stiction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction {
-    /// Torque at which a joint at rest breaks away, `[N·m]`. Of no effect without a bristle.
+    /// Torque at which a joint at rest breaks away, `[N·m]`. It has no effect without a bristle.
     ///
     /// Sources: breakaway ramps of one Panda (franka_emulator, 2021) and of another (ETH PdZ
-    /// thesis, 2023-24): 0.83 to 1.6 on joints 1 to 5, 0.4 to 0.9 on 6 and 7.
+    /// thesis, 2023-24). They are 0.83 to 1.6 on joints 1 to 5, 0.4 to 0.9 on 6 and 7.
     pub static_torque: JointVector,
     /// Torque of a joint that slides fast, `[N·m]`. Source: ETH PdZ, static over kinetic 1 to 1.5.
     pub kinetic_torque: JointVector,
-    /// Speed at which friction has fallen from static to kinetic by 63 %: the fall is Gaussian,
-    /// `[rad/s]`. Source: ETH PdZ, joint 7, 0.049. Without a bristle: the speed at which it has
-    /// reached 76 %.
+    /// Speed at which friction has fallen from static to kinetic by 63 %, `[rad/s]`. The fall is
+    /// Gaussian. Without a bristle: the speed at which friction has reached 76 %. Source: ETH PdZ,
+    /// joint 7, 0.049.
     pub stribeck_speed: JointVector,
     /// Viscous friction, `[N·m·s/rad]`. Sources: ETH PdZ, 0 to 1.2; Gaz et al., 0 to 0.17.
     pub viscous: JointVector,
     /// Elasticity before a joint slides; `None` for smooth friction.
     pub bristle: Option<Bristle>,
-    /// Share of the friction that is on the link's side of the torque sensor, 0 to 1: this share
-    /// shows in `tau_J` and in the external estimate, the rest does not. Source: Gaz et al. 2019
-    /// at the sensor against the breakaway from the torque command, 0.25 to 0.5.
+    /// Share of the friction that is on the link's side of the torque sensor, 0 to 1. Only this
+    /// share appears in `tau_J` and in the external estimate. Source: Gaz et al. 2019, at the
+    /// sensor, against the breakaway from the torque command: 0.25 to 0.5.
     pub link_share: JointVector,
 }
 
 /// The contact of two rough surfaces as elastic bristles: the elasto-plastic LuGre model (Dupont,
 /// Hayward, Armstrong and Altpeter, "Single state elasto-plastic friction models", IEEE TAC 2002).
 ///
-/// Bristles yield only at the full torque of the Stribeck curve. Below it a joint does not move
-/// but by their deflection, whatever vibrates; the original LuGre model drifts under vibration.
+/// Bristles yield only at the full torque of the Stribeck curve. Below it a joint moves only by
+/// their deflection, even under vibration; the original LuGre model drifts under vibration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bristle {
-    /// `[N·m/rad]`. No measurement is published; 1000 to 4000 give the drift of 0.13 to 0.23 mm at
-    /// the start of a session that franka-rs measured on two FERs.
+    /// `[N·m/rad]`. No measurement is published. With 1000 to 4000, the drift at the start of a
+    /// session is 0.13 to 0.23 mm, as franka-rs measured on two FERs.
     pub stiffness: JointVector,
     /// `[N·m·s/rad]`. A choice that lets a stuck joint settle within milliseconds.
     pub damping: JointVector,
 }
 
 impl Friction {
-    /// None at all.
+    /// No friction.
     pub const NONE: Self = Self {
         static_torque: joint_vector([0.0; 7]),
         kinetic_torque: joint_vector([0.0; 7]),
@@ -55,7 +55,7 @@ impl Friction {
         link_share: joint_vector([0.0; 7]),
     };
 
-    /// Smooth friction on the motors' side, 95 % of which the control box has compensated.
+    /// Smooth friction on the motors' side, after the control box has compensated 95 % of it.
     ///
     /// Coulomb and viscous values: `mujoco_menagerie`, `franka_fr3` (Coulomb for both kinds) and
     /// `franka_emika_panda` (viscous, FER). Smoothing and compensation are choices of this

@@ -3,13 +3,12 @@
 use franka_model::RobotKind;
 use franka_model::limits::JointLimits;
 
-/// The joint limits that a Franka Research 3 enforces and serves: its system has them, not its
-/// metal. A Franka Emika Robot has those of its kind in either case.
+/// The joint limits that a Franka Research 3 enforces and serves. They belong to its system, not to
+/// its metal. A Franka Emika Robot has the limits of its kind in either case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SystemLimits {
-    /// Systems from 5.9 on. Their hard range is an assumption: see
-    /// [`JointLimits::fr3_system_5_9`].
+    /// Systems from 5.9. Their hard range is an assumption: see [`JointLimits::fr3_system_5_9`].
     #[default]
     #[cfg_attr(feature = "serde", serde(rename = "5.9"))]
     From5_9,

@@ -1,4 +1,4 @@
-//! One simulated arm: how it differs from its model and from an ideal drive.
+//! One simulated arm, and its differences from its model and from an ideal drive.
 //!
 //! ```text
 //! Family (distributions, JSON) ── sample, central ──> Arm ──> drive train, plant, sensors
@@ -11,7 +11,7 @@
 //! | `sensors` | [`Sensors`]: offset, noise and quanta |
 //! | `body` | [`Body`]: errors of links, axes and load, base tilt, end stops |
 //! | `limits` | [`SystemLimits`]: joint limits by the robot's system |
-//! | `state_geometry` | [`StateGeometry`]: what the robot computes its own poses with |
+//! | `state_geometry` | [`StateGeometry`]: the robot's geometry of its own poses |
 //! | `family` | [`Family`]: distributions of all of these, read from JSON |
 //!
 //! The documentation of each field names the source of its figures.
@@ -43,21 +43,21 @@ pub struct Arm {
     pub friction: Friction,
     /// Rotors, gears and torque loops.
     pub drive: Drive,
-    /// What the sensors read.
+    /// Errors of the sensors.
     pub sensors: Sensors,
-    /// Links, axes, load and mounting as they are.
+    /// True links, axes, load and mounting.
     pub body: Body,
     /// Joint limits that the robot enforces and serves.
     pub limits: SystemLimits,
-    /// Stalls of the network interface that sends the states; `None` for an interface without.
-    /// [`Sim`](crate::Sim) has them between its sockets unless it is given a network.
+    /// Stalls of the network interface that sends the states; `None` for an interface without
+    /// stalls. [`Sim`](crate::Sim) applies them between its sockets unless it has a network.
     pub stalls: Option<Stalls>,
 }
 
 impl Arm {
-    /// An arm that is as its model says: rigid joints, a perfect torque loop, perfect sensors, and
-    /// a smooth friction of a twentieth of the published one, which lets it creep to its target. Its
-    /// lengths are those of the vendor's description, also as a Franka Research 3.
+    /// An arm that matches its model: rigid joints, a perfect torque loop and perfect sensors. Its
+    /// friction is smooth, a twentieth of the published friction, so that it creeps to its target.
+    /// Its lengths match the vendor's description, also as a Franka Research 3.
     ///
     /// For tests that need exactness. No real arm is like this.
     pub fn ideal(kind: RobotKind) -> Self {
@@ -86,8 +86,8 @@ impl Arm {
         Self::central(kind, &Family::bad())
     }
 
-    /// The controllers' model of this arm: that of its kind, with the geometry of its states and
-    /// the limits of its system.
+    /// The controllers' model of this arm: the model of its kind, with the geometry of its states
+    /// and the limits of its system.
     pub(crate) fn model(&self, kind: RobotKind) -> Model {
         let limits = *self.limits.joints(kind);
         let model = self.body.state_geometry.model(kind);

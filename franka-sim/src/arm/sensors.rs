@@ -1,13 +1,14 @@
-//! What the sensors read.
+//! Errors of the sensors.
 
 use franka_model::{JointVector, joint_vector};
 
-/// Errors of the sensors. Noise is white from one millisecond to the next; standard deviations.
+/// Errors of the sensors. Noise is white from one millisecond to the next and given as its standard
+/// deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensors {
-    /// Zero error of the torque sensors, `[N·m]`: `tau_J` is higher by this, and the torque that
-    /// the torque loop gives is lower by as much. Sources: `tau_J` at rest less the model's
-    /// gravity in published states of two FERs and one FR3; MTI TU Berlin, five Pandas.
+    /// Zero error of the torque sensors, `[N·m]`: `tau_J` is higher by this value, and the torque
+    /// of the torque loop is lower by it. Sources: `tau_J` at rest less the model's gravity in
+    /// published states of two FERs and one FR3; MTI TU Berlin, five Pandas.
     pub torque_offset: JointVector,
     /// Steps of `tau_J`, `[N·m]`; 0 for none. Source: states in documentation and issues, 0.025
     /// (joints 1 to 4) and 0.006 (5 to 7).
@@ -15,19 +16,20 @@ pub struct Sensors {
     /// Noise of `tau_J` at rest, `[N·m]`. Source: a recorded Franka Research 3, 0.007 to 0.027 with
     /// the steps.
     pub torque_noise_at_rest: JointVector,
-    /// Noise of `tau_J` at 1 rad/s and above, `[N·m]`; between, it grows with the speed. Source:
+    /// Noise of `tau_J` at 1 rad/s and above, `[N·m]`; in between, it grows with the speed. Source:
     /// the log of Gaz et al., in motion, 0.03 to 0.08.
     pub torque_noise_in_motion: JointVector,
     /// Noise of `dq` at rest, `[rad/s]`. Sources: published states, 5e-4; a recorded Franka
     /// Research 3, 7e-4 to 9e-4.
     pub velocity_noise_at_rest: JointVector,
-    /// Noise of `dq` at 1 rad/s and above, `[rad/s]`; between, it grows with the speed. Source: the
-    /// log of Gaz et al., 0.002 to 0.01.
+    /// Noise of `dq` at 1 rad/s and above, `[rad/s]`; in between, it grows with the speed. Source:
+    /// the log of Gaz et al., 0.002 to 0.01.
     pub velocity_noise_in_motion: JointVector,
     /// Noise of `q`, `[rad]`. Source: a recorded Franka Research 3, 1.5e-6 to 2.2e-6.
     pub position_noise: JointVector,
-    /// Zero error of the motors' positions: `theta` is higher by this, `[rad]`. Source: a Franka
-    /// Research 3, -3.8e-3 to 2.6e-3, others in each session; a Franka Emika Robot has none.
+    /// Zero error of the motors' positions: `theta` is higher by this value, `[rad]`. Source: a
+    /// Franka Research 3, -3.8e-3 to 2.6e-3, different in each session. A Franka Emika Robot has
+    /// none.
     pub motor_offset: JointVector,
 }
 
@@ -44,8 +46,8 @@ impl Sensors {
         motor_offset: joint_vector([0.0; 7]),
     };
 
-    /// Sensors with a noise that a controller has to cope with. The magnitudes are choices of this
-    /// simulator, not measurements.
+    /// Sensors whose noise a controller must handle. The magnitudes are choices of this simulator,
+    /// not measurements.
     pub const NOISY: Self = Self {
         torque_noise_at_rest: joint_vector([0.05; 7]),
         torque_noise_in_motion: joint_vector([0.05; 7]),
@@ -69,7 +71,7 @@ impl Sensors {
         between(&self.torque_noise_at_rest, &self.torque_noise_in_motion, dq)
     }
 
-    /// A torque in the sensors' steps, `[N·m]`.
+    /// Rounds a torque to the sensors' steps, `[N·m]`.
     pub(crate) fn quantised(&self, torque: &JointVector) -> JointVector {
         torque.zip_map(&self.torque_quantum, |torque, quantum| match quantum {
             0.0 => torque,

@@ -1,4 +1,4 @@
-//! Geometry that the robot computes its own poses with.
+//! The robot's geometry of its own poses.
 
 use franka_model::geometry::Lengths;
 use franka_model::{Model, RobotKind};
@@ -6,8 +6,8 @@ use nalgebra::{Isometry3, Vector3};
 
 use crate::noise::Random;
 
-/// Kinematics of the robot's controllers: of `O_T_EE` and all other poses in its states, and of its
-/// inverse kinematics. The served description has the lengths, not the deviations. The model of a
+/// Kinematics of the robot's controllers. `O_T_EE`, all other poses in its states and its inverse
+/// kinematics use it. The served description has the lengths, not the deviations. The model of a
 /// client may differ from it, and so may the links: their
 /// [`kinematic_error`](super::Body::kinematic_error) comes on top.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,16 +19,16 @@ pub struct StateGeometry {
 }
 
 impl StateGeometry {
-    /// Geometry of the vendor's description: of Franka Emika Robots, and of
-    /// [ideal](super::Arm::ideal) arms.
+    /// Geometry of the vendor's description. Franka Emika Robots and [ideal](super::Arm::ideal)
+    /// arms have it.
     pub const DESCRIBED: Self = Self::with(Lengths::DESCRIBED);
 
-    /// Geometry of the Franka Research 3 whose states were recorded, [`Lengths::RECORDED_FR3`]: of
-    /// all arms of this kind in the [families](super::Family) that come with the simulator.
+    /// Geometry of the Franka Research 3 whose states were recorded, [`Lengths::RECORDED_FR3`]. All
+    /// arms of this kind in the [families](super::Family) of the simulator have it.
     pub const RECORDED_FR3: Self = Self::with(Lengths::RECORDED_FR3);
 
-    /// Joint frames that are off the described ones by 1 mm and 3 mrad altogether (root of the sum
-    /// of squares), equally for each joint, in directions drawn from `seed`. No client knows them.
+    /// Joint frames that are off the described ones by 1 mm and 3 mrad in total (root of the sum of
+    /// squares), equally for each joint, in directions drawn from `seed`. No client knows them.
     pub fn random(seed: u64) -> Self {
         let mut random = Random::new(seed);
         let mut along = |size: f64| {

@@ -13,19 +13,19 @@ use crate::arm::SystemLimits;
 /// Simulates a Franka Research 3 (protocol 10) or a Franka Emika Robot (protocol 5) until it is
 /// interrupted.
 ///
-/// Point a client at the address that is printed once the robot is ready, for example
-/// libfranka's `franka::Robot robot("127.0.0.1")` or pylibfranka's
-/// `Robot("127.0.0.1", RealtimeConfig.kIgnore)`. There is one client at a time; the robot stays as
-/// it is between clients.
+/// Point a client at the address that is printed once the robot is ready, for example libfranka's
+/// `franka::Robot robot("127.0.0.1")` or pylibfranka's `Robot("127.0.0.1",
+/// RealtimeConfig.kIgnore)`. The robot accepts one client at a time and keeps its state between
+/// clients.
 ///
-/// The robot is as strict as a real one: a command beyond a limit, a step in velocity or torque, a
-/// collision and 20 missing commands in a row end a motion in a reflex, which the client clears
-/// with an automatic error recovery. With --permissive it lets commands pass, so that a program can
-/// be brought to run before it is made safe.
+/// The robot is as strict as a real one. A command beyond a limit, a step in velocity or torque, a
+/// collision, or 20 missing commands in a row end a motion in a reflex. The client clears it with
+/// an automatic error recovery. With --permissive the robot accepts such commands, so that a
+/// program can be made to run before it is made safe.
 #[derive(Debug, Parser)]
 #[command(version, after_help = EXAMPLES)]
 pub struct Arguments {
-    /// Which robot, and with it which protocol version.
+    /// Kind of the robot, which also sets the protocol version.
     #[arg(long, value_enum, default_value_t = Kind::Fr3)]
     pub robot: Kind,
 
@@ -34,7 +34,7 @@ pub struct Arguments {
     #[arg(long, default_value = "127.0.0.1")]
     pub bind: IpAddr,
 
-    /// TCP port to listen on; 0 takes a free one. Other clients than ours only know 1337.
+    /// TCP port to listen on; 0 takes a free one. Other clients than ours only use 1337.
     #[arg(long, default_value_t = 1337)]
     pub port: u16,
 
@@ -42,9 +42,9 @@ pub struct Arguments {
     #[arg(long, value_name = "Q1,...,Q7", value_parser = numbers::<7>, allow_hyphen_values = true)]
     pub q: Option<[f64; 7]>,
 
-    /// Serves neither a Franka Hand nor a vacuum gripper. Without this, they listen on the two
-    /// ports that follow the robot's, as on a robot: 1338 and 1339. On port 0 all three are free
-    /// ones.
+    /// Serves neither a Franka Hand nor a vacuum gripper. Without this option they listen on the
+    /// two ports after the robot's, as on a robot: 1338 and 1339. On port 0 all three ports are
+    /// free ones.
     #[arg(long)]
     pub no_gripper: bool,
 
@@ -57,8 +57,7 @@ pub struct Arguments {
     #[arg(long)]
     pub hand: bool,
 
-    /// A load on the flange that the robot does not know of until a client declares it, in
-    /// kilograms.
+    /// A load on the flange, unknown to the robot until a client declares it, in kilograms.
     #[arg(long, value_name = "KG", value_parser = mass, default_value = "0", allow_hyphen_values = true)]
     pub payload: f64,
 
@@ -66,13 +65,13 @@ pub struct Arguments {
     #[arg(long, value_name = "X,Y,Z", value_parser = numbers::<3>, default_value = "0,0,0.05", allow_hyphen_values = true)]
     pub payload_com: [f64; 3],
 
-    /// Which arm: the middle of one of the families `nominal`, `realistic` and `bad`, or of the
-    /// family in a JSON file; or `ideal`, without stiction, delay and noise, as no real arm is. The
-    /// book (docs/src/real-arm.md) has the parameters.
+    /// The arm: the middle of one of the families `nominal`, `realistic` and `bad`, or of the
+    /// family in a JSON file; or `ideal`, without stiction, delay and noise, unlike any real arm.
+    /// The book (docs/src/real-arm.md) has the parameters.
     #[arg(long, value_name = "ARM|FILE.json", default_value = "realistic")]
     pub arm: String,
 
-    /// Draws an arm from the family by this seed, instead of its middle.
+    /// Draws an arm from the family by this seed, instead of using its middle.
     #[arg(long, value_name = "N")]
     pub arm_seed: Option<u64>,
 
@@ -90,23 +89,23 @@ pub struct Arguments {
     #[arg(long)]
     pub noise: bool,
 
-    /// What moves: the arm alone, or the arm in MuJoCo, on a table or among what --scene names,
-    /// and fingers that grasp if there is a --hand.
+    /// The physics: the arm alone, or the arm in MuJoCo, on a table or in the surroundings of
+    /// --scene, with fingers that grasp if --hand is set.
     #[arg(long, value_enum, default_value_t = PlantKind::Rigid)]
     pub plant: PlantKind,
 
-    /// An MJCF file with what is around the robot, in its base frame, instead of the table. Bodies
-    /// with a free joint are objects to push and to grasp.
+    /// An MJCF file with the surroundings of the robot, in its base frame, instead of the table.
+    /// Bodies with a free joint are objects to push and to grasp.
     #[arg(long, value_name = "FILE.xml")]
     pub scene: Option<PathBuf>,
 
-    /// A file with the model library that the robot serves (FER only): the vendor's, which is not
-    /// ours to give, for clients that insist on one. Without, they are told that there is none.
+    /// A file with the model library that the robot serves (FER only), for clients that require
+    /// one. The library is the vendor's and cannot be distributed here. Without this option the
+    /// robot answers that it has no library.
     #[arg(long, value_name = "FILE")]
     pub model_library: Option<PathBuf>,
 
-    /// What happens to states and commands on their way, besides what the network between the hosts
-    /// does.
+    /// Conditions for states and commands in transit, in addition to the network between the hosts.
     #[arg(long, value_enum, default_value_t = NetworkKind::Perfect)]
     pub network: NetworkKind,
 
@@ -120,44 +119,42 @@ pub struct Arguments {
           num_args = 0..=1, action = ArgAction::Set)]
     pub enforce_motion_limits: bool,
 
-    /// Factor on the bounds of acceleration and jerk that commands have to keep in the joints.
-    /// Above 1 for clients that are rougher than a robot allows: it would stop with a discontinuity
-    /// error.
+    /// Factor on the bounds of acceleration and jerk for commanded joints. Use a value above 1 for
+    /// clients that are rougher than a robot allows; a robot would stop with a discontinuity error.
     #[arg(long, value_name = "FACTOR", value_parser = factor, default_value = "1")]
     pub joint_discontinuity_scale: f64,
 
-    /// True if 20 commands missing in a row end in a reflex, as on a robot. With `false` the robot
+    /// True if 20 missing commands in a row end in a reflex, as on a robot. With `false` the robot
     /// waits for them: for slow or debugged clients.
     #[arg(long, value_name = "BOOL", default_value_t = true, default_missing_value = "true",
           num_args = 0..=1, action = ArgAction::Set)]
     pub enforce_comm_constraints: bool,
 
-    /// Lets pass what a robot stops for: neither limits nor missing commands are enforced.
+    /// Enforces neither limits nor missing commands, so that the robot does not stop for them.
     #[arg(long)]
     pub permissive: bool,
 
-    /// Asks for a real-time priority (SCHED_FIFO) of the thread that keeps the millisecond, which
-    /// takes the right to one. Without the right, the simulator says so and goes on without.
+    /// Requests a real-time priority (SCHED_FIFO) for the thread that keeps the millisecond, which
+    /// requires the right to one. Without the right, the simulator prints a warning and continues.
     #[arg(long)]
     pub realtime: bool,
 
-    /// Keeps to the clock on the wall even where the host holds the simulator up: the states that
-    /// are due then come in a burst, and answers that they leave no time for count as lost.
-    /// Without, the robot's clock slips by what the host is late. How often that was is logged at
-    /// the end.
+    /// Follows the wall clock even if the host delays the simulator. States that are due then come
+    /// in a burst, and answers that come too late for them count as lost. Without this option the
+    /// robot's clock slips by the host's delay. The log reports at the end how often that happened.
     #[arg(long)]
     pub strict_clock: bool,
 
-    /// Waits for commands that come late, each for so many seconds at most, while the robot's clock
-    /// stands still: for clients on a busy machine.
+    /// Waits for late commands, each for this many seconds at most, while the robot's clock is
+    /// stopped: for clients on a busy machine.
     #[arg(long, value_name = "SECONDS", value_parser = patience, num_args = 0..=1,
           require_equals = true, default_missing_value = "0.5",
           conflicts_with_all = ["strict_clock", "virtual_time"])]
     pub wait_for_commands: Option<Duration>,
 
-    /// Lets the robot's time pass as fast as the client answers, not by the clock on the wall: in a
-    /// motion the next millisecond begins when the answer to the last state is there, or counts as
-    /// missing after so many seconds. For tests, and for clients slower than a robot allows.
+    /// Advances the robot's time as fast as the client answers, not by the wall clock. In a motion
+    /// the next millisecond begins when the answer to the last state arrives, or counts as missing
+    /// after this many seconds. For tests, and for clients slower than a robot allows.
     #[arg(long, value_name = "SECONDS", value_parser = patience, num_args = 0..=1,
           require_equals = true, default_missing_value = "0.5",
           conflicts_with_all = ["realtime", "strict_clock"])]
@@ -173,7 +170,7 @@ pub enum Kind {
     Fer,
 }
 
-/// Systems with joint limits of their own.
+/// Systems whose joint limits differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum LimitsKind {
     /// From 5.9 on: wider ranges, less speed near their ends
@@ -198,7 +195,7 @@ pub enum GeometryKind {
 /// The plants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum PlantKind {
-    /// Rigid links that nothing is around
+    /// Rigid links without surroundings
     Rigid,
     /// MuJoCo: contact, objects, fingers
     Mujoco,
@@ -213,7 +210,7 @@ pub enum NetworkKind {
     FerStalls,
     /// One packet in a hundred is lost, in either direction
     Lossy,
-    /// The same number is lost, eight in a row in the mean
+    /// The same loss rate, eight in a row on average
     Bursts,
 }
 
@@ -266,8 +263,8 @@ mod tests {
     #[test]
     fn what_makes_no_robot_is_refused() {
         let patience = |arguments| parse(arguments).ok().and_then(|parsed| parsed.virtual_time);
-        // libfranka gives a connection up when no state comes for a second, which a client that
-        // skips an answer must not run into.
+        // libfranka drops a connection when no state comes for a second; a client that skips an
+        // answer must not run into that.
         let default = patience(&["--virtual-time"]);
         assert_eq!(default, Some(Duration::from_millis(500)));
         let short = patience(&["--virtual-time=0.1"]);

@@ -22,11 +22,12 @@ pub use values::numbers;
 use crate::Running;
 
 impl Arguments {
-    /// Simulates until SIGINT or SIGTERM comes. Once the robot is ready, `ready` is called with it
-    /// and a line for each address that it listens on.
+    /// Simulates until SIGINT or SIGTERM. Once the robot is ready, calls `ready` with it and a line
+    /// for each address that it listens on.
     ///
     /// # Errors
-    /// Options that make no robot, an address that is taken, or a simulation that has ended.
+    /// Options that describe no valid robot, an address that is taken, or a simulation that has
+    /// ended.
     pub async fn run(
         &self,
         ready: impl AsyncFnOnce(&Arc<Running>, &str) -> io::Result<()>,

@@ -90,10 +90,10 @@ impl Arguments {
         })
     }
 
-    /// Returns the robot that the options describe, not started yet.
+    /// Returns the robot that the options describe, before its start.
     ///
     /// # Errors
-    /// A text that says which option makes no robot, and why.
+    /// A text that names the option that is invalid, and the reason.
     pub fn sim(&self) -> Result<Sim, String> {
         let mut config = self.config()?;
         config.model_library = self.library()?;
@@ -121,7 +121,7 @@ impl Arguments {
             ),
             None => (Fingers::new(), Suction::new()),
         };
-        // Port 0 takes a free one; beyond the last port there are only those.
+        // Port 0 takes a free one; beyond the last port only free ones remain.
         let beside = |n| match self.port {
             0 => 0,
             port => port.checked_add(n).unwrap_or(0),
@@ -197,10 +197,10 @@ impl NetworkKind {
     }
 }
 
-/// The longest model library: what a message carries.
+/// The longest model library: the capacity of a message.
 const LIBRARY_MAX: usize = franka_proto::framing::MAX_MESSAGE_SIZE - 64;
 
-/// Joint positions, where the joints can be.
+/// Returns the joint positions if the joints can reach them.
 fn possible(limits: &JointLimits, q: JointVector) -> Result<JointVector, String> {
     match limits.outside_hard(&q) {
         None => Ok(q),

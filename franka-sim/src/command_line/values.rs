@@ -4,10 +4,10 @@ use std::time::Duration;
 
 use crate::Fingers;
 
-/// Returns `N` finite numbers from text that has commas between them.
+/// Returns `N` finite numbers from comma-separated text.
 ///
 /// # Errors
-/// A text that says what is wrong with it.
+/// A text that reports the error.
 pub fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let values = text
         .split(',')
@@ -32,7 +32,7 @@ pub(crate) fn object_width(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A factor that leaves something.
+/// A positive factor.
 pub(crate) fn factor(text: &str) -> Result<f64, String> {
     let [factor] = numbers::<1>(text)?;
     if factor <= 0.0 {
@@ -41,7 +41,7 @@ pub(crate) fn factor(text: &str) -> Result<f64, String> {
     Ok(factor)
 }
 
-/// A mass that a load can have.
+/// A possible mass of a load.
 pub(crate) fn mass(text: &str) -> Result<f64, String> {
     let [mass] = numbers::<1>(text)?;
     if mass < 0.0 {
@@ -50,7 +50,7 @@ pub(crate) fn mass(text: &str) -> Result<f64, String> {
     Ok(mass)
 }
 
-/// Seconds for which a robot may wait.
+/// Time in seconds that a robot may wait.
 pub(crate) fn patience(text: &str) -> Result<Duration, String> {
     let [seconds] = numbers::<1>(text)?;
     match Duration::try_from_secs_f64(seconds) {

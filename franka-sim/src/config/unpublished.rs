@@ -1,29 +1,30 @@
-//! What the vendor has not published about the robot, and what is assumed here.
+//! Assumptions about the robot where the vendor has published nothing.
 
 use franka_model::{JointVector, Twist, joint_vector};
 use franka_proto::CollisionBehavior;
 
-/// Answers to what is not published about the robot. Each is an assumption and none has been
-/// measured; a client that depends on one of them may be tested against others.
+/// Assumptions about the robot where nothing is published. None has been measured; a client that
+/// depends on one of them may be tested against others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unpublished {
-    /// How far the first command of a motion may be from what the state publishes as commanded.
+    /// Largest distance of the first command of a motion from the values that the state publishes
+    /// as commanded.
     pub start: StartTolerance,
     /// Smallest singular value of the end effector's Jacobian at which a Cartesian motion may not
-    /// start. Default 0.05: a pose that a robot refuses has 0.011, ordinary ones 0.14 to 0.23.
+    /// start. Default 0.05. A pose that a robot refuses has 0.011; ordinary poses have 0.14 to
+    /// 0.23.
     pub singular: f64,
     /// Smallest singular value of the stiffness frame's Jacobian up to which the estimated wrench
-    /// is zero. Default 0.1: of two recorded Franka Research 3 one has no wrench at 0.076, in three
-    /// states, and one has it at 0.159; what is between is not known.
+    /// is zero. Default 0.1. Of two recorded Franka Research 3, one has no wrench at 0.076, in
+    /// three states, and the other has one at 0.159. The range between is unknown.
     pub wrench_singular: f64,
-    /// How the orientation goes on in a cycle whose command is lost.
+    /// Extrapolation of the orientation in a cycle whose command is lost.
     pub extrapolation: Extrapolation,
-    /// Cutoff of a first-order low-pass that the robot itself applies to commands, `[Hz]`; `None`
-    /// for commands taken as they come, the default. Protocol 5 begins with this and has a request
-    /// to change it.
+    /// Cutoff of a first-order low-pass that the robot itself applies to commands, `[Hz]`. Default
+    /// `None`: no filter. Protocol 5 begins with this and has a request to change it.
     pub command_filter: Option<f64>,
-    /// What `control_command_success_rate` divides by while a motion is younger than its window of
-    /// 100 cycles.
+    /// Divisor of `control_command_success_rate` while a motion is younger than its window of 100
+    /// cycles.
     pub first_cycles: FirstCycles,
     /// True if an accepted `Move` clears `reflex_reason`. Default yes.
     pub move_clears_reason: bool,
@@ -31,26 +32,27 @@ pub struct Unpublished {
     /// `elbow_c` and their derivatives under joint setpoints, `tau_J_d` under the robot's own
     /// controllers. In motion nothing was recorded. Default yes.
     pub zero_fields: bool,
-    /// How many errors a cycle that breaks several bounds latches.
+    /// Number of errors that a cycle latches if it breaks several bounds.
     pub error_bits: ErrorBits,
-    /// The modes besides Idle in which setters are taken.
+    /// The modes besides Idle in which the robot accepts setters.
     pub setters: Setters,
-    /// The largest load and frames that setters take.
+    /// The largest load and frames that setters accept.
     pub setter_bounds: SetterBounds,
-    /// The axes in which force thresholds are compared.
+    /// Axes in which force thresholds are compared.
     pub force_axes: ForceAxes,
     /// Measured joint velocity above which no motion under an external controller may finish,
-    /// `[rad/s]`; infinite for a robot that lets it. Default 0.1: motions of the robot's own
-    /// controllers are known to be refused when they finish at speed.
+    /// `[rad/s]`; infinite for a robot that permits it. Default 0.1: robots are known to refuse
+    /// motions of their own controllers that finish at speed.
     pub finish_velocity: f64,
     /// Stiffness of the internal joint impedance controller until a client sets another,
     /// `[N·m/rad]`. Default: the values of libfranka 0.21, `examples_common.cpp`.
     pub joint_stiffness: JointVector,
-    /// Likewise of the Cartesian one, in stiffness-frame axes, `[N/m, N·m/rad]`. Default: as there.
+    /// Stiffness of the internal Cartesian impedance controller until a client sets another, in
+    /// stiffness-frame axes, `[N/m, N·m/rad]`. Default: from the same file.
     pub cartesian_stiffness: Twist,
-    /// Thresholds of contact and collision until a client sets others. Default: contact near the
-    /// values of the vendor's examples (20 N·m falling to 12 N·m at the wrist, 20 N and 25 N·m),
-    /// collision at twice as much.
+    /// Thresholds of contact and collision until a client sets others. Default for contact: near
+    /// the values of the vendor's examples (20 N·m falling to 12 N·m at the wrist, 20 N and 25
+    /// N·m). Default for collision: twice these values.
     pub thresholds: CollisionBehavior,
     /// Joint acceleration from which the thresholds for acceleration phases hold, `[rad/s²]`: the
     /// desired one under the robot's own controllers, the measured one under a client's. Default 1.
@@ -58,16 +60,16 @@ pub struct Unpublished {
     /// Gain of the momentum observer behind `tau_ext_hat_filtered`, `[1/s]`: the inverse of the
     /// time constant with which it follows. Default 100, about 16 Hz.
     pub observer_gain: f64,
-    /// When the arm counts as about to hit itself.
+    /// Bounds from which the arm counts as about to hit itself.
     pub self_collision: SelfCollision,
     /// Mechanical power of all joints together that raises `power_limit_violation`, `[W]`. Default
-    /// 600, more than any motion within the limits of a Franka Research 3 takes without a load.
+    /// 600, more than any motion within the limits of a Franka Research 3 requires without a load.
     pub power: f64,
-    /// What `instability_detected` means.
+    /// Condition for `instability_detected`.
     pub instability: Instability,
     /// Range of the torque sensors over the nominal torque. Default 1.1.
     pub sensor_range: f64,
-    /// Stiffness between motor and link that `theta` is computed with for an arm of rigid joints,
+    /// Stiffness between motor and link used to compute `theta` for an arm with rigid joints,
     /// `[N·m/rad]`. Default 10 000, about the magnitude that is published for this kind of joint.
     pub joint_elasticity: f64,
 }
@@ -109,9 +111,9 @@ impl Default for Unpublished {
     }
 }
 
-/// Distance of a first command from what the state publishes. The defaults lie between what clients
-/// send that seed from measured values and what robots are known to refuse (0.2 rad on joint 1,
-/// 0.5 rad of elbow).
+/// Largest distance of a first command from the published values. The defaults lie between the
+/// commands of clients that start from measured values and the commands that robots are known to
+/// refuse (0.2 rad on joint 1, 0.5 rad of elbow).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StartTolerance {
     /// Per joint, `[rad]`. Default 0.1.
@@ -135,19 +137,19 @@ impl Default for StartTolerance {
     }
 }
 
-/// How the orientation of a lost Cartesian command is extrapolated.
+/// Extrapolation of the orientation of a lost Cartesian command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Extrapolation {
-    /// With constant angular acceleration in base axes, as the translation goes on.
+    /// With constant angular acceleration in base axes, like the translation.
     #[default]
     BaseAxes,
     /// With constant angular acceleration in the axes of the end effector.
     BodyAxes,
-    /// It stays.
+    /// The orientation stays.
     Held,
 }
 
-/// What the success rate divides by before 100 cycles have passed.
+/// Divisor of the success rate before 100 cycles have passed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FirstCycles {
     /// The cycles since the first command.
@@ -157,7 +159,7 @@ pub enum FirstCycles {
     Window,
 }
 
-/// The errors of a cycle that breaks several bounds.
+/// Errors of a cycle that breaks several bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ErrorBits {
     /// All of them, as public reports of robots show.
@@ -167,7 +169,7 @@ pub enum ErrorBits {
     First,
 }
 
-/// Where setters are taken besides Idle. In a motion they never are.
+/// Modes besides Idle in which the robot accepts setters. It never accepts them in a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Setters {
     /// After a reflex. Default yes.
@@ -191,15 +193,15 @@ impl Default for Setters {
     }
 }
 
-/// Beyond these values a setter's argument is invalid. Physical, but larger values would drive the
-/// controllers of an arm at rest out of any range.
+/// Bounds of a setter's arguments; values beyond them are invalid. Larger values would be physical,
+/// but would drive the controllers of an arm at rest out of any range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SetterBounds {
     /// Mass of a declared load, `[kg]`. Default 10: three times what the arms carry.
     pub mass: f64,
-    /// Distance of its centre of mass from the flange, `[m]`. Default 1.
+    /// Distance of the load's centre of mass from the flange, `[m]`. Default 1.
     pub com: f64,
-    /// The largest of its principal moments of inertia, `[kg·m²]`. Default 1.
+    /// Largest principal moment of inertia of the load, `[kg·m²]`. Default 1.
     pub inertia: f64,
     /// Translation of `NE_T_EE` and `EE_T_K`, `[m]`. Default 2.
     pub translation: f64,
@@ -216,28 +218,28 @@ impl Default for SetterBounds {
     }
 }
 
-/// The axes of the wrench that is compared with force thresholds; its point is the origin of the
+/// Axes of the wrench that is compared with force thresholds. Its point is the origin of the
 /// stiffness frame in either case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ForceAxes {
-    /// Those of the base.
+    /// Axes of the base.
     #[default]
     Base,
-    /// Those of the stiffness frame: `K_F_ext_hat_K`.
+    /// Axes of the stiffness frame: `K_F_ext_hat_K`.
     Stiffness,
 }
 
-/// The arm against itself, by the vendor's capsules.
+/// Collision of the arm with itself, by the vendor's capsules.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SelfCollision {
-    /// Distance between two capsules from which on they may not approach each other, `[m]`. Default
+    /// Distance between two capsules below which they must not approach each other, `[m]`. Default
     /// 0.05.
     pub margin: f64,
-    /// How far they may approach all the same, from where they were last furthest apart, `[m]`.
-    /// Default 0.001. A motion out of the margin is always possible.
+    /// Distance that they may still approach, from their largest distance so far, `[m]`. Default
+    /// 0.001. A motion out of the margin is always possible.
     pub closing: f64,
-    /// How many links further along the chain the other one has to be; a tool counts as link 8.
-    /// Default 3: closer ones come near each other in postures that the arm takes every day.
+    /// Least number of links between the two along the chain; a tool counts as link 8. Default 3:
+    /// closer links come near each other in everyday postures.
     pub apart: u8,
 }
 
@@ -252,16 +254,16 @@ impl Default for SelfCollision {
 }
 
 /// A joint that shakes: its velocity reverses again and again, faster and wider than any motion
-/// within the limits on acceleration does.
+/// within the limits on acceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Instability {
     /// Velocity to either side that counts, `[rad/s]`. Default 0.15.
     pub velocity: f64,
-    /// Reversals within [`window`](Self::window). Default 8: with 0.15 rad/s to each side, 8 of
-    /// them in 0.1 s take 24 rad/s² on average; commands may have 20 at most, on the robot that
-    /// allows most.
+    /// Reversals within [`window`](Self::window). Default 8. With 0.15 rad/s to each side, 8
+    /// reversals in 0.1 s require 24 rad/s² on average. Commands may have 20 rad/s² at most, on the
+    /// robot with the widest limits.
     pub reversals: u32,
-    /// In milliseconds. Default 100.
+    /// Length of the window in milliseconds. Default 100.
     pub window: u32,
 }
 

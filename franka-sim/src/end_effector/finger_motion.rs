@@ -1,11 +1,11 @@
-//! The motion of the fingers: by kinematics of their own, or by a plant that has fingers.
+//! The motion of the fingers: by built-in kinematics, or by a plant that has fingers.
 
 use franka_model::CYCLE;
 
 use super::towards;
 use crate::plant::FingerDrive;
 
-/// How far the fingers are apart, and what moves them.
+/// Width between the fingers, and the mechanism that moves them.
 #[derive(Debug, Clone)]
 pub(super) struct FingerMotion {
     width: f64,
@@ -16,7 +16,7 @@ pub(super) struct FingerMotion {
 enum Means {
     /// The fingers move at the commanded speed, up to an object of this width.
     Kinematic { object: Option<f64> },
-    /// A plant moves the fingers, with what is between them.
+    /// A plant moves the fingers and the objects between them.
     Driven { drive: FingerDrive, stall: Stall },
 }
 
@@ -44,7 +44,7 @@ impl FingerMotion {
         self.width
     }
 
-    /// The object between the fingers, if there is one that is not a plant's own.
+    /// The object between the fingers, unless it belongs to a plant.
     pub(super) fn object(&mut self) -> Option<&mut Option<f64>> {
         match &mut self.means {
             Means::Kinematic { object } => Some(object),
@@ -52,7 +52,7 @@ impl FingerMotion {
         }
     }
 
-    /// The command for the plant's fingers: to stay, until their width has been read once.
+    /// The command for the plant's fingers. They stay until their width has been read once.
     pub(super) fn drive(&self) -> FingerDrive {
         match &self.means {
             Means::Driven { drive, .. } => *drive,
@@ -60,7 +60,7 @@ impl FingerMotion {
         }
     }
 
-    /// Takes in how far the plant's fingers are apart, and leaves the motion to it from now on.
+    /// Reads the width between the plant's fingers; from now on the plant moves them.
     pub(super) fn feel(&mut self, width: f64) {
         self.width = width;
         if matches!(self.means, Means::Kinematic { .. }) {
@@ -121,7 +121,7 @@ impl FingerMotion {
         }
     }
 
-    /// True if what held the fingers at `width` has gone.
+    /// True if the object that held the fingers at `width` has gone.
     pub(super) fn has_lost(&self, width: f64) -> bool {
         match &self.means {
             Means::Kinematic { .. } => !self.is_held(),
@@ -171,20 +171,19 @@ impl Stall {
     }
 }
 
-/// Fingers of a plant are at a width if they are this near `[m]`. All below are choices of this
-/// simulator.
+/// Fingers of a plant are at a width within this tolerance `[m]`. This constant and those below are
+/// choices of this simulator.
 const NEAR: f64 = 5e-4;
 
-/// Fingers that hold something have lost it once they have closed by this much `[m]`. More than
-/// contact gives way.
+/// Fingers have lost an object once they have closed by this much `[m]`. It exceeds the compliance
+/// of a contact.
 const SLIP: f64 = 2e-3;
 
-/// Fingers are blocked that in this time have come less than this part of the way. It is longer
-/// than the motor takes to build up the force of a grasp.
+/// Fingers are blocked if they cover less than this part of the distance in this time. It is longer
+/// than the motor needs to build up the force of a grasp.
 const STALL_WINDOW_MS: u32 = 200;
 const STALLED: f64 = 0.05;
 
-/// How fingers stay that have nothing to do: as fast `[m/s]` and strongly `[N]` as it takes to stay
-/// in any posture.
+/// Command for idle fingers: speed `[m/s]` and force `[N]` that hold them in any posture.
 const REST_SPEED: f64 = 0.02;
 const REST_FORCE: f64 = 2.0;

@@ -7,17 +7,17 @@ use super::Mechanism;
 use super::finger_motion::{FingerMotion, Progress};
 use crate::plant::FingerDrive;
 
-/// Two fingers that move at the speed they are told and stop at what is between them: in kinematics
-/// of their own, with an object of a given width, or in a plant that has fingers
-/// ([`Robot::couple`](crate::Robot::couple)), with what is there.
+/// Two fingers that move at the commanded speed and stop at an object. They have built-in
+/// kinematics, with an object of a given width. Or they belong to a plant that has fingers
+/// ([`Robot::couple`](crate::Robot::couple)), with the plant's objects.
 ///
-/// What is known of real hands stands with the methods of libfranka; the rest are choices made
-/// here, marked as such, and none has been measured.
+/// The methods of libfranka document the known behaviour of real hands. The rest are choices made
+/// here, marked as such; none has been measured.
 ///
-/// * Until a homing, `max_width` is 0 and every width above is refused.
-/// * A move that an object blocks goes on trying, and fails after [`Fingers::BLOCKED_MS`].
-/// * A grasp closes until something stops the fingers, and squeezes from then on, whether or not it
-///   found the width that was asked for. One that begins while an object is held is unsuccessful.
+/// * Until a homing, `max_width` is 0 and every width above it is refused.
+/// * A move that an object blocks continues to try, and fails after [`Fingers::BLOCKED_MS`].
+/// * A grasp closes until something stops the fingers, and squeezes from then on, even if the width
+///   is not the requested one. A grasp that begins while an object is held is unsuccessful.
 /// * An object that is lost lets the fingers close further.
 #[derive(Debug, Clone)]
 pub struct Fingers {
@@ -30,17 +30,17 @@ pub struct Fingers {
 
 #[derive(Debug, Clone, Copy)]
 enum Activity {
-    /// The fingers stand, and exert no force.
+    /// The fingers rest, and exert no force.
     Idle,
-    /// Homing, on its way to whatever stops the fingers.
+    /// Homing, closing until something stops the fingers.
     HomingClosed,
-    /// Homing, on its way back.
+    /// Homing, opening again.
     HomingOpen,
-    /// `since` counts the milliseconds in which an object has been in the way.
+    /// `since` counts the milliseconds for which an object has blocked the fingers.
     Moving { motion: Move, blocked: u32 },
     /// Closing until something stops the fingers.
     Grasping(Grasp),
-    /// What follows a grasp: closing with this speed and force, from this width.
+    /// After a grasp: closing with this speed and force, from this width.
     Squeezing { speed: f64, force: f64, held: f64 },
 }
 
@@ -58,7 +58,7 @@ impl Fingers {
     /// [`FingerDrive::FORCE`].
     pub const FORCE: [f64; 2] = FingerDrive::FORCE;
 
-    /// How long a move tries to pass an object `[ms]`. Users report 100 s to 120 s.
+    /// Time for which a move tries to pass an object `[ms]`. Users report 100 s to 120 s.
     pub const BLOCKED_MS: u32 = 110_000;
 
     /// Open fingers with nothing between them, before their first homing.
@@ -92,9 +92,9 @@ impl Fingers {
         self
     }
 
-    /// Puts an object between the fingers, in place of what is there. False, and nothing changes,
-    /// if its width `[m]` is not positive or wider than the fingers are open, or if the fingers are
-    /// a plant's.
+    /// Puts an object between the fingers, in place of the current one. Returns false and changes
+    /// nothing if its width `[m]` is not positive or larger than the opening, or if the fingers
+    /// belong to a plant.
     pub fn place_object(&mut self, width: f64) -> bool {
         let fits = width > 0.0 && width <= self.finger_motion.width();
         match self.finger_motion.object() {
@@ -106,24 +106,24 @@ impl Fingers {
         }
     }
 
-    /// Takes the object away: its width `[m]`, if there was one that is not a plant's. A grasp of
-    /// it is lost.
+    /// Removes the object and returns its width `[m]`, if an object is present that does not belong
+    /// to a plant. A grasp of it is lost.
     pub fn take_object(&mut self) -> Option<f64> {
         self.finger_motion.object()?.take()
     }
 
-    /// What the fingers of a plant are to do.
+    /// The command for the fingers of a plant.
     pub(crate) fn drive(&self) -> FingerDrive {
         self.finger_motion.drive()
     }
 
-    /// Takes in how far the fingers of a plant are apart, `[m]`. From then on these are the
-    /// fingers.
+    /// Reads the width between the fingers of a plant, `[m]`. From then on the plant's fingers are
+    /// used.
     pub(crate) fn feel(&mut self, width: f64) {
         self.finger_motion.feel(width);
     }
 
-    /// The force that the fingers exert on what is between them `[N]`.
+    /// The force that the fingers exert on the object between them `[N]`.
     pub fn force(&self) -> f64 {
         match self.activity {
             Activity::Squeezing { force, .. } if self.finger_motion.is_held() => {
@@ -133,7 +133,7 @@ impl Fingers {
         }
     }
 
-    /// One millisecond towards `target`, without more force than it takes to move.
+    /// One millisecond towards `target`, with the force of a motion.
     fn approach(&mut self, target: f64, speed: f64) -> Progress {
         self.squeeze(target, speed, Self::FORCE[0])
     }
@@ -144,7 +144,7 @@ impl Fingers {
             .approach(target, speed.min(Self::MAX_SPEED), force)
     }
 
-    /// At the end of a motion.
+    /// Ends a motion.
     fn rest(&mut self) {
         self.activity = Activity::Idle;
         self.finger_motion.rest();

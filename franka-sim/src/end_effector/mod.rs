@@ -1,16 +1,16 @@
-//! The end effectors that have a server of their own, as values: bytes in, bytes out, one
-//! millisecond per [`EndEffector::tick`].
+//! The end effectors that have a separate server, as values: bytes in, bytes out, one millisecond
+//! per [`EndEffector::tick`].
 //!
 //! ```text
 //! TCP bytes ── receive() ──> session ──> requests ──> Mechanism ──> take_reply(): when it is done
 //!                                                        tick() ──> states by UDP, 50 a second
 //! ```
 //!
-//! There is no clock, socket or thread in here. [`Hand`] and [`VacuumGripper`] differ only in their
+//! This module has no clock, socket or thread. [`Hand`] and [`VacuumGripper`] differ only in their
 //! [`Mechanism`].
 //!
 //! One action runs at a time. A new one aborts it, and so does a stop; both answer it as aborted. A
-//! client that goes while its action runs stops it; what is held by then stays held.
+//! client that disconnects while its action runs stops it; a held object stays held.
 
 mod finger_motion;
 mod fingers;
@@ -35,33 +35,34 @@ pub type Hand = EndEffector<Fingers>;
 /// A vacuum gripper and its server.
 pub type VacuumGripper = EndEffector<Suction>;
 
-/// Time between two states `[ms]` if nothing else is said. The vendor publishes no rate; clients
-/// wait for a second at most.
+/// Default time between two states `[ms]`. The vendor publishes no rate; clients wait for a second
+/// at most.
 pub const STATE_PERIOD: u32 = 20;
 
-/// What an end effector does with its requests, apart from all messages.
+/// The mechanism behind an end effector's requests, independent of messages.
 pub trait Mechanism {
     /// The protocol of its server.
     type Protocol: for<'a> Protocol<Reply<'a> = Reply> + Default;
-    /// What it says of itself.
+    /// The reported state.
     type State;
 
-    /// True if a request asks for nothing but the end of the action that runs.
+    /// True if a request only ends the running action.
     fn is_stop(request: &<Self::Protocol as Protocol>::Request) -> bool;
 
-    /// Begins what is asked for, in place of what runs. The answer, if that is all.
+    /// Begins the requested action, in place of the running one. Returns the answer if the action
+    /// is already complete.
     fn begin(&mut self, request: &<Self::Protocol as Protocol>::Request) -> Option<Status>;
 
-    /// Ends the action that runs, and lets go.
+    /// Ends the running action and releases the object.
     fn halt(&mut self);
 
-    /// Advances by one millisecond. The answer, if the action has ended with it.
+    /// Advances by one millisecond. Returns the answer if the action has ended with it.
     fn tick(&mut self) -> Option<Status>;
 
-    /// What it says of itself at `message_id`, in milliseconds.
+    /// The reported state at `message_id`, in milliseconds.
     fn state(&self, message_id: u32) -> Self::State;
 
-    /// The datagram of a state.
+    /// Encodes a state as a datagram.
     fn encode(state: &Self::State) -> Bytes;
 }
 
@@ -101,7 +102,7 @@ impl<M: Mechanism> EndEffector<M> {
         self
     }
 
-    /// Connects a client. False if another one is connected: there is one at a time.
+    /// Connects a client. Returns false if another one is connected: only one is permitted.
     pub fn connect(&mut self) -> bool {
         if self.client.is_some() {
             return false;
@@ -111,7 +112,7 @@ impl<M: Mechanism> EndEffector<M> {
         true
     }
 
-    /// Disconnects the client. Its action ends; what the end effector holds, it goes on holding.
+    /// Disconnects the client. Its action ends; the end effector continues to hold its object.
     pub fn disconnect(&mut self) {
         if self.running.take().is_some() {
             self.mechanism.halt();
@@ -125,7 +126,7 @@ impl<M: Mechanism> EndEffector<M> {
         self.client.is_some()
     }
 
-    /// The UDP port that the client announced: where its states go.
+    /// The UDP port for states, as announced by the client.
     pub fn udp_port(&self) -> Option<u16> {
         self.client.as_ref()?.udp_port()
     }
@@ -157,8 +158,9 @@ impl<M: Mechanism> EndEffector<M> {
         self.replies.pop_front()
     }
 
-    /// Advances by one millisecond and returns the state to send, if a client is there and it is
-    /// time: once in a [state period](Self::with_state_period), and when an action has ended.
+    /// Advances by one millisecond and returns the state to send, if a client is connected and a
+    /// state is due: once in a [state period](Self::with_state_period), and when an action has
+    /// ended.
     pub fn tick(&mut self) -> Option<Datagram<'_>> {
         self.clock = self.clock.wrapping_add(1);
         if let Some(status) = self.mechanism.tick()
@@ -178,17 +180,17 @@ impl<M: Mechanism> EndEffector<M> {
         })
     }
 
-    /// What it says of itself now.
+    /// The reported state now.
     pub fn state(&self) -> M::State {
         self.mechanism.state(self.clock)
     }
 
-    /// What the server serves.
+    /// The mechanism that the server serves.
     pub fn mechanism(&self) -> &M {
         &self.mechanism
     }
 
-    /// What the server serves, to put things into its way.
+    /// The mechanism that the server serves, mutable, to put objects in place.
     pub fn mechanism_mut(&mut self) -> &mut M {
         &mut self.mechanism
     }
@@ -222,7 +224,7 @@ impl<M: Mechanism> EndEffector<M> {
             return;
         };
         self.ended = true;
-        // The session refuses replies to what it has not been asked, and none is made up here.
+        // The session refuses a reply without a request; none is made up here.
         if let Ok(message) = client.session.reply(id, Reply::Done(status)) {
             let message = Bytes::copy_from_slice(message.as_bytes());
             self.replies.push_back(message);

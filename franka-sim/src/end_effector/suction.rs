@@ -6,12 +6,12 @@ use franka_proto::vacuum::{DeviceStatus, Request, State, Status, Vacuum, Version
 
 use super::{Mechanism, towards};
 
-/// A pump that builds up a vacuum on an object and a valve that lets air in again.
+/// A pump that builds up a vacuum on an object, and a valve that lets air in again.
 ///
 /// All figures are choices made here; none has been measured. The four profiles of the device make
 /// no difference.
 ///
-/// * A vacuum is reached on an object only, up to [`Suction::MAX_VACUUM`]; the request is
+/// * A vacuum requires an object and reachesat most [`Suction::MAX_VACUUM`]; the request is
 ///   unsuccessful when its time is up.
 /// * A vacuum that was reached is held. A stop turns the pump off, after which it leaks away.
 /// * An object that is lost takes the vacuum with it.
@@ -30,7 +30,7 @@ enum Activity {
     Idle,
     /// Pumping up to `target`; `left` milliseconds to go.
     Pumping { target: f64, left: i64 },
-    /// The pump keeps what has been reached.
+    /// The pump holds the vacuum.
     Holding { target: f64 },
     /// The valve is open; `left` milliseconds to go.
     Venting { left: i64 },

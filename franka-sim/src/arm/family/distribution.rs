@@ -1,10 +1,10 @@
-//! How one parameter is distributed, how it is read, and what it may be.
+//! Distribution of one parameter: reading it, and the bounds of its values.
 
 use std::fmt;
 
 use super::FamilyError;
 
-/// How one parameter is distributed.
+/// Distribution of one parameter.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -12,9 +12,9 @@ use super::FamilyError;
     serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum Distribution {
-    /// Always this.
+    /// Always this value.
     Constant(Values),
-    /// Evenly, from `low` to `high`.
+    /// Uniform, from `low` to `high`.
     #[allow(missing_docs)] // the fields are the ends
     Uniform { low: Values, high: Values },
     /// Gaussian, with a root mean square of `rms` about `mean`.
@@ -26,13 +26,13 @@ pub enum Distribution {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(untagged))]
 pub enum Values {
-    /// For all of them.
+    /// The same number for all joints.
     One(f64),
     /// For joints 1 to 7.
     Seven([f64; 7]),
 }
 
-/// What a parameter may be.
+/// Bounds of a parameter.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Bounds {
     Any,
@@ -79,7 +79,7 @@ impl Distribution {
         }
     }
 
-    /// Checks that every value it can have is within the bounds.
+    /// Checks that all its possible values are within the bounds.
     pub(super) fn check(&self, field: &'static str, bounds: Bounds) -> Result<(), FamilyError> {
         let invalid = |got: String, expected: &dyn fmt::Display| {
             Err(FamilyError::Invalid {
@@ -114,7 +114,7 @@ impl Distribution {
         Ok(())
     }
 
-    /// Refuses a value per joint of what an arm has once.
+    /// Refuses values per joint for a parameter that an arm has once.
     pub(super) fn check_single(&self, field: &'static str) -> Result<(), FamilyError> {
         let seven = |values: &Values| matches!(values, Values::Seven(_));
         match self.numbers().iter().any(seven) {
