@@ -1,4 +1,4 @@
-//! The external forces that the robot estimates, and contact and collision.
+//! The external forces that the robot estimates, with contact and collision.
 
 use franka_model::{Frame, Jacobian, JointVector, Wrench};
 use franka_proto::{CollisionBehavior, Errors, RobotError};
@@ -8,23 +8,23 @@ use crate::config::ForceAxes;
 use crate::generator::ArmModel;
 use crate::signal::{halves, stack};
 
-/// The external torques observed, the wrench that they mean, and what exceeded its thresholds.
+/// The observed external torques, the wrench that corresponds to them, and the exceeded thresholds.
 ///
-/// Positive is what the robot does to its environment, as in the state (libfranka 0.21,
-/// `robot_state.h`): an arm that a hand pushes upwards shows a negative force along z.
+/// A positive value is the robot's action on its environment, as in the state (libfranka 0.21,
+/// `robot_state.h`). If a hand pushes the arm upwards, the force along z is negative.
 #[derive(Debug, Clone)]
 pub(crate) struct Estimate {
     /// `tau_ext_hat_filtered`, `[N·m]`.
     pub(crate) torque: JointVector,
     /// `O_F_ext_hat_K`, its torque about the origin of the base, `[N, N·m]`.
     pub(crate) wrench_base: Wrench,
-    /// The same with its torque about the origin of the stiffness frame.
+    /// The same wrench with its torque about the origin of the stiffness frame.
     wrench_at_stiffness: Wrench,
     /// `K_F_ext_hat_K`, `[N, N·m]`.
     pub(crate) wrench_stiffness: Wrench,
     pub(crate) joint_contact: [bool; 7],
     pub(crate) cartesian_contact: [bool; 6],
-    /// Stay until [`Estimate::clear`].
+    /// These flags stay set until [`Estimate::clear`].
     pub(crate) joint_collision: [bool; 7],
     pub(crate) cartesian_collision: [bool; 6],
 }
@@ -60,10 +60,10 @@ impl Estimate {
         self.wrench_base = stack(&force, &(torque + origin.cross(&force)));
     }
 
-    /// Compares with the thresholds, forces along `axes`; `accelerating` selects which set. Returns
-    /// the errors to stop for.
+    /// Compares the estimate with the thresholds, with forces along `axes`; `accelerating` selects
+    /// the set. Returns the errors that stop the robot.
     ///
-    /// A collision is latched only if `moving`: an arm that holds still has nothing to stop.
+    /// A collision is latched only if `moving`: an arm at rest has nothing to stop.
     pub(crate) fn compare(
         &mut self,
         thresholds: &CollisionBehavior,
@@ -125,7 +125,7 @@ impl Estimate {
     }
 }
 
-/// Which values are at or beyond their thresholds.
+/// Returns a flag for each value that is at or beyond its threshold.
 fn reached<const N: usize>(values: &[f64; N], thresholds: &[f64; N]) -> [bool; N] {
     core::array::from_fn(|i| values[i].abs() >= thresholds[i])
 }
@@ -136,8 +136,8 @@ fn latch<const N: usize>(flags: &mut [bool; N], set: &[bool; N]) {
     }
 }
 
-/// The wrench that `torque` means, by least squares: `(J Jᵀ)⁻¹ J τ`; zero where the smallest
-/// singular value of `J` is at most `singular`.
+/// The wrench that corresponds to `torque`, by least squares: `(J Jᵀ)⁻¹ J τ`; zero where the
+/// smallest singular value of `J` is at most `singular`.
 fn wrench(jacobian: &Jacobian, torque: &JointVector, singular: f64) -> Wrench {
     let gram = jacobian * jacobian.transpose();
     // Positive definite exactly if all singular values are greater.

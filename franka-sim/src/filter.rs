@@ -1,15 +1,15 @@
-//! The robot's own low-pass filters on what clients command.
+//! The robot's own low-pass filters on clients' commands.
 
 use franka_model::{CYCLE, JointVector, rotation, transform};
 use franka_proto::{Filters, RobotCommand};
 
 use crate::generator::Desired;
 
-/// A command after the filters, which start from what is desired and from the last torques,
-/// `[N·m]`.
+/// Filters a command. The filters start from the desired values and from the last torques, `[N·m]`.
 ///
-/// First-order low-passes of gain `T / (T + 1 / 2πf)`; the highest cutoff that can be set, 1000 Hz,
-/// means none (FCI documentation). An invalid pose passes as it is, to be refused later.
+/// They are first-order low-passes of gain `T / (T + 1 / 2πf)`. The highest cutoff that can be set,
+/// 1000 Hz, means no filter (FCI documentation). An invalid pose passes unchanged and is refused
+/// later.
 pub(crate) fn filtered(
     command: &RobotCommand,
     before: &Desired,

@@ -1,4 +1,4 @@
-//! What differs between the kinds of robot, besides their arms: versions, names, statuses.
+//! Differences between the kinds of robot, besides their arms: versions, names, statuses.
 
 use franka_model::RobotKind;
 use franka_proto::{MoveStatus, RecoveryStatus, RobotError, SetterStatus, Version};
@@ -6,11 +6,11 @@ use franka_proto::{MoveStatus, RecoveryStatus, RobotError, SetterStatus, Version
 /// One kind of robot.
 pub(crate) struct Description {
     kind: RobotKind,
-    /// The protocol that it speaks.
+    /// The robot's protocol.
     pub(crate) version: Version,
-    /// How its description names it; `None` if it serves none.
+    /// Name of the robot in its description; `None` if it serves none.
     pub(crate) urdf_name: Option<&'static str>,
-    /// Precision in which its states carry numbers.
+    /// Precision of the numbers in its states.
     pub(crate) precision: Precision,
     /// Errors of desired joint positions outside their range.
     pub(crate) range: RangeErrors,
@@ -18,11 +18,11 @@ pub(crate) struct Description {
     pub(crate) safety: SafetyStatuses,
 }
 
-/// What requests are answered while a safety function forbids motion.
+/// Answers to requests while a safety function forbids motion.
 pub(crate) struct SafetyStatuses {
-    /// A motion that was running.
+    /// For a motion that was running.
     pub(crate) preempted: MoveStatus,
-    /// A motion that is requested.
+    /// For a requested motion.
     pub(crate) rejected: MoveStatus,
     pub(crate) setter: SetterStatus,
     pub(crate) recovery: RecoveryStatus,
@@ -36,7 +36,7 @@ pub(crate) enum Precision {
 }
 
 impl Precision {
-    /// The number that a client reads.
+    /// Rounds a number to the value that a client reads.
     pub(crate) fn round(self, value: f64) -> f64 {
         match self {
             Self::Single => f64::from(value as f32),
@@ -45,7 +45,7 @@ impl Precision {
     }
 }
 
-/// What desired joint positions outside their range are reported as, by what was commanded.
+/// Errors for desired joint positions outside their range, by the kind of command.
 pub(crate) struct RangeErrors {
     pub(crate) joint_position: RobotError,
     pub(crate) joint_velocity: RobotError,
@@ -67,7 +67,7 @@ static FR3: Description = Description {
     version: Version::V10,
     urdf_name: Some("fr3"),
     precision: Precision::Single,
-    // One name whatever was commanded (FCI documentation, since system 5.7.2).
+    // One name for every kind of command (FCI documentation, since system 5.7.2).
     range: RangeErrors {
         joint_position: RobotError::JointPositionLimitsViolation,
         joint_velocity: RobotError::JointPositionLimitsViolation,

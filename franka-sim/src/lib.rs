@@ -10,12 +10,12 @@
 //! | module | content |
 //! |---|---|
 //! | [`serve`] | the robot on sockets: [`Sim::fr3`]`().start().await`, [`Sim::fer`] |
-//! | [`robot`] | the robot as a value, without clock and sockets: what tests in virtual time drive |
-//! | [`end_effector`] | the Franka Hand and the vacuum gripper as values, with servers of their own |
+//! | [`robot`] | the robot as a value, without clock and sockets, for tests in virtual time |
+//! | [`end_effector`] | the Franka Hand and the vacuum gripper as values, with separate servers |
 //! | [`arm`] | one arm's friction, drives, sensors and errors, and families of arms |
 //! | [`plant`] | the physics of the arm |
-//! | [`network`] | what is between a robot and its client, as a value: loss, delay, stalls |
-//! | [`config`] | what a robot is like: arm, pose, tool, load, strictness |
+//! | [`network`] | the network between a robot and its client, as a value: loss, delay, stalls |
+//! | [`config`] | configuration of a robot: arm, pose, tool, load, strictness |
 //!
 //! The binary `franka-sim` is `command_line`, for clients in any language.
 //!
@@ -36,40 +36,39 @@
 //! assert!((robot.state().O_F_ext_hat_K[2] - 20.0).abs() < 1.0);
 //! ```
 //!
-//! On Unix a robot over sockets keeps the wall's millisecond, or the client's:
-//! [`Sim::virtual_time`].
+//! On Unix a robot over sockets follows the wall clock, or the client: [`Sim::virtual_time`].
 //!
 //! # Features
 //!
 //! - `command-line`, on by default: the binary `franka-sim`, and its options for other programs.
-//! - `mujoco`: the plant in MuJoCo, `plant::MujocoArm`. Needs Rust 1.95, and MuJoCo's library: in
-//!   this workspace `cargo xtask mujoco` fetches it.
+//! - `mujoco`: the plant in MuJoCo, `plant::MujocoArm`. It requires Rust 1.95 and MuJoCo's library,
+//!   which `cargo xtask mujoco` fetches in this workspace.
 //! - `serde`: families of arms as JSON, `arm::Family::from_json`. `command-line` includes it.
 //!
 //! # Disturbances
 //!
-//! [`Robot`], and from any task through [`Running::with`]: [`touch`](Robot::touch) the arm anywhere
-//! ([`Touch`]: push it, also over time, pull it by a spring, hold it, block a joint, put a wall in
-//! its way), press the user stop, close the brakes, guide the arm, activate a safety function,
-//! change the payload, trip any error, and perform the recovery that takes a person.
+//! [`Robot`], and from any task through [`Running::with`]: press the user stop, close the brakes,
+//! guide the arm, activate a safety function, change the payload, trip any error, and perform the
+//! recovery that requires a person. [`touch`](Robot::touch) acts on the arm anywhere ([`Touch`]):
+//! push it, also over time, pull it by a spring, hold it, block a joint, or put a wall in its path.
 //!
 //! # What it does not do
 //!
-//! - The robot: its model library (protocol 5) is one that the user has. It knows the shape of the
-//!   Franka Hand and of no other tool when it keeps off itself.
-//! - Errors that never come by themselves: those of the force controller, of Desk's own motions and
-//!   of the base's acceleration. [`Robot::trip`] raises any.
-//! - Physics: links do not bend, and joints only if the [`Arm`] says so. Around the rigid-body
-//!   plant there is nothing but what a [`Touch`] puts there, itself included; around that of MuJoCo
-//!   (feature `mujoco`) is a scene.
-//! - The end effectors: kinematics, unless the plant has fingers. Without, they and the arm know
-//!   nothing of each other, and what they hold has neither mass nor pose.
-//! - What a robot keeps to itself (tolerances, thresholds and gains by default, the gain of its
-//!   force estimate, what counts as unstable) has values chosen here, which are options:
-//!   [`Unpublished`]. None has been measured on a robot.
+//! - - The robot: the user must provide its model library (protocol 5). For self-collision it knows
+//!   the shape of the Franka Hand and of no other tool.
+//! - - Errors that never occur automatically: errors of the force controller, of Desk's own motions
+//!   and of the base's acceleration. [`Robot::trip`] raises any.
+//! - - Physics: links do not bend, and joints only if the [`Arm`] has elasticity. The rigid-body
+//!   plant has no surroundings except a [`Touch`], and no contact with itself. The plant of MuJoCo
+//!   (feature `mujoco`) has a scene.
+//! - - The end effectors: kinematics, unless the plant has fingers. Without fingers in the plant,
+//!   arm and end effectors are independent, and held objects have neither mass nor pose.
+//! - - Unpublished values of a robot have values chosen here, which are options: [`Unpublished`].
+//!   They are tolerances, default thresholds and gains, the gain of the force estimate, and the
+//!   criterion for instability. None has been measured on a robot.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
-// What only the robot on sockets uses.
+// Some items are used only by the robot on sockets.
 #![cfg_attr(not(unix), allow(dead_code, unused_imports))]
 
 pub mod arm;
@@ -104,7 +103,7 @@ pub use robot::{Datagram, Freeze, Robot, SessionError, Touch, TouchId};
 #[cfg(unix)]
 pub use serve::{Pace, Running, Service, Sim, SpeedError, Stopped};
 
-// The program in the README compiles.
+// The program in the README must compile.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -40,16 +40,16 @@ impl Suction {
     /// The deepest vacuum `[mbar]`.
     pub const MAX_VACUUM: f64 = 750.0;
 
-    /// How fast the pump builds it up `[mbar/s]`.
+    /// Rate at which the pump builds up the vacuum `[mbar/s]`.
     pub const PUMP_RATE: f64 = 1000.0;
 
-    /// How fast the open valve, or a cup without an object, lets it go `[mbar/s]`.
+    /// Rate at which the open valve, or a cup without an object, loses the vacuum `[mbar/s]`.
     pub const VENT_RATE: f64 = 4000.0;
 
-    /// How fast it leaks away on an object while the pump is off `[mbar/s]`.
+    /// Leak rate on an object while the pump is off `[mbar/s]`.
     pub const LEAK_RATE: f64 = 20.0;
 
-    /// The vacuum from which on an object counts as held `[mbar]`.
+    /// The vacuum above which an object counts as held `[mbar]`.
     pub const PART_PRESENT: f64 = 100.0;
 
     /// A gripper without an object in front of it.
@@ -74,7 +74,7 @@ impl Suction {
         self.object = true;
     }
 
-    /// Takes the object away. False if there was none.
+    /// Removes the object. Returns false if the gripper had none.
     pub fn take_object(&mut self) -> bool {
         std::mem::take(&mut self.object)
     }

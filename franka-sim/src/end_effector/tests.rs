@@ -10,7 +10,7 @@ use super::*;
 struct Pair<M: Mechanism> {
     device: EndEffector<M>,
     client: Session<M>,
-    /// Answers, with the id of what they answer.
+    /// Answers, with the id of their requests.
     answers: Vec<(CommandId, Status)>,
     states: Vec<u32>,
 }
@@ -31,7 +31,7 @@ impl<M: Mechanism> Pair<M> {
 
     fn connect(&mut self) {
         assert!(self.device.connect());
-        // Ids begin anew.
+        // Ids start again.
         self.answers.clear();
         let hello = self.client.connect(4711);
         self.device.receive(hello.as_bytes()).expect("a handshake");
@@ -57,7 +57,7 @@ impl<M: Mechanism> Pair<M> {
         }
     }
 
-    /// Asks and waits for the answer: the answer, and how many milliseconds it took.
+    /// Sends a request and waits for the answer. Returns the answer and its time in milliseconds.
     fn complete(&mut self, request: &<M::Protocol as Protocol>::Request) -> (Status, u32) {
         let id = self.ask(request);
         for elapsed in 0..200_000 {
@@ -86,7 +86,7 @@ impl<M: Mechanism> Pair<M> {
     }
 }
 
-/// A hand that has its homing behind it.
+/// A hand after its homing.
 fn homed(fingers: Fingers) -> Pair<Fingers> {
     let mut pair = Pair::new(fingers);
     assert_eq!(pair.complete(&Request::Homing).0, Status::Success);
@@ -107,7 +107,7 @@ fn widths_are_refused_until_homing_has_found_the_largest() {
     assert_eq!(hand.device.state().max_width, 0.0);
     assert_eq!(hand.complete(&move_to(0.04, 0.1)), (Status::Fail, 0));
     assert_eq!(hand.complete(&grasp(0.04)), (Status::Fail, 0));
-    // 80 mm to and fro at 50 mm/s.
+    // 80 mm in both directions at 50 mm/s.
     let (status, elapsed) = hand.complete(&Request::Homing);
     assert_eq!(status, Status::Success);
     assert!(elapsed.abs_diff(3200) <= 2, "{elapsed}");
@@ -180,7 +180,7 @@ fn an_object_is_grasped_if_its_width_is_within_the_tolerances() {
         assert_eq!(state.width, object.unwrap_or(0.0));
         let way = 0.08 - state.width;
         assert!((f64::from(elapsed) - way / 0.1 * 1e3).abs() <= 1.0);
-        // It squeezes either way.
+        // The hand squeezes either way.
         assert_eq!(hand.device.mechanism().force(), 40.0);
     }
 }
@@ -225,7 +225,7 @@ fn a_blocked_move_keeps_trying_until_it_fails() {
         elapsed.abs_diff(Fingers::BLOCKED_MS + 300) <= 2,
         "{elapsed}"
     );
-    // Taken out of the way in time, it arrives.
+    // Removed in time, the object no longer blocks the move.
     hand.complete(&move_to(0.08, 0.1));
     hand.ask(&move_to(0.02, 0.1));
     hand.run(50_000);

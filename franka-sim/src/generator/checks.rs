@@ -8,7 +8,7 @@ use franka_proto::{Errors, RobotError};
 use super::ArmModel;
 use crate::signal::{CartesianSignal, ElbowSignal, JointSignal, halves};
 
-/// Which derivatives of a command are too large.
+/// Derivatives of a command that are too large.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Broken {
     pub(super) velocity: bool,
@@ -17,12 +17,12 @@ pub(super) struct Broken {
 }
 
 impl Broken {
-    /// True if there is any.
+    /// True if any derivative is too large.
     pub(super) fn any(self) -> bool {
         self.velocity || self.acceleration || self.jerk
     }
 
-    /// What both find.
+    /// Derivatives that both find.
     fn and(self, other: Self) -> Self {
         Self {
             velocity: self.velocity && other.velocity,
@@ -31,7 +31,7 @@ impl Broken {
         }
     }
 
-    /// What either finds.
+    /// Derivatives that either finds.
     fn or(self, other: Self) -> Self {
         Self {
             velocity: self.velocity || other.velocity,
@@ -40,7 +40,7 @@ impl Broken {
         }
     }
 
-    /// The errors that the derivatives stand for.
+    /// The errors that correspond to the derivatives.
     pub(super) fn named(
         self,
         velocity: RobotError,
@@ -58,12 +58,12 @@ impl Broken {
     }
 }
 
-/// Judges a step from the exact history and, if that fails, from the published one.
+/// Checks a step against the exact history and, if that fails, against the published one.
 ///
 /// The state of some kinds carries the history in single precision. A client that limits its
-/// commands against the state is exact there and, at 3 rad, up to 240 rad/s³ off from the exact
-/// history; a client with a generator of its own is the other way round. Robots refuse neither, so
-/// a bound counts as broken only if it is broken from both.
+/// commands against the state is exact there; at 3 rad it is up to 240 rad/s³ off from the exact
+/// history. For a client with an internal generator it is the other way round. Robots refuse
+/// neither, so a bound counts as broken only if it is broken from both.
 fn judge<S: Copy>(
     exact: &S,
     published: impl Fn(S) -> S,
@@ -77,7 +77,7 @@ fn judge<S: Copy>(
     (next, broken.and(from_published))
 }
 
-/// One cycle of a joint signal: where `step` leads, and what that breaks.
+/// One cycle of a joint signal: the result of `step`, and the bounds that it breaks.
 pub(super) fn joints(
     from: &JointSignal,
     arm: &ArmModel<'_>,
@@ -93,9 +93,10 @@ pub(super) fn joints(
     )
 }
 
-/// What a step of the joints breaks.
+/// Returns the bounds that a step of the joints breaks.
 ///
-/// The velocity envelope is that of the position before the step: a client can know no other.
+/// The velocity envelope belongs to the position before the step, the only one that a client can
+/// know.
 pub(super) fn joint_bounds(
     from: &JointSignal,
     next: &JointSignal,
@@ -114,7 +115,7 @@ pub(super) fn joint_bounds(
     broken
 }
 
-/// One cycle of a Cartesian signal: where `step` leads, and what that breaks.
+/// One cycle of a Cartesian signal: the result of `step`, and the bounds that it breaks.
 pub(super) fn cartesian(
     from: &CartesianSignal,
     arm: &ArmModel<'_>,
@@ -136,7 +137,7 @@ pub(super) fn cartesian(
     )
 }
 
-/// One cycle of the elbow: where `step` leads, and what that breaks.
+/// One cycle of the elbow: the result of `step`, and the bounds that it breaks.
 pub(super) fn elbow(
     from: &ElbowSignal,
     arm: &ArmModel<'_>,
@@ -165,7 +166,7 @@ pub(super) fn elbow_in_range(elbow: &ElbowSignal, arm: &ArmModel<'_>) -> bool {
     (limits.hard_lower[2]..=limits.hard_upper[2]).contains(&elbow.angle)
 }
 
-/// `error` if desired joint positions are outside their range.
+/// Returns `error` if desired joint positions are outside their range.
 pub(super) fn range(
     joints: &JointSignal,
     arm: &ArmModel<'_>,

@@ -1,4 +1,4 @@
-//! Joint positions for a commanded pose, continued from those of the cycle before.
+//! Joint positions for a commanded pose, continued from the positions of the previous cycle.
 
 use franka_model::differential_ik::{DifferentialIk, JointBox};
 use franka_model::{Frame, JointVector, Twist};
@@ -9,10 +9,10 @@ use crate::signal::stack;
 
 /// Joints near `from` that bring the end effector to `target`, with joint 3 at `elbow` if given.
 ///
-/// Newton's iteration on differential inverse kinematics: a millisecond of motion takes two or
-/// three steps to [`CLOSE`]. Without an elbow each step is the smallest one, so the redundancy
-/// stays where it is as far as the pose allows. Near a singularity, and for a target out of reach,
-/// the result stays short of the target; the caller judges what the joints then do.
+/// Newton's iteration on differential inverse kinematics: a millisecond of motion requires two or
+/// three steps to [`CLOSE`]. Without an elbow each step is the smallest possible, so the redundancy
+/// changes as little as the pose allows. Near a singularity, and for a target out of reach, the
+/// result does not reach the target. The caller must check the joints.
 pub(super) fn solve(
     arm: &ArmModel<'_>,
     target: &Isometry3<f64>,
@@ -39,7 +39,7 @@ pub(super) fn solve(
     q
 }
 
-/// How far one step may go; joint 3 is told where to go if the elbow is commanded.
+/// Bounds of one step. If the elbow is commanded, joint 3 must reach it.
 fn step_bounds(elbow: Option<f64>) -> JointBox {
     let mut upper = JointVector::repeat(STEP_MAX);
     let mut lower = -upper;
@@ -51,7 +51,7 @@ fn step_bounds(elbow: Option<f64>) -> JointBox {
 }
 
 /// Displacement and rotation vector from `pose` to `goal`, in base axes. The rotation blocks may
-/// be off a rotation by what the vendor's rounded constants are.
+/// differ from a rotation as the vendor's rounded constants do.
 fn difference(goal: &Matrix4<f64>, pose: &Matrix4<f64>) -> Twist {
     let block = |m: &Matrix4<f64>| -> Matrix3<f64> { m.fixed_view::<3, 3>(0, 0).into_owned() };
     let turn = block(goal) * block(pose).transpose();
@@ -75,14 +75,14 @@ fn difference(goal: &Matrix4<f64>, pose: &Matrix4<f64>) -> Twist {
     stack(&shift, &(twice_sine * (scale / 2.0)))
 }
 
-/// Pose error at which the joints are good enough, `[m, rad]`: at 1 kHz, a thousandth of what the
-/// third difference of the joints may be.
+/// Pose error at which the joints are accurate enough, `[m, rad]`: at 1 kHz, a thousandth of the
+/// permitted third difference of the joints.
 const CLOSE: f64 = 1e-12;
 
-/// Steps at most: more are only needed for targets that no smooth motion leads to.
+/// Largest number of steps. Only targets that no smooth motion reaches need more.
 const STEPS_MAX: usize = 8;
 
-/// Longest step of a joint, `[rad]`: a hundred times what a cycle allows.
+/// Longest step of a joint, `[rad]`: a hundred times the bound for a cycle.
 const STEP_MAX: f64 = 0.5;
 
 #[cfg(test)]
@@ -129,12 +129,12 @@ mod tests {
     #[test]
     fn works_with_the_vendors_rounded_hand_frame() {
         let mut frames = EndEffector::default();
-        #[allow(clippy::approx_constant)] // four digits are what the vendor ships
+        #[allow(clippy::approx_constant)] // the vendor ships four digits
         let (r, m) = (0.7071, &mut frames.f_t_ee);
         (m.m11, m.m12, m.m21, m.m22, m.m34) = (r, r, -r, r, 0.1034);
         let config = Config::default();
         let arm = arm(&frames, &config);
-        // Not a motion at all: nothing may creep.
+        // No motion at all: the joints must not creep.
         let q = solve(&arm, &arm.pose(&READY), None, &READY);
         assert!((q - READY).amax() < 1e-12);
     }

@@ -1,4 +1,4 @@
-//! The motion generators: from the command of one cycle to the desired motion.
+//! The motion generators. They turn the command of one cycle into the desired motion.
 //!
 //! ```text
 //! command | lost | finish ──> commanded signal ──> checks ──> [inverse kinematics ──> checks]
@@ -6,8 +6,8 @@
 //! ```
 //!
 //! All violated bounds of a cycle are reported together, as robots report them. Thresholds are the
-//! nominal limits; which error a bound raises depends on how far its derivative is from what the
-//! client commands (FCI documentation, control parameters and error list).
+//! nominal limits. The error for a bound depends on the order of its derivative against the
+//! commanded quantity (FCI documentation, control parameters and error list).
 
 mod checks;
 mod ik;
@@ -22,7 +22,7 @@ use crate::config::Config;
 use crate::kind::{Description, Precision};
 use crate::signal::{CartesianSignal, ElbowSignal, JointSignal};
 
-/// What the controllers follow and the state publishes as desired and commanded.
+/// Desired and commanded values, which the controllers follow and the state publishes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Desired {
     /// `q_d`, `dq_d`, `ddq_d`.
@@ -45,11 +45,11 @@ impl Desired {
         desired
     }
 
-    /// At rest where the last state said, to the digit.
+    /// At rest at the position of the last state, to the digit.
     ///
-    /// A motion begins here, because a client begins with what it has read. Otherwise the rounding
-    /// of the state would count as acceleration (0.1 rad/s²), and over some lost commands be
-    /// extrapolated to a jump.
+    /// A motion begins here, because a client begins with the values that it has read. Otherwise
+    /// the rounding of the state would count as acceleration (0.1 rad/s²), and extrapolation over
+    /// some lost commands would turn it into a jump.
     pub(crate) fn as_published(&self, precision: Precision) -> Self {
         let pose = CartesianSignal::resting(self.cartesian.pose)
             .published(precision)
@@ -61,7 +61,7 @@ impl Desired {
         }
     }
 
-    /// Takes pose and elbow from the joints, without motion of their own.
+    /// Computes pose and elbow from the joints, without separate motion.
     pub(crate) fn follow_joints(&mut self, arm: &ArmModel<'_>) {
         self.cartesian = CartesianSignal::resting(arm.pose(&self.joints.q));
         self.elbow = ElbowSignal::resting(self.joints.q[2]);
@@ -95,22 +95,21 @@ impl<'a> ArmModel<'a> {
     /// Pose of the end effector at `q`.
     pub(crate) fn pose(&self, q: &JointVector) -> nalgebra::Isometry3<f64> {
         let matrix = self.model.pose(Frame::EndEffector, q, self.frames);
-        // Frames are rigid transforms: setters refuse anything else.
+        // Frames are rigid transforms: setters refuse all others.
         transform::isometry(&matrix).unwrap_or_else(nalgebra::Isometry3::identity)
     }
 }
 
-/// What arrived for a cycle.
+/// Input of a cycle.
 #[derive(Clone, Copy)]
 pub(crate) enum Input<'a> {
     /// The client's first command of the motion.
     First(&'a RobotCommand),
-    /// A later one.
+    /// A later command.
     Next(&'a RobotCommand),
-    /// Nothing in time.
+    /// No command in time.
     Lost,
-    /// Nothing to come: the last command stands still from now on. It shows whether a motion may
-    /// finish.
+    /// No further command: the last one applies from now on. It shows whether a motion may finish.
     Rest,
 }
 
@@ -131,8 +130,8 @@ impl<'a> Input<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct InvalidInput;
 
-/// Advances `before` by one cycle of `generator`: what is desired then, and which bounds that
-/// breaks.
+/// Advances `before` by one cycle of `generator`. Returns the new desired values and the bounds
+/// that they break.
 pub(crate) fn advance(
     generator: MoveGeneratorMode,
     input: Input<'_>,
@@ -311,7 +310,7 @@ fn complete(
             }
             Some(elbow)
         }
-        // Also one that rests: lost commands leave it as it was commanded.
+        // Also an elbow at rest: lost commands leave it as commanded.
         None if matches!(input, Input::Lost) && before.elbow.commanded => {
             Some(before.elbow.extrapolated())
         }

@@ -1,9 +1,10 @@
-//! Asynchronous joint positions: the robot plans from where it is to a target, to rest.
+//! Asynchronous joint positions: the robot plans from its current position to rest at a target.
 //!
 //! All joints share one duration and move along polynomials of fifth degree, which start with the
-//! present velocity and acceleration and end without. The duration is the shortest on a grid of
-//! five percent for which velocity, acceleration and jerk keep their bounds everywhere. From some
-//! states of motion (fast, away from the target) there is none; then the joints brake first.
+//! present velocity and acceleration and end at rest. The duration is the shortest on a grid of
+//! five percent for which velocity, acceleration and jerk are within their bounds everywhere. Some
+//! states of motion (fast, away from the target) have no such duration; then the joints brake
+//! first.
 
 use franka_model::limits::JointLimits;
 use franka_model::{CYCLE, JointVector};
@@ -36,7 +37,7 @@ struct Bounds {
 }
 
 impl PointToPoint {
-    /// A generator without a target, moving at most at `velocity`, `[rad/s]`.
+    /// A generator without a target, with at most `velocity`, `[rad/s]`.
     pub(crate) fn new(velocity: &JointVector, limits: &JointLimits) -> Self {
         Self {
             bounds: Bounds {
@@ -48,7 +49,7 @@ impl PointToPoint {
         }
     }
 
-    /// Replaces the target, `[rad]`; `now` is where the joints are.
+    /// Replaces the target, `[rad]`; `now` is the state of the joints.
     pub(crate) fn go_to(&mut self, target: &JointVector, now: &JointSignal) {
         self.plan = match Profile::plan(now, target, &self.bounds) {
             Some(profile) => Plan::Moving(Box::new(profile)),
@@ -63,12 +64,12 @@ impl PointToPoint {
         };
     }
 
-    /// True if the target, if there is one, has been reached.
+    /// True if the generator has no target or has reached it.
     pub(crate) fn is_over(&self) -> bool {
         matches!(self.plan, Plan::Resting)
     }
 
-    /// Where the joints are one cycle after `now`.
+    /// State of the joints one cycle after `now`.
     pub(crate) fn advance(&mut self, now: &JointSignal) -> JointSignal {
         let next = match &mut self.plan {
             Plan::Resting => return JointSignal::resting(now.q),
@@ -102,7 +103,7 @@ struct Profile {
 
 impl Profile {
     fn plan(now: &JointSignal, target: &JointVector, bounds: &Bounds) -> Option<Self> {
-        // From rest the extremes are known: 15/8 d/T, 10/√3 d/T², 60 d/T³.
+        // The extremes of a motion from rest are known: 15/8 d/T, 10/√3 d/T², 60 d/T³.
         let mut duration: f64 = CYCLE;
         for i in 0..7 {
             let distance = (target[i] - now.q[i]).abs();
@@ -182,9 +183,9 @@ fn derivatives(c: &[f64; 6], t: f64) -> [f64; 4] {
 const SHARE: f64 = 0.9;
 /// Relative slack of the bounds, for rounding.
 const SLACK: f64 = 1e-6;
-/// Points at which a plan is examined.
+/// Number of points at which a plan is checked.
 const SAMPLES: u32 = 50;
-/// Durations tried: the last is 17 times the first.
+/// Number of durations to try; the last is 17 times the first.
 const TRIALS: u32 = 60;
 
 #[cfg(test)]

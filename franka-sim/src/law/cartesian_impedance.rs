@@ -9,21 +9,21 @@ use nalgebra::{Cholesky, Isometry3, SMatrix};
 use super::{Law, Spring};
 use crate::signal::{JointSignal, stack};
 
-/// How firm the springs are.
+/// Stiffness of the springs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Firmness {
-    /// Of the stiffness frame, in its axes, `[N/m, N·m/rad]`.
+    /// Stiffness of the stiffness frame, in its axes, `[N/m, N·m/rad]`.
     pub(crate) task: Twist,
-    /// Of joint motions that the end effector does not feel, `[N·m/rad]`.
+    /// Stiffness of joint motions that do not move the end effector, `[N·m/rad]`.
     pub(crate) posture: f64,
 }
 
-/// A spring and critical damper between the stiffness frame and where the desired pose puts it,
-/// and a joint spring in what the end effector does not feel.
+/// A spring and critical damper between the stiffness frame and its desired pose, and a joint
+/// spring in the null space.
 ///
-/// `pose` is the desired one of the end
-/// effector; `desired` the joints that belong to it; `q` where the joints are.
-#[allow(clippy::too_many_arguments)] // the two halves of the error and what they are made of
+/// `pose` is the desired pose of the end effector, `desired` are the joints that belong to it, and
+/// `q` are the joint positions.
+#[allow(clippy::too_many_arguments)] // the two halves of the error and their inputs
 pub(crate) fn cartesian_impedance(
     firmness: &Firmness,
     pose: &Isometry3<f64>,
@@ -60,7 +60,7 @@ pub(crate) fn cartesian_impedance(
     }
 }
 
-/// What the stiffness frame is off, in its own axes, `[m, rad]`.
+/// Error of the stiffness frame, in its own axes, `[m, rad]`.
 fn stiffness_frame_error(
     pose: &Isometry3<f64>,
     q: &JointVector,
@@ -69,7 +69,7 @@ fn stiffness_frame_error(
 ) -> Twist {
     let actual = transform::isometry(&model.pose(Frame::Stiffness, q, frames));
     let offset = transform::isometry(&frames.ee_t_k);
-    // Frames are rigid transforms: setters refuse anything else.
+    // Frames are rigid transforms: setters refuse all others.
     let (Some(actual), Some(offset)) = (actual, offset) else {
         return Twist::zeros();
     };
@@ -81,7 +81,7 @@ fn stiffness_frame_error(
     )
 }
 
-/// Critical damping of each axis for the inertia that it feels alone, `1 / (J M⁻¹ Jᵀ)_ii`.
+/// Critical damping of each axis for the inertia along this axis alone, `1 / (J M⁻¹ Jᵀ)_ii`.
 fn task_damping(stiffness: &Twist, jacobian: &Jacobian, inertia: &MassMatrix) -> Twist {
     let Some(factor) = Cholesky::new(*inertia) else {
         return Twist::zeros();
@@ -90,7 +90,7 @@ fn task_damping(stiffness: &Twist, jacobian: &Jacobian, inertia: &MassMatrix) ->
     Twist::from_fn(|i, _| 2.0 * (stiffness[i] / mobility[i].max(MOBILITY_MIN)).sqrt())
 }
 
-/// The orthogonal projector onto joint motions that leave the end effector where it is.
+/// The orthogonal projector onto joint motions that do not move the end effector.
 fn null_space(jacobian: &Jacobian) -> MassMatrix {
     let mut gram = jacobian * jacobian.transpose();
     for i in 0..6 {
@@ -102,14 +102,15 @@ fn null_space(jacobian: &Jacobian) -> MassMatrix {
     }
 }
 
-/// Posture stiffness in a motion, `[N·m/rad]`: a choice of this simulator, soft beside the joint
+/// Posture stiffness in a motion, `[N·m/rad]`: a choice of this simulator, soft against the joint
 /// impedance.
 pub(crate) const POSTURE_STIFFNESS: f64 = 50.0;
 
 /// Damping per stiffness, `[s]`: at 50 N·m/rad overdamped for the arm's 1 to 2 kg·m².
 const POSTURE_DAMPING: f64 = 0.4;
 
-/// Least mobility, `[1/kg, 1/(kg·m²)]`: near a singularity the inertia felt grows without bound.
+/// Least mobility, `[1/kg, 1/(kg·m²)]`. Near a singularity the apparent inertia grows without
+/// bound.
 const MOBILITY_MIN: f64 = 0.02;
 
 /// Keeps the projector finite in a singularity.

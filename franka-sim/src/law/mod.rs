@@ -1,8 +1,8 @@
 //! The robot's own controllers.
 //!
-//! A controller computes a [`Law`] once per millisecond; between, its spring and damper follow the
-//! arm at the rate of the plant's steps, as a robot's joint loops do. That keeps stiffnesses up to
-//! the greatest one stable (14 250 N·m/rad on 0.074 kg·m² swings with 70 Hz).
+//! A controller computes a [`Law`] once per millisecond. In between, its spring and damper follow
+//! the arm at the rate of the plant's steps, as a robot's joint loops do. That keeps all
+//! stiffnesses stable, up to the greatest (14 250 N·m/rad on 0.074 kg·m² swings with 70 Hz).
 
 mod cartesian_impedance;
 mod joint_impedance;
@@ -34,7 +34,7 @@ pub(crate) struct Spring {
 }
 
 impl Law {
-    /// The same torques whatever the arm does.
+    /// The same torques for every state of the arm.
     pub(crate) fn constant(torque: JointVector) -> Self {
         Self {
             feedforward: torque,

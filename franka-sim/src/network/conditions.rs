@@ -2,27 +2,25 @@
 
 use std::time::Duration;
 
-/// What happens to the datagrams of one direction. By default nothing: they arrive when they are
-/// sent.
+/// Conditions for the datagrams of one direction. By default they arrive when they are sent.
 ///
-/// Probabilities are those of a comparison: 0 or less is never, 1 or more always, and what is not a
-/// number is never.
+/// Probabilities are compared with a random number: 0 or less and NaN mean never, 1 or more means
+/// always.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Conditions {
-    /// Which packets are lost. A datagram that does not fit into one packet is lost with any of
-    /// them.
+    /// Packets to lose. A datagram that requires several packets is lost with any of them.
     pub loss: Loss,
-    /// How long the way takes.
+    /// Time in transit.
     pub delay: Duration,
-    /// Up to this much later than sent, evenly distributed, a datagram gets to the line. The order
+    /// Largest delay before a datagram reaches the line, evenly distributed from zero. The order
     /// stays.
     pub jitter: Duration,
-    /// What the line takes, `[bit/s]`: datagrams that are sent together arrive one after the other.
-    /// Infinite for a line that takes no time.
+    /// Rate of the line, `[bit/s]`: datagrams that are sent together arrive one after the other.
+    /// Infinite for a line that needs no time.
     pub rate: f64,
-    /// When the sender's interface keeps what it should send.
+    /// Stalls of the sender's interface.
     pub stalls: Option<Stalls>,
-    /// Which datagrams are overtaken.
+    /// Datagrams that others overtake.
     pub reordering: Reordering,
     /// Probability that a datagram arrives twice, `[1]`.
     pub duplication: f64,
@@ -48,10 +46,10 @@ impl Default for Conditions {
 impl Conditions {
     /// A cable between the robot and a good network card.
     ///
-    /// Delay and jitter are half of what pings of 1200 bytes took to three FERs and back, 0.114 ms
-    /// with a deviation of 0.009 ms (libfranka, issue 120). The rate is that of gigabit Ethernet,
-    /// at which the 2497 bytes that a protocol 5 state is on the wire take 0.02 ms: control loops
-    /// have been called again after as little (franka_ros, issue 322: 0.023 ms).
+    /// Delay and jitter are half of the round trip of pings of 1200 bytes to three FERs: 0.114 ms
+    /// with a deviation of 0.009 ms (libfranka, issue 120). The rate is gigabit Ethernet, at which
+    /// a protocol 5 state (2497 bytes on the wire) requires 0.02 ms. Intervals between calls of
+    /// control loops have been as short (franka_ros, issue 322: 0.023 ms).
     pub const fn cable() -> Self {
         Self {
             loss: Loss::Never,
@@ -67,7 +65,7 @@ impl Conditions {
         }
     }
 
-    /// These conditions, and this loss.
+    /// These conditions with this loss.
     #[must_use]
     pub const fn with_loss(mut self, loss: Loss) -> Self {
         self.loss = loss;
@@ -75,14 +73,14 @@ impl Conditions {
     }
 }
 
-/// Which packets are lost.
+/// Packets to lose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Loss {
-    /// None.
+    /// No loss.
     Never,
-    /// Each with this probability, `[1]`, whatever happened to the others.
+    /// Each packet with this probability, `[1]`, independently of the others.
     Independent(f64),
-    /// Many at a time.
+    /// Many packets at a time.
     Bursts(BurstLoss),
 }
 
@@ -97,13 +95,13 @@ pub struct BurstLoss {
     pub end: f64,
     /// Probability of losing a packet while good, `[1]`.
     pub good: f64,
-    /// The same while bad.
+    /// Probability of losing a packet while bad, `[1]`.
     pub bad: f64,
 }
 
 impl BurstLoss {
-    /// Bursts of `length` packets in the mean, at least 1, in which all are lost, and between which
-    /// none is, so that `fraction` of all packets is lost, less than 1.
+    /// Bursts of `length` packets on average, at least 1. All packets in a burst are lost, and none
+    /// between bursts, so that `fraction` of all packets is lost, less than 1.
     pub fn of(fraction: f64, length: f64) -> Self {
         let end = 1.0 / length;
         Self {
@@ -118,49 +116,49 @@ impl BurstLoss {
 /// Datagrams that others overtake.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reordering {
-    /// Probability that a datagram takes the longer way, `[1]`.
+    /// Probability that a datagram takes the longer path, `[1]`.
     pub probability: f64,
-    /// How much longer that way takes. Those sent later overtake if they are sent within this.
+    /// Additional delay of that path. Datagrams sent later overtake if they are sent within this
+    /// time.
     pub delay: Duration,
 }
 
-/// Times in which an interface sends nothing, and after which it sends what was to be sent
-/// meanwhile, in order.
+/// Times in which an interface sends nothing. Afterwards it sends the delayed datagrams in order.
 ///
-/// A stall takes the shortest time and an exponentially distributed excess, up to the longest. Some
-/// delay a single datagram only. Three of four come near a multiple of the period, as far as there
-/// are enough of these; between the others, pauses are exponentially distributed.
+/// A stall lasts the shortest time and an exponentially distributed excess, up to the longest. Some
+/// delay a single datagram only. Three of four come near a multiple of the period, if there are
+/// enough of these; pauses between the others are exponentially distributed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stalls {
-    /// How many begin in a second, in the mean, `[1/s]`.
+    /// Stalls that begin in a second, on average, `[1/s]`.
     pub per_second: f64,
-    /// The least time one takes.
+    /// The shortest duration.
     pub shortest: Duration,
-    /// The most.
+    /// The longest duration.
     pub longest: Duration,
-    /// Mean of what it takes beyond the shortest, if there were no longest.
+    /// Mean of the duration beyond the shortest, without the bound of the longest.
     pub excess: Duration,
-    /// Share that delays one datagram by half a millisecond to a millisecond, and no other, 0 to 1.
+    /// Fraction that delays only one datagram, by half a millisecond to a millisecond, 0 to 1.
     pub single: f64,
-    /// Period of the times near which they come; zero if all come independently.
+    /// Period of the times near which stalls come; zero if all come independently.
     pub period: Duration,
 }
 
 impl Stalls {
-    /// Those of the FER's network interface.
+    /// Stalls of the FER's network interface.
     ///
-    /// Measured on robots: seven a second, of 2 to 7 ms, no state lost; the longest silence between
-    /// two states was 4.8 to 6.9 ms. That bounds the rest. Of `n` stalls, the longest takes 2 ms +
-    /// `excess` (ln `n` + 0.577) in the mean, and the silence half a millisecond more, since the
-    /// last state was before. In the middle between 4.8 and 6.9 ms, the excess is 0.57 ms if a
-    /// measurement took 30 s, and 0.69 ms if it took 10 s. The value is one between them that also
-    /// leads to the loss measured in clients.
+    /// Measured on robots: seven a second, of 2 to 7 ms, with no state lost. The longest silence
+    /// between two states was 4.8 to 6.9 ms. That bounds the rest. Of `n` stalls, the longest lasts
+    /// 2 ms + `excess` (ln `n` + 0.577) on average. The silence is half a millisecond longer, since
+    /// the last state was before the stall. In the middle between 4.8 and 6.9 ms, the excess is
+    /// 0.57 ms if a measurement took 30 s, and 0.69 ms if it took 10 s. The value is between the
+    /// two and also leads to the loss measured in clients.
     ///
-    /// One capture of 10.4 s on a robot, 72 silences: they come on a grid of 101.0 ms (Rayleigh
-    /// 0.70), to which the share on the grid and the spread around it are fitted. In that capture
-    /// 40 % are of single late states, which [`single`](Self::single) makes. With them, clients
-    /// would lose 16 states of 30 000 and not the 28 that were measured on other robots: this has
-    /// none. That lengths fall off exponentially is a choice.
+    /// One capture of 10.4 s on a robot has 72 silences. They come on a grid of 101.0 ms (Rayleigh
+    /// 0.70); the share on the grid and the spread around it are fitted to it. In that capture 40 %
+    /// are single late states, as [`single`](Self::single) makes them. With them, clients would
+    /// lose 16 states of 30 000, not the 28 that were measured on other robots, so this value has
+    /// none. The exponential distribution of lengths is a choice.
     pub const FER: Self = Self {
         per_second: 7.0,
         shortest: Duration::from_millis(2),
@@ -170,7 +168,7 @@ impl Stalls {
         period: Duration::from_millis(101),
     };
 
-    /// How long one takes in the mean.
+    /// Mean duration of a stall.
     pub fn mean(&self) -> Duration {
         let (range, excess) = (self.range(), self.excess.as_secs_f64());
         if range == 0.0 || excess == 0.0 {
@@ -180,7 +178,7 @@ impl Stalls {
         self.shortest + Duration::from_secs_f64(excess - cut_off)
     }
 
-    /// What takes longer than this share of all stalls, `0 <= share < 1`.
+    /// Duration that is longer than this share of all stalls, `0 <= share < 1`.
     pub(super) fn quantile(&self, share: f64) -> Duration {
         let (range, excess) = (self.range(), self.excess.as_secs_f64());
         if range == 0.0 || excess == 0.0 {
@@ -191,7 +189,7 @@ impl Stalls {
         self.shortest + Duration::from_secs_f64(beyond.clamp(0.0, range))
     }
 
-    /// Probability that one comes near a given multiple of the period.
+    /// Probability that a stall comes near a given multiple of the period.
     pub(super) fn on_grid(&self) -> f64 {
         match self.period {
             Duration::ZERO => 0.0,
@@ -199,8 +197,8 @@ impl Stalls {
         }
     }
 
-    /// Mean time from the end of one that comes independently to the beginning of the next; zero if
-    /// they leave none.
+    /// Mean time from the end of an independent stall to the beginning of the next; zero if they
+    /// leave no pause.
     pub(super) fn pause(&self) -> Duration {
         let period = self.period.as_secs_f64();
         let on_grid = match period {
@@ -217,7 +215,7 @@ impl Stalls {
     }
 }
 
-/// Share of stalls that come on the grid, where it has room.
+/// Share of stalls on the grid, if the grid has room.
 const ON_GRID: f64 = 0.75;
 
 #[cfg(test)]

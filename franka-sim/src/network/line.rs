@@ -10,7 +10,7 @@ use crate::noise::Random;
 pub(super) struct Line {
     /// `[bit/s]`
     rate: f64,
-    /// When it has carried what it has been given.
+    /// Time at which the line has sent everything.
     free: Duration,
     stalls: Option<Schedule>,
 }
@@ -28,7 +28,7 @@ impl Line {
         }
     }
 
-    /// When so many bytes that are there at `ready` have left.
+    /// Returns the time at which `bytes`, ready at `ready`, have left.
     pub(super) fn carry(&mut self, ready: Duration, bytes: usize) -> Duration {
         let mut begin = ready.max(self.free);
         if let Some(schedule) = &mut self.stalls {
@@ -40,12 +40,12 @@ impl Line {
     }
 }
 
-/// When the stalls are.
+/// Schedule of the stalls.
 #[derive(Debug, Clone)]
 struct Schedule {
     stalls: Stalls,
     random: Random,
-    /// Laid out from the first datagram on.
+    /// Computed from the first datagram on.
     next: Option<Next>,
 }
 
@@ -59,7 +59,7 @@ struct Next {
 }
 
 impl Schedule {
-    /// The first moment from `time` on that is in no stall. Times given do not decrease.
+    /// The first moment at or after `time` that is in no stall. Successive times must not decrease.
     fn outlast(&mut self, time: Duration) -> Duration {
         let mut next = match self.next.take() {
             Some(next) => next,
@@ -93,8 +93,8 @@ impl Schedule {
         }
     }
 
-    /// The next stall near a multiple of the period that comes after the multiple `grid`: that
-    /// multiple, and when the stall begins.
+    /// The next stall near a multiple of the period that comes after the multiple `grid`. Returns
+    /// that multiple and the start of the stall.
     fn on_grid_after(&mut self, mut grid: Duration) -> (Duration, Duration) {
         let (period, share) = (self.stalls.period, self.stalls.on_grid());
         if share <= 0.0 {
@@ -103,7 +103,7 @@ impl Schedule {
         loop {
             grid += period;
             if self.random.uniform() < share {
-                // Never past the stall of the next multiple.
+                // Never later than the stall of the next multiple.
                 let most = 0.25 * period.as_secs_f64();
                 let off = (SPREAD.as_secs_f64() * self.random.normal()).clamp(-most, most);
                 let near = grid.as_secs_f64() + off;
@@ -122,13 +122,13 @@ impl Schedule {
     }
 }
 
-/// How far stalls come from the grid, one standard deviation.
+/// Distance of stalls from the grid, one standard deviation.
 const SPREAD: Duration = Duration::from_millis(6);
 
-/// The least that a single datagram is late; the most is twice that.
+/// The shortest delay of a single datagram; the longest is twice that.
 const LATE_LEAST: Duration = Duration::from_micros(500);
 
-/// A stall of a single datagram is forgotten if none comes within this.
+/// A stall of a single datagram is forgotten if no datagram comes within this time.
 const RECENT: Duration = Duration::from_millis(2);
 
 /// A year: never, for a robot.
@@ -153,7 +153,8 @@ mod tests {
         assert_eq!(instant.carry(ms(10), 125), ms(10));
     }
 
-    /// Sends something every 10 us, and finds when it did not leave, and for how long.
+    /// Sends a datagram every 10 us. Returns the start and duration of each time in which none
+    /// left.
     fn stalls(stalls: Stalls, seconds: u64) -> Vec<(Duration, Duration)> {
         let conditions = Conditions {
             stalls: Some(stalls),
@@ -199,8 +200,8 @@ mod tests {
         assert!((mean - expected).abs() < 8e-5, "{mean} s for {expected} s");
     }
 
-    /// What was read from a capture on a robot: Rayleigh 0.70 at 101 ms, where independent stalls
-    /// have less than 0.1, and 46 % of the intervals within 8 ms of a multiple of 100 ms.
+    /// Figures of a capture on a robot: Rayleigh 0.70 at 101 ms, where independent stalls have less
+    /// than 0.1, and 46 % of the intervals within 8 ms of a multiple of 100 ms.
     #[test]
     fn stalls_of_an_fer_come_on_its_grid() {
         let rayleigh = |found: &[(Duration, Duration)]| {

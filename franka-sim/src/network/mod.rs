@@ -6,16 +6,15 @@
 //!                     (rate, stalls)   (per packet)                   (reordering)
 //! ```
 //!
-//! Datagrams and the time go in; what arrives comes out. A [`Network`] has no clock, no socket and
-//! no randomness but its seed's: the same datagrams at the same times always arrive the same way.
-//! Its two directions are [`Path`]s of their own, each under its own [`Conditions`].
+//! Datagrams and the time go in, and datagrams come out. A [`Network`] has no clock and no socket,
+//! and no randomness except its seed: the same datagrams at the same times always arrive in the
+//! same way. Its two directions are separate [`Path`]s with separate [`Conditions`].
 //!
-//! Time is that of the caller, counted from any moment, and must not run backwards. The server
-//! feeds a network from its sockets ([`Sim::network`](crate::Sim::network)); tests feed it in
-//! virtual time.
+//! The caller's time counts from any moment and must not run backwards. The server feeds a network
+//! from its sockets ([`Sim::network`](crate::Sim::network)); tests feed it in virtual time.
 //!
-//! It is a model of datagrams only. The command connection (TCP) repairs what a network does to it,
-//! and passes by.
+//! It models datagrams only. The command connection (TCP) repairs its own losses and bypasses the
+//! model.
 
 mod conditions;
 mod line;
@@ -25,7 +24,7 @@ mod path;
 pub use conditions::{BurstLoss, Conditions, Loss, Reordering, Stalls};
 pub use path::{Delivery, Path, Tally};
 
-/// The way to the client and the way to the robot.
+/// The path to the client and the path to the robot.
 ///
 /// ```
 /// use std::time::Duration;
