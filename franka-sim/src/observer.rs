@@ -6,12 +6,12 @@ use franka_model::{CYCLE, Dynamics, JointVector, MassMatrix};
 /// safe reaction with the DLR-III lightweight manipulator arm", IROS 2006, section III).
 ///
 /// The generalised momentum `p = M dq` of the links obeys `dp/dt = τ + (dM/dt − C) dq − g + τ_ext`,
-/// with `τ` the torques between gears and links, which the joint sensors read. What the right side
-/// without `τ_ext` leaves open is the residual `r`, which follows `τ_ext` like a first-order
-/// low-pass: `dr/dt = gain (τ_ext − r)`. No acceleration is measured or computed.
+/// with `τ` the torques between gears and links, which the joint sensors read. The residual `r` is
+/// the difference that remains without `τ_ext`. It follows `τ_ext` like a first-order low-pass:
+/// `dr/dt = gain (τ_ext − r)`. No acceleration is measured or computed.
 ///
-/// `M`, `C` and `g` are those of the load that is *declared*: what else hangs on the flange, and
-/// what it takes to accelerate it, counts as external.
+/// `M`, `C` and `g` include the *declared* load. Any other load on the flange, and the force to
+/// accelerate it, count as external.
 #[derive(Debug, Clone)]
 pub(crate) struct MomentumObserver {
     residual: JointVector,
@@ -39,18 +39,17 @@ impl Instant {
 }
 
 impl MomentumObserver {
-    /// Of an arm that nothing touches.
+    /// Observer of an arm that nothing touches.
     pub(crate) fn new() -> Self {
         Self {
             residual: JointVector::zeros(),
         }
     }
 
-    /// Takes in one millisecond: the arm at both ends, the mean torque that the sensors read,
-    /// `[N·m]`. `gain` in `[1/s]`.
+    /// Processes one millisecond: the arm at both ends, and the mean sensor torque, `[N·m]`. `gain`
+    /// in `[1/s]`.
     ///
-    /// Backward Euler in the residual, the trapezoidal rule in all else, so that no gain is too
-    /// high.
+    /// Backward Euler in the residual, the trapezoidal rule elsewhere, so that no gain is too high.
     pub(crate) fn update(
         &mut self,
         before: &Instant,
@@ -64,7 +63,7 @@ impl MomentumObserver {
         self.residual = (self.residual + (momentum - explained) * gain) / (1.0 + gain * CYCLE);
     }
 
-    /// What the environment does to the joints, `[N·m]`.
+    /// Action of the environment on the joints, `[N·m]`.
     pub(crate) fn external_torque(&self) -> &JointVector {
         &self.residual
     }
@@ -81,7 +80,7 @@ mod tests {
         Instant::new(dq, &dynamics)
     }
 
-    /// Lets motors with rotors hold the arm up and dampen it while something pushes, and observes.
+    /// Observes while motors with rotors support and damp the arm and something pushes it.
     fn observe(push: &JointVector, gain: f64, milliseconds: usize) -> JointVector {
         let model = Model::fr3();
         let rotors = JointVector::repeat(0.1);

@@ -49,7 +49,7 @@ pub struct Network {
 }
 
 impl Network {
-    /// A network under these conditions. All its randomness is that of `seed`.
+    /// A network under these conditions. All its randomness comes from `seed`.
     pub fn new(seed: u64, to_client: Conditions, to_robot: Conditions) -> Self {
         Self {
             to_client: Path::new(to_client, seed),
@@ -62,8 +62,8 @@ impl Network {
         Self::new(0, Conditions::default(), Conditions::default())
     }
 
-    /// An FER on a cable of its own: what it sends waits out the stalls of its network interface
-    /// ([`Stalls::FER`]); what it is sent does not.
+    /// An FER on a separate cable. Its states wait for the end of the stalls of its network
+    /// interface ([`Stalls::FER`]); commands to it do not.
     pub fn fer(seed: u64) -> Self {
         Self::stalling(seed, Stalls::FER)
     }
@@ -78,7 +78,7 @@ impl Network {
         Self::new(seed, stalling, cable)
     }
 
-    /// Forgets what is under way, as when the client changes.
+    /// Discards the datagrams in transit, as when the client changes.
     pub fn clear(&mut self) {
         self.to_client.clear();
         self.to_robot.clear();

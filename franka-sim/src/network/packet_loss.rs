@@ -1,5 +1,4 @@
-//! Whether the next packet is lost, from a seed. What that does to a datagram of several packets:
-//! `path`.
+//! Loss of the next packet, from a seed. `path` applies it to datagrams of several packets.
 
 use super::conditions::Loss;
 use crate::noise::Random;
@@ -9,7 +8,7 @@ use crate::noise::Random;
 pub(super) struct Losses {
     loss: Loss,
     random: Random,
-    /// True if a burst is on.
+    /// True during a burst.
     bad: bool,
 }
 
@@ -22,7 +21,7 @@ impl Losses {
         }
     }
 
-    /// True if the next packet is.
+    /// True if the next packet is lost.
     pub(super) fn lose(&mut self) -> bool {
         match self.loss {
             Loss::Never => false,
@@ -60,7 +59,7 @@ mod tests {
     #[test]
     fn losses_have_the_rate_and_the_length_asked_for() {
         assert_eq!(measure(Loss::Never), (0.0, 0.0));
-        // Of independent losses, a run goes on with the probability of another one.
+        // With independent losses, a run continues with the probability of another loss.
         let (share, length) = measure(Loss::Independent(0.05));
         assert!((share - 0.05).abs() < 0.002, "{share}");
         assert!((length - 1.0 / 0.95).abs() < 0.02, "{length}");

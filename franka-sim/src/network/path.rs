@@ -1,5 +1,5 @@
 //! One direction of a network: datagrams are cut into packets (an FER's state into two IP
-//! fragments), and one that loses a fragment is lost as a whole.
+//! fragments), and a datagram that loses a fragment is lost as a whole.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -14,14 +14,14 @@ use crate::noise::Random;
 /// One direction of a network: carries datagrams, and delays, loses or repeats them.
 ///
 /// [`send`](Self::send) is the input, [`take`](Self::take) the output;
-/// [`next_arrival`](Self::next_arrival) says when there will be one. [`cut`](Self::cut) and
+/// [`next_arrival`](Self::next_arrival) returns the time of the next output. [`cut`](Self::cut) and
 /// [`drop_next`](Self::drop_next) make a fault certain instead of likely.
 #[derive(Debug, Clone)]
 pub struct Path {
     conditions: Conditions,
     line: Line,
     losses: Losses,
-    /// Of jitter, duplication and reordering.
+    /// Randomness of jitter, duplication and reordering.
     random: Random,
     cuts: Vec<Range<Duration>>,
     drop_next: u64,
@@ -33,9 +33,9 @@ pub struct Path {
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Delivery {
-    /// When.
+    /// Time of arrival.
     pub at: Duration,
-    /// What was sent.
+    /// The datagram as sent.
     pub datagram: Vec<u8>,
 }
 
@@ -53,9 +53,9 @@ pub struct Tally {
 }
 
 impl Path {
-    /// A path under these conditions. All its randomness is that of `seed`.
+    /// A path under these conditions. All its randomness comes from `seed`.
     pub fn new(conditions: Conditions, seed: u64) -> Self {
-        // Streams of their own: whether there is loss does not move the stalls.
+        // Separate streams: loss must not move the stalls.
         let mut seeds = Random::new(seed);
         Self {
             line: Line::new(&conditions, seeds.bits()),
@@ -69,27 +69,27 @@ impl Path {
         }
     }
 
-    /// What happens to datagrams.
+    /// Conditions for datagrams.
     pub fn conditions(&self) -> &Conditions {
         &self.conditions
     }
 
-    /// What has happened to them.
+    /// Counts of datagrams so far.
     pub fn tally(&self) -> Tally {
         self.tally
     }
 
-    /// Loses whatever leaves within `time`, its end excluded. Cuts add up.
+    /// Loses everything that leaves within `time`, its end excluded. Cuts add up.
     pub fn cut(&mut self, time: Range<Duration>) {
         self.cuts.push(time);
     }
 
-    /// Loses the next `count` datagrams, instead of what was left of an earlier count.
+    /// Loses the next `count` datagrams, instead of the rest of an earlier count.
     pub fn drop_next(&mut self, count: u64) {
         self.drop_next = count;
     }
 
-    /// Sends a datagram at `now`, which is not before the last one was sent.
+    /// Sends a datagram at `now`, which must not be before the last one.
     pub fn send(&mut self, now: Duration, datagram: &[u8]) {
         self.tally.sent += 1;
         let ready = match self.conditions.jitter {
@@ -98,7 +98,7 @@ impl Path {
         };
         let packets = packets(datagram.len());
         let left = self.line.carry(ready, on_the_wire(datagram.len()));
-        // Every packet, also when one is lost already: bursts go on.
+        // Draws for every packet, even if one is lost already: bursts continue.
         let lost = (0..packets).filter(|_| self.losses.lose()).count();
         self.cuts.retain(|cut| left < cut.end);
         let cut = self.cuts.iter().any(|cut| cut.contains(&left));
@@ -129,7 +129,7 @@ impl Path {
         }
     }
 
-    /// The first datagram of those that have arrived by `now`.
+    /// Returns the first datagram that has arrived by `now`.
     pub fn take(&mut self, now: Duration) -> Option<Delivery> {
         if self.next_arrival()? > now {
             return None;
@@ -138,12 +138,12 @@ impl Path {
         Some(Delivery { at, datagram })
     }
 
-    /// When the next of the datagrams arrives that are under way.
+    /// Arrival time of the next datagram in transit.
     pub fn next_arrival(&self) -> Option<Duration> {
         self.under_way.peek().map(|Reverse(first)| first.at)
     }
 
-    /// Forgets what is under way.
+    /// Discards the datagrams in transit.
     pub fn clear(&mut self) {
         self.under_way.clear();
     }
@@ -187,21 +187,22 @@ impl PartialEq for UnderWay {
 
 impl Eq for UnderWay {}
 
-/// IPv4 packets that a datagram of so many bytes becomes: a protocol 5 state two, all others one.
+/// Number of IPv4 packets for a datagram of this size in bytes: two for a protocol 5 state, one for
+/// all others.
 const fn packets(bytes: usize) -> usize {
     (UDP_HEADER + bytes).div_ceil(MTU - IP_HEADER)
 }
 
-/// Bytes that they take on Ethernet.
+/// Size on Ethernet, in bytes.
 const fn on_the_wire(bytes: usize) -> usize {
     UDP_HEADER + bytes + packets(bytes) * (IP_HEADER + ETHERNET)
 }
 
 /// Largest IP packet on Ethernet, `[byte]`.
 const MTU: usize = 1500;
-/// Without options (RFC 791), `[byte]`.
+/// IP header without options (RFC 791), `[byte]`.
 const IP_HEADER: usize = 20;
-/// RFC 768, `[byte]`.
+/// UDP header (RFC 768), `[byte]`.
 const UDP_HEADER: usize = 8;
 /// Preamble, header, checksum and gap of a frame (IEEE 802.3), `[byte]`.
 const ETHERNET: usize = 8 + 14 + 4 + 12;

@@ -6,10 +6,10 @@ use super::{DriveTrain, External, Plant, RigidArm};
 use crate::Tool;
 use crate::arm::{Arm, EndStops, Friction};
 
-/// The step that robots take, `[s]`.
+/// The robots' step, `[s]`.
 const STEP: f64 = 0.000_25;
 
-/// Nothing in the surroundings, and what hangs on it does.
+/// Plants without surroundings, with this load on the flange.
 fn plants(kind: RobotKind, arm: &Arm, load: Load) -> Vec<Box<dyn Plant>> {
     vec![
         Box::new(RigidArm::new(kind, arm, READY, load)),
@@ -24,7 +24,7 @@ fn plants(kind: RobotKind, arm: &Arm, load: Load) -> Vec<Box<dyn Plant>> {
     ]
 }
 
-/// Every kind of arm on every plant, bare and with a Hand, and what it is.
+/// Every kind of arm on every plant, bare and with a Hand, with its description.
 fn for_each(friction: Option<Friction>, test: impl Fn(&str, &mut Book)) {
     for kind in RobotKind::ALL {
         let mut arm = Arm::ideal(kind);
@@ -51,15 +51,15 @@ fn for_each(friction: Option<Friction>, test: impl Fn(&str, &mut Book)) {
     }
 }
 
-/// An arm, and the books of its energy, `[J]`.
+/// An arm and its energy balance, `[J]`.
 struct Book {
     model: &'static Model,
     load: Load,
     train: DriveTrain,
     plant: Box<dyn Plant>,
-    /// Since the beginning, which is at rest.
+    /// Change since the beginning at rest.
     potential: f64,
-    /// Of the motors.
+    /// Work of the motors.
     work: f64,
     /// The largest kinetic energy so far.
     turnover: f64,
@@ -78,7 +78,7 @@ impl Book {
         self.turnover = self.turnover.max(self.kinetic());
     }
 
-    /// Of links and rotors.
+    /// Kinetic energy of links and rotors.
     fn kinetic(&self) -> f64 {
         let (q, dq) = (self.plant.q(), self.plant.dq());
         let links = dq.dot(&(self.model.mass(q, &self.load) * dq));
@@ -86,7 +86,7 @@ impl Book {
         0.5 * (links + rotors)
     }
 
-    /// What carries the arm where it is, `[N·m]`.
+    /// Torques that support the arm in its position, `[N·m]`.
     fn weight(&self) -> JointVector {
         self.model
             .gravity(self.plant.q(), &self.load, &GRAVITY_EARTH)
@@ -104,14 +104,14 @@ impl Book {
         false
     }
 
-    /// What the arm has more than it was given.
+    /// Energy of the arm beyond the energy that it received.
     fn surplus(&self) -> f64 {
         self.kinetic() + self.potential - self.work
     }
 }
 
-/// Swings every joint, a little faster from joint to joint, on top of what carries the arm, and
-/// brings the motion back to the ready pose.
+/// Swings every joint, a little faster from joint to joint, on top of the torques that support the
+/// arm, and brings the motion back to the ready pose.
 fn swing(book: &Book, time: f64) -> JointVector {
     let strength = JointVector::from([6.0, 6.0, 6.0, 6.0, 1.0, 1.0, 0.5]);
     let phase = JointVector::from_fn(|i, _| (time * (2.0 + i as f64)).cos());
@@ -124,7 +124,7 @@ fn swing(book: &Book, time: f64) -> JointVector {
 fn a_fall_turns_potential_into_kinetic_energy_and_loses_none() {
     for_each(Some(Friction::NONE), |name, book| {
         let (mut worst, mut steps) = (0.0_f64, 0);
-        // For two seconds, or as long as it takes until the arm hits itself where it can.
+        // For two seconds, or until the arm hits itself if it can.
         while steps < 8000 && !book.is_touching() {
             worst = worst.max(book.surplus().abs());
             book.step(&JointVector::zeros(), STEP);
@@ -155,7 +155,7 @@ fn what_is_missing_or_left_over_is_the_steps_and_goes_with_them() {
         });
         let turnover = book.turnover;
         println!("{name}: {errors:?} J of {turnover} J");
-        // In the five seconds the motors give and take several times this much.
+        // In the five seconds the motors supply and absorb several times this energy.
         assert!(turnover > 0.3, "{name}: {turnover} J");
         assert!(errors[0] < 0.03 * turnover, "{name}: {errors:?} J");
         // The rule is of first order.
@@ -177,7 +177,7 @@ fn friction_takes_energy_and_gives_none() {
             let weight = book.weight();
             book.step(&weight, STEP);
             let surplus = book.surplus();
-            // But for the error of a step.
+            // Except for the error of a step.
             assert!(
                 surplus < least + 1e-4 * book.turnover,
                 "{name}: {surplus} J after {least} J"

@@ -1,14 +1,14 @@
-//! What acts on the links from outside.
+//! External action on the links.
 
 use franka_model::{JointVector, MassMatrix};
 
-/// What acts on the links from outside over one step: `torque − slope · q̈`.
+/// External action on the links over one step: `torque − slope · q̈`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct External {
     /// Positive torques push the joint towards positive angles, `[N·m]`.
     pub torque: JointVector,
-    /// Of what resists the way and the velocity that the links gain in the step, as springs and
-    /// dampers do, `[kg·m²]`: symmetric, positive semidefinite. `None` if nothing does.
+    /// Resistance to the displacement and the velocity that the links gain in the step, as from
+    /// springs and dampers, `[kg·m²]`: symmetric, positive semidefinite. `None` for no resistance.
     pub slope: Option<MassMatrix>,
 }
 
@@ -25,11 +25,11 @@ impl External {
         let Some(slope) = self.slope else {
             return JointVector::zeros();
         };
-        // What is added makes a matrix that is diagonally dominant.
+        // The added matrix makes the difference diagonally dominant.
         JointVector::from_fn(|i, _| slope.row(i).iter().map(|s| s.abs()).sum())
     }
 
-    /// With something more that acts.
+    /// Adds another external action.
     pub(crate) fn and(self, other: &Self) -> Self {
         let slope = match (self.slope, other.slope) {
             (Some(one), Some(another)) => Some(one + another),
@@ -43,7 +43,7 @@ impl External {
 }
 
 impl From<JointVector> for External {
-    /// Torques that nothing changes.
+    /// Constant torques.
     fn from(torque: JointVector) -> Self {
         Self {
             torque,

@@ -1,11 +1,12 @@
 //! The physics under the robot's controllers.
 //!
-//! A [`DriveTrain`] turns commanded torques into torques on the links, a [`Plant`] those into
-//! motion. Nothing in it knows of the protocol, of desired values or of the controllers' model: it
-//! may carry a load that is not declared.
+//! A [`DriveTrain`] turns commanded torques into torques on the links, and a [`Plant`] turns those
+//! into motion. Both are independent of the protocol, of desired values and of the controllers'
+//! model. The plant may carry an undeclared load.
 //!
 //! [`RigidArm`] is the arm alone, by the equations of `franka-model`. `MujocoArm` (feature
-//! `mujoco`) has surroundings that it touches, and fingers. Away from contact they move alike.
+//! `mujoco`) has surroundings that it touches, and fingers. Without contact both move in the same
+//! way.
 
 mod drive;
 #[cfg(test)]
@@ -33,7 +34,7 @@ use crate::arm::Arm;
 /// Steps of the plant, and of the innermost control loops, per millisecond.
 pub(crate) const STEPS: u32 = 4;
 
-/// The links of an arm of seven joints, and what is around them.
+/// The links of an arm of seven joints, and their surroundings.
 ///
 /// The robot calls [`step`](Self::step) several times per millisecond, through a [`DriveTrain`],
 /// each time with the torques that its controllers compute from the newest positions and
@@ -48,22 +49,22 @@ pub trait Plant: Any + Debug + Send {
     /// Joint velocities, `[rad/s]`.
     fn dq(&self) -> &JointVector;
 
-    /// Takes links, axes, gravity and end stops from `arm`.
+    /// Copies links, axes, gravity and end stops from `arm`.
     fn fit(&mut self, kind: RobotKind, arm: &Arm);
 
-    /// Advances by `dt` seconds under the torques of the drives and under those from outside. What
-    /// touches the arm in the plant itself comes on top.
+    /// Advances by `dt` seconds under the torques of the drives and external torques. The plant
+    /// adds contact with its own objects.
     fn step(&mut self, drive: &LinkTorque, external: &External, dt: f64);
 
     /// Puts the arm at rest at `q`, `[rad]`, and returns the torques that hold it there against
     /// gravity, `[N·m]`.
     fn place(&mut self, q: &JointVector) -> JointVector;
 
-    /// Replaces what the flange really carries.
+    /// Replaces the true load of the flange.
     fn attach(&mut self, load: Load);
 
-    /// Drives the fingers on the flange from the next step on, and returns how far they are apart,
-    /// `[m]`; `None` if the plant has no fingers.
+    /// Drives the fingers on the flange from the next step on, and returns the distance between
+    /// them, `[m]`; `None` if the plant has no fingers.
     fn drive_fingers(&mut self, _drive: &FingerDrive) -> Option<f64> {
         None
     }

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use super::{External, LinkTorque, Plant};
 use crate::arm::{Arm, EndStops};
 
-/// Rigid links that nothing is around.
+/// Rigid links without surroundings.
 ///
 /// Each step solves, for the acceleration `a`,
 ///
@@ -14,11 +14,11 @@ use crate::arm::{Arm, EndStops};
 /// (M + inertia + slope + h·D + h²·K) a = torque + external − C dq − g − stops(q + h·dq, dq)
 /// ```
 ///
-/// with the torque and the inertia of the drives, the torque and the slope of what touches the
-/// links, `D` the damping of drives and stops and `K` the stops' stiffness, then advances velocity
-/// before position. That is the implicit Euler rule for what is stiff (friction at rest, end stops,
-/// springs of touches) and the symplectic one for the rest, so the step stays stable however stiff
-/// those are, and a free arm keeps its energy (see the tests in `plant::energy`).
+/// The torque and the inertia come from the drives, the second torque and the slope from external
+/// action. `D` is the damping of drives and stops, and `K` the stops' stiffness. The velocity
+/// advances before the position. Stiff parts (friction at rest, end stops, springs of touches) thus
+/// follow the implicit Euler rule, and the rest follows the symplectic rule. The step stays stable
+/// for any stiffness, and a free arm keeps its energy (see the tests in `plant::energy`).
 #[derive(Debug)]
 pub struct RigidArm {
     model: AsBuilt,
@@ -75,7 +75,7 @@ impl Plant for RigidArm {
                 &self.gravity_earth,
                 &armature,
             )
-            // No acceleration solves the equation. The robot notices non-finite values and stops.
+            // No acceleration solves the equation. The robot detects non-finite values and stops.
             .unwrap_or_else(|| JointVector::repeat(f64::NAN));
         self.dq += ddq * dt;
         self.q += self.dq * dt;

@@ -5,7 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::signal::halves;
 
-/// What the boards of links 0 to 5 do. Each is taken to sit at the origin of its link's frame.
+/// Motion of the boards of links 0 to 5. Each board is assumed to be at the origin of its link's
+/// frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Boards {
     boards: [Board; 6],
@@ -13,16 +14,16 @@ pub(super) struct Boards {
 
 #[derive(Debug, Clone, Copy)]
 struct Board {
-    /// From the board's link to base axes.
+    /// Rotation from the board's link to base axes.
     rotation: Matrix3<f64>,
     /// `[m/s]`, in base axes.
     velocity: Vector3<f64>,
-    /// Acceleration less that of gravity, `[m/s²]`, in base axes.
+    /// Acceleration less gravity, `[m/s²]`, in base axes.
     felt: Vector3<f64>,
 }
 
 impl Boards {
-    /// Of an arm at rest at `q`, `[rad]`.
+    /// Boards of an arm at rest at `q`, `[rad]`.
     pub(super) fn resting(model: &Model, q: &JointVector) -> Self {
         let board = Board {
             rotation: Matrix3::identity(),
@@ -34,10 +35,10 @@ impl Boards {
         boards
     }
 
-    /// A millisecond later, at `q`, `[rad]`, with `dq`, `[rad/s]`.
+    /// Advances by a millisecond, to `q`, `[rad]`, with `dq`, `[rad/s]`.
     pub(super) fn advance(&mut self, model: &Model, q: &JointVector, dq: &JointVector) {
         let frames = EndEffector::default();
-        // Board 0 stands still.
+        // Board 0 does not move.
         for (board, frame) in self.boards[1..].iter_mut().zip(Frame::ALL) {
             let (velocity, _) = halves(&(model.zero_jacobian(frame, q, &frames) * dq));
             let pose = model.pose(frame, q, &frames);
@@ -47,7 +48,7 @@ impl Boards {
         }
     }
 
-    /// What the two sensors of each board read, top and bottom, in their own axes, `[m/s²]`.
+    /// Readings of the two sensors of each board, top and bottom, in their own axes, `[m/s²]`.
     pub(super) fn read(&self) -> ([[f32; 3]; 6], [[f32; 3]; 6]) {
         let (mut top, mut bottom) = ([[0.0; 3]; 6], [[0.0; 3]; 6]);
         for (i, board) in self.boards.iter().enumerate() {
@@ -60,7 +61,7 @@ impl Boards {
     }
 }
 
-/// How a sensor's axes are turned about the x axis of its link.
+/// Rotation of a sensor's axes about the x axis of its link.
 #[derive(Debug, Clone, Copy)]
 enum Turn {
     None,

@@ -1,4 +1,4 @@
-//! Motion, reflex, user stop and recovery: which mode the robot is in, and why.
+//! Motion, reflex, user stop and recovery: the robot's mode and its reason.
 //!
 //! ```text
 //!            Move                    finish, StopMove
@@ -61,7 +61,7 @@ impl Robot {
         if let Some(status) = refusal {
             return self.reply(id, Reply::Move(status));
         }
-        // A second motion takes the place of the first.
+        // A second motion replaces the first.
         self.end_motion(MoveStatus::Preempted);
         if let Some((id, _)) = self.waiting.replace((id, request)) {
             self.reply(id, Reply::Move(MoveStatus::Preempted));
@@ -90,8 +90,8 @@ impl Robot {
         positive && combination && asynchronous
     }
 
-    /// Begins the motion that waits, if the arm is at rest; state `first_state` is the first to
-    /// show it.
+    /// Begins the waiting motion, if the arm is at rest; state `first_state` is the first to show
+    /// it.
     fn start_waiting(&mut self, first_state: u64) {
         if !matches!(self.activity, Activity::Holding) {
             return;
@@ -166,7 +166,7 @@ impl Robot {
         }
     }
 
-    /// Ends the motion under way, if any: final reply, and the arm comes to rest by itself.
+    /// Ends the motion under way, if any: sends the final reply and brakes the arm.
     pub(super) fn end_motion(&mut self, status: MoveStatus) {
         let Activity::Moving(motion) = &self.activity else {
             return;
@@ -223,7 +223,7 @@ impl Robot {
         }
     }
 
-    /// Checks on the arm itself, and on what touches it.
+    /// Checks on the arm and on contact with it.
     pub(super) fn supervise(&mut self) {
         let moving = self.is_moving();
         let ddq = match &self.activity {
@@ -315,7 +315,7 @@ impl Robot {
         shift > bound.translation || turn > bound.rotation || elbow > bound.elbow
     }
 
-    /// What waits for the arm to be at rest.
+    /// Continues the requests that wait for the arm to be at rest.
     pub(super) fn settle(&mut self) {
         if !matches!(self.activity, Activity::Holding | Activity::Guided(_)) {
             return;
@@ -324,13 +324,13 @@ impl Robot {
             self.reply(id, Reply::StopMove(StopStatus::Success));
         }
         self.end_recovery();
-        // The state of this millisecond is still to be published, and shows the motion already.
+        // The state of this millisecond has not been published yet, and shows the motion already.
         self.start_waiting(self.clock);
     }
 }
 
-// None of these figures is published for the robot. Where nothing else is said they are choices of
+// None of these figures is published for the robot. Unless noted otherwise, they are choices of
 // this simulator.
 
-/// How far measured velocities may be outside their envelope, `[rad/s]`.
+/// Tolerance of measured velocities outside their envelope, `[rad/s]`.
 const VELOCITY_MARGIN: f64 = 0.1;

@@ -16,7 +16,7 @@ use crate::observer::Instant;
 use crate::plant::STEPS;
 use crate::signal::JointSignal;
 
-/// What the sensors read over the last millisecond.
+/// Sensor readings over the last millisecond.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Measurement {
     /// `q`, `[rad]`.
@@ -29,14 +29,14 @@ pub(super) struct Measurement {
     pub(super) torque_rate: JointVector,
     /// Mean joint acceleration, `[rad/s²]`.
     pub(super) ddq: JointVector,
-    /// What `q` is off the arm's, `[rad]`.
+    /// Error of `q` against the arm's true position, `[rad]`.
     q_error: JointVector,
-    /// What `dq` is off the arm's, `[rad/s]`.
+    /// Error of `dq` against the arm's true velocity, `[rad/s]`.
     dq_error: JointVector,
 }
 
 impl Measurement {
-    /// An arm that has always been still.
+    /// Readings for an arm that has always been at rest.
     pub(super) fn resting(q: &JointVector, holding: &JointVector, sensors: &Sensors) -> Self {
         Self {
             q: *q,
@@ -53,8 +53,9 @@ impl Measurement {
 impl Robot {
     /// Drives the arm for one millisecond; returns the controller's last torques, gravity excluded.
     ///
-    /// An arm whose control or physics diverge is put back at rest where it was, with
-    /// `instability_detected`: a non-finite number would stay in it for all later clients.
+    /// An arm whose control or physics diverges is put back at rest in its last position, with
+    /// `instability_detected`. Otherwise a non-finite number would stay in it for all later
+    /// clients.
     pub(super) fn control(&mut self) -> JointVector {
         let before = *self.plant.q();
         let torque = self.drive();
@@ -67,7 +68,7 @@ impl Robot {
         JointVector::zeros()
     }
 
-    /// True if the arm is one that physics allows: finite, and at velocities below
+    /// True if the arm is in a physically possible state: finite, and at velocities below
     /// [`VELOCITY_MAX`].
     fn is_physical(&self) -> bool {
         let Measurement { torque, ddq, .. } = &self.measurement;
@@ -102,7 +103,7 @@ impl Robot {
             true => self.interface.delayed(law.feedforward),
             false => law.feedforward,
         };
-        // The robot's own controllers are closed around the motors. Brakes measure nothing.
+        // The robot's own controllers close their loops around the motors. Brakes measure nothing.
         let deflection = self.train.deflection(&self.dynamics.gravity);
         let (q_error, dq_error) = match self.are_brakes_holding() {
             true => (JointVector::zeros(), JointVector::zeros()),
@@ -136,7 +137,7 @@ impl Robot {
             _ => false,
         };
         if is_led {
-            // Nothing generates a motion: what is desired is what happens.
+            // No generator runs: the desired motion is the measured one.
             self.desired.joints = self.measured_signal();
             let arm = ArmModel::new(self.kind, &self.model, &self.settings.frames, &self.config);
             self.desired.follow_joints(&arm);
@@ -144,7 +145,7 @@ impl Robot {
         torque
     }
 
-    /// What the robot desires by itself: a stop goes on, a recovery leads back.
+    /// Advances the robot's own desired motion: a stop continues, a recovery moves back.
     fn advance_desired(&mut self) {
         match &mut self.activity {
             Activity::Braking(brake) => {
@@ -163,13 +164,13 @@ impl Robot {
         self.desired.follow_joints(&arm);
     }
 
-    /// True if the brakes stand between motors and links: they close when the arm has come to rest.
+    /// True if the brakes hold the motors to the links: they close when the arm has stopped.
     fn are_brakes_holding(&self) -> bool {
         self.frozen.is_some()
             || self.lock.brakes_closed && matches!(self.activity, Activity::Holding)
     }
 
-    /// Recomputes what depends on frames and load.
+    /// Recomputes everything that depends on frames and load.
     pub(super) fn refresh_dynamics(&mut self) {
         self.dynamics = self.model.dynamics(
             &self.measurement.q,
@@ -194,7 +195,8 @@ impl Robot {
             Activity::Moving(motion) => motion,
             Activity::Guided(guidance) => return self.guiding_law(guidance),
             _ if self.are_brakes_holding() => return joint(&BRAKE_STIFFNESS),
-            // Holding and braking are the robot's own business: a soft setting does not weaken it.
+            // Holding and braking do not use the client's settings: a soft setting must not weaken
+            // them.
             _ => return joint(&self.config.unpublished.joint_stiffness),
         };
         match motion.request().controller {
@@ -216,10 +218,10 @@ impl Robot {
         }
     }
 
-    /// Gravity compensation with a light damper, and springs in the directions that are locked.
+    /// Gravity compensation with a light damper, and springs in the locked directions.
     fn guiding_law(&self, guidance: &Guidance) -> Law {
         let guiding = &self.settings.guiding;
-        // The axes are those of the end effector, whatever the stiffness frame is.
+        // The axes are the end effector's, not the stiffness frame's.
         let frames = EndEffector {
             ee_t_k: Matrix4::identity(),
             ..self.settings.frames
@@ -244,7 +246,7 @@ impl Robot {
         law
     }
 
-    /// The desired joints with derivatives that the arm can have. They always can unless limits are
+    /// The desired joints with derivatives that the arm can have. These differ only if limits are
     /// not enforced: then a jump in position must not become a blow of feedforward torque.
     fn attainable(&self) -> JointSignal {
         let limits = self.model.joint_limits();
@@ -263,7 +265,7 @@ impl Robot {
         }
     }
 
-    /// Takes in the mean sensor torque of the millisecond that began with joint velocities `dq`.
+    /// Records the mean sensor torque of the millisecond that began with joint velocities `dq`.
     fn measure(&mut self, sensed: &JointVector, dq: &JointVector) {
         let sensors = &self.arm.sensors;
         let noise = self.random.joints(&sensors.torque_noise(self.plant.dq()));
@@ -295,8 +297,8 @@ impl Robot {
         }
     }
 
-    /// The reference from which a stop begins: the desired motion where the arm follows it, else
-    /// the arm's own.
+    /// The reference from which a stop begins: the desired motion if the arm follows it, otherwise
+    /// the arm's own motion.
     pub(super) fn brake_start(&self, follows_desired: bool) -> JointSignal {
         let measured = self.measured_signal();
         let desired = &self.desired.joints;
@@ -308,20 +310,20 @@ impl Robot {
     }
 }
 
-/// Joint velocity that no arm reaches, `[rad/s]`: physics has diverged beyond it.
+/// Joint velocity that no arm reaches, `[rad/s]`. Beyond it physics has diverged.
 const VELOCITY_MAX: f64 = 1e3;
 
-/// What closed brakes amount to, `[N·m/rad]`: as stiff as the internal controller can be set.
+/// Stiffness of closed brakes, `[N·m/rad]`: the highest stiffness of the internal controller.
 const BRAKE_STIFFNESS: JointVector = joint_vector([14_250.0; 7]);
 
-/// Of a guided arm, `[N·m·s/rad]`, so that it comes to rest when nothing pushes it: a choice.
+/// Damping of a guided arm, `[N·m·s/rad]`, so that it stops when nothing pushes it: a choice.
 const GUIDING_DAMPING: JointVector = joint_vector([2.0, 2.0, 2.0, 2.0, 0.5, 0.5, 0.5]);
 
-/// Stiffness of locked directions of a guided arm, `[N/m, N·m/rad]`: the most that the Cartesian
-/// controller can be set to.
+/// Stiffness of locked directions of a guided arm, `[N/m, N·m/rad]`: the highest setting of the
+/// Cartesian controller.
 const LOCKED: [f64; 6] = [3000.0, 3000.0, 3000.0, 300.0, 300.0, 300.0];
 
-/// And of a locked elbow, `[N·m/rad]`.
+/// Stiffness of a locked elbow, `[N·m/rad]`.
 const LOCKED_ELBOW: f64 = 300.0;
 
 /// Up to this tracking error a stop continues the desired motion, `[rad]`.

@@ -1,4 +1,4 @@
-//! What a person beside the robot can do to the arm: push it, hold it, hang a load on it. The stop,
+//! Actions of a person next to the robot on the arm: pushing, holding, adding a load. The stop,
 //! brakes and buttons are in [`operation`](super::operation).
 
 use franka_model::{Frame, JointVector, Load, Wrench, transform};
@@ -17,19 +17,19 @@ use crate::observer::MomentumObserver;
 use crate::plant::DriveTrain;
 
 impl Robot {
-    /// Lets something act on the arm from outside; see [`Touch`].
+    /// Starts an external action on the arm; see [`Touch`].
     pub fn touch(&mut self, touch: Touch) -> TouchId {
         self.touches.add(touch, self.clock)
     }
 
-    /// Ends a touch. False if it has ended before.
+    /// Ends a touch. Returns false if it has already ended.
     pub fn release(&mut self, touch: TouchId) -> bool {
         self.touches.remove(touch)
     }
 
-    /// What a touch has done to the arm in the last millisecond, on the mean: a wrench
-    /// `[force; torque]` about the place that is touched, base axes, `[N, N·m]`. None once it has
-    /// ended; of torques on joints it is zero.
+    /// Mean effect of a touch on the arm in the last millisecond: a wrench `[force; torque]` about
+    /// the touched point, base axes, `[N, N·m]`. `None` once the touch has ended. It is zero for
+    /// torques on joints.
     pub fn felt(&self, touch: TouchId) -> Option<Wrench> {
         self.touches.felt(touch)
     }
@@ -39,17 +39,17 @@ impl Robot {
         self.touches.clear();
     }
 
-    /// [`Touch::torque`] for so many milliseconds.
+    /// Applies [`Touch::torque`] for `duration` milliseconds.
     pub fn push_joints(&mut self, torque: JointVector, duration: u64) {
         self.touch(Touch::torque(torque).lasting(duration));
     }
 
-    /// [`Touch::wrench`] on the end effector for so many milliseconds.
+    /// Applies [`Touch::wrench`] to the end effector for `duration` milliseconds.
     pub fn push_end_effector(&mut self, wrench: Wrench, duration: u64) {
         self.touch(Touch::wrench(wrench).lasting(duration));
     }
 
-    /// Puts the arm at rest at `q`, `[rad]`, as if someone had guided it there. A motion under way
+    /// Puts the arm at rest at `q`, `[rad]`, as if a person had guided it there. A motion under way
     /// ends as by a stop.
     pub fn place(&mut self, q: &JointVector) {
         self.forget_motion(MoveStatus::Preempted);
@@ -68,18 +68,18 @@ impl Robot {
         self.boards = Boards::resting(&self.model, q);
     }
 
-    /// Hangs a load on the flange, beside the tool and in place of any before, without telling the
-    /// robot. [`Load::NONE`] takes it off.
+    /// Adds a load to the flange, besides the tool and in place of any earlier one, without
+    /// informing the robot. [`Load::NONE`] removes it.
     pub fn attach(&mut self, load: Load) {
         self.load = load;
         self.plant
             .attach(self.arm.body.load(&self.config.tool.load, &load));
     }
 
-    /// Puts another arm in place of this one, at rest where this one stands and with its load, as
-    /// [`place`](Self::place) does. Tool, settings, client and errors stay, and so do the joint
-    /// limits and the geometry of the states, which clients have read. The [stalls](Arm::stalls) of
-    /// its network interface are not its own here: see
+    /// Puts another arm in place of this one, at rest in the position of this one and with its
+    /// load, as [`place`](Self::place) does. Tool, settings, client and errors stay, and so do the
+    /// joint limits and the geometry of the states, which clients have read. The
+    /// [stalls](Arm::stalls) of its network interface do not change here: see
     /// [`Running::with_network`](crate::Running::with_network).
     pub fn fit(&mut self, arm: Arm) {
         let limits = self.arm.limits;
@@ -97,8 +97,8 @@ impl Robot {
         self.place(&q);
     }
 
-    /// Passes the command of `hand` to the fingers of the plant, if it has some, and their width to
-    /// `hand`. To be called once per millisecond, between this robot's [`tick`](Self::tick) and the
+    /// Passes the command of `hand` to the fingers of the plant, if it has any, and their width to
+    /// `hand`. Call it once per millisecond, between this robot's [`tick`](Self::tick) and the
     /// hand's.
     pub fn couple(&mut self, hand: &mut Hand) {
         let fingers = hand.mechanism_mut();
@@ -107,14 +107,14 @@ impl Robot {
         }
     }
 
-    /// True pose of the end effector in the base frame: of the arm as it was built, which
-    /// `O_T_EE` does not know.
+    /// True pose of the end effector in the base frame. It uses the arm as built, unknown to
+    /// `O_T_EE`.
     pub fn true_pose(&self) -> Isometry3<f64> {
         let frames = &self.settings.frames;
         let pose = self
             .as_built
             .pose(Frame::EndEffector, self.plant.q(), frames);
-        // Frames are rigid transforms: setters refuse anything else.
+        // Frames are rigid transforms: setters refuse all others.
         transform::isometry(&pose).unwrap_or_else(Isometry3::identity)
     }
 

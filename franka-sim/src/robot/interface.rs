@@ -1,4 +1,4 @@
-//! The way of an external controller's torques to the drives.
+//! The path of an external controller's torques to the drives.
 
 use std::collections::VecDeque;
 
@@ -6,12 +6,12 @@ use franka_model::JointVector;
 
 use crate::arm::Drive;
 
-/// Delay and lag of the torque interface. The robot's own controllers are closed around the motors
-/// and have neither.
+/// Delay and lag of the torque interface. The robot's own controllers close their loops around the
+/// motors and have neither.
 #[derive(Debug, Clone)]
 pub(super) struct TorqueInterface {
-    /// Commands that do not act yet, the oldest first: as many as there are cycles of delay beyond
-    /// the protocol's one.
+    /// Commands that do not act yet, the oldest first. Their number is the delay in cycles beyond
+    /// the protocol's single cycle.
     pending: VecDeque<JointVector>,
     /// `[s]`
     lag: f64,
@@ -29,13 +29,13 @@ impl TorqueInterface {
         }
     }
 
-    /// Forgets all torques: nothing commands.
+    /// Discards all torques: no command is active.
     pub(super) fn clear(&mut self) {
         self.pending.iter_mut().for_each(|torque| torque.fill(0.0));
         self.torque = JointVector::zeros();
     }
 
-    /// Takes the command of a cycle, and returns the one that acts in it, `[N·m]`.
+    /// Accepts the command of a cycle, and returns the command that acts in it, `[N·m]`.
     pub(super) fn delayed(&mut self, command: JointVector) -> JointVector {
         self.pending.push_back(command);
         self.pending.pop_front().unwrap_or(command)

@@ -6,10 +6,10 @@
 //! datagrams ── command() ──> the newest command ────┘    tick()   plant   └──> tick(): datagram
 //! ```
 //!
-//! There is no clock, socket, thread or log in here. Its driver calls, per millisecond:
+//! The robot has no clock, socket, thread or log. Its driver calls, per millisecond:
 //!
 //! 1. [`command`](Robot::command) for each datagram, [`receive`](Robot::receive) for stream bytes,
-//!    and after each `receive` sends what [`take_reply`](Robot::take_reply) has;
+//!    and after each `receive` sends the replies from [`take_reply`](Robot::take_reply);
 //! 2. [`tick`](Robot::tick), and sends its datagram **before** the replies that follow: a reply
 //!    like `kReflexAborted` must not overtake the state that explains it.
 
@@ -67,13 +67,13 @@ pub struct Robot {
     kind: &'static Description,
     /// The controllers' model.
     model: Model,
-    /// The arm as it is, and what that makes of its links and axes.
+    /// The arm as configured, and the links and axes that result from it.
     arm: Arm,
     as_built: AsBuilt,
     train: DriveTrain,
     interface: TorqueInterface,
     plant: Box<dyn Plant>,
-    /// What the flange carries beside the tool, undeclared.
+    /// Undeclared load on the flange besides the tool.
     load: Load,
     /// URDF text.
     description: Option<Bytes>,
@@ -87,9 +87,9 @@ pub struct Robot {
     clock: u64,
 
     activity: Activity,
-    /// A `Move` that begins as soon as the arm has come to rest.
+    /// A `Move` that begins as soon as the arm has stopped.
     waiting: Option<(CommandId, MoveRequest)>,
-    /// `StopMove`s to answer as soon as the arm has come to rest.
+    /// `StopMove`s to answer as soon as the arm has stopped.
     stops: Vec<CommandId>,
     recovery: Option<Recovery>,
     lock: Lock,
@@ -101,7 +101,7 @@ pub struct Robot {
     observer: MomentumObserver,
     estimate: Estimate,
     measurement: Measurement,
-    /// At the measured state, with the declared load.
+    /// Dynamics at the measured state, with the declared load.
     dynamics: Dynamics,
     boards: Boards,
     watch: Watch,
@@ -112,17 +112,17 @@ pub struct Robot {
     datagram: [u8; RobotState::MAX_SIZE],
 }
 
-/// What the arm is doing.
-// There is one value of it: the size of its largest variant does not matter.
+/// Activity of the arm.
+// Only one value exists, so the size of its largest variant does not matter.
 #[allow(clippy::large_enum_variant)]
 enum Activity {
-    /// Standing at the desired position.
+    /// At rest at the desired position.
     Holding,
-    /// Coming to rest by itself.
+    /// Braking to rest.
     Braking(Brake),
     /// Following a client.
     Moving(ActiveMotion),
-    /// Going where a hand guides it.
+    /// Guided by a hand.
     Guided(Guidance),
 }
 
@@ -133,8 +133,8 @@ impl Robot {
         Self::with_plant(config, Box::new(plant))
     }
 
-    /// A robot whose controllers' model is that of `config.kind`, and that moves `plant`: it is
-    /// fitted with the configured arm and placed at rest in the configured position, with the
+    /// A robot that moves `plant`, and whose controllers' model belongs to `config.kind`. The plant
+    /// receives the configured arm and is placed at rest in the configured position, with the
     /// configured tool and payload.
     pub fn with_plant(config: Config, mut plant: Box<dyn Plant>) -> Self {
         let arm = config.chosen_arm();
@@ -194,12 +194,11 @@ impl Robot {
         robot
     }
 
-    /// Takes a UDP datagram of the client.
+    /// Accepts a UDP datagram of the client.
     ///
-    /// It counts if it answers the newest state and is the first to do so; everything else is
-    /// dropped, as is an invalid datagram. Losses count from the first
-    /// command on, even if it is late. Of the targets of an asynchronous motion, which answer
-    /// no state, the last one counts.
+    /// A command counts if it is the first answer to the newest state. All other datagrams, and
+    /// invalid ones, are dropped. Losses count from the first command on, even if it is late. The
+    /// targets of an asynchronous motion do not answer a state; the last one counts.
     pub fn command(&mut self, datagram: &[u8]) {
         let Ok(command) = RobotCommand::decode(self.version(), datagram) else {
             return;
@@ -218,7 +217,7 @@ impl Robot {
         }
     }
 
-    /// The command that the newest state asks for and that has not come.
+    /// The command for the newest state, if it has not come.
     pub(crate) fn awaits(&self) -> Awaited {
         match &self.activity {
             Activity::Moving(motion) if self.command.is_none() => motion.awaits(),
@@ -226,7 +225,7 @@ impl Robot {
         }
     }
 
-    /// Advances by one millisecond and returns the state to send, if a client is there.
+    /// Advances by one millisecond and returns the state to send, if a client is connected.
     pub fn tick(&mut self) -> Option<Datagram<'_>> {
         self.clock += 1;
         self.run_motion();
@@ -235,7 +234,7 @@ impl Robot {
         self.settle();
         self.publish(&torque);
         let port = self.client.as_ref()?.udp_port()?;
-        // The buffer has room for every version, and no state uses what its version lacks.
+        // The buffer fits every version, and no state uses fields that its version lacks.
         let version = self.version();
         let length = self.state.encode(version, &mut self.datagram).ok()?;
         Some(Datagram {
@@ -244,18 +243,17 @@ impl Robot {
         })
     }
 
-    /// The UDP port that the client announced: where its states go, and where its commands come
-    /// from.
+    /// The UDP port that the client announced, for its states and its commands.
     pub fn udp_port(&self) -> Option<u16> {
         self.client.as_ref()?.udp_port()
     }
 
-    /// The last state, as the client sees it apart from the wire's rounding.
+    /// The last state, as the client sees it except for the wire's rounding.
     pub fn state(&self) -> &RobotState {
         &self.state
     }
 
-    /// How the robot was made, but for an arm that was [fitted](Self::fit) since.
+    /// The robot's configuration, without an arm that was [fitted](Self::fit) later.
     pub fn config(&self) -> &Config {
         &self.config
     }
@@ -279,7 +277,7 @@ impl Robot {
         self.plant.as_mut()
     }
 
-    /// The model that the robot's controllers compute with, and the joint limits that it enforces.
+    /// The model of the robot's controllers, with the joint limits that it enforces.
     pub fn model(&self) -> &Model {
         &self.model
     }
@@ -302,7 +300,7 @@ impl Robot {
         matches!(self.activity, Activity::Moving(_))
     }
 
-    /// Where the desired joints would be if they were where the arm is.
+    /// The desired joint signal that corresponds to the arm's motion.
     fn measured_signal(&self) -> JointSignal {
         JointSignal {
             dq: self.measurement.dq,
@@ -311,7 +309,7 @@ impl Robot {
     }
 }
 
-/// What the robot serves as its description.
+/// Returns the description that the robot serves.
 fn description(kind: &Description, config: &Config, model: &Model) -> Option<Bytes> {
     let name = kind.urdf_name?;
     Some(match &config.urdf {

@@ -1,5 +1,5 @@
-//! A motion under way: which commands count (late ones do not), what a lost one does, and how it
-//! ends.
+//! A motion under way: the commands that count (late ones do not), the effect of a lost one, and
+//! the end of the motion.
 
 use franka_model::limits::JointLimits;
 use franka_model::{CYCLE, JointVector};
@@ -14,40 +14,40 @@ use crate::generator::{ArmModel, Desired, Input, PointToPoint, advance};
 use crate::signal::JointSignal;
 use crate::success_rate::{LOST_LIMIT, SuccessRate};
 
-/// Between `kMotionStarted` and the final reply to a `Move`.
+/// A motion between `kMotionStarted` and the final reply to a `Move`.
 #[derive(Debug, Clone)]
 pub(super) struct ActiveMotion {
     id: CommandId,
     request: MoveRequest,
     /// `message_id` of the first state that shows the motion. Commands that answer earlier states
-    /// belong to the motion before.
+    /// belong to the previous motion.
     first_state: u64,
     success_rate: SuccessRate,
-    /// Whether a command has come, in time or not.
+    /// True if a command has come, in time or not.
     is_answered: bool,
-    /// True if one has come in time.
+    /// True if a command has come in time.
     is_begun: bool,
     /// `tau_J_d`: the last torques accepted, zero before the first, `[N·m]`.
     torque: JointVector,
     /// True if the last cycle had no command, so that the generator did not advance.
     paused: bool,
-    /// In place of one command per cycle.
+    /// The generator of an asynchronous motion, in place of one command per cycle.
     asynchronous: Option<PointToPoint>,
 }
 
-/// What the newest state asks of the client.
+/// The command that the newest state requires of the client.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Awaited {
-    /// No command, or one that has come already.
+    /// No command, or it has already come.
     Nothing,
-    /// The first one of a motion: a client may look at several states before, and none of them is
-    /// lost.
+    /// The first command of a motion. A client may look at several states before, and none of them
+    /// is lost.
     First,
-    /// One more. Without it the cycle is lost.
+    /// A later command. Without it the cycle is lost.
     Next,
 }
 
-/// Which violations end a motion.
+/// Violations that end a motion.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rules {
     pub(super) limits: bool,
@@ -57,14 +57,14 @@ pub(super) struct Rules {
     pub(super) finish_velocity: f64,
 }
 
-/// What became of a motion in one cycle.
+/// Result of one cycle of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// It goes on.
+    /// The motion continues.
     Continues,
     /// The client finished it.
     Finished,
-    /// A command broke these rules; nothing of it has been taken over.
+    /// A command broke these rules; it had no effect.
     Broken(Errors),
     /// A command holds non-finite numbers.
     Invalid,
@@ -114,12 +114,12 @@ impl ActiveMotion {
         self.request.controller == MoveControllerMode::ExternalController
     }
 
-    /// True if the robot itself moves to targets that come irregularly.
+    /// True if the robot itself moves to targets that arrive irregularly.
     pub(super) fn is_asynchronous(&self) -> bool {
         self.asynchronous.is_some()
     }
 
-    /// True if torques are all that the client sends.
+    /// True if the client sends only torques.
     pub(super) fn is_torque_only(&self) -> bool {
         self.request.generator == MoveGeneratorMode::None
     }
@@ -129,7 +129,7 @@ impl ActiveMotion {
         &self.torque
     }
 
-    /// True if the setpoint stands still because no command came, with the motion to be continued.
+    /// True if the setpoint does not move because no command came, although the motion continues.
     pub(super) fn is_paused(&self) -> bool {
         self.paused
     }
@@ -139,14 +139,14 @@ impl ActiveMotion {
         self.success_rate.rate(first)
     }
 
-    /// True if a command counts that answers state `answers` while `newest` is the last one
-    /// published. A late command does not: the cycle has been extrapolated already.
+    /// True if a command that answers state `answers` counts while `newest` is the last published
+    /// state. A late command does not count: the cycle has been extrapolated already.
     pub(super) fn accepts(&self, answers: u64, newest: u64) -> bool {
         answers >= self.first_state
             && (answers == newest || (self.asynchronous.is_some() && answers < newest))
     }
 
-    /// Which command the states of this motion ask for.
+    /// The command that the states of this motion require.
     pub(super) fn awaits(&self) -> Awaited {
         match &self.asynchronous {
             Some(_) => Awaited::Nothing,
@@ -155,17 +155,16 @@ impl ActiveMotion {
         }
     }
 
-    /// Takes note of a command that answers state `answers` and does not count, while `newest` is
-    /// the last state: one that comes late shows that the client has begun, so that what it misses
-    /// counts.
+    /// Records a command that answers state `answers` and does not count, while `newest` is the
+    /// last state. A late command shows that the client has begun, so that later losses count.
     pub(super) fn refuse(&mut self, answers: u64, newest: u64) {
         self.is_answered |= (self.first_state..newest).contains(&answers);
     }
 
-    /// Takes in what arrived for one cycle, and advances `desired`. The joints have the measured
+    /// Processes the input of one cycle, and advances `desired`. The joints have the measured
     /// velocities `dq`, `[rad/s]`.
     ///
-    /// Torques of a lost cycle are those of the one before (FCI documentation), with or without
+    /// A lost cycle repeats the torques of the previous one (FCI documentation), with or without
     /// [`Rules::communication`].
     pub(super) fn cycle(
         &mut self,
@@ -180,7 +179,7 @@ impl ActiveMotion {
         }
         let mut errors = Errors::NONE;
         self.paused = false;
-        // The first command is compared with the start as it is.
+        // The first command is compared with the start unfiltered.
         let filters = rules.filters.filter(|_| self.is_begun);
         let smooth = command
             .zip(filters)
@@ -188,7 +187,7 @@ impl ActiveMotion {
         let command = smooth.as_ref().or(command);
         let input = match command {
             Some(command) => {
-                // Without limits there is no wrong place to start from, either.
+                // Without limits no start is wrong either.
                 let first = !self.is_begun && rules.limits;
                 (self.is_answered, self.is_begun) = (true, true);
                 self.success_rate.hit();
@@ -277,8 +276,8 @@ impl ActiveMotion {
         }
     }
 
-    /// A motion may only finish at rest: its last command then stands still, which is checked like
-    /// any other command. Under an external controller the arm itself has to stand, too.
+    /// A motion may only finish at rest. Its last command then applies unchanged, and is checked
+    /// like any other command. Under an external controller the arm must also be at rest.
     fn finish(
         &self,
         desired: &mut Desired,
@@ -309,7 +308,7 @@ impl ActiveMotion {
     }
 }
 
-/// Returns those of `errors` that count. An invalid pose always does.
+/// Returns the errors that count. An invalid pose always does.
 fn enforced(errors: Errors, rules: Rules) -> Errors {
     if rules.limits {
         return errors;
@@ -320,5 +319,5 @@ fn enforced(errors: Errors, rules: Rules) -> Errors {
         .collect()
 }
 
-/// A step of exactly 1 N·m per cycle is allowed, also when the sum rounds, `[N·m/s]`.
+/// A step of exactly 1 N·m per cycle is allowed, even if the sum rounds, `[N·m/s]`.
 const ROUNDING: f64 = 1e-9;

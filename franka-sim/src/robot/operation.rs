@@ -1,4 +1,4 @@
-//! What a person beside the robot operates: user stop, brakes, guiding, safety functions, Desk.
+//! Controls for a person next to the robot: user stop, brakes, guiding, safety functions, Desk.
 //!
 //! ```text
 //!   Other <── close brakes ── any ── press the stop, safety function ──> User stopped
@@ -13,16 +13,16 @@ use super::ratchet::Ratchet;
 use super::{Activity, Robot};
 use crate::brake::Brake;
 
-/// An arm that a hand guides.
+/// An arm that is guided by hand.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Guidance {
-    /// Where it began, which is where locked directions stay, `[rad]`.
+    /// Joint positions at the start, where locked directions stay, `[rad]`.
     pub(super) start: JointVector,
-    /// Of each joint towards the ends of its range.
+    /// Ratchet of each joint towards the ends of its range.
     ends: [Ratchet; 7],
 }
 
-/// What keeps the robot from moving, besides errors.
+/// Conditions besides errors that keep the robot from moving.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Lock {
     pub(super) user_stop: bool,
@@ -30,13 +30,13 @@ pub(super) struct Lock {
     pub(super) brakes_closed: bool,
 }
 
-/// How an arm ignores its commands, while its robot reports the motion and no error.
+/// Ways in which an arm ignores its commands, while its robot reports the motion and no error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Freeze {
-    /// As with closed brakes: the robot takes torques and setpoints, and the joints stand still.
+    /// As with closed brakes: the robot accepts torques and setpoints, and the joints do not move.
     Joints,
-    /// As with controllers that have stopped: the torques are zero, and setpoints and joints stand
-    /// still.
+    /// As with controllers that have stopped: the torques are zero, and setpoints and joints do not
+    /// move.
     Controllers,
 }
 
@@ -44,13 +44,13 @@ pub enum Freeze {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frozen {
     pub(super) freeze: Freeze,
-    /// Where the joints stand, `[rad]`.
+    /// Positions of the joints, `[rad]`.
     pub(super) q: JointVector,
 }
 
 impl Robot {
-    /// Lets the arm ignore its commands from now on, or with `None` obey them again. No manual of
-    /// the vendor describes this; users have reported robots that did it.
+    /// Makes the arm ignore its commands from now on, or with `None` obey them again. No manual of
+    /// the vendor describes this; users have reported robots with this behaviour.
     pub fn freeze(&mut self, freeze: Option<Freeze>) {
         let q = *self.plant.q();
         self.frozen = freeze.map(|freeze| Frozen { freeze, q });
@@ -61,7 +61,7 @@ impl Robot {
         self.frozen.is_some()
     }
 
-    /// True if the robot takes no torques and setpoints.
+    /// True if the robot accepts no torques and setpoints.
     pub(super) fn takes_no_commands(&self) -> bool {
         let frozen = self.frozen.map(|frozen| frozen.freeze);
         frozen == Some(Freeze::Controllers)

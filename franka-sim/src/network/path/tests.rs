@@ -17,8 +17,8 @@ fn ms(milliseconds: u64) -> Duration {
     Duration::from_millis(milliseconds)
 }
 
-/// Sends so many datagrams of this size, one a millisecond, each with its number, and takes what
-/// arrives.
+/// Sends `count` datagrams of this size, one a millisecond, each with its number, and returns the
+/// arrivals.
 fn pass(path: &mut Path, count: u64, size: usize) -> Vec<(Duration, u64)> {
     let mut arrived = Vec::new();
     for n in 0..count {
@@ -127,7 +127,7 @@ fn some_are_overtaken_and_none_is_lost() {
     let arrived = pass(&mut Path::new(conditions, 3), 10_000, 371);
     assert!(arrived.is_sorted_by_key(|&(at, _)| at));
     let mut in_order = numbers(&arrived);
-    // What is overtaken is so by the two that follow, unless these take the longer way too.
+    // The next two datagrams overtake a delayed one, unless they take the longer path too.
     let overtaken = in_order.windows(2).filter(|pair| pair[1] < pair[0]).count();
     assert!((700..1100).contains(&overtaken), "{overtaken}");
     in_order.sort_unstable();
@@ -186,12 +186,12 @@ fn a_stall_holds_datagrams_back_and_sends_them_all_at_the_rate_of_the_line() {
             "{least:?}"
         );
         let bursts = gaps.iter().filter(|&&gap| gap < 2 * spacing).count();
-        // Two or three of every stall arrive with one before.
+        // Two or three of every stall arrive together with an earlier one.
         assert!((200..600).contains(&bursts), "{bursts}");
     }
 }
 
-/// What was measured on robots: see [`Stalls::FER`].
+/// Figures measured on robots: see [`Stalls::FER`].
 #[test]
 fn the_silences_of_an_fer_are_those_measured() {
     let conditions = Conditions {

@@ -1,4 +1,4 @@
-//! The friction of one side of a joint: of its motor, or of its link.
+//! The friction on one side of a joint: the motor's or the link's.
 
 use crate::arm::Friction;
 
@@ -58,12 +58,12 @@ impl Contact {
         }
     }
 
-    /// The torque over a step of `dt` seconds that begins at the velocity `v`, of a side with at
+    /// The torque over a step of `dt` seconds that begins at the velocity `v`, for a side with at
     /// least the inertia `inertia`.
     ///
-    /// Stuck, the torque is that of the bristles at the end of the step. Sliding, it is that of
-    /// the Stribeck curve; the slope is what keeps a side that stops within the step from being
-    /// thrown back beyond the range in which it sticks.
+    /// In a stuck side, the torque is the bristles' torque at the end of the step. In a sliding
+    /// side, it follows the Stribeck curve. The slope keeps a side that stops within the step
+    /// inside the range in which it sticks.
     pub(super) fn tangent(&self, v: f64, inertia: f64, dt: f64) -> Tangent {
         let Some(bristle) = &self.bristle else {
             let shape = (v / self.stribeck_speed).tanh();
@@ -87,8 +87,8 @@ impl Contact {
         }
     }
 
-    /// Advances the bristles by a step of `dt` seconds at whose end the velocity is `v`, and
-    /// returns their torque then.
+    /// Advances the bristles by a step of `dt` seconds that ends with the velocity `v`, and returns
+    /// their torque at its end.
     pub(super) fn advance(&mut self, v: f64, dt: f64) -> f64 {
         let Some(bristle) = self.bristle else {
             return 0.0;
@@ -139,7 +139,7 @@ mod tests {
         }
     }
 
-    /// A body that only friction holds.
+    /// A body that is held only by friction.
     struct Body {
         contact: Contact,
         inertia: f64,
@@ -198,7 +198,7 @@ mod tests {
         let mut body = Body::new(&friction(2e3, 5.0), 0.1);
         let mut run = |seconds: u32| {
             for step in 0..seconds * 4000 {
-                // Twenty steps to a period, and whole periods.
+                // Twenty steps per period, and whole periods.
                 let phase = core::f64::consts::TAU * f64::from(step) / 20.0;
                 body.step(0.6 + 0.3 * phase.sin());
             }
@@ -228,7 +228,7 @@ mod tests {
                 let now = inertia * body.v * body.v + stiffness * stretch * stretch;
                 let was = energy;
                 energy = now;
-                // Bristles take up to their energy at the yield point; nothing gives more.
+                // Bristles absorb energy up to the yield point; the friction must not release more.
                 assert!(now <= was + 1.0 / stiffness, "{now} J after {was} J");
             }
             assert!(most <= 1.0 + 1e-9, "{most} N m");

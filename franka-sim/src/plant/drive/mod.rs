@@ -8,21 +8,20 @@
 //! The plant solves `(M + inertia + dt·damping + slope) q̈ = torque + external − bias − stops` with
 //! the torque, inertia and damping of [`LinkTorque`], and the torque and slope of [`External`].
 //!
-//! With rigid joints the felt rotor inertia `B` and all friction act on the link. With elastic
-//! ones of stiffness `K` and damping `D` the step is implicit: over `h` seconds, with
-//! `s = h·D + h²·K` and `T0 = K (θ − q + h (θ̇ − q̇)) + D (θ̇ − q̇)`, the torque between gear and
-//! link is
+//! With rigid joints the apparent rotor inertia `B` and all friction act on the link. With elastic
+//! ones of stiffness `K` and damping `D` the step is implicit: over `h` seconds, with `s = h·D +
+//! h²·K` and `T0 = K (θ − q + h (θ̇ − q̇)) + D (θ̇ − q̇)`, the torque between gear and link is
 //!
 //! ```text
 //! T = T0 + s (τ − f − T0)/(B + s) − (s B/(B + s)) q̈
 //! ```
 //!
 //! for a motor torque `τ` less its friction `f`: a known torque and an inertia, which is `B` for a
-//! stiff spring. The acceleration that the plant finds then gives that of the rotor.
+//! stiff spring. The plant's acceleration then determines the rotor's acceleration.
 //!
 //! The torque loop makes `T` follow the command with a proportional gain `k` from a sensor without
-//! delay: the rotor then is felt as `B/(1 + k)`, and so is what disturbs it. Friction and ripple
-//! are given as they oppose a command, that is after this reduction.
+//! delay. The apparent rotor inertia is then `B/(1 + k)`, and disturbances of the rotor shrink by
+//! the same factor. Friction and ripple are given as they oppose a command, after this reduction.
 
 mod contact;
 #[cfg(test)]
@@ -34,14 +33,14 @@ use super::{External, Plant};
 use crate::arm::{Arm, Drive};
 use contact::{Contact, Tangent};
 
-/// What the drives do to the links over one step: `torque − (inertia + dt·damping) · q̈`.
+/// Effect of the drives on the links over one step: `torque − (inertia + dt·damping) · q̈`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkTorque {
     /// `[N·m]`
     pub torque: JointVector,
-    /// Of what turns with the links, `[kg·m²]`.
+    /// Inertia that turns with the links, `[kg·m²]`.
     pub inertia: JointVector,
-    /// Of what resists the velocity that the links gain in the step, `[N·m·s/rad]`.
+    /// Resistance to the velocity that the links gain in the step, `[N·m·s/rad]`.
     pub damping: JointVector,
 }
 
@@ -53,16 +52,16 @@ pub struct DriveTrain {
     torque_offset: JointVector,
     motor_contacts: [Option<Contact>; 7],
     link_contacts: [Option<Contact>; 7],
-    /// Angle and velocity of the motors, as angles of the joints. Those of the links if the joints
-    /// are rigid.
+    /// Angle and velocity of the motors, as angles of the joints. With rigid joints they equal the
+    /// links'.
     theta: JointVector,
     dtheta: JointVector,
-    /// Between gears and links over the last step.
+    /// Torques between gears and links over the last step.
     torque: JointVector,
 }
 
 impl DriveTrain {
-    /// The drives of `arm` at rest, with links at `q`, `[rad]`, that the torques `holding` carry,
+    /// The drives of `arm` at rest, with links at `q`, `[rad]`, supported by the torques `holding`,
     /// `[N·m]`.
     pub fn new(arm: &Arm, q: &JointVector, holding: &JointVector) -> Self {
         let contacts = |share: &dyn Fn(f64) -> f64| {
@@ -101,8 +100,8 @@ impl DriveTrain {
         &self.torque
     }
 
-    /// Angles of the motors as angles of the joints, `[rad]`: those of the links, and the
-    /// deflection of elastic joints.
+    /// Angles of the motors as angles of the joints, `[rad]`: the links' angles plus the deflection
+    /// of elastic joints.
     pub fn theta(&self) -> &JointVector {
         &self.theta
     }
@@ -112,8 +111,8 @@ impl DriveTrain {
         &self.dtheta
     }
 
-    /// Rotor inertia felt at the joints, `[kg·m²]`: what controllers have to accelerate on top of
-    /// the links.
+    /// Apparent rotor inertia at the joints, `[kg·m²]`, which controllers must accelerate together
+    /// with the links.
     pub fn felt_inertia(&self) -> &JointVector {
         &self.felt_inertia
     }
@@ -131,7 +130,7 @@ impl DriveTrain {
     }
 
     /// Advances drives and plant by `dt` seconds under the commanded torques, gravity included,
-    /// `[N·m]`, and under those from outside.
+    /// `[N·m]`, and under external torques.
     pub fn step(
         &mut self,
         plant: &mut dyn Plant,
@@ -171,8 +170,8 @@ impl DriveTrain {
         }
     }
 
-    /// The step of joint `i` under the motor torque `motor`, as far as it is known before that of
-    /// the plant.
+    /// The step of joint `i` under the motor torque `motor`, to the extent known before the plant's
+    /// step.
     fn joint(&self, i: usize, motor: f64, q: f64, dq: f64, dt: f64) -> JointStep {
         let rotor = self.felt_inertia[i];
         let tangent = |contact: &Option<Contact>, v: f64, inertia: f64| {
@@ -224,11 +223,11 @@ impl DriveTrain {
 struct JointStep {
     /// `[N·m]`
     torque: f64,
-    /// On the link, `[kg·m²]`.
+    /// Inertia on the link, `[kg·m²]`.
     inertia: f64,
     /// `[kg·m²]`
     sensed_inertia: f64,
-    /// On the link, `[N·m·s/rad]`.
+    /// Damping on the link, `[N·m·s/rad]`.
     damping: f64,
     motor_friction: Tangent,
     link_friction: Tangent,

@@ -8,11 +8,11 @@ use crate::Tool;
 use crate::arm::{Arm, EndStops, Friction, Ripple, Sensors};
 use crate::plant::{External, Plant, RigidArm};
 
-/// The step that robots take, `[s]`.
+/// The robots' step, `[s]`.
 const STEP: f64 = 0.000_25;
 const KIND: RobotKind = RobotKind::Fer;
 
-/// An arm of the realistic family without what disturbs a measurement of its drives.
+/// An arm of the realistic family without disturbances to a measurement of its drives.
 fn steady(friction: Friction) -> Arm {
     let realistic = Arm::realistic(KIND);
     let mut arm = Arm {
@@ -58,7 +58,7 @@ impl Bench {
         self.train.step(self.plant.as_mut(), command, &none, STEP);
     }
 
-    /// A step under what carries the arm, and a torque on one joint.
+    /// A step under the torques that support the arm, and a torque on one joint.
     fn push(&mut self, joint: usize, torque: f64) {
         let model = Model::physically_consistent(KIND);
         let mut command = model.gravity(self.plant.q(), &Load::NONE, &GRAVITY_EARTH);
@@ -93,7 +93,7 @@ fn every_joint_breaks_away_at_its_static_torque_and_not_below() {
                     "{joints}, {name}: {joint} slips"
                 );
                 let mut torque = least;
-                // Slow enough for the inertia not to matter.
+                // Slow enough to make the inertia negligible.
                 while bench.plant.dq()[joint] < 4e-4 {
                     torque += 0.05 * STEP;
                     bench.push(joint, torque);
@@ -193,9 +193,9 @@ fn ringing(bench: &mut Bench, joint: usize) -> f64 {
 fn elastic_joints_ring_at_the_published_resonances() {
     let mut free = steady(Friction::NONE);
     free.drive.torque_loop_gain = 0.0;
-    // Rotor against link, with a Hand, from the rotor inertias and stiffnesses of this family. That
-    // of joint 5 is published as 105 Hz, about what it has while the joints beside it are free too;
-    // alone it is 91 Hz by its inertia in the model.
+    // Rotor against link, with a Hand, from the rotor inertias and stiffnesses of this family. The
+    // published 105 Hz of joint 5 is about its frequency while the neighbouring joints are free
+    // too. Alone it has 91 Hz, by its inertia in the model.
     let published = [36.0, 29.0, 34.0, 34.0, 91.0, 79.0];
     for (joint, expected) in published.into_iter().enumerate() {
         let mut arm = free.clone();
@@ -244,7 +244,7 @@ fn an_arm_that_only_its_joints_damp_loses_energy_and_gains_none() {
         for _ in 0..4000 {
             bench.step(&JointVector::zeros());
             let now = energy(&bench);
-            // But for the error of a step, which moves the links by less than a degree.
+            // Except for the error of a step, which moves the links by less than a degree.
             assert!(
                 now < least + 1e-4 * start,
                 "{name}: {now} J after {least} J"

@@ -10,8 +10,8 @@ use super::scene::{SceneError, joint};
 use crate::plant::FingerDrive;
 
 /// The body of the Hand in its own frame. Source: fitted to the vendor's collision mesh
-/// (`franka_description` 1.0.1, `hand`); the mesh sticks out by up to 15 mm, which is not added
-/// here: the fingers leave the body below that.
+/// (`franka_description` 1.0.1, `hand`); the mesh protrudes by up to 15 mm, which is not added
+/// here, because the fingers leave the body below that.
 pub(super) const HAND: Capsule =
     Capsule::new([-0.0007, -0.0702, 0.0228], [0.0001, 0.0673, 0.0254], 0.0363);
 
@@ -38,7 +38,7 @@ pub(super) fn write_hand(text: &mut String) {
     text.push_str("</body>");
 }
 
-/// One motor drives both fingers: they are as far open as each other.
+/// Couples both fingers, which one motor drives: they are always equally far open.
 pub(super) fn write_coupling(text: &mut String) {
     let [left, right] = JOINTS;
     add(
@@ -50,13 +50,13 @@ pub(super) fn write_coupling(text: &mut String) {
     );
 }
 
-/// The joints of the fingers and their motor: a speed controller with a limit to its force.
+/// The joints of the fingers and their motor: a speed controller with a force limit.
 #[derive(Debug, Clone)]
 pub(super) struct FingerJoints {
     qpos: [usize; 2],
     dof: [usize; 2],
     drive: FingerDrive,
-    /// What the controller has learnt to push with, on each finger, `[N]`.
+    /// Integrated force of the controller, on each finger, `[N]`.
     push: f64,
 }
 
@@ -76,14 +76,14 @@ impl FingerJoints {
         })
     }
 
-    /// Opens the fingers, at once.
+    /// Opens the fingers immediately.
     pub(super) fn open(&self, data: &mut MjData<Box<MjModel>>) {
         for place in self.qpos {
             data.qpos_mut()[place] = FingerDrive::STROKE / 2.0;
         }
     }
 
-    /// What to do from the next step on.
+    /// Sets the command for the next step and all later steps.
     pub(super) fn set(&mut self, drive: FingerDrive) {
         self.drive = drive;
     }
@@ -100,7 +100,7 @@ impl FingerJoints {
             speed,
             force,
         } = self.drive;
-        // Each finger goes half of the way.
+        // Each finger moves half of the distance.
         let way = (width - self.width(data)) / 2.0;
         let wanted = (way * APPROACH).clamp(-speed / 2.0, speed / 2.0);
         let rate = self
@@ -120,22 +120,21 @@ impl FingerJoints {
 
 const JOINTS: [&str; 2] = ["finger_left", "finger_right"];
 
-/// Where the fingers slide, above the origin of the Hand, `[m]`. Source: `franka_description`
-/// 1.0.1, `franka_hand.xacro`.
+/// Height at which the fingers slide, above the origin of the Hand, `[m]`. Source:
+/// `franka_description` 1.0.1, `franka_hand.xacro`.
 const FINGER_HEIGHT: f64 = 0.0584;
 
-/// Mass of one finger, `[kg]`, and its moments of inertia, `[kg·m²]`: as little as MuJoCo takes.
-/// What the fingers weigh is in the load of [`Tool::hand`](crate::Tool::hand), and what it takes to
-/// slide them is nearly all the motor's.
+/// Mass of one finger, `[kg]`, and its moments of inertia, `[kg·m²]`: the least that MuJoCo
+/// accepts. The load of [`Tool::hand`](crate::Tool::hand) includes the fingers' weight, and nearly
+/// all their inertia against sliding is the motor's.
 const NEXT_TO_NOTHING: f64 = 1e-12;
 
-/// Inertia of the motor, felt at each finger, `[kg]`. A choice of this simulator: no source gives
-/// one.
+/// Inertia of the motor at each finger, `[kg]`. A choice of this simulator, without a source.
 const FINGER_ARMATURE: f64 = 0.5;
 
 /// The four boxes of a finger: screw mount, carriage, diagonal, rubber tip. Source:
-/// `franka_description` 1.0.1, `franka_hand.xacro`. The tip is stiffer than MuJoCo's contacts are
-/// otherwise, so that 100 N press it in by 0.2 mm.
+/// `franka_description` 1.0.1, `franka_hand.xacro`. The tip is stiffer than MuJoCo's default
+/// contacts, so that 100 N press it in by 0.2 mm.
 const BOXES: &str = "\
     <geom type='box' size='0.011 0.0075 0.01' pos='0 0.0185 0.011'/>\
     <geom type='box' size='0.011 0.0044 0.0019' pos='0 0.0068 0.0022'/>\
@@ -144,8 +143,8 @@ const BOXES: &str = "\
     <geom type='box' size='0.00875 0.0076 0.00925' pos='0 0.00758 0.04525' condim='4' \
     friction='0 0.005 0.0001' solref='0.005 1' solimp='0.95 0.99 0.001' solmix='100'/>";
 
-/// Of the motor's speed controller; choices of this simulator. Speed wanted per way to go, `[1/s]`;
-/// force per speed that is missing, `[N·s/m]`, and per way that is missing, `[N/m]`. A blocked
+/// Gains of the motor's speed controller; choices of this simulator: desired speed per remaining
+/// distance, `[1/s]`; force per speed error, `[N·s/m]`, and per position error, `[N/m]`. A blocked
 /// finger has built up 70 N after 0.2 s.
 const APPROACH: f64 = 30.0;
 const PROPORTIONAL: f64 = 100.0;

@@ -23,7 +23,7 @@ pub(super) fn arm(
     let built = body.as_built(kind);
     let shapes = Shapes::of(kind, has_hand);
     let mut text = String::new();
-    // A load may have any moments of inertia; MuJoCo takes the nearest that a body can have.
+    // A load may have any moments of inertia; MuJoCo uses the nearest that are physically possible.
     text.push_str(
         "<mujoco><compiler angle='radian' balanceinertia='true'/><default>\
          <geom contype='2' conaffinity='1' mass='0'/></default><worldbody>",
@@ -88,7 +88,7 @@ struct Shapes {
 }
 
 impl Shapes {
-    /// Those of links and, unless it has fingers and shapes of its own, of no hand.
+    /// Shapes of the links, and of the hand if the scene has one.
     fn of(kind: RobotKind, has_hand: bool) -> Self {
         let shape = Shape::covering(kind);
         let zero = JointVector::zeros();
@@ -116,7 +116,7 @@ impl Shapes {
         }
     }
 
-    /// Every shape of one body of a pair with every one of the other.
+    /// Writes every shape of one body of a pair with every shape of the other.
     fn write_pairs(&self, text: &mut String) {
         for &(inner, outer) in &self.pairs {
             for (a, _) in self.all_of(inner) {
@@ -173,8 +173,8 @@ pub(super) fn write_capsule(text: &mut String, name: &str, capsule: &Capsule) {
     );
 }
 
-/// Mass and principal moments. MuJoCo's own search for the principal axes is good for eight digits
-/// only.
+/// Mass and principal moments. MuJoCo's own search for the principal axes is accurate to eight
+/// digits only.
 fn inertial(text: &mut String, mass: f64, com: &Vector3<f64>, inertia: &Matrix3<f64>) {
     let symmetric = (inertia + inertia.transpose()) / 2.0;
     let principal = symmetric.symmetric_eigen();
@@ -194,7 +194,7 @@ fn inertial(text: &mut String, mass: f64, com: &Vector3<f64>, inertia: &Matrix3<
     );
 }
 
-/// Numbers as MJCF has them. Rust prints as many digits as it takes to read the same number again.
+/// Numbers in MJCF format. Rust prints as many digits as are needed to read the same number again.
 pub(super) fn numbers(vector: &Vector3<f64>) -> impl Display + use<> {
     let Vector3 { data, .. } = vector;
     let [[x, y, z]] = data.0;

@@ -24,15 +24,15 @@ use scene::{JOINT, Places};
 /// MuJoCo, with the end stops of a [`RigidArm`](super::RigidArm) and the surroundings of a
 /// [`Scene`].
 ///
-/// Away from contact it is the same arm: each step solves the same equation in the same way, with
-/// inertia and bias forces that are MuJoCo's own. Drives and end stops enter as forces, and their
-/// slopes as dampers that the integrator takes implicitly. So does what acts from outside, though
-/// the slope of it is replaced by a diagonal one that is greater: while something firm touches the
-/// arm, the joints are up to 0.2 kg·m² more inert.
+/// Without contact it is the same arm: each step solves the same equation in the same way, with
+/// MuJoCo's own inertia and bias forces. Drives and end stops enter as forces, and their slopes as
+/// dampers that the integrator treats implicitly. External action enters in the same way, but a
+/// greater, diagonal slope replaces its slope. While something firm touches the arm, the inertia of
+/// the joints is therefore up to 0.2 kg·m² higher.
 ///
-/// The links touch what is around them, and the outer ones the inner ones, with the capsules of
+/// The links touch their surroundings, and the outer links the inner ones, with the capsules of
 /// [`Shape::covering`](franka_model::collision::Shape::covering), which are up to 3.5 cm thicker
-/// than the links. The Hand and its fingers have shapes of their own (see [`Scene::with_hand`]).
+/// than the links. The Hand and its fingers have separate shapes (see [`Scene::with_hand`]).
 #[derive(Debug)]
 pub struct MujocoArm {
     kind: RobotKind,
@@ -48,8 +48,8 @@ pub struct MujocoArm {
 }
 
 impl MujocoArm {
-    /// An ideal arm of this kind at rest in the ready pose, with a bare flange. The robot that it
-    /// is given to [fits](Plant::fit) it with its own.
+    /// An ideal arm of this kind at rest in the ready pose, with a bare flange. The robot that owns
+    /// it [fits](Plant::fit) it with the robot's arm.
     ///
     /// # Errors
     /// [`SceneError`] if MuJoCo cannot make the scene.
@@ -77,14 +77,14 @@ impl MujocoArm {
         Ok(plant)
     }
 
-    /// Pose of a body of the scene, in the base frame, as it was when the last step began; `None`
-    /// if there is no body of this name. The robot's own have names that begin with `franka_`.
+    /// Pose of a body of the scene, in the base frame, at the start of the last step; `None` if no
+    /// body has this name. The names of the robot's bodies begin with `franka_`.
     pub fn body_pose(&self, name: &str) -> Option<Isometry3<f64>> {
         body_pose(&self.data, name)
     }
 
-    /// Puts a body of the scene that has a free joint somewhere else, at rest: its pose in the base
-    /// frame. False if there is no such body. What is in its way there pushes it out.
+    /// Moves a body of the scene that has a free joint to this pose in the base frame, at rest.
+    /// Returns false if no such body exists. Objects that overlap it there push it out.
     ///
     /// ```no_run
     /// # use std::any::Any;
@@ -109,14 +109,14 @@ impl MujocoArm {
         true
     }
 
-    /// What contact exerted on the joints in the last step, `[N·m]`; positive torques push towards
+    /// Torques of contact on the joints in the last step, `[N·m]`; positive torques push towards
     /// positive angles.
     pub fn contact_torque(&self) -> JointVector {
         let force = self.data.qfrc_constraint();
         self.places.dof.map(|dof| force[dof]).into()
     }
 
-    /// Compiles the scene again and goes on in the same state.
+    /// Compiles the scene again and continues in the same state.
     fn remake(&mut self) {
         let load = &self.load;
         let (model, _) = self
@@ -147,10 +147,10 @@ impl Plant for MujocoArm {
         &self.dq
     }
 
-    /// Makes the scene anew if the arm is another, which takes milliseconds.
+    /// Rebuilds the scene if the arm is another, which takes milliseconds.
     ///
     /// # Panics
-    /// As [`attach`](Self::attach).
+    /// See [`attach`](Self::attach).
     fn fit(&mut self, kind: RobotKind, arm: &Arm) {
         if (self.kind, &self.arm) != (kind, arm) {
             (self.kind, self.arm) = (kind, arm.clone());
@@ -187,11 +187,11 @@ impl Plant for MujocoArm {
         self.places.dof.map(|dof| bias[dof]).into()
     }
 
-    /// Makes the scene anew, which takes milliseconds.
+    /// Rebuilds the scene, which takes milliseconds.
     ///
     /// # Panics
-    /// If no body has this load (a non-finite number, a negative mass), or if the file of the scene
-    /// is no longer what it was.
+    /// If no body can have this load (a non-finite number, a negative mass), or if the file of the
+    /// scene has changed.
     fn attach(&mut self, load: Load) {
         if load != self.load {
             self.load = load;
@@ -234,10 +234,10 @@ fn apply(
 ) {
     let (q, dq) = read(data, places);
     let (stop, stop_slope) = arm.body.stops.resistance(&q, &dq, dt);
-    // The model has the drives' least inertia. The rest is that of a damper over one step.
+    // The model has the drives' least inertia. The rest acts like a damper over one step.
     let rest = (drive.inertia - armature).map(|inertia| inertia.max(0.0));
     let rest = (rest + external.diagonal()) / dt;
-    // The dampers subtract slope · dq at the start of the step: what is beyond that is a force.
+    // The dampers subtract slope · dq at the start of the step; the remainder is a force.
     let slope = drive.damping + rest + stop_slope;
     let force = drive.torque + external.torque - stop + slope.component_mul(&dq);
     for i in 0..7 {

@@ -12,12 +12,12 @@ use super::fingers::FingerJoints;
 use super::{joint_name, mjcf};
 use crate::arm;
 
-/// What stands around the arm, and whether a Franka Hand is on its flange.
+/// The surroundings of the arm, and optionally a Franka Hand on its flange.
 ///
 /// Surroundings are MJCF, the format of MuJoCo's models. Its world is the robot's base frame: x
 /// forwards, z up, in metres. Bodies with a free joint are objects that the arm can push and grasp.
-/// Everything in MJCF can be used; of `<option>`, the simulator sets `timestep`, `integrator`,
-/// `gravity`, `cone` and `impratio` itself. Names that begin with `franka_` are the robot's.
+/// Everything in MJCF can be used. In `<option>`, the simulator overrides `timestep`, `integrator`,
+/// `gravity`, `cone` and `impratio`. Names that begin with `franka_` are reserved for the robot.
 ///
 /// ```xml
 /// <mujoco>
@@ -44,37 +44,37 @@ enum Surroundings {
     File(PathBuf),
 }
 
-/// Why a scene cannot be built. The text is MuJoCo's, with the line it is about.
+/// Reason why a scene cannot be built. The text is MuJoCo's, with the line of the error.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SceneError {
     /// The surroundings are not valid MJCF.
     #[error("cannot read the scene: {0}")]
     Unreadable(String),
-    /// The arm cannot be put into them.
+    /// The arm cannot be added to the surroundings.
     #[error("cannot put the robot into the scene: {0}")]
     Conflict(String),
-    /// MuJoCo cannot simulate them.
+    /// MuJoCo cannot simulate the surroundings.
     #[error("cannot make the scene: {0}")]
     Impossible(String),
-    /// A part of the robot is missing. Surroundings have no means to bring this about.
+    /// A part of the robot is missing. Surroundings cannot cause this.
     #[error("the scene lacks {0}")]
     Lacks(String),
 }
 
 impl Scene {
-    /// A table of two by two metres, in the middle of which the robot stands: its top is the plane
-    /// z = 0. This is the default.
+    /// A table of two by two metres with the robot in the middle: its top is the plane z = 0. This
+    /// is the default.
     pub fn table() -> Self {
         Self::default()
     }
 
-    /// Nothing: the arm alone.
+    /// No surroundings: the arm alone.
     pub fn empty() -> Self {
         Self::mjcf("<mujoco/>")
     }
 
-    /// What the MJCF text says.
+    /// Surroundings from this MJCF text.
     pub fn mjcf(text: impl Into<String>) -> Self {
         Self {
             surroundings: Surroundings::Text(text.into()),
@@ -82,7 +82,7 @@ impl Scene {
         }
     }
 
-    /// What this MJCF file says. Files that it names are looked for beside it.
+    /// Surroundings from this MJCF file. Files that it names are resolved relative to it.
     pub fn file(path: impl AsRef<Path>) -> Self {
         Self {
             surroundings: Surroundings::File(path.as_ref().to_owned()),
@@ -91,18 +91,18 @@ impl Scene {
     }
 
     /// With the body and the two fingers of a Franka Hand on the flange, which a
-    /// [`Hand`](crate::Hand) then moves. The mass of the Hand is not among it: that is the load of
+    /// [`Hand`](crate::Hand) then moves. The mass of the Hand is not included: it is the load of
     /// [`Tool::hand`](crate::Tool::hand).
     ///
-    /// The fingers have no friction of their own: in MuJoCo the larger friction of two surfaces
-    /// counts, so how well an object is held is what the object's `friction` says.
+    /// In MuJoCo the larger friction of two surfaces counts, and the fingers have none. The
+    /// `friction` of an object alone therefore decides how well it is held.
     #[must_use]
     pub fn with_hand(mut self) -> Self {
         self.has_hand = true;
         self
     }
 
-    /// Surroundings and arm as one model, and where the arm is in it.
+    /// Compiles surroundings and arm as one model, and returns the arm's indices in it.
     pub(super) fn compile(
         &self,
         kind: RobotKind,
@@ -117,8 +117,8 @@ impl Scene {
         Ok((model, places))
     }
 
-    /// Surroundings and these arms, each an MJCF text with the beginning of its names, as one
-    /// model.
+    /// Compiles surroundings and these arms as one model. Each arm is an MJCF text with the prefix
+    /// of its names.
     pub(super) fn compile_around(
         &self,
         arms: &[(&str, String)],
@@ -143,29 +143,29 @@ impl Scene {
             .map_err(|error| SceneError::Impossible(error.to_string()))?;
         let options = model.opt_mut();
         options.gravity = gravity_earth;
-        // Takes the dampers of the joints implicitly.
+        // Treats the dampers of the joints implicitly.
         options.integrator = mjtIntegrator::mjINT_IMPLICITFAST as i32;
         // Without these two a grasp creeps: friction is as soft as contact, and weaker along
         // diagonals.
         options.cone = mjtCone::mjCONE_ELLIPTIC as i32;
         options.impratio = 10.0;
-        // A simulation that has become unstable must not look like one that begins anew.
+        // An unstable simulation must not look like a fresh one.
         options.disableflags |= mjtDisableBit::mjDSBL_AUTORESET as i32;
         Ok(model)
     }
 
-    /// True if there is a Franka Hand.
+    /// True if the scene has a Franka Hand.
     pub(super) fn has_hand(&self) -> bool {
         self.has_hand
     }
 
-    /// The fingers, if the scene has some.
+    /// The fingers, if the scene has any.
     pub(super) fn fingers(&self, model: &MjModel) -> Result<Option<FingerJoints>, SceneError> {
         self.has_hand.then(|| FingerJoints::of(model)).transpose()
     }
 }
 
-/// Where the numbers of the joints are in MuJoCo's arrays.
+/// Indices of the joints' values in MuJoCo's arrays.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Places {
     pub(super) qpos: [usize; 7],
@@ -174,7 +174,7 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// Those of the arm whose names begin like this.
+    /// Indices of the arm whose names have this prefix.
     pub(super) fn of(model: &MjModel, prefix: &str) -> Result<Self, SceneError> {
         let mut places = Self {
             qpos: [0; 7],
@@ -190,7 +190,7 @@ impl Places {
     }
 }
 
-/// The places of a joint of one coordinate in `qpos` and `qvel`.
+/// Indices of a joint with one coordinate in `qpos` and `qvel`.
 pub(super) fn joint(model: &MjModel, name: &str) -> Result<(usize, usize), SceneError> {
     joint_of(model, PREFIX, name)
 }
@@ -201,7 +201,7 @@ fn joint_of(model: &MjModel, prefix: &str, name: &str) -> Result<(usize, usize),
     Ok((place(model.jnt_qposadr()), place(model.jnt_dofadr())))
 }
 
-/// The places in `qpos` and `qvel` of a body that nothing holds.
+/// Indices of a free body in `qpos` and `qvel`.
 pub(super) fn free_body(model: &MjModel, name: &str) -> Option<(usize, usize)> {
     let first = model.body_jntadr()[body(model, name)?];
     let joint = usize::try_from(first).ok()?;
@@ -220,8 +220,8 @@ fn find(model: &MjModel, kind: MjtObjBase, prefix: &str, name: &str) -> Result<u
     model.name_to_id(kind, &name).ok_or(SceneError::Lacks(name))
 }
 
-/// Names of the robot's parts begin with this, and those of joints and their dampers go on with
-/// that.
+/// Prefixes: of the names of the robot's parts, and after it of the names of joints and their
+/// dampers.
 const PREFIX: &str = "franka_";
 pub(super) const JOINT: &str = "joint";
 

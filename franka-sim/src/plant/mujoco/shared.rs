@@ -1,12 +1,11 @@
-//! Several arms in one world: each moved by a robot of its own, and all of them among the same
-//! objects.
+//! Several arms in one world: each is moved by a separate robot, and all share the same objects.
 //!
-//! The world takes a step when the drives of all arms have said what they push with. Robots are
-//! advanced one after the other, a millisecond at a time: an arm whose robot comes first goes ahead
-//! of the world, on a copy of it in which the others go on pushing as they did last. When the last
-//! robot has come, the world catches up with what all have really done, and every arm is where it
-//! is there. What the one that comes first sees of the others is so a millisecond old at most, as
-//! long as the robots are in step.
+//! The world takes a step when the drives of all arms have reported their torques. Robots are
+//! advanced one after the other, a millisecond at a time. An arm whose robot comes first runs ahead
+//! of the world, on a copy in which the other arms keep their last torques. When the last robot has
+//! come, the world catches up with the true torques of all, and every arm takes its position from
+//! it. The first robot sees the others with a delay of a millisecond at most, if the robots are in
+//! step.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -21,24 +20,24 @@ use super::{apply, body_pose, link_inertia, mjcf, read};
 use crate::arm;
 use crate::plant::{External, LinkTorque, Plant, STEPS};
 
-/// Where an arm stands in a world that it shares.
+/// Position of an arm in a world that it shares.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mount {
-    /// Its kind.
+    /// Kind of the arm.
     pub kind: RobotKind,
-    /// With what the names of its bodies begin: its flange is the body `{name}_flange`.
+    /// Prefix of the names of its bodies: its flange is the body `{name}_flange`.
     pub name: String,
-    /// Its base frame in the world. The world's gravity is that of the first arm, in the axes of
-    /// the world.
+    /// Its base frame in the world. The world uses the gravity of the first arm, in the axes of the
+    /// world.
     pub base: Isometry3<f64>,
 }
 
 /// One of several arms in one world of MuJoCo; see [`shared_world`]. It is a plant like
 /// [`MujocoArm`](super::MujocoArm), without a hand.
 ///
-/// The robots that move the arms have to be in step, within 10 ms: one that comes later than that
-/// misses milliseconds of the world, in which its drives push as they did last.
-/// [`Sim::in_step`](crate::Sim::in_step) sees to that.
+/// The robots that move the arms must be in step, within 10 ms. A robot that is later misses
+/// milliseconds of the world, in which its drives keep their last torques.
+/// [`Sim::in_step`](crate::Sim::in_step) keeps the robots in step.
 pub struct SharedArm {
     world: Arc<Mutex<World>>,
     number: usize,
@@ -83,13 +82,12 @@ pub fn shared_world<const N: usize>(
 }
 
 impl SharedArm {
-    /// Pose of a body in the world, as it was when its last step began; `None` if there is no body
-    /// of this name.
+    /// Pose of a body in the world, at the start of its last step; `None` if no body has this name.
     pub fn body_pose(&self, name: &str) -> Option<Isometry3<f64>> {
         body_pose(&self.world().data, name)
     }
 
-    /// What contacts and grasps exerted on the joints in the last step of the world, `[N·m]`;
+    /// Torques of contacts and grasps on the joints in the last step of the world, `[N·m]`;
     /// positive torques push towards positive angles.
     pub fn contact_torque(&self) -> JointVector {
         let world = self.world();
@@ -98,7 +96,7 @@ impl SharedArm {
     }
 
     fn world(&self) -> MutexGuard<'_, World> {
-        // A panic of MuJoCo's ends the process; nothing else can be left half done.
+        // A panic of MuJoCo ends the process; nothing else can be left incomplete.
         self.world.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -112,10 +110,10 @@ impl Plant for SharedArm {
         &self.dq
     }
 
-    /// Makes the world anew if the arm is another, which takes milliseconds.
+    /// Rebuilds the world if the arm is another, which takes milliseconds.
     ///
     /// # Panics
-    /// As [`attach`](Self::attach).
+    /// See [`attach`](Self::attach).
     fn fit(&mut self, kind: RobotKind, arm: &arm::Arm) {
         let mut world = self.world();
         let own = &mut world.arms[self.number];
@@ -143,10 +141,10 @@ impl Plant for SharedArm {
         holding
     }
 
-    /// Makes the world anew, which takes milliseconds.
+    /// Rebuilds the world, which takes milliseconds.
     ///
     /// # Panics
-    /// As [`MujocoArm`](super::MujocoArm)'s.
+    /// See [`MujocoArm`](super::MujocoArm).
     fn attach(&mut self, load: Load) {
         let mut world = self.world();
         let own = &mut world.arms[self.number];
@@ -171,9 +169,9 @@ struct World {
     arms: Vec<Standing>,
     places: Vec<Places>,
     data: MjData<Box<MjModel>>,
-    /// A copy that is ahead of `data`.
+    /// A copy that runs ahead of `data`.
     ahead: MjData<Box<MjModel>>,
-    /// The arm for which it is, if it is up to date.
+    /// The arm to which the copy belongs, if it is up to date.
     ahead_is_of: Option<usize>,
 }
 
@@ -185,11 +183,11 @@ struct Standing {
     arm: arm::Arm,
     armature: JointVector,
     load: Load,
-    /// What its drives push with in the steps that the world has not taken.
+    /// Torques of its drives in the steps that the world has not taken.
     pending: VecDeque<Push>,
-    /// What they pushed with in the newest step that is known.
+    /// Torques of its drives in the newest known step.
     newest: Push,
-    /// Steps that the world has taken without it.
+    /// Steps that the world has taken without this arm.
     missed: usize,
 }
 
@@ -220,7 +218,7 @@ impl Standing {
 }
 
 impl World {
-    /// Takes a step of one arm; returns where it is after that, and how fast.
+    /// Takes a step of one arm; returns its new positions and velocities.
     fn step(&mut self, number: usize, push: Push, dt: f64) -> (JointVector, JointVector) {
         let own = &mut self.arms[number];
         own.newest = push;
@@ -240,7 +238,7 @@ impl World {
         read(&self.ahead, &self.places[number])
     }
 
-    /// Takes a step with what is pending; arms of which nothing is have missed it.
+    /// Takes a step with the pending torques; arms without pending torques have missed it.
     fn catch_up(&mut self, dt: f64) {
         for (arm, places) in self.arms.iter_mut().zip(&self.places) {
             let push = arm.pending.pop_front().unwrap_or_else(|| {
@@ -253,7 +251,7 @@ impl World {
         self.ahead_is_of = None;
     }
 
-    /// Takes the copy of the world to where this arm is.
+    /// Advances the copy of the world to this arm's step.
     fn go_ahead(&mut self, number: usize, dt: f64) {
         let taken = if self.ahead_is_of == Some(number) {
             self.arms[number].pending.len() - 1
@@ -287,7 +285,7 @@ impl World {
         places.dof.map(|dof| bias[dof]).into()
     }
 
-    /// Compiles the world again and goes on in the same state.
+    /// Compiles the world again and continues in the same state.
     fn remake(&mut self) {
         let (data, _) = compile(&self.scene, &self.arms)
             .unwrap_or_else(|error| panic!("the world with other arms: {error}"));
@@ -303,7 +301,7 @@ impl World {
 }
 
 impl Standing {
-    /// What its drives push with, so many steps after the newest of the world.
+    /// Torques of its drives, `step` steps after the world's newest step.
     fn push_at(&self, step: usize) -> Push {
         self.pending.get(step).copied().unwrap_or(self.newest)
     }
@@ -338,12 +336,12 @@ fn compile(
     Ok((MjData::new(Box::new(model)), places))
 }
 
-/// Another world of the same model, in the state of a new one.
+/// A new world of the same model, in its initial state.
 fn copy(data: &MjData<Box<MjModel>>) -> MjData<Box<MjModel>> {
     MjData::new(Box::new(data.model().clone()))
 }
 
-/// Everything that a step depends on.
+/// All inputs of a step.
 const STATE: u32 = MjtState::mjSTATE_INTEGRATION as u32;
 
 /// Steps by which an arm may be ahead of the world: 10 ms.

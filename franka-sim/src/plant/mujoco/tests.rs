@@ -33,7 +33,7 @@ fn arm_in(scene: Scene, kind: RobotKind, load: Load) -> MujocoArm {
 }
 
 /// An arm of every kind with every load, bare and with the Hand's body and fingers in the scene,
-/// and what it is.
+/// with its description.
 fn arms() -> impl Iterator<Item = (String, RobotKind, Load, MujocoArm)> {
     let scenes = [Scene::empty(), Scene::empty().with_hand()];
     RobotKind::ALL.into_iter().flat_map(move |kind| {
@@ -65,7 +65,7 @@ fn dynamics(arm: &MujocoArm) -> (SMatrix<f64, 7, 7>, JointVector) {
     )
 }
 
-/// Within the limits, at up to full speed.
+/// Random positions and velocities within the limits.
 fn random_motion(random: &mut Random, model: &Model) -> (JointVector, JointVector) {
     let limits = model.joint_limits();
     let part = |random: &mut Random| {
@@ -120,7 +120,7 @@ fn five_seconds_of_torques_move_both_arms_alike() {
         let (mut apart, mut travel) = (0.0_f64, 0.0_f64);
         let none = External::NONE;
         for step in 0..20_000 {
-            // What the motors are told does not depend on what becomes of it.
+            // The torques of the motors do not depend on the resulting motion.
             let time = f64::from(step) * STEP;
             let swing = JointVector::from_fn(|i, _| (time * (2.0 + i as f64)).sin());
             let strength = JointVector::from([3.0, 3.0, 3.0, 3.0, 0.8, 0.8, 0.4]);
