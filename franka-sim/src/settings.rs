@@ -22,7 +22,7 @@ pub(crate) struct Settings {
     pub(crate) cartesian_stiffness: Twist,
     pub(crate) thresholds: CollisionBehavior,
     pub(crate) guiding: Guiding,
-    /// Of commands; `None`: they are taken as they come.
+    /// Filters of commands; `None` for no filter.
     pub(crate) filters: Option<Filters>,
     bounds: SetterBounds,
 }
@@ -32,12 +32,12 @@ pub(crate) struct Settings {
 pub(crate) struct Guiding {
     /// Translation along and rotation about the axes of the end effector.
     pub(crate) axes: [bool; 6],
-    /// The elbow, with the end effector where it is.
+    /// The elbow, without motion of the end effector.
     pub(crate) elbow: bool,
 }
 
 impl Guiding {
-    /// Everything.
+    /// All directions.
     pub(crate) const FREE: Self = Self {
         axes: [true; 6],
         elbow: true,
@@ -69,7 +69,7 @@ impl Settings {
         self.tool.load.combine(&self.load)
     }
 
-    /// Applies a setter, or says why not.
+    /// Applies a setter, or returns the reason why not.
     pub(crate) fn apply(&mut self, request: &Request) -> SetterStatus {
         let applied = match request {
             Request::SetCollisionBehavior(thresholds) => {
@@ -128,8 +128,8 @@ fn are_filters(filters: &Filters) -> bool {
     all_within(&frequencies, 1.0, 1000.0)
 }
 
-/// Thresholds are finite and not negative. A threshold of zero is always reached. Upper ones below
-/// the lower ones are allowed: the collision then comes without a contact before it.
+/// Thresholds are finite and not negative. A threshold of zero is always reached. Upper thresholds
+/// below the lower ones are allowed: the collision then comes without an earlier contact.
 fn are_thresholds(thresholds: &CollisionBehavior) -> bool {
     let t = thresholds;
     let torques = [
@@ -159,7 +159,7 @@ fn rigid(column_major: &[f64; 16], bounds: &SetterBounds) -> Option<Matrix4<f64>
 }
 
 /// A load that a rigid body can have: mass not negative, inertia symmetric, no principal moment
-/// below zero or above the sum of the others (up to rounding), all of it within the bounds.
+/// below zero or above the sum of the others (up to rounding), all within the bounds.
 fn physical(load: &franka_proto::Load, bounds: &SetterBounds) -> Option<Load> {
     let inertia = Matrix3::from_column_slice(&load.I_load);
     let com = Vector3::from(load.F_x_Cload);
@@ -289,7 +289,7 @@ mod tests {
         let mut odd = good;
         odd.I_load[8] = -0.01;
         assert_eq!(settings.apply(&Request::SetLoad(odd)), INVALID);
-        // More than the sum of the others.
+        // A moment larger than the sum of the others.
         odd.I_load[8] = 0.03;
         assert_eq!(settings.apply(&Request::SetLoad(odd)), INVALID);
     }

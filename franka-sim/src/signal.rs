@@ -1,8 +1,8 @@
 //! Commanded quantities with their first two derivatives, advanced once per millisecond.
 //!
-//! Derivatives are backward differences of the commanded values, started from what the state
-//! published before (FCI documentation, control parameters). A cycle whose command is lost
-//! continues with the acceleration of the last one.
+//! Derivatives are backward differences of the commanded values, started from the previously
+//! published state (FCI documentation, control parameters). A cycle whose command is lost continues
+//! with the last acceleration.
 
 use franka_model::{CYCLE, JointVector, Twist, rotation, transform};
 use nalgebra::{Isometry3, Vector3};
@@ -31,14 +31,14 @@ impl JointSignal {
         }
     }
 
-    /// One cycle later at `q`, and the jerk that this takes, `[rad/s³]`.
+    /// One cycle later at `q`, and the necessary jerk, `[rad/s³]`.
     pub(crate) fn to_position(self, q: &JointVector) -> (Self, JointVector) {
         let (mut next, jerk) = self.to_velocity(&((q - self.q) / CYCLE));
         next.q = *q;
         (next, jerk)
     }
 
-    /// One cycle later at velocity `dq`, and the jerk that this takes, `[rad/s³]`.
+    /// One cycle later at velocity `dq`, and the necessary jerk, `[rad/s³]`.
     pub(crate) fn to_velocity(self, dq: &JointVector) -> (Self, JointVector) {
         let ddq = (dq - self.dq) / CYCLE;
         let next = Self {
@@ -59,7 +59,7 @@ impl JointSignal {
         }
     }
 
-    /// What a client knows of this signal, read from a state of this precision.
+    /// The signal as a client knows it, read from a state of this precision.
     pub(crate) fn published(self, precision: Precision) -> Self {
         let read = |value| precision.round(value);
         Self {
@@ -73,7 +73,7 @@ impl JointSignal {
 /// A pose with twist and twist acceleration, both in base axes at the frame's origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CartesianSignal {
-    /// In the base frame, `[m]`.
+    /// Pose in the base frame, `[m]`.
     pub(crate) pose: Isometry3<f64>,
     /// `[m/s, rad/s]`
     pub(crate) twist: Twist,
@@ -91,7 +91,7 @@ impl CartesianSignal {
         }
     }
 
-    /// One cycle later at `pose`, and the jerk that this takes, `[m/s³, rad/s³]`.
+    /// One cycle later at `pose`, and the necessary jerk, `[m/s³, rad/s³]`.
     pub(crate) fn to_pose(self, pose: &Isometry3<f64>) -> (Self, Twist) {
         let shift = (pose.translation.vector - self.pose.translation.vector) / CYCLE;
         let turn = rotation::error(&pose.rotation, &self.pose.rotation) / CYCLE;
@@ -100,7 +100,7 @@ impl CartesianSignal {
         (next, jerk)
     }
 
-    /// One cycle later at twist `twist`, and the jerk that this takes, `[m/s³, rad/s³]`.
+    /// One cycle later at twist `twist`, and the necessary jerk, `[m/s³, rad/s³]`.
     pub(crate) fn to_twist(self, twist: &Twist) -> (Self, Twist) {
         let acceleration = (twist - self.twist) / CYCLE;
         let next = Self {
@@ -111,15 +111,15 @@ impl CartesianSignal {
         (next, (acceleration - self.acceleration) / CYCLE)
     }
 
-    /// One cycle later with the acceleration unchanged; that of the rotation in the axes that
-    /// `orientation` says.
+    /// One cycle later with the acceleration unchanged; the angular acceleration in the axes of
+    /// `orientation`.
     pub(crate) fn extrapolated(self, orientation: Extrapolation) -> Self {
         let (linear, angular) = halves(&self.twist);
         let (acceleration, turning) = halves(&self.acceleration);
         let (angular, turning) = match orientation {
             Extrapolation::BaseAxes => (angular + turning * CYCLE, turning),
             Extrapolation::BodyAxes => {
-                // The axes turn about the velocity, which is therefore the same in both.
+                // The axes turn about the velocity, so the velocity is the same in both.
                 let turning = rotation::exp(&(angular * CYCLE)) * turning;
                 (angular + turning * CYCLE, turning)
             }
@@ -133,12 +133,13 @@ impl CartesianSignal {
         }
     }
 
-    /// What a client knows of this signal, read from a state of this precision.
+    /// The signal as a client knows it, read from a state of this precision.
     pub(crate) fn published(self, precision: Precision) -> Self {
         let read = |value| precision.round(value);
         let rounded = transform::array(&self.pose).map(read);
         Self {
-            // Single precision moves a rotation matrix by 1e-7, far from where this fails.
+            // Single precision moves a rotation matrix by 1e-7, far below the failure of this
+            // conversion.
             pose: transform::isometry_from_array(&rounded).unwrap_or(self.pose),
             twist: self.twist.map(read),
             acceleration: self.acceleration.map(read),
@@ -155,7 +156,7 @@ pub(crate) struct ElbowSignal {
     pub(crate) velocity: f64,
     /// `[rad/s²]`
     pub(crate) acceleration: f64,
-    /// Whether the client commands it, or the robot chooses it.
+    /// True if the client commands the elbow; otherwise the robot chooses it.
     pub(crate) commanded: bool,
 }
 
@@ -168,7 +169,7 @@ impl ElbowSignal {
         }
     }
 
-    /// One cycle later at `angle`, and the jerk that this takes, `[rad/s³]`.
+    /// One cycle later at `angle`, and the necessary jerk, `[rad/s³]`.
     pub(crate) fn to_angle(self, angle: f64) -> (Self, f64) {
         let velocity = (angle - self.angle) / CYCLE;
         let acceleration = (velocity - self.velocity) / CYCLE;
@@ -191,7 +192,7 @@ impl ElbowSignal {
         }
     }
 
-    /// What a client knows of this signal, read from a state of this precision.
+    /// The signal as a client knows it, read from a state of this precision.
     pub(crate) fn published(self, precision: Precision) -> Self {
         let read = |value| precision.round(value);
         Self {
@@ -238,7 +239,7 @@ mod tests {
             ddq: JointVector::repeat(2.0),
         };
         let next = start.extrapolated();
-        // The command that goes on with the same acceleration is told apart by rounding only.
+        // A command that continues with the same acceleration differs by rounding only.
         let (again, jerk) = start.to_position(&next.q);
         assert!((again.ddq - next.ddq).amax() < 1e-8);
         assert!(jerk.amax() < 1e-5);

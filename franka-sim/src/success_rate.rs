@@ -1,5 +1,5 @@
-//! `control_command_success_rate`: which cycles of a motion the client answered, and how many it
-//! lost in a row. What a lost command does: `robot::motion`.
+//! `control_command_success_rate`: the cycles of a motion that the client answered, and the number
+//! lost in a row. `robot::motion` defines the effect of a lost command.
 
 use crate::config::FirstCycles;
 
@@ -7,13 +7,13 @@ use crate::config::FirstCycles;
 /// "communication_constraints_violation").
 pub(crate) const LOST_LIMIT: u32 = 20;
 
-/// Cycles that the success rate looks back on (libfranka 0.21, `robot_state.h`).
+/// Number of cycles in the success rate (libfranka 0.21, `robot_state.h`).
 const WINDOW: u32 = 100;
 
 /// The last hundred cycles, newest in the lowest bit.
 ///
-/// Counting begins with the client's first command, before which the robot waits. That a late one
-/// counts as the first is a choice of this simulator.
+/// Counting begins with the client's first command, before which the robot waits. A late command
+/// counts as the first; that is a choice of this simulator.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct SuccessRate {
     received: u128,
@@ -28,15 +28,15 @@ impl SuccessRate {
         self.lost_in_a_row = 0;
     }
 
-    /// Counts a cycle without a command; returns how many have been lost in a row.
+    /// Counts a cycle without a command; returns the number lost in a row.
     pub(crate) fn miss(&mut self) -> u32 {
         self.count(0);
         self.lost_in_a_row += 1;
         self.lost_in_a_row
     }
 
-    /// Fraction of commands received over the window; while it is not full, over what `first` says.
-    /// Zero before the first command that came in time.
+    /// Fraction of commands received over the window; while it is not full, `first` sets the
+    /// divisor. Zero before the first command that came in time.
     pub(crate) fn rate(&self, first: FirstCycles) -> f64 {
         if self.counted == 0 {
             return 0.0;

@@ -1,15 +1,16 @@
 //! The description that the robot serves: a URDF text.
 //!
 //! Clients read two things from it: the velocity envelope, from the joints' limits and a vendor
-//! element, and the rigid-body model. What both parsers of libfranka 0.21 insist on, and trip over:
+//! element, and the rigid-body model. Both parsers of libfranka 0.21 require the following, and
+//! fail otherwise:
 //!
 //! - all of `joint1` to `joint7`, each with `limit` (lower, upper, velocity, effort) and
 //!   `position_based_velocity_limits` as direct children; no other joint whose name contains one
 //!   of these (fingers do);
 //! - exactly seven movable joints, a link named `link8`, an `axis` for each joint;
-//! - nothing fixed behind link 7 that has mass: a hand is part of `m_ee`.
+//! - - no fixed link with mass behind link 7: a hand is part of `m_ee`.
 //!
-//! Numbers are written with the fewest digits that read back as the same value.
+//! Numbers have the fewest digits that read back as the same value.
 
 use core::fmt::Write;
 
@@ -18,7 +19,7 @@ use franka_model::{Model, RigidBody};
 
 /// The URDF text that describes `model` as a robot called `name`.
 ///
-/// The element of the velocity envelope is left out for a model that has none.
+/// A model without a velocity envelope has no element for it.
 pub(crate) fn text(name: &str, model: &Model) -> String {
     let mut text = format!("<?xml version=\"1.0\" ?>\n<robot name=\"{name}\">\n");
     write_robot(&mut text, model).expect("writing to a string cannot fail");
@@ -119,7 +120,7 @@ mod tests {
         &text[start..start + end]
     }
 
-    /// Mass matrix and gravity torque, summed body by body from what the text says.
+    /// Mass matrix and gravity torque, summed body by body from the values in the text.
     fn dynamics_of_text(text: &str, q: &JointVector) -> (MassMatrix, JointVector) {
         let mut pose = Isometry3::identity();
         let mut axes: Vec<(Vector3<f64>, Vector3<f64>)> = Vec::new();

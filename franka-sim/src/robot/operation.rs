@@ -80,8 +80,8 @@ impl Robot {
     }
 
     /// Activates or deactivates a safety function that forbids motion, as set up in Desk. A Franka
-    /// Research 3 answers with statuses of its own; an FER has none and acts as if the user stop
-    /// were pressed.
+    /// Research 3 answers with separate statuses; an FER has none and acts as if the user stop were
+    /// pressed.
     pub fn activate_safety_function(&mut self, active: bool) {
         self.lock.safety_function = active;
         if active {
@@ -91,7 +91,7 @@ impl Robot {
         }
     }
 
-    /// Closes the brakes: any motion ends, and the arm stands whatever pushes it.
+    /// Closes the brakes: any motion ends, and the arm stays in place under any push.
     pub fn close_brakes(&mut self) {
         self.lock.brakes_closed = true;
         self.end_everything(MoveStatus::Aborted, RecoveryStatus::Aborted);
@@ -103,11 +103,12 @@ impl Robot {
         self.lock.brakes_closed = false;
     }
 
-    /// Presses the guiding buttons, or lets go of them; whether the arm is guided then.
+    /// Presses or releases the guiding buttons; returns true if the arm is then guided.
     ///
-    /// A guided arm carries itself and its declared load, and goes where it is pushed, as far as
-    /// `SetGuidingMode` allows. That is possible with the brakes open while nothing moves, also
-    /// after a reflex and with the user stop pressed. When let go, the arm comes to rest and stays.
+    /// A guided arm supports itself and its declared load, and moves where it is pushed, within the
+    /// directions of `SetGuidingMode`. Guiding is possible with the brakes open while nothing
+    /// moves, also after a reflex and with the user stop pressed. After the release the arm stops
+    /// and stays.
     pub fn guide(&mut self, pressed: bool) -> bool {
         match (&self.activity, pressed) {
             (Activity::Guided(_), true) => {}
@@ -132,7 +133,7 @@ impl Robot {
         !self.lock.brakes_closed && !self.lock.safety_function && self.recovery.is_none()
     }
 
-    /// True if a hand has guided a joint further out of its range than it was.
+    /// True if a hand has guided a joint further out of its range than before.
     pub(super) fn is_guided_out(&mut self) -> bool {
         let limits = self.model.joint_limits();
         let q = self.measurement.q;
@@ -147,7 +148,7 @@ impl Robot {
         out
     }
 
-    /// Ends motion, waiting motion and recovery, and tells their clients.
+    /// Ends motion, waiting motion and recovery, and answers their clients.
     fn end_everything(&mut self, moves: MoveStatus, recovery: RecoveryStatus) {
         self.end_motion(moves);
         if let Some((id, _)) = self.waiting.take() {
@@ -162,5 +163,6 @@ impl Robot {
     }
 }
 
-/// How far a joint may be guided out of its range, `[rad]`: a choice of this simulator.
+/// Largest distance that a joint may be guided out of its range, `[rad]`: a choice of this
+/// simulator.
 const GUIDED_OUT: f64 = 0.01;

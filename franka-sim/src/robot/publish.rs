@@ -7,7 +7,7 @@ use nalgebra::Matrix4;
 use super::{Activity, Measurement, Robot};
 
 impl Robot {
-    /// Writes the state; `torque` is what the controllers commanded last, gravity excluded.
+    /// Writes the state; `torque` is the controllers' last command, gravity excluded.
     pub(super) fn publish(&mut self, torque: &JointVector) {
         let Measurement { q, dq, .. } = self.measurement;
         let rate = self.config.unpublished.first_cycles;
@@ -107,7 +107,7 @@ impl Robot {
         state.control_command_success_rate = success_rate;
     }
 
-    /// `O_T_EE_d` and `O_dP_EE_d`: what the desired joints mean for the end effector.
+    /// `O_T_EE_d` and `O_dP_EE_d`: pose and twist of the end effector for the desired joints.
     fn desired_pose(&self) -> (Matrix4<f64>, Twist) {
         let (joints, frames) = (&self.desired.joints, &self.settings.frames);
         let pose = self.model.pose(Frame::EndEffector, &joints.q, frames);

@@ -1,14 +1,15 @@
-//! Bounds that a clearance may be beyond at the start, and may leave, but not pass further.
+//! Bounds for a clearance that may start beyond the bound and may return, but must not go further
+//! beyond.
 
-/// Watches a clearance: below `bound` it may not shrink by more than `allowed` from the largest
-/// that it has had there.
+/// Watches a clearance: below `bound` it may not shrink by more than `allowed` from its largest
+/// value there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ratchet {
     best: f64,
 }
 
 impl Ratchet {
-    /// Begins to watch: a clearance that is below the bound already may stay what it is.
+    /// Begins to watch. A clearance that is already below the bound may keep its value.
     pub(super) fn new() -> Self {
         Self {
             best: f64::NEG_INFINITY,
@@ -20,7 +21,7 @@ impl Ratchet {
         Self { best: bound }
     }
 
-    /// True if the clearance, updated to its present value, has shrunk too far.
+    /// True if the clearance, updated to its current value, has shrunk too far.
     pub(super) fn is_passed(&mut self, clearance: f64, bound: f64, allowed: f64) -> bool {
         self.best = self.best.max(clearance).min(bound);
         clearance < self.best - allowed

@@ -1,4 +1,4 @@
-//! Recovery from a reflex: the automatic one, and the manual one of Desk.
+//! Recovery from a reflex: the automatic recovery, and Desk's manual recovery.
 
 use franka_model::JointVector;
 use franka_proto::{CommandId, Errors, RecoveryStatus, Reply, RobotMode};
@@ -12,24 +12,24 @@ pub(super) struct Recovery {
     /// The request to answer, if its client is still connected.
     id: Option<CommandId>,
     since: u64,
-    /// Back into the range, if a person asks for it.
+    /// The motion back into the range, if a person requests it.
     way: Option<PointToPoint>,
 }
 
 impl Recovery {
-    /// Goes on although the client has gone.
+    /// Continues without its client.
     pub(super) fn forget_client(&mut self) {
         self.id = None;
     }
 
-    /// The way back that it takes.
+    /// The motion back into the range.
     pub(super) fn way(&mut self) -> Option<&mut PointToPoint> {
         self.way.as_mut()
     }
 }
 
 impl Robot {
-    /// Answers an `AutomaticErrorRecovery`, now or when it is over.
+    /// Answers an `AutomaticErrorRecovery`, immediately or when it is over.
     pub(super) fn request_recovery(&mut self, id: CommandId) {
         let status = match self.robot_mode() {
             _ if self.lock.safety_function => self.kind.safety.recovery,
@@ -50,7 +50,7 @@ impl Robot {
         self.reply(id, Reply::Recovery(status));
     }
 
-    /// True if a joint is further out than the robot brings it back by itself.
+    /// True if a joint is further out than the automatic recovery brings it back.
     pub(super) fn is_outside(&self) -> bool {
         let limits = self.model.joint_limits();
         let q = self.measurement.q;
@@ -60,10 +60,10 @@ impl Robot {
         })
     }
 
-    /// Performs the recovery that needs a person, as Desk offers it: joints outside their range are
-    /// brought back into it, slowly, then errors are cleared. With no joint outside it does what
-    /// the automatic one does; without an error, before the arm has come to rest, and while the
-    /// robot is locked, nothing.
+    /// Performs the recovery that requires a person, as Desk offers it. Joints outside their range
+    /// move slowly back into it, then errors are cleared. If no joint is outside, it acts as the
+    /// automatic recovery. It does nothing without an error, before the arm has stopped, and while
+    /// the robot is locked.
     pub fn recover_manually(&mut self) {
         let at_rest = matches!(self.activity, Activity::Holding);
         if self.robot_mode() != RobotMode::Reflex || !at_rest {
@@ -88,7 +88,7 @@ impl Robot {
         });
     }
 
-    /// Clears the errors when the arm is at rest and, if need be, back in its range.
+    /// Clears the errors when the arm is at rest and, if necessary, back in its range.
     pub(super) fn end_recovery(&mut self) {
         let Some(recovery) = &self.recovery else {
             return;
@@ -108,7 +108,7 @@ impl Robot {
         }
     }
 
-    /// Ends a recovery that cannot go on.
+    /// Ends a recovery that cannot continue.
     pub(super) fn abort_recovery(&mut self, status: RecoveryStatus) {
         if let Some(Recovery { id: Some(id), .. }) = self.recovery.take() {
             self.reply(id, Reply::Recovery(status));
@@ -116,22 +116,22 @@ impl Robot {
     }
 }
 
-// Choices of this simulator.
+// These constants are choices of this simulator.
 
-/// How far measured positions may be outside the range, `[rad]`.
+/// Tolerance of measured positions outside the range, `[rad]`.
 const POSITION_MARGIN: f64 = 0.01;
 
-/// How far inside its range a joint is brought back, `[rad]`.
+/// Distance inside its range at which a returned joint stops, `[rad]`.
 const INSIDE: f64 = 0.02;
 
-/// How fast, `[rad/s]`.
+/// Velocity of the return, `[rad/s]`.
 const RETURN_VELOCITY: f64 = 0.2;
 
 /// Joint velocity below which the arm is still, `[rad/s]`.
 const STILL: f64 = 0.01;
 
-/// A recovery takes at least so many cycles, so that its mode is seen.
+/// Least number of cycles of a recovery, so that its mode is visible.
 const RECOVERY_MIN: u64 = 100;
 
-/// And at most so many more than the brake takes: something may shake the arm forever.
+/// Largest number of cycles beyond the brake's: something may shake the arm indefinitely.
 const RECOVERY_MAX: u64 = 2000;

@@ -1,5 +1,6 @@
-//! What the robot does with its client: takes one, answers each of its requests, lets it go. The
-//! handshake: `connection`. A second client on sockets: `serve::sessions`.
+//! The robot's session with its client: it accepts one, answers each of its requests, and
+//! disconnects it. `connection` handles the handshake, `serve::sessions` a second client on
+//! sockets.
 
 use bytes::Bytes;
 use franka_proto::framing::{FrameError, MAX_REQUEST_SIZE, Message, next_message_within};
@@ -16,7 +17,7 @@ pub(crate) fn next_request(received: &[u8]) -> Result<Option<Message<'_>>, Frame
 }
 
 impl Robot {
-    /// Connects a client. False if another one is connected: the robot has one at a time.
+    /// Connects a client. Returns false if another one is connected: the robot has one at a time.
     pub fn connect(&mut self) -> bool {
         if self.client.is_some() {
             return false;
@@ -40,7 +41,7 @@ impl Robot {
         self.client.is_some()
     }
 
-    /// Takes bytes from the client's stream, in any portions.
+    /// Accepts bytes from the client's stream, in any portions.
     ///
     /// # Errors
     /// [`SessionError`] if the client left the protocol or speaks another version. It is then
@@ -107,7 +108,7 @@ impl Robot {
         }
     }
 
-    /// Frames and load may have changed: what is derived from them follows.
+    /// Recomputes the values that depend on frames and load, which may have changed.
     fn refresh_frames(&mut self) {
         self.refresh_dynamics();
         if !self.is_moving() {
@@ -116,19 +117,19 @@ impl Robot {
         }
     }
 
-    /// Queues a reply for the client. One that has gone by now gets none.
+    /// Queues a reply for the client. A disconnected client gets none.
     pub(super) fn reply(&mut self, id: CommandId, reply: Reply<'_>) {
         let Some(client) = &mut self.client else {
             return;
         };
-        // The session refuses replies to what it has not been asked, and none is made up here.
+        // The session refuses a reply without a request; none is made up here.
         if let Ok(message) = client.session.reply(id, reply) {
             self.replies
                 .push_back(Bytes::copy_from_slice(message.as_bytes()));
         }
     }
 
-    /// Answers with the wall of this number; one that was not set up is inactive.
+    /// Answers with the wall of this number. A wall that was not set up is inactive.
     fn send_wall(&mut self, id: CommandId, number: i32) {
         let known = self.config.walls.iter().find(|(known, _)| *known == number);
         let wall = known.map_or(NO_WALL, |(_, wall)| *wall);
@@ -140,7 +141,7 @@ impl Robot {
         let Some(client) = &mut self.client else {
             return;
         };
-        // A version without the request never gets here.
+        // A version without the request never reaches this.
         let text = self.description.clone().unwrap_or_default();
         if let Ok(header) = client.session.model_header(id, text.len()) {
             let header = Bytes::copy_from_slice(header.as_bytes());
@@ -155,7 +156,7 @@ impl Robot {
         let Some(client) = &mut self.client else {
             return;
         };
-        // A library that is longer than a message may be is not served.
+        // A library that is longer than a message is not served.
         match client.session.library_header(id, library.len()) {
             Ok(header) => {
                 // The bytes are shared, not copied: a library has megabytes.
@@ -186,7 +187,7 @@ const NO_WALL: VirtualWall = VirtualWall {
     object_activation: false,
 };
 
-/// There is no model library to load.
+/// The robot has no model library to load.
 const NO_LIBRARY: Reply<'static> = Reply::ModelLibrary {
     status: LibraryStatus::Error,
     library: &[],

@@ -14,7 +14,7 @@ pub(super) struct Shaking {
 #[derive(Debug, Clone, Copy, Default)]
 struct Reversals {
     history: u128,
-    /// The side on which the velocity was last large: −1, 0 or 1.
+    /// Side of the last large velocity: −1, 0 or 1.
     side: i8,
 }
 
@@ -25,7 +25,7 @@ impl Shaking {
         }
     }
 
-    /// Takes in the velocities of a millisecond, `[rad/s]`; whether a joint shakes.
+    /// Records the velocities of a millisecond, `[rad/s]`; true if a joint shakes.
     pub(super) fn is_seen(&mut self, dq: &JointVector, what: &Instability) -> bool {
         let window = u128::MAX >> (128 - what.window.clamp(1, 128));
         let mut shakes = false;
@@ -52,8 +52,8 @@ mod tests {
 
     use super::*;
 
-    /// After how many milliseconds a joint is found to shake that swings with this frequency,
-    /// `[Hz]`.
+    /// Returns the milliseconds until a joint that swings with this frequency, `[Hz]`, is found to
+    /// shake.
     fn swing(frequency: f64, velocity: f64) -> Option<usize> {
         let mut shaking = Shaking::new();
         (0..2000).find(|k| {

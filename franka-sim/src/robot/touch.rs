@@ -1,4 +1,4 @@
-//! Touches, which act on the arm from outside: pushes, springs, grips, walls, blocked joints.
+//! Touches: external action on the arm by pushes, springs, grips, walls, and blocked joints.
 
 mod present;
 
@@ -9,11 +9,11 @@ use crate::signal::stack;
 
 pub(super) use present::Touches;
 
-/// Something that acts on the arm from outside, at one place, for a while.
+/// An external action on the arm, at one place and for a limited time.
 ///
 /// Positive torques push joints towards positive angles; forces, positions and velocities are in
 /// base axes. All touches add up, and springs and dampers act as at the end of each step of the
-/// plant. Give one to [`Robot::touch`](super::Robot::touch):
+/// plant. Pass a touch to [`Robot::touch`](super::Robot::touch):
 ///
 /// ```
 /// use franka_model::{Frame, Wrench};
@@ -34,12 +34,12 @@ pub(super) use present::Touches;
 pub struct Touch {
     effort: Effort,
     frame: Frame,
-    /// In the axes of the frame.
+    /// Offset in the axes of the frame.
     offset: Vector3<f64>,
     lasts: Option<u64>,
 }
 
-/// Names a touch, to end it.
+/// Identifies a touch, to end it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct TouchId(u64);
 
@@ -54,19 +54,19 @@ enum Effort {
     /// A spring whose point moves.
     Carry {
         path: Box<dyn FnMut(f64) -> Vector3<f64> + Send>,
-        /// Where the point is at the beginning of this millisecond, and how it goes on, `[m]`,
+        /// Position of the point at the beginning of this millisecond, and its velocity, `[m]`,
         /// `[m/s]`.
         point: Vector3<f64>,
         velocity: Vector3<f64>,
         spring: Spring,
     },
-    /// Holds the pose that the place has when the touch begins.
+    /// Holds the pose of the place at the beginning of the touch.
     Hold {
         pose: Option<Isometry3<f64>>,
         linear: Spring,
         angular: Spring,
     },
-    /// Holds the angle that a joint has when the touch begins.
+    /// Holds the angle of a joint at the beginning of the touch.
     Block {
         index: usize,
         angle: Option<f64>,
@@ -78,7 +78,7 @@ enum Effort {
     },
 }
 
-/// `[N/m]`, `[N·s/m]` or the like of rotations.
+/// `[N/m]`, `[N·s/m]`, or the rotational units.
 #[derive(Debug, Clone, Copy)]
 struct Spring {
     stiffness: f64,
@@ -96,19 +96,19 @@ impl Touch {
         Self::wrench(stack(&force, &Vector3::zeros()))
     }
 
-    /// A constant wrench `[force; torque]` about the place that is touched, `[N, N·m]`.
+    /// A constant wrench `[force; torque]` about the touched place, `[N, N·m]`.
     pub fn wrench(wrench: Wrench) -> Self {
         Self::new(Effort::Wrench(wrench))
     }
 
-    /// A wrench as a function of the time since the touch began, `[s]` to `[N, N·m]`. It is asked
-    /// once per millisecond.
+    /// A wrench as a function of the time since the touch began, `[s]` to `[N, N·m]`. The function
+    /// is called once per millisecond.
     pub fn over_time(wrench: impl FnMut(f64) -> Wrench + Send + 'static) -> Self {
         Self::new(Effort::OverTime(Box::new(wrench)))
     }
 
     /// A spring to the point `to`, `[m]`, of this stiffness, `[N/m]`, with a damper that is about
-    /// critical for the mass of an arm's end.
+    /// critical for the mass of the end of an arm.
     pub fn spring(to: Vector3<f64>, stiffness: f64) -> Self {
         Self::new(Effort::Spring {
             to,
@@ -116,10 +116,10 @@ impl Touch {
         })
     }
 
-    /// A spring of this stiffness, `[N/m]`, to a point that moves: a hand that leads the arm, or
-    /// something that runs into it and stays on it. `path` is a function of the time since the
-    /// touch began, `[s]` to `[m]`; it is asked once per millisecond. The damper acts on the
-    /// velocity relative to the point's.
+    /// A spring of this stiffness, `[N/m]`, to a moving point: a hand that leads the arm, or an
+    /// object that hits it and stays in contact. `path` is a function of the time since the touch
+    /// began, `[s]` to `[m]`; it is called once per millisecond. The damper acts on the velocity
+    /// relative to the point.
     pub fn carry(path: impl FnMut(f64) -> Vector3<f64> + Send + 'static, stiffness: f64) -> Self {
         Self::new(Effort::Carry {
             path: Box::new(path),
@@ -129,7 +129,7 @@ impl Touch {
         })
     }
 
-    /// A firm grip that keeps position and orientation of the place where they are now.
+    /// A firm grip that keeps the current position and orientation of the place.
     pub fn hold() -> Self {
         Self::new(Effort::Hold {
             pose: None,
@@ -138,10 +138,10 @@ impl Touch {
         })
     }
 
-    /// Blocks a joint, 1 to 7: it turns no further, either way.
+    /// Blocks a joint, 1 to 7, in both directions.
     ///
     /// # Panics
-    /// If there is no such joint.
+    /// If no joint has this number.
     pub fn block(joint: usize) -> Self {
         assert!((1..=7).contains(&joint), "joint {joint}, expected 1 to 7");
         Self::new(Effort::Block {
@@ -150,9 +150,9 @@ impl Touch {
         })
     }
 
-    /// A wall or table: the place cannot go behind the plane through `point`, `[m]`, whose `normal`
-    /// points to where the arm may be. It gives way by a millimetre under 20 N, and is smooth. An
-    /// arm that is torn off it takes 0.1 kg of it along for a quarter of a millisecond.
+    /// A wall or table: the place cannot move behind the plane through `point`, `[m]`, whose
+    /// `normal` points to the free side. The wall yields by a millimetre under 20 N, and is smooth.
+    /// An arm that is pulled off it feels an additional 0.1 kg for a quarter of a millisecond.
     ///
     /// # Panics
     /// If the normal has no length.
@@ -166,9 +166,9 @@ impl Touch {
         })
     }
 
-    /// With this stiffness instead, `[N/m]`, and a damper to match: of a spring, a grip's
-    /// translation or a wall. Others have none. Any is stable, but what begins far from its point
-    /// is a blow of stiffness times distance.
+    /// Sets the stiffness, `[N/m]`, with a matching damper, of a spring, a grip's translation or a
+    /// wall. Other touches have none. Any stiffness is stable, but a touch that begins far from its
+    /// point is a blow of stiffness times distance.
     pub fn stiffness(mut self, stiffness: f64) -> Self {
         match &mut self.effort {
             Effort::Spring { spring, .. }
@@ -182,19 +182,19 @@ impl Touch {
         self
     }
 
-    /// On this frame; on the end effector if nothing is said.
+    /// Acts on this frame. Default: the end effector.
     pub fn at(mut self, frame: Frame) -> Self {
         self.frame = frame;
         self
     }
 
-    /// Not at the frame's origin but at `offset` from it, in the frame's axes, `[m]`.
+    /// Acts at `offset` from the frame's origin, in the frame's axes, `[m]`.
     pub fn offset(mut self, offset: Vector3<f64>) -> Self {
         self.offset = offset;
         self
     }
 
-    /// For so many milliseconds; until it is released if nothing is said.
+    /// Lasts this many milliseconds. Default: until it is released.
     pub fn lasting(mut self, milliseconds: u64) -> Self {
         self.lasts = Some(milliseconds);
         self
@@ -239,36 +239,36 @@ impl Spring {
         }
     }
 
-    /// What it pulls with while it is stretched so far, where velocity shortens it, at the end of a
-    /// step of `dt` seconds without acceleration.
+    /// Force at this stretch, where velocity shortens it, at the end of a step of `dt` seconds
+    /// without acceleration.
     fn pull(&self, stretch: Vector3<f64>, velocity: &Vector3<f64>, dt: f64) -> Vector3<f64> {
         (stretch - velocity * dt) * self.stiffness - velocity * self.damping
     }
 
-    /// How much less that is per unit of acceleration, `[kg]` or `[kg·m²]`.
+    /// Reduction of the force per unit of acceleration, `[kg]` or `[kg·m²]`.
     fn slope(&self, dt: f64) -> f64 {
         dt * (self.damping + dt * self.stiffness)
     }
 }
 
-// How firm things are: choices of this simulator. The steps of the plants are stable with stiffer
-// ones, too (`tests/robot/firm.rs` goes up to 1e8 N/m).
+// Stiffnesses and masses, choices of this simulator. The steps of the plants are stable with
+// stiffer ones, too (`tests/robot/firm.rs` goes up to 1e8 N/m).
 
-/// Of a table or a firm grip, `[N/m]`.
+/// Stiffness of a table or a firm grip, `[N/m]`.
 const FIRM: f64 = 20_000.0;
 
-/// Of a firm grip against turning, `[N·m/rad]`.
+/// Stiffness of a firm grip against turning, `[N·m/rad]`.
 const FIRM_TURN: f64 = 500.0;
 
-/// Of a blocked joint, `[N·m/rad]`.
+/// Stiffness of a blocked joint, `[N·m/rad]`.
 const FIRM_JOINT: f64 = 20_000.0;
 
-/// What the end of an arm weighs to a hand, `[kg]`.
+/// Apparent mass of the end of an arm for a hand, `[kg]`.
 const FELT_MASS: f64 = 3.0;
 
-/// And its inertia, `[kg·m²]`.
+/// Apparent inertia of the end of an arm, `[kg·m²]`.
 const FELT_INERTIA: f64 = 0.05;
 
-/// Inertia of a joint with its rotor, `[kg·m²]`, for the damper of a blocked one. The lightest has
-/// 0.075.
+/// Inertia of a joint with its rotor, `[kg·m²]`, for the damper of a blocked joint. The lightest
+/// has 0.075.
 const JOINT_INERTIA: f64 = 0.075;

@@ -15,8 +15,8 @@ use crate::config::Config;
 pub(super) struct Watch {
     shape: Shape<'static>,
     pairs: Vec<Ratchet>,
-    /// Where the arm was last seen clear of itself, `[rad]`, and by how much more than the margin,
-    /// `[m]`.
+    /// Joint positions at which the arm was last clear of itself, `[rad]`, and the distance beyond
+    /// the margin, `[m]`.
     clear: Option<(JointVector, f64)>,
     walls: Vec<Ratchet>,
     shaking: Shaking,
@@ -29,9 +29,9 @@ pub(super) struct Sight<'a> {
     pub(super) q: &'a JointVector,
     /// `[rad/s]`
     pub(super) dq: &'a JointVector,
-    /// Between motors and links, `[N·m]`.
+    /// Torques between motors and links, `[N·m]`.
     pub(super) torque: &'a JointVector,
-    /// Of the end effector.
+    /// Pose of the end effector.
     pub(super) pose: &'a Matrix4<f64>,
 }
 
@@ -52,7 +52,7 @@ impl Watch {
         }
     }
 
-    /// Begins a motion: wherever the arm is, it may leave.
+    /// Begins a motion: the arm may leave any position.
     pub(super) fn begin(&mut self) {
         self.pairs.fill(Ratchet::new());
         self.clear = None;
@@ -60,7 +60,7 @@ impl Watch {
         self.shaking = Shaking::new();
     }
 
-    /// Takes in a millisecond of the motion.
+    /// Checks a millisecond of the motion.
     pub(super) fn violations(&mut self, sight: &Sight<'_>, config: &Config) -> Errors {
         let unpublished = &config.unpublished;
         let position = Vector3::new(sight.pose.m14, sight.pose.m24, sight.pose.m34);
@@ -88,8 +88,7 @@ impl Watch {
     }
 
     fn closes_in_on_itself(&mut self, q: &JointVector, config: &Config) -> bool {
-        // Nearly always the arm has not moved far enough since it was clear to have become anything
-        // else.
+        // Nearly always the arm has moved too little since it was clear to have lost its clearance.
         if let Some((seen, spare)) = &self.clear
             && LEVER * (q - seen).abs().sum() < *spare
         {
@@ -124,7 +123,7 @@ impl Watch {
     }
 }
 
-/// How far a point is inside the cuboid, `[m]`; negative outside.
+/// Depth of a point inside the cuboid, `[m]`; negative outside.
 fn depth(wall: &VirtualWall, position: &Vector3<f64>) -> f64 {
     let frame = Matrix4::from_column_slice(&wall.object_frame);
     let origin = Vector3::new(frame.m14, frame.m24, frame.m34);
@@ -138,13 +137,13 @@ fn depth(wall: &VirtualWall, position: &Vector3<f64>) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// How far the end effector may be beyond a virtual wall, `[m]`: a choice of this simulator, above
-/// what an arm at rest strays.
+/// Largest distance of the end effector beyond a virtual wall, `[m]`: a choice of this simulator,
+/// above the drift of an arm at rest.
 const WALL_ALLOWANCE: f64 = 0.001;
 
-/// How far a point of arm and Hand can be from the axis of a joint, `[m]`, rounded up: the lengths
-/// and offsets from the shoulder outwards are 1.18 m. A joint that turns by an angle brings two
-/// bodies nearer by no more than this times the angle.
+/// Largest distance of a point of arm and Hand from the axis of a joint, `[m]`, rounded up: the
+/// lengths and offsets from the shoulder outwards are 1.18 m. A joint that turns by an angle brings
+/// two bodies nearer by no more than this times the angle.
 const LEVER: f64 = 1.25;
 
 #[cfg(test)]

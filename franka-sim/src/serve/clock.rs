@@ -1,32 +1,32 @@
-//! The clock of the thread that serves the devices: when a state is due, and what happens when the
-//! host has made the thread late.
+//! The clock of the thread that serves the devices. It schedules the states, and handles the
+//! lateness of the thread that the host causes.
 
 use std::time::{Duration, Instant};
 
-/// How well a simulation has kept its millisecond.
+/// Timing record of a simulation's milliseconds.
 ///
-/// The thread has ordinary priority, unless [`Sim::realtime`](super::Sim::realtime) asks for
-/// another, so the host lets it sleep over deadlines now and then. The clock of a robot does not
-/// stand still, and no client of a robot loses commands by that. So the clock slips here: a state
-/// that is late by more than [`Pace::TOLERANCE`] moves all later ones by as much. `message_id`
-/// advances by one per state in any case; robot time then runs behind the clock on the wall.
+/// The thread has ordinary priority, unless [`Sim::realtime`](super::Sim::realtime) requests
+/// another, so the host lets it miss deadlines now and then. A real robot's clock never stops, so
+/// its clients never lose commands in this way. The clock here therefore slips: a state that is
+/// late by more than [`Pace::TOLERANCE`] moves all later ones by the same time. `message_id`
+/// advances by one per state in any case; robot time then lags behind the wall clock.
 ///
 /// With a [strict clock](super::Sim::strict_clock) the states that are due are published in a burst
 /// instead, as a robot's network does after a stall. When more than [`Pace::BURST`] are due, the
 /// rest of the lost time is skipped.
 ///
-/// In [virtual time](super::Sim::virtual_time) there is no such clock, and nothing is late.
+/// In [virtual time](super::Sim::virtual_time) no such clock exists, and nothing is late.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Pace {
     /// States due so far.
     pub cycles: u64,
-    /// How often the clock slipped.
+    /// Number of slips of the clock.
     pub slips: u64,
-    /// By how much in all.
+    /// Total time of the slips.
     pub slipped: Duration,
     /// With a strict clock: states that followed another one in a burst. The client had no time to
-    /// answer the one before.
+    /// answer the state before.
     pub burst: u64,
     /// With a strict clock: milliseconds skipped.
     pub skipped: u64,
@@ -36,8 +36,8 @@ impl Pace {
     /// The most states published at once by a strict clock.
     pub const BURST: u32 = 4;
 
-    /// Lateness of a state up to which the next one keeps to the schedule. Half a period: ordinary
-    /// wake-ups are below it, and clients are never shown states less than half a period apart
+    /// Lateness of a state up to which the next one keeps to the schedule. It is half a period:
+    /// ordinary wake-ups are below it. Clients never receive states less than half a period apart
     /// unless they have answered the first of them.
     pub const TOLERANCE: Duration = Duration::from_micros(500);
 
@@ -46,7 +46,7 @@ impl Pace {
         self.slips + self.burst + self.skipped
     }
 
-    /// Logs what the host's lateness came to, if there was any.
+    /// Logs the host's lateness, if any.
     pub(super) fn log(&self) {
         let Self {
             cycles,
@@ -68,17 +68,17 @@ impl Pace {
     }
 }
 
-/// From one state to the next.
+/// Time from one state to the next.
 pub(super) const PERIOD: Duration = Duration::from_millis(1);
 
-/// A clock that runs with the wall's, less the time that it slipped. All instants are its own,
-/// except those named `wall`.
+/// A clock that runs with the wall clock, less the time of its slips. All instants are on this
+/// clock, except those named `wall`.
 #[derive(Debug)]
 pub(super) struct Clock {
     strict: bool,
-    /// When the next state is due.
+    /// Time at which the next state is due.
     due: Instant,
-    /// When the last state left, on the wall.
+    /// Time at which the last state left, on the wall clock.
     published_wall: Instant,
     pace: Pace,
 }
@@ -103,14 +103,14 @@ impl Clock {
         wall - self.pace.slipped
     }
 
-    /// When the next state is due.
+    /// Time at which the next state is due.
     pub(super) fn due(&self) -> Instant {
         self.due
     }
 
-    /// Gives the client a whole period to answer the last state, however late that one left: the
-    /// next state is due after it. Returns when that is. A strict clock gives it no more than was
-    /// left.
+    /// Gives the client a whole period to answer the last state, even if that state left late: the
+    /// next state is due after it. Returns that time. A strict clock gives the client only the rest
+    /// of the period.
     pub(super) fn wait_for_answer(&mut self) -> Instant {
         if !self.strict {
             self.due = self.due.max(self.at(self.published_wall) + PERIOD);
@@ -118,12 +118,12 @@ impl Clock {
         self.due
     }
 
-    /// Takes note that a command was waited for until `wall`: no state is due before.
+    /// Records that a command was awaited until `wall`: no state is due earlier.
     pub(super) fn waited(&mut self, wall: Instant) {
         self.due = self.due.max(self.at(wall));
     }
 
-    /// Takes note that the thread woke at `wall`, and had meant to at `meant`: slips if it is late.
+    /// Records that the thread woke at `wall` instead of `meant`, and slips if it is late.
     pub(super) fn woke(&mut self, wall: Instant, meant: Instant) {
         let late = self.at(wall).saturating_duration_since(meant);
         if late > Pace::TOLERANCE && !self.strict {
@@ -132,9 +132,9 @@ impl Clock {
         }
     }
 
-    /// Begins the cycle that is due, at `wall`. Returns how many states to publish at once.
+    /// Begins the cycle that is due, at `wall`. Returns the number of states to publish together.
     pub(super) fn begin(&mut self, wall: Instant) -> u32 {
-        // The last cycle may have been held up, too.
+        // The last cycle may have been delayed, too.
         self.woke(wall, self.due);
         let mut states = 1;
         if self.strict {
@@ -150,7 +150,7 @@ impl Clock {
         states
     }
 
-    /// Takes note that a state left at `wall`.
+    /// Records that a state left at `wall`.
     pub(super) fn published(&mut self, wall: Instant) {
         self.pace.cycles += 1;
         self.published_wall = wall;
@@ -162,16 +162,16 @@ mod tests {
     use super::*;
     use crate::noise::Random;
 
-    /// A wall that is looked at by a thread which the host may keep waiting.
+    /// A wall clock, read by a thread that the host may delay.
     struct Host {
         wall: Instant,
         random: Random,
-        /// How likely it is, each time that the host could, that it keeps the thread waiting.
+        /// Probability of a delay, each time that the host could delay the thread.
         likelihood: f64,
     }
 
     impl Host {
-        /// Time in which the thread computes, or less, and is kept waiting now and then.
+        /// Time in which the thread computes, or less, with a delay now and then.
         fn compute(&mut self) -> Instant {
             self.wall += Duration::from_micros(50);
             if self.random.uniform() < self.likelihood {
@@ -190,8 +190,8 @@ mod tests {
         }
     }
 
-    /// Runs the thread's loop with a client that answers each state after `turnaround`. Returns how
-    /// many answers were late, what the clock counted, and the time on the wall.
+    /// Runs the thread's loop with a client that answers each state after `turnaround`. Returns the
+    /// number of late answers, the clock's record, and the time on the wall clock.
     fn late_answers(strict: bool, likelihood: f64, turnaround: Duration) -> (u64, Pace, Duration) {
         let begun = Instant::now();
         let mut host = Host {
@@ -212,7 +212,7 @@ mod tests {
             let states = clock.begin(host.compute());
             for _ in 0..states {
                 late += u64::from(answer > host.wall);
-                // The state leaves, and then the host may keep the thread waiting.
+                // The state leaves, and then the host may delay the thread.
                 answer = host.compute() + turnaround;
                 clock.published(host.compute());
             }
@@ -243,7 +243,7 @@ mod tests {
         let (late, pace, wall) = late_answers(true, 0.02, Duration::from_micros(500));
         assert!(late >= pace.burst && pace.burst > 100, "{late}, {pace:?}");
         assert_eq!((pace.slips, pace.slipped), (0, Duration::ZERO));
-        // It loses no time but that which it counts as skipped.
+        // The clock loses only the time that it counts as skipped.
         let scheduled = PERIOD * u32::try_from(pace.cycles + pace.skipped).expect("few");
         assert!(
             wall < scheduled + Duration::from_millis(60),

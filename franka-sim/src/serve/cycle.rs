@@ -14,18 +14,18 @@ use crate::robot::{Awaited, Robot};
 /// them.
 const VIRTUAL_IDLE_PERIOD: Duration = Duration::from_micros(100);
 
-/// How long the first state of a motion waits for a first command. A shared host keeps a thread of
-/// the client's from its processor for some 10 ms now and then.
+/// Time for which the first state of a motion waits for a first command. A shared host keeps a
+/// thread of the client from its processor for some 10 ms now and then.
 const FIRST_WAIT: Duration = Duration::from_millis(16);
 
-/// What has become of the answer to a state.
+/// Result of waiting for the answer to a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
-    /// It was there, or none is due.
+    /// The answer was available, or none is due.
     NotAwaited,
-    /// It was waited for.
+    /// The simulator waited for the answer.
     Awaited,
-    /// Nothing is left that could give orders to the robot.
+    /// No client or task remains that could control the robot.
     End,
 }
 
@@ -40,8 +40,8 @@ pub(super) struct Cycle {
 }
 
 impl Cycle {
-    /// Runs until nothing is left that could give orders to the robot. Commands that come late are
-    /// waited for up to `patience`.
+    /// Runs until no client or task remains that could control the robot. Waits for late commands
+    /// up to `patience`.
     pub(super) fn run(mut self, strict: bool, patience: Duration) {
         let mut clock = Clock::new(Instant::now(), strict);
         let mut attempts = 0;
@@ -77,14 +77,14 @@ impl Cycle {
         }
     }
 
-    /// Runs in virtual time, in which each state waits for the client's answer, until the same end:
+    /// Runs in virtual time, in which each state waits for the client's answer, until the same end;
     /// see [`Sim::virtual_time`](super::Sim::virtual_time).
     pub(super) fn run_on_answers(mut self, patience: Duration, speed: Speed) {
-        // Nothing is late here, so nothing slips.
+        // Nothing is late in virtual time, so nothing slips.
         let mut clock = Clock::new(Instant::now(), true);
         let mut attempts = 0;
         let mut pacer = Pacer::new(speed);
-        // The robot's time, and that of a network.
+        // The time of the robot and of its network.
         let mut now = Instant::now();
         loop {
             if !self.cycle(now, clock.pace()) {
@@ -115,9 +115,9 @@ impl Cycle {
         }
     }
 
-    /// Waits for the client's answer, if the newest state asks for one. A client may look at
-    /// several states before its first command: the wait for it starts short ([`FIRST_WAIT`]) and
-    /// doubles with each of the `attempts`, up to `patience`.
+    /// Waits for the client's answer, if the newest state requires one. A client may look at
+    /// several states before its first command. The wait for that command starts short
+    /// ([`FIRST_WAIT`]) and doubles with each of the `attempts`, up to `patience`.
     fn await_answer(
         &mut self,
         now: Instant,
@@ -150,7 +150,7 @@ impl Cycle {
         self.robot.has_client() || hand || vacuum
     }
 
-    /// Sleeps until `end` by the clock, and relays what passes a network meanwhile.
+    /// Sleeps until `end` by the clock, and relays datagrams of a network meanwhile.
     fn sleep_until(&mut self, end: Instant, clock: &mut Clock) {
         loop {
             let now = clock.at(Instant::now());

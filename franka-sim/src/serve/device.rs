@@ -1,4 +1,4 @@
-//! What the server needs of a device: the same of the robot and of the end effectors.
+//! The interface of a device to the server, common to the robot and the end effectors.
 
 use std::fmt::Display;
 
@@ -9,12 +9,12 @@ use crate::connection::{Datagram, Framing, SessionError};
 use crate::end_effector::{EndEffector, Mechanism};
 use crate::robot::{Awaited, Robot, next_request};
 
-/// A device as a value, with one client at a time. The methods are those of [`Robot`].
+/// A device as a value, with one client at a time. [`Robot`] documents the methods.
 pub(super) trait Device: Send + 'static {
-    /// Why it disconnects a client.
+    /// Reason why it disconnects a client.
     type Error: Display;
 
-    /// How its stream is cut into messages.
+    /// Division of its stream into messages.
     const FRAMING: Framing;
 
     fn name(&self) -> &'static str;
@@ -92,7 +92,7 @@ where
         M::Protocol::default().device()
     }
 
-    /// Their protocols have no commands by UDP.
+    /// The end effectors' protocols have no commands by UDP.
     fn command(&mut self, _: &[u8]) {}
 
     fn awaits(&self) -> Awaited {

@@ -1,5 +1,5 @@
-//! A device on its sockets: carries out what its client asks, once per cycle. Which client that is:
-//! `sessions`.
+//! A device on its sockets. It processes the client's requests, once per cycle; `sessions` chooses
+//! the client.
 
 use std::net::{SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
@@ -14,10 +14,10 @@ use super::relay::Relay;
 use crate::network::Network;
 use crate::robot::Awaited;
 
-/// Something to do between two milliseconds.
+/// Work between two milliseconds.
 pub(super) type Job<D> = Box<dyn FnOnce(Between<'_, D>) + Send>;
 
-/// What a job may look at and change.
+/// Objects that a job may read and change.
 pub(super) struct Between<'a, D> {
     pub(super) device: &'a mut D,
     pub(super) relay: &'a mut Option<Relay>,
@@ -25,7 +25,7 @@ pub(super) struct Between<'a, D> {
     pub(super) pace: Pace,
 }
 
-/// What the stream asks of the thread.
+/// Messages of the stream's task to the thread.
 pub(super) enum Order {
     /// A client has connected: its address, and the queue of its replies.
     Connect {
@@ -34,37 +34,37 @@ pub(super) enum Order {
     },
     /// Bytes of the client's stream.
     Receive(Bytes),
-    /// The client has gone.
+    /// The client has disconnected.
     Disconnect,
 }
 
-/// Datagrams read per cycle, at most: a flood must not stop the clock.
+/// Largest number of datagrams read per cycle: a flood must not stop the clock.
 const DATAGRAMS: usize = 64;
 
-/// Orders taken per cycle, at most, for the same reason.
+/// Largest number of orders per cycle, for the same reason.
 const ORDERS: usize = 32;
 
-/// How long orders and jobs wait for a command that is waited for, at most.
+/// Longest delay of orders and jobs by the wait for a command.
 const JOB_POLL: Duration = Duration::from_millis(1);
 
-/// The longest that one wait for a datagram counts. The kernel rounds such waits up to a few
-/// milliseconds; whatever took longer, the host held this process up, and maybe the client.
+/// Longest counted time of one wait for a datagram. The kernel rounds such waits up to a few
+/// milliseconds. A longer wait means that the host delayed this process, and maybe the client.
 const WAIT_MAX: Duration = Duration::from_millis(10);
 
-/// The longest that one such wait counts as silence: whatever took longer, this process was
+/// Longest time of one such wait that counts as silence. A longer wait means that this process was
 /// stopped.
 const HELD_UP_MAX: Duration = Duration::from_millis(100);
 
-/// The longest silence, unless the patience is greater. A client that hears nothing for a second
-/// takes the link for lost, and on a busy machine the waits for one answer may add up to that.
+/// The longest silence, unless the patience is greater. A client that receives nothing for a second
+/// considers the link lost, and on a busy machine the waits for one answer may add up to a second.
 const SILENCE_MAX: Duration = Duration::from_millis(500);
 
-/// For how long an answer has been waited for.
+/// Time for which an answer has been awaited.
 #[derive(Debug, Default)]
 struct Wait {
-    /// Without the time in which this process was stopped.
+    /// Without the time for which this process was stopped.
     silence: Duration,
-    /// Without most of the time, too, in which it waited for a processor.
+    /// Also without most of the time for which it waited for a processor.
     counted: Duration,
 }
 
@@ -75,21 +75,21 @@ impl Wait {
         self.counted += took.min(WAIT_MAX);
     }
 
-    /// True if there is to be no more waiting.
+    /// True if the wait must end.
     fn is_over(&self, patience: Duration) -> bool {
         self.counted >= patience || self.silence >= patience.max(SILENCE_MAX)
     }
 }
 
-/// Replies that may wait for a client. Without room for the answers to all open requests and to one
-/// more, which may take two replies, no request is read.
+/// Number of replies that may wait for a client. A request is read only if the queue has room for
+/// the answers to all open requests and to one more, which may require two replies.
 pub(super) const REPLIES: usize = 2 * ANSWERS;
 const ANSWERS: usize = 2 + <server::Session>::PENDING_LIMIT;
 
 /// A device, its UDP socket, the queues from its listener, and the simulated network, if any.
 ///
-/// The queues are those of Tokio: both ends of each are a task and this thread, the task waits for
-/// room or for a reply without blocking a worker, and the thread only tries. A queue between
+/// The queues are Tokio's, because one end is a task and the other is this thread. The task waits
+/// for room or for a reply without blocking a worker, and the thread only tries. A queue between
 /// threads (crossbeam) has no end that a task can await.
 pub(super) struct DeviceServer<D> {
     device: Box<D>,
@@ -117,7 +117,7 @@ impl<D: Device> DeviceServer<D> {
         }
     }
 
-    /// Puts this network between socket and device.
+    /// Inserts this network between socket and device.
     pub(super) fn behind(mut self, network: Option<Network>) -> Self {
         self.relay = network.map(Relay::new);
         self
@@ -128,7 +128,7 @@ impl<D: Device> DeviceServer<D> {
         &mut self.device
     }
 
-    /// One millisecond, at `now`: commands, orders, jobs, state, replies. False at the end.
+    /// One millisecond, at `now`: commands, orders, jobs, state, replies. Returns false at the end.
     pub(super) fn cycle(&mut self, now: Instant, pace: Pace) -> bool {
         self.take_commands(now);
         self.take_orders();
@@ -137,7 +137,7 @@ impl<D: Device> DeviceServer<D> {
         }
         self.send_replies();
         if let (Some(datagram), Some((peer, _))) = (self.device.tick(), &self.client) {
-            // With the interface of a link-local peer.
+            // The address includes the interface of a link-local peer.
             let mut listener = *peer;
             listener.set_port(datagram.port);
             match &mut self.relay {
@@ -154,17 +154,17 @@ impl<D: Device> DeviceServer<D> {
         true
     }
 
-    /// Whether datagrams are to be [`relay`](Self::relay)ed, and how long not.
+    /// Time until datagrams must be [relayed](Self::relay) again; `None` without a network.
     pub(super) fn pause(&self, now: Instant) -> Option<Duration> {
         self.relay.as_ref().map(|relay| relay.pause(now))
     }
 
-    /// The command that the newest state asks for and that has not come.
+    /// The command for the newest state, if it has not come.
     pub(super) fn awaits(&self) -> Awaited {
         self.device.awaits()
     }
 
-    /// The same, as long as the client has not answered what has reached it.
+    /// The same command, if the client has not answered the states that have reached it.
     pub(super) fn awaits_answer(&self) -> Awaited {
         match &self.relay {
             Some(relay) if !relay.is_unanswered() => Awaited::Nothing,
@@ -172,21 +172,21 @@ impl<D: Device> DeviceServer<D> {
         }
     }
 
-    /// When a network hands the device the command that it awaits, if that is on its way.
+    /// Time at which a network delivers the awaited command to the device, if it is in transit.
     pub(super) fn answer_arrives(&mut self, now: Instant) -> Option<Instant> {
         let awaited = self.awaits() != Awaited::Nothing;
         let relay = self.relay.as_mut().filter(|_| awaited)?;
         relay.answer_arrives(now)
     }
 
-    /// When a network hands the next state to the client.
+    /// Time at which a network delivers the next state to the client.
     pub(super) fn next_arrival(&self) -> Option<Instant> {
         self.relay.as_ref().and_then(Relay::next_arrival)
     }
 
-    /// Waits, at the device's time `now`, for the [answer that is awaited](Self::awaits_answer),
-    /// and no longer than `patience` ([`Wait`]). Orders and jobs are taken meanwhile as they are
-    /// between two milliseconds. False at the end.
+    /// Waits, at the device's time `now`, for the [awaited answer](Self::awaits_answer), at most
+    /// for `patience` ([`Wait`]). Meanwhile it processes orders and jobs as between two
+    /// milliseconds. Returns false at the end.
     pub(super) fn await_command(&mut self, now: Instant, patience: Duration, pace: Pace) -> bool {
         let mut wait = Wait::default();
         loop {
@@ -205,7 +205,7 @@ impl<D: Device> DeviceServer<D> {
         }
     }
 
-    /// Returns when a datagram is there, or after about so long.
+    /// Returns when a datagram has arrived, or after about `longest`.
     fn wait_for_datagram(&self, longest: Duration) {
         let socket = &self.socket;
         let wait = || {
@@ -213,7 +213,7 @@ impl<D: Device> DeviceServer<D> {
             socket.set_read_timeout(Some(longest))?;
             socket.peek_from(&mut [0])
         };
-        // Whatever comes of it is seen when the socket is read, as is an error of it.
+        // Reading the socket later reports the result, including errors.
         let _ = wait();
         let _ = socket.set_nonblocking(true);
     }
@@ -223,7 +223,7 @@ impl<D: Device> DeviceServer<D> {
         self.client.is_some()
     }
 
-    /// What the network does between two milliseconds.
+    /// Relays the network's datagrams between two milliseconds.
     pub(super) fn relay(&mut self, now: Instant) {
         self.take_commands(now);
         self.deliver_states(now);
@@ -253,7 +253,7 @@ impl<D: Device> DeviceServer<D> {
                         }
                     }
                 }
-                // A client's closed port comes back as an error of this socket.
+                // A closed port at the client causes an error of this socket.
                 Err(error) if error.kind() == std::io::ErrorKind::ConnectionRefused => {}
                 Err(_) => break,
             }
@@ -290,8 +290,8 @@ impl<D: Device> DeviceServer<D> {
         }
     }
 
-    /// True if the client has room for what may be answered to one more order. One that has gone
-    /// needs none.
+    /// True if the client has room for all answers to one more order. A disconnected client needs
+    /// none.
     fn has_room(&self) -> bool {
         let full =
             |replies: &mpsc::Sender<Bytes>| !replies.is_closed() && replies.capacity() < ANSWERS;
@@ -301,7 +301,7 @@ impl<D: Device> DeviceServer<D> {
             .is_some_and(|(_, replies)| full(replies))
     }
 
-    /// Runs the jobs that wait. False when none can come any more: the simulation is to end.
+    /// Runs the waiting jobs. Returns false if no more can come: the simulation must end.
     fn run_jobs(&mut self, now: Instant, pace: Pace) -> bool {
         for _ in 0..ORDERS {
             match self.jobs.try_recv() {
@@ -325,7 +325,7 @@ impl<D: Device> DeviceServer<D> {
                 None => false,
             };
             if gone {
-                // It has gone: without the sender the connection closes.
+                // The queue is closed: without the sender the connection closes.
                 self.disconnect();
             }
         }
@@ -336,7 +336,7 @@ impl<D: Device> DeviceServer<D> {
         self.forget_client();
     }
 
-    /// Forgets it, and what is on its way to it and from it.
+    /// Forgets the client, and all datagrams in transit to and from it.
     fn forget_client(&mut self) {
         self.client = None;
         if let Some(relay) = &mut self.relay {
@@ -345,7 +345,7 @@ impl<D: Device> DeviceServer<D> {
     }
 }
 
-/// A client that does not listen loses states; TCP tells when it has gone.
+/// A client that does not listen loses states; TCP reports when it has disconnected.
 fn publish(socket: &UdpSocket, state: &[u8], listener: SocketAddr) {
     let _ = socket.send_to(state, listener);
 }

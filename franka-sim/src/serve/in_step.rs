@@ -1,8 +1,8 @@
-//! Robots that begin each of their milliseconds together.
+//! Synchronisation of robots that begin each of their milliseconds together.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-/// Where the threads of robots in step meet, once in each of their milliseconds.
+/// Meeting point of the threads of robots in step, once in each of their milliseconds.
 #[derive(Debug)]
 struct Meeting {
     state: Mutex<State>,
@@ -13,13 +13,14 @@ struct Meeting {
 struct State {
     /// Robots that have not ended.
     members: usize,
-    /// Those of them that wait for the others.
+    /// Number of members that wait for the others.
     waiting: usize,
     /// Counts the milliseconds that have begun.
     begun: u64,
 }
 
-/// The part of one robot. Dropped when the robot ends, from when on no other one waits for it.
+/// The part of one robot. It is dropped when the robot ends; from then on no other robot waits for
+/// it.
 #[derive(Debug)]
 pub(super) struct InStep(Arc<Meeting>);
 
@@ -38,7 +39,7 @@ pub(super) fn in_step<const N: usize>() -> [InStep; N] {
 }
 
 impl InStep {
-    /// Returns when all other robots that have not ended are there, too.
+    /// Returns when all other robots that have not ended have arrived.
     pub(super) fn meet(&self) {
         let mut state = self.0.state();
         state.waiting += 1;
@@ -61,7 +62,7 @@ impl Drop for InStep {
 
 impl Meeting {
     fn state(&self) -> MutexGuard<'_, State> {
-        // Nothing panics while it is held.
+        // Nothing panics while the lock is held.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

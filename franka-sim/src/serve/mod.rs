@@ -5,20 +5,20 @@
 //!            └──────── replies <───── queue <──────┘           (and Hand, VacuumGripper)
 //! ```
 //!
-//! The thread owns robot and UDP socket and keeps the millisecond; whatever blocks the Tokio
-//! runtime delays requests and replies, and no state. A hand and a vacuum gripper have listeners,
-//! queues and sockets of their own and share thread and clock.
+//! The thread owns robot and UDP socket and keeps the millisecond. A blocked Tokio runtime delays
+//! requests and replies, but no state. A hand and a vacuum gripper have separate listeners, queues
+//! and sockets, and share thread and clock.
 //!
 //! | module | content |
 //! |---|---|
-//! | `clock` | when a state is due, and what becomes of a late host: [`Pace`] |
+//! | `clock` | the schedule of states, and the handling of a late host: [`Pace`] |
 //! | `cycle` | the loop of the thread |
 //! | `device_server` | a device on its sockets: commands, orders and jobs in, states and replies out |
-//! | `device` | what the server needs of a device |
+//! | `device` | the interface of a device to the server |
 //! | `relay` | the simulated network between sockets and device |
 //! | `sessions` | one client at a time, and the refusal of a second client |
 //! | `pending` | connections before their handshake |
-//! | `stream` | messages of a stream, and how slow they may come |
+//! | `stream` | messages of a stream, and bounds on their slowness |
 //! | `service` | the handle on a device from other tasks |
 //! | `priority` | the priority of the thread |
 
@@ -59,7 +59,7 @@ use cycle::Cycle;
 use in_step::InStep;
 use speed::Speed;
 
-/// A robot to be simulated: configure, then [`start`](Self::start).
+/// A robot to simulate: configure it, then [`start`](Self::start).
 ///
 /// ```
 /// # #[tokio::main(flavor = "current_thread")]
@@ -72,19 +72,19 @@ use speed::Speed;
 /// ```
 #[derive(Debug)]
 pub struct Sim {
-    /// On the heap, as all that is large: builds without optimisation copy what they pass on, and
-    /// stacks of threads are small.
+    /// On the heap, as all large values: builds without optimisation copy moved values, and stacks
+    /// of threads are small.
     config: Box<Config>,
-    /// The rigid-body plant if there is none.
+    /// `None` for the rigid-body plant.
     plant: Option<Box<dyn Plant>>,
     bind: SocketAddr,
     hand: Option<(Fingers, u16)>,
     vacuum_gripper: Option<(Suction, u16)>,
     realtime: bool,
     strict_clock: bool,
-    /// True if the client's answers are the clock.
+    /// True if the client's answers drive the clock.
     virtual_time: bool,
-    /// How long to wait for a command that is late.
+    /// Longest wait for a late command.
     patience: Duration,
     /// The network of the arm's interface; `None` is the host's own.
     network: Option<Network>,
@@ -93,7 +93,7 @@ pub struct Sim {
     in_step: Option<InStep>,
 }
 
-/// What [`Sim::every_millisecond`] and [`Sim::after_each_state`] run.
+/// The function of [`Sim::every_millisecond`] or [`Sim::after_each_state`].
 struct Hook(Box<dyn FnMut(&mut Robot) + Send>);
 
 impl fmt::Debug for Hook {
@@ -110,7 +110,7 @@ impl Sim {
     }
 
     /// A Franka Emika Robot (Panda) with a [realistic](Arm::realistic) arm and a bare flange in the
-    /// ready pose, on a free port of 127.0.0.1. Its states come as late as those of a Panda.
+    /// ready pose, on a free port of 127.0.0.1. Its states are as late as a Panda's.
     pub fn fer() -> Self {
         Self::realistic(RobotKind::Fer)
     }
@@ -123,8 +123,8 @@ impl Sim {
         })
     }
 
-    /// A robot of this configuration, on a free port of 127.0.0.1. Its arm is ideal if it names
-    /// none.
+    /// A robot of this configuration, on a free port of 127.0.0.1. Its arm is ideal if the
+    /// configuration names none.
     pub fn new(config: Config) -> Self {
         Self {
             config: Box::new(config),
@@ -182,8 +182,7 @@ impl Sim {
         self
     }
 
-    /// Simulates the [ideal](Arm::ideal) arm, which no real one is like: for tests that need
-    /// exactness.
+    /// Simulates the [ideal](Arm::ideal) arm, unlike any real one: for tests that need exactness.
     pub fn ideal(self) -> Self {
         let kind = self.config.kind;
         self.arm(Arm::ideal(kind))
@@ -213,99 +212,103 @@ impl Sim {
         self
     }
 
-    /// Serves a Franka Hand beside the robot, on this TCP port; 0 takes a free one. Hands listen on
-    /// 1338. Its mass and frame are those of [`Tool::hand`], to be mounted with
+    /// Serves a Franka Hand in addition to the robot, on this TCP port; 0 takes a free one.
+    ///
+    /// Hands listen on 1338. [`Tool::hand`] has the mass and frame of the hand; mount it with
     /// [`tool`](Self::tool). If the [plant](Self::plant) has fingers, they are the hand's.
     pub fn hand(mut self, fingers: Fingers, port: u16) -> Self {
         self.hand = Some((fingers, port));
         self
     }
 
-    /// Serves a vacuum gripper beside the robot, on this TCP port; 0 takes a free one. Vacuum
-    /// grippers listen on 1339.
+    /// Serves a vacuum gripper in addition to the robot, on this TCP port; 0 takes a free one.
+    /// Vacuum grippers listen on 1339.
     pub fn vacuum_gripper(mut self, suction: Suction, port: u16) -> Self {
         self.vacuum_gripper = Some((suction, port));
         self
     }
 
-    /// Asks for a real-time priority (SCHED_FIFO) of the thread that keeps the millisecond. Without
-    /// the right to one, or beside Linux, that is logged, and the thread goes on without.
+    /// Requests a real-time priority (SCHED_FIFO) for the thread that keeps the millisecond.
+    /// Without the right to one, or on systems other than Linux, the thread logs that and continues
+    /// without.
     pub fn realtime(mut self, realtime: bool) -> Self {
         self.realtime = realtime;
         self
     }
 
-    /// Keeps to the clock on the wall even where the host holds the simulator up: the states that
-    /// are due then come in a burst, and answers that they leave no time for count as lost. By
-    /// default the clock slips instead: see [`Pace`].
+    /// Follows the wall clock even if the host delays the simulator. States that are due then come
+    /// in a burst, and answers that come too late for them count as lost. By default the clock
+    /// slips instead: see [`Pace`].
     pub fn strict_clock(mut self, strict: bool) -> Self {
         self.strict_clock = strict;
         self
     }
 
-    /// Lets robot time pass as fast as the client answers, instead of by the clock on the wall: for
-    /// tests and for programs that learn.
+    /// Advances robot time as fast as the client answers, instead of by the wall clock: for tests
+    /// and for programs that learn.
     ///
-    /// * In a motion whose every state takes an answer, the next millisecond begins as soon as the
-    ///   answer to the last state is there. However long the client takes for it, no command is
-    ///   late, up to `patience`: after that the cycle counts as lost, so a client that falls silent
-    ///   is noticed after 20 times that. Time in which the host holds the simulator up hardly
-    ///   counts, unless the client has heard nothing for half a second. That is a good choice: a
-    ///   client that reads two states in a row, and so skips an answer, waits that long for the
-    ///   second, and libfranka takes a second without a state for a lost connection.
-    /// * Otherwise, at rest, braking, in a recovery, while a hand grasps, in an asynchronous
-    ///   motion, there are up to ten states per millisecond on the wall. A client that does not
-    ///   keep up misses some of them.
+    /// * In a motion in which every state requires an answer, the next millisecond begins as soon
+    ///   as the answer to the last state arrives. No command is late, up to `patience`. After that
+    ///   the cycle counts as lost, so a silent client is detected after 20 times that time. Time
+    ///   for which the host delays the simulator hardly counts, unless the client has received
+    ///   nothing for half a second. Half a second is a good choice for `patience`. A client that
+    ///   reads two states in a row, and so skips an answer, waits that long for the second.
+    ///   libfranka considers a connection lost after a second without a state.
+    /// * Otherwise up to ten states come per millisecond on the wall clock: at rest, while braking,
+    ///   in a recovery, while a hand grasps, and in an asynchronous motion. A client that is too
+    ///   slow misses some of them.
     ///
-    /// The times of a [`network`](Self::network) are the robot's, in which the client takes no time
-    /// to answer. Seconds that a client counts by a clock of its own, and not by the states, differ
-    /// from those of the robot. [`Running::set_speed`] slows robot time down, and pauses it.
+    /// The times of a [`network`](Self::network) are in robot time, in which the client needs no
+    /// time to answer. If a client counts seconds by a separate clock instead of the states, they
+    /// differ from the robot's seconds. [`Running::set_speed`] slows robot time down, and pauses
+    /// it.
     pub fn virtual_time(mut self, patience: Duration) -> Self {
         self.virtual_time = true;
         self.patience = patience;
         self
     }
 
-    /// Waits for commands that come late, each up to `patience`, and lets the clock stand still
-    /// meanwhile: for clients on a machine that is busy, or on the simulator's own. What takes no
-    /// command goes on by the clock on the wall, and nothing is faster than it.
+    /// Waits for late commands, each up to `patience`, and stops the clock meanwhile: for clients
+    /// on a busy machine, or on the simulator's machine. Devices that require no command continue
+    /// by the wall clock, and nothing is faster than the wall clock.
     pub fn wait_for_commands(mut self, patience: Duration) -> Self {
         self.patience = patience;
         self
     }
 
-    /// Lets states and commands pass this network, besides that between the sockets. Its time
-    /// begins with the robot's start.
+    /// Passes states and commands through this network, in addition to the network between the
+    /// sockets. Its time begins with the robot's start.
     ///
-    /// Datagrams are up to 0.2 ms later than the network has it, by what sleeping on the host is
-    /// worth, but not in [virtual time](Self::virtual_time); the thread then looks after them ten
-    /// times a millisecond. The command connection is not affected, nor is that of a hand.
+    /// Datagrams arrive up to 0.2 ms later than in the network, because of the host's precision of
+    /// sleeping, but not in [virtual time](Self::virtual_time). The thread then checks them ten
+    /// times a millisecond. The command connections of the robot and of a hand are not affected.
     pub fn network(mut self, network: Network) -> Self {
         self.network = Some(network);
         self
     }
 
-    /// Runs `job` on the robot before each of its milliseconds, the first included: to observe and
-    /// disturb it in its own time, whatever the clock. The thread that keeps the millisecond runs
+    /// Runs `job` on the robot before each of its milliseconds, including the first, with any
+    /// clock: to observe and disturb it in its own time. The thread that keeps the millisecond runs
     /// it, so it should not take long.
     pub fn every_millisecond(mut self, job: impl FnMut(&mut Robot) + Send + 'static) -> Self {
         self.every_millisecond = Some(Hook(Box::new(job)));
         self
     }
 
-    /// Runs `job` on the robot each time that a state of it has been handed to the kernel, or would
-    /// have been with a client: to note when. The same thread runs it as that of
+    /// Runs `job` on the robot each time that one of its states has been handed to the kernel, or
+    /// would have been with a client: to record the time. It runs on the same thread as
     /// [`Self::every_millisecond`].
     pub fn after_each_state(mut self, job: impl FnMut(&mut Robot) + Send + 'static) -> Self {
         self.after_each_state = Some(Hook(Box::new(job)));
         self
     }
 
-    /// Lets these robots begin each of their milliseconds together, whatever the clock of each:
-    /// where one waits for a command, all wait for it. For arms in one world, and for programs that
-    /// compare robots. A robot that has stopped, or whose `Sim` was dropped, is not waited for.
+    /// Makes these robots begin each of their milliseconds together, with any clock: if one waits
+    /// for a command, all wait for it. For arms in one world, and for programs that compare robots.
+    /// The robots do not wait for a robot that has stopped, or whose `Sim` was dropped.
     ///
-    /// Start all of them before you connect to one or stop one: until then their time stands still.
+    /// Start all of them before you connect to one or stop one: until then their time does not
+    /// advance.
     pub fn in_step<const N: usize>(mut sims: [Self; N]) -> [Self; N] {
         for (sim, part) in sims.iter_mut().zip(in_step::in_step::<N>()) {
             sim.in_step = Some(part);
@@ -317,7 +320,7 @@ impl Sim {
     /// number of robots may run in one process.
     ///
     /// # Errors
-    /// If a socket cannot be bound or the thread cannot be started, and for virtual time without
+    /// If a socket cannot be bound or the thread cannot be started. Also for virtual time without
     /// patience, in which every command would be late.
     ///
     /// # Cancel safety
@@ -387,8 +390,8 @@ impl Sim {
     }
 }
 
-/// The robot of this configuration; the rigid-body plant if there is no other. No async function,
-/// whose future would hold it.
+/// The robot of this configuration, with the rigid-body plant by default. An async function would
+/// hold the robot in its future.
 fn robot(config: Box<Config>, plant: Option<Box<dyn Plant>>) -> Box<Robot> {
     Box::new(match plant {
         Some(plant) => Robot::with_plant(*config, plant),

@@ -13,22 +13,23 @@ use tokio::time::sleep;
 use super::stream::{Patience, StreamEnd, next_message};
 use crate::connection::Framing;
 
-/// Connections that may be pending at the same time. For the next one the oldest is closed, so that
-/// any number of silent connections keeps no client out.
+/// Largest number of connections that may be pending. The next one closes the oldest, so that
+/// silent connections never block a client.
 const MAX_PENDING: usize = 64;
 
-/// How long to wait after the listener failed (out of file descriptors, for one).
+/// Wait after a failure of the listener (out of file descriptors, for example).
 const RETRY: Duration = Duration::from_millis(100);
 
-/// Silence after which the host of a client is asked whether it is there, and how often before it
-/// counts as gone. The figures are those of libfranka, which asks the robot.
+/// Silence after which the client's host is probed, and the number of probes before it counts as
+/// gone. The figures are libfranka's, which probes the robot.
 const KEEPALIVE: (Duration, u32) = (Duration::from_secs(1), 3);
 
-/// A connection whose first message has come.
+/// A connection whose first message has arrived.
 pub(super) struct Handshake {
     pub(super) stream: TcpStream,
     pub(super) peer: SocketAddr,
-    /// What has been read of the stream: the message, or what can never become one, and maybe more.
+    /// Bytes read from the stream: the message, or a prefix that can never become one, and possibly
+    /// more.
     pub(super) received: BytesMut,
 }
 
@@ -38,7 +39,7 @@ pub(super) struct PendingConnections {
     name: &'static str,
     framing: Framing,
     handshakes: JoinSet<Option<Handshake>>,
-    /// Of the handshakes, oldest first.
+    /// Tasks of the handshakes, oldest first.
     handles: VecDeque<AbortHandle>,
 }
 
@@ -53,7 +54,7 @@ impl PendingConnections {
         }
     }
 
-    /// The next connection whose first message is there.
+    /// Returns the next connection whose first message has arrived.
     ///
     /// # Cancel safety
     /// Dropping the future loses no connection.
@@ -85,7 +86,7 @@ impl PendingConnections {
             tracing::warn!("{MAX_PENDING} connections to the {} say nothing", self.name);
             oldest.abort();
         }
-        // Without these options replies are slower, and a client that lost its network stays
+        // Without these options replies are slower, and a client that has lost its network stays
         // longer.
         let (silence, count) = KEEPALIVE;
         let keepalive = TcpKeepalive::new()

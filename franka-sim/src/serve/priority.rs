@@ -3,7 +3,7 @@
 /// Gives the calling thread a real-time priority.
 ///
 /// # Errors
-/// What the host has against it, in practice that the user has no right to one.
+/// The host's error: in practice, the user has no right to real-time priority.
 #[cfg(target_os = "linux")]
 pub(super) fn raise() -> std::io::Result<()> {
     // SAFETY: `sched_param` is a C struct of integers, for which all zeros is a valid value. musl
@@ -25,12 +25,13 @@ pub(super) fn raise() -> std::io::Result<()> {
     }
 }
 
-/// See there: elsewhere there is no such priority to have.
+/// Other systems have no such priority.
 #[cfg(not(target_os = "linux"))]
 pub(super) fn raise() -> std::io::Result<()> {
     Err(std::io::ErrorKind::Unsupported.into())
 }
 
-/// In the middle of what there is (1 to 99): a client on the same host may be above.
+/// In the middle of the range (1 to 99), so that a client on the same host may have a higher
+/// priority.
 #[cfg(target_os = "linux")]
 const PRIORITY: i32 = 50;

@@ -5,19 +5,19 @@ use std::time::{Duration, Instant};
 
 use crate::network::Network;
 
-/// A network in the time of the thread's clock, and where it leads.
+/// A network in the time of the thread's clock, and its destination.
 #[derive(Debug)]
 pub(super) struct Relay {
     network: Network,
-    /// Where the network's time begins.
+    /// Start of the network's time.
     origin: Instant,
-    /// The latest time seen, since the network's must not run backwards.
+    /// The latest time seen, since the network's time must not run backwards.
     latest: Duration,
-    /// Where the client listens, once a state has been sent there.
+    /// Address of the client, once a state has been sent to it.
     listener: Option<SocketAddr>,
     /// `message_id` of the newest state that was sent.
     sent: Option<u64>,
-    /// That of the first one in a row up to there that asks for a command.
+    /// `message_id` of the first state of the current series that requires a command.
     asking: Option<u64>,
     /// `message_id` of the newest state that has reached the client.
     newest: Option<u64>,
@@ -39,8 +39,8 @@ impl Relay {
         }
     }
 
-    /// Runs `job` on the network of a relay, if there is one, at that network's time. A relay
-    /// begins and ends with its network.
+    /// Runs `job` on the network of a relay, if any, at that network's time. A relay begins and
+    /// ends with its network.
     pub(super) fn change<R>(
         relay: &mut Option<Self>,
         now: Instant,
@@ -70,7 +70,7 @@ impl Relay {
         self.latest
     }
 
-    /// A state for the client that listens there.
+    /// Sends a state to the client that listens at `listener`.
     pub(super) fn send_state(&mut self, now: Instant, datagram: &[u8], listener: SocketAddr) {
         self.listener = Some(listener);
         self.sent = message_id(datagram);
@@ -78,7 +78,7 @@ impl Relay {
         self.network.to_client.send(time, datagram);
     }
 
-    /// Takes note of whether the state that was just sent asks for a command.
+    /// Records if the last state requires a command.
     pub(super) fn note_asking(&mut self, asks: bool) {
         self.asking = if asks {
             self.asking.or(self.sent)
@@ -87,7 +87,7 @@ impl Relay {
         };
     }
 
-    /// The next state that has arrived, and where.
+    /// The next state that has arrived, and its destination.
     pub(super) fn take_state(&mut self, now: Instant) -> Option<(Vec<u8>, SocketAddr)> {
         let time = self.time(now);
         let delivery = self.network.to_client.take(time)?;
@@ -98,7 +98,7 @@ impl Relay {
         Some((delivery.datagram, self.listener?))
     }
 
-    /// A command, just read from the socket.
+    /// Sends a command that was just read from the socket.
     pub(super) fn send_command(&mut self, now: Instant, datagram: &[u8]) {
         let time = self.time(now);
         self.answered |= message_id(datagram) == self.newest;
@@ -112,20 +112,20 @@ impl Relay {
         Some(delivery.datagram)
     }
 
-    /// Forgets what is under way: it was of a client that has gone.
+    /// Discards the datagrams in transit: their client has disconnected.
     pub(super) fn clear(&mut self) {
         self.network.clear();
         (self.listener, self.sent, self.asking) = (None, None, None);
         (self.newest, self.answered) = (None, false);
     }
 
-    /// True if the client has a state that asks for a command and has not answered the newest one
-    /// that it has.
+    /// True if the client has a state that requires a command and has not answered its newest
+    /// state.
     pub(super) fn is_unanswered(&self) -> bool {
         self.asking.is_some() && self.newest >= self.asking && !self.answered
     }
 
-    /// When the answer to that state arrives, if it is under way and soon there.
+    /// Time at which the answer to that state arrives, if it is in transit and soon to arrive.
     pub(super) fn answer_arrives(&mut self, now: Instant) -> Option<Instant> {
         let soon = self.time(now) + ON_ITS_WAY_MAX;
         let next = self
@@ -136,14 +136,14 @@ impl Relay {
         (next <= soon).then(|| self.origin + next)
     }
 
-    /// When the next state arrives.
+    /// Time at which the next state arrives.
     pub(super) fn next_arrival(&self) -> Option<Instant> {
         let next = self.network.to_client.next_arrival();
         next.map(|at| self.origin + at)
     }
 
-    /// How long nothing has to be done: until the next state arrives, and not long, since a command
-    /// may come, whose time of arrival is when it is read.
+    /// Time until the relay must run again: until the next state arrives, and only briefly, since
+    /// the arrival of a command counts from its reading.
     pub(super) fn pause(&self, now: Instant) -> Duration {
         let next = self.next_arrival();
         let left = next.map(|at| at.saturating_duration_since(now));
@@ -151,15 +151,14 @@ impl Relay {
     }
 }
 
-/// What states and commands of every version begin with.
+/// The first field of states and commands of every version.
 fn message_id(datagram: &[u8]) -> Option<u64> {
     datagram.first_chunk().map(|id| u64::from_le_bytes(*id))
 }
 
-/// How long a command that is on its way is waited for. One that takes longer is late because of
-/// the network, and not of the client.
+/// Longest wait for a command in transit. A command that takes longer is late because of the
+/// network, not because of the client.
 const ON_ITS_WAY_MAX: Duration = Duration::from_micros(500);
 
-/// Time between two looks at the socket, and about what datagrams are later than the network has
-/// it.
+/// Time between two checks of the socket, which is about the additional delay of datagrams.
 const RELAY_POLL: Duration = Duration::from_micros(100);

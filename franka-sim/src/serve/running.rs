@@ -1,4 +1,4 @@
-//! A robot that is being simulated.
+//! A running simulated robot.
 
 use std::net::SocketAddr;
 use std::time::Duration;
@@ -14,8 +14,8 @@ use crate::end_effector::{Hand, VacuumGripper};
 use crate::network::Network;
 use crate::robot::Robot;
 
-/// A robot that is being simulated. Dropping it stops the simulation within a cycle or two and
-/// closes its sockets.
+/// A running simulated robot. Dropping it stops the simulation within a cycle or two and closes its
+/// sockets.
 #[derive(Debug)]
 pub struct Running {
     pub(super) robot: Service<Robot>,
@@ -23,22 +23,22 @@ pub struct Running {
     pub(super) vacuum_gripper: Option<Service<VacuumGripper>>,
     /// `None` without virtual time.
     pub(super) speed: Option<Speed>,
-    /// Closed by the end of the thread, whichever it is.
+    /// Closed by any end of the thread.
     pub(super) finished: watch::Receiver<()>,
 }
 
 impl Running {
-    /// Where the robot's clients connect to.
+    /// Address for the robot's clients.
     pub fn addr(&self) -> SocketAddr {
         self.robot.addr()
     }
 
-    /// The hand, if there is one: see [`Sim::hand`].
+    /// The hand, if any: see [`Sim::hand`].
     pub fn hand(&self) -> Option<&Service<Hand>> {
         self.hand.as_ref()
     }
 
-    /// The vacuum gripper, if there is one: see [`Sim::vacuum_gripper`].
+    /// The vacuum gripper, if any: see [`Sim::vacuum_gripper`].
     pub fn vacuum_gripper(&self) -> Option<&Service<VacuumGripper>> {
         self.vacuum_gripper.as_ref()
     }
@@ -58,10 +58,10 @@ impl Running {
     /// ```
     ///
     /// # Errors
-    /// As [`Service::with`].
+    /// See [`Service::with`].
     ///
     /// # Cancel safety
-    /// As [`Service::with`].
+    /// See [`Service::with`].
     pub async fn with<R: Send + 'static>(
         &self,
         job: impl FnOnce(&mut Robot) -> R + Send + 'static,
@@ -70,9 +70,9 @@ impl Running {
     }
 
     /// Runs `job` between two milliseconds on the network that states and commands pass: see
-    /// [`Sim::network`]. `None` is the host's own. It is also given the network's time, which
-    /// begins with the robot's start, or with a network where there was none. What is under way in
-    /// a network that is replaced is lost.
+    /// [`Sim::network`]. `None` is the host's own network. `job` also receives the network's time,
+    /// which begins with the robot's start, or with the first network. Replacing a network loses
+    /// the datagrams in transit.
     ///
     /// ```
     /// # use std::time::Duration;
@@ -92,10 +92,10 @@ impl Running {
     /// ```
     ///
     /// # Errors
-    /// As [`Service::with`].
+    /// See [`Service::with`].
     ///
     /// # Cancel safety
-    /// As [`Service::with`].
+    /// See [`Service::with`].
     pub async fn with_network<R: Send + 'static>(
         &self,
         job: impl FnOnce(&mut Option<Network>, Duration) -> R + Send + 'static,
@@ -106,7 +106,7 @@ impl Running {
     /// The newest state, in full precision.
     ///
     /// # Errors
-    /// As [`with`](Self::with).
+    /// See [`with`](Self::with).
     ///
     /// # Cancel safety
     /// Dropping the future has no effect.
@@ -114,10 +114,10 @@ impl Running {
         self.with(|robot| *robot.state()).await
     }
 
-    /// How well the thread has kept the millisecond so far.
+    /// Timing record of the thread so far.
     ///
     /// # Errors
-    /// As [`with`](Self::with).
+    /// See [`with`](Self::with).
     ///
     /// # Cancel safety
     /// Dropping the future has no effect.
@@ -125,20 +125,21 @@ impl Running {
         self.robot.pace().await
     }
 
-    /// Completes when the simulation has ended by itself, which only a panic brings about: in the
-    /// simulator, or in what [`with`](Self::with) or [`Sim::every_millisecond`] was given.
+    /// Completes when the simulation has ended without a request. Only a panic causes that: in the
+    /// simulator, or in a function passed to [`with`](Self::with) or [`Sim::every_millisecond`].
     ///
     /// # Cancel safety
     /// Dropping the future has no effect.
     pub async fn ended(&self) {
-        // Nothing is ever sent: an error is the end.
+        // Nothing is ever sent: an error signals the end.
         let _ = self.finished.clone().changed().await;
     }
 
-    /// Stops the simulation, disconnects its client, and returns once thread and sockets are gone.
+    /// Stops the simulation, disconnects its client, and returns once thread and sockets are
+    /// closed.
     ///
     /// # Cancel safety
-    /// Dropping the future stops the simulation all the same, without waiting for it.
+    /// Dropping the future still stops the simulation, without waiting for it.
     pub async fn stop(self) {
         let Self {
             robot,
@@ -153,7 +154,7 @@ impl Running {
         if let Some(gripper) = vacuum_gripper {
             gripper.close().await;
         }
-        // The thread ends when no orders to the robot can come, or has died already.
+        // The thread ends when the robot can receive no more orders, or has already died.
         robot.close().await;
         let _ = finished.changed().await;
     }

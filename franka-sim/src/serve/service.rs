@@ -1,5 +1,4 @@
-//! Opens the sockets of one device, and is the handle on it for other tasks. Its clients:
-//! `sessions`.
+//! Sockets of one device, and its handle for other tasks. `sessions` serves its clients.
 
 use std::fmt;
 use std::io;
@@ -17,7 +16,7 @@ use super::relay::Relay;
 use super::sessions;
 use crate::network::Network;
 
-/// A device that is being served. Dropping it closes its sockets.
+/// A device on its sockets. Dropping it closes its sockets.
 pub struct Service<D> {
     address: SocketAddr,
     jobs: mpsc::Sender<Job<D>>,
@@ -30,7 +29,7 @@ pub struct Service<D> {
 pub struct Stopped;
 
 /// Opens the sockets of a device. Returns its handle, and its server for the thread. Errors name
-/// the address, since there are several.
+/// the address, since several exist.
 pub(super) async fn open<D: Device>(
     bind: SocketAddr,
     device: Box<D>,
@@ -55,7 +54,7 @@ pub(super) async fn open<D: Device>(
 }
 
 impl<D: 'static> Service<D> {
-    /// Where clients connect to.
+    /// Address for clients.
     pub fn addr(&self) -> SocketAddr {
         self.address
     }
@@ -64,10 +63,10 @@ impl<D: 'static> Service<D> {
     /// cycle, so it should not take long.
     ///
     /// # Errors
-    /// [`Stopped`] if the simulation has ended, which only a panic in another `job` brings about.
+    /// [`Stopped`] if the simulation has ended, which only a panic in another `job` causes.
     ///
     /// # Cancel safety
-    /// Once polled, `job` may run although the future is dropped.
+    /// Once polled, `job` may run even if the future is dropped.
     pub async fn with<R: Send + 'static>(
         &self,
         job: impl FnOnce(&mut D) -> R + Send + 'static,
@@ -75,7 +74,7 @@ impl<D: 'static> Service<D> {
         self.ask(|between| job(between.device)).await
     }
 
-    /// How well the thread has kept the millisecond so far.
+    /// Timing record of the thread so far.
     pub(super) async fn pace(&self) -> Result<Pace, Stopped> {
         self.ask(|between| between.pace).await
     }
@@ -124,6 +123,6 @@ impl<D> Drop for Service<D> {
     }
 }
 
-/// Messages of the client, and jobs, that may wait for the thread, which takes some of them every
-/// millisecond.
+/// Number of messages of the client, and of jobs, that may wait for the thread, which processes
+/// some of them every millisecond.
 const QUEUE: usize = 64;

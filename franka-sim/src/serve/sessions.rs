@@ -5,8 +5,8 @@
 //!   └─ too slow, too many: closed      └─ device has a client: refused
 //! ```
 //!
-//! A connection takes the device with its handshake and not before, so that one that says nothing
-//! keeps no client out.
+//! A connection occupies the device from its handshake on, so that a silent connection blocks no
+//! client.
 
 use std::time::Duration;
 
@@ -21,15 +21,15 @@ use super::pending::{Handshake, PendingConnections};
 use super::stream::{Patience, StreamEnd, next_message};
 use crate::connection::Framing;
 
-/// How long a client may leave no room for a reply. One that does not read must not keep others
-/// out.
+/// Longest time for which a client may leave no room for a reply. A client that does not read must
+/// not block others.
 const SEND_TIMEOUT: Duration = Duration::from_secs(1);
 
-/// How long a second client waits for the first to be gone. One that reconnects arrives a moment
-/// before its old connection has been taken down.
+/// Time that a second client waits for the first to disconnect. A client that reconnects arrives a
+/// moment before its old connection is closed.
 const HANDOVER: Duration = Duration::from_millis(50);
 
-/// Serves clients until the thread has gone or the task is aborted.
+/// Serves clients until the thread has ended or the task is aborted.
 pub(super) async fn serve(
     listener: TcpListener,
     orders: mpsc::Sender<Order>,
@@ -67,8 +67,8 @@ pub(super) async fn serve(
     }
 }
 
-/// Refuses a second client by a reset, which every client takes for the end of the connection.
-/// libfranka 0.21 waits for its first answer beyond an orderly end, for ever.
+/// Refuses a second client by a reset, which every client accepts as the end of the connection.
+/// After an orderly end, libfranka 0.21 waits indefinitely for its first answer.
 fn refuse(second: Handshake, name: &str) {
     let peer = second.peer;
     tracing::warn!(%peer, "refused: the {name} has a client");
@@ -84,7 +84,7 @@ async fn until(deadline: Option<Instant>) {
     }
 }
 
-/// One client from first message to last.
+/// Serves one client from its first message to its last.
 async fn session(handshake: Handshake, orders: mpsc::Sender<Order>, name: &str, framing: Framing) {
     let peer = handshake.peer;
     tracing::info!(%peer, "client of the {name} connected");
@@ -95,13 +95,13 @@ async fn session(handshake: Handshake, orders: mpsc::Sender<Order>, name: &str, 
     };
     if orders.send(connect).await.is_ok() {
         transfer(handshake, &orders, replies, name, framing).await;
-        // If the thread has gone, so has the robot.
+        // If the thread has ended, so has the robot.
         let _ = orders.send(Order::Disconnect).await;
     }
     tracing::info!(%peer, "client of the {name} gone");
 }
 
-/// Moves messages both ways until either side is done.
+/// Moves messages in both directions until either side is done.
 async fn transfer(
     handshake: Handshake,
     orders: &mpsc::Sender<Order>,

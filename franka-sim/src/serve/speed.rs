@@ -1,4 +1,4 @@
-//! How fast robot time passes in virtual time.
+//! Speed of robot time in virtual time.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -7,21 +7,21 @@ use std::time::{Duration, Instant};
 use super::Running;
 use super::clock::PERIOD;
 
-/// A millisecond of the robot while it is paused, on the wall. Clients take a second without a
-/// state for a lost connection.
+/// Duration of a millisecond of the paused robot, on the wall clock. Clients consider a connection
+/// lost after a second without a state.
 const PAUSED_PERIOD: Duration = Duration::from_millis(400);
 
-/// The longest sleep: a speed that is set takes effect after that.
+/// The longest sleep: a new speed takes effect after it.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// By how much robot time may be behind its speed and still catch up.
+/// Largest lag of robot time behind its speed that it still catches up.
 const BEHIND_MAX: Duration = Duration::from_millis(20);
 
-/// Why the speed of robot time was not set.
+/// Reason why the speed of robot time was not set.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpeedError {
-    /// Robot time passes with the clock on the wall.
+    /// Robot time follows the wall clock.
     #[error(
         "the simulated robot keeps to the clock on the wall: it was not started in virtual time"
     )]
@@ -33,25 +33,25 @@ pub enum SpeedError {
         Running::SPEED_MAX
     )]
     Range {
-        /// What was asked for.
+        /// The requested speed.
         got: f64,
     },
 }
 
 impl Running {
-    /// The slowest that robot time can pass, but for a pause.
+    /// The slowest speed of robot time except a pause.
     pub const SPEED_MIN: f64 = 0.01;
 
-    /// The fastest that robot time can be asked to pass, other than as fast as it can.
+    /// The fastest speed of robot time that can be set, except the client's own speed.
     pub const SPEED_MAX: f64 = 10.0;
 
-    /// In [virtual time](super::Sim::virtual_time), has robot time pass `speed` times as fast as
-    /// the clock on the wall, as far as host and client keep up; `None`, as at the start, has it
-    /// pass as fast as the client answers. 0 is a pause: there is a millisecond of the robot every
-    /// 400 ms, so that no client takes the silence for a lost connection.
+    /// In [virtual time](super::Sim::virtual_time), makes robot time pass `speed` times as fast as
+    /// the wall clock, if host and client are fast enough. `None`, as at the start, makes it pass
+    /// as fast as the client answers. 0 is a pause: a millisecond of the robot lasts 400 ms, so
+    /// that no client considers the connection lost.
     ///
     /// # Errors
-    /// [`SpeedError`]: the speed is as before.
+    /// [`SpeedError`]: the speed is unchanged.
     pub fn set_speed(&self, speed: Option<f64>) -> Result<(), SpeedError> {
         let set = self.speed.as_ref().ok_or(SpeedError::WallClock)?;
         let possible = Self::SPEED_MIN..=Self::SPEED_MAX;
@@ -74,7 +74,7 @@ impl Running {
     }
 }
 
-/// The bits of the speed; infinite for as fast as the client answers. Clones are the same.
+/// The bits of the speed; infinite for the client's own speed. Clones share the value.
 #[derive(Clone, Debug)]
 pub(super) struct Speed(Arc<AtomicU64>);
 
@@ -96,7 +96,7 @@ impl Speed {
         speed.is_finite().then_some(speed)
     }
 
-    /// How long a millisecond of the robot lasts on the wall; `None` for no longer than it takes.
+    /// Duration of a millisecond of the robot on the wall clock; `None` for no bound.
     fn period(&self) -> Option<Duration> {
         self.get().map(|speed| match speed {
             0.0 => PAUSED_PERIOD,
@@ -108,7 +108,7 @@ impl Speed {
 /// Keeps robot time to its speed.
 pub(super) struct Pacer {
     speed: Speed,
-    /// When the present millisecond of the robot began, or should have.
+    /// Time at which the current millisecond of the robot began, or should have begun.
     begun: Instant,
 }
 
@@ -118,8 +118,8 @@ impl Pacer {
         Self { speed, begun }
     }
 
-    /// Sleeps until the next millisecond of the robot is due. False, at once, if that is as soon as
-    /// the client has answered.
+    /// Sleeps until the next millisecond of the robot is due. Returns false at once if it is due as
+    /// soon as the client has answered.
     pub(super) fn wait(&mut self) -> bool {
         loop {
             let now = Instant::now();
@@ -156,13 +156,13 @@ mod tests {
             for (speed, period) in [(0.1, 10), (0.0, 400)] {
                 sim.set_speed(Some(speed)).expect("virtual time");
                 assert_eq!(sim.speed(), Some(speed));
-                // What was asked for while it slept may take the speed before.
+                // A request during a sleep may still run at the previous speed.
                 robot_time(&sim, 1).await;
                 let begun = Instant::now();
                 let first = sim.state().await.expect("running").message_id;
                 tokio::time::sleep(Duration::from_millis(300)).await;
                 let passed = sim.state().await.expect("running").message_id - first;
-                // A busy machine has less time pass; some is made up for.
+                // On a busy machine less time passes; some is caught up.
                 let most = begun.elapsed().as_millis() / period + 5;
                 assert!(u128::from(passed) <= most, "{speed}: {passed} > {most}");
             }

@@ -1,4 +1,4 @@
-//! A client's stream, cut where messages end, with bounds on how slow it may be.
+//! A client's stream, divided into messages, with bounds on its slowness.
 
 use std::time::Duration;
 
@@ -9,11 +9,11 @@ use tokio::time::{Instant, timeout_at};
 
 use crate::connection::Framing;
 
-/// How long a message may take to come. Clients write each in one piece; one that breaks off in the
-/// middle must not keep others out, and one on a slow network must not be cut off.
+/// Time limits for a message. Clients write each message in one piece. A message that stops in the
+/// middle must not block other clients, and one on a slow network must not be interrupted.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Patience {
-    /// Until the first byte of a message; for ever if absent.
+    /// Until the first byte of a message; no limit if absent.
     pub(super) first: Option<Duration>,
     /// From one byte to the next.
     pub(super) gap: Duration,
@@ -22,34 +22,34 @@ pub(super) struct Patience {
 }
 
 impl Patience {
-    /// For the requests of a session, between which a client may rest.
+    /// Limits for the requests of a session, between which a client may rest.
     pub(super) const SESSION: Self = Self {
         first: None,
         gap: Duration::from_millis(300),
         total: Duration::from_secs(5),
     };
 
-    /// For the handshake, which clients send at once.
+    /// Limits for the handshake, which clients send at once.
     pub(super) const HANDSHAKE: Self = Self {
         first: Some(Duration::from_secs(1)),
         ..Self::SESSION
     };
 }
 
-/// Why no message comes any more.
+/// Reason why no more messages come.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum StreamEnd {
     /// The stream has ended.
     Closed,
-    /// It was slower than the patience.
+    /// The stream was slower than the patience.
     TooSlow,
 }
 
-/// Waits until `received` begins with a whole message, or with what can never become one: with
-/// something to give to the device. Returns its length.
+/// Waits until `received` begins with a whole message, or with bytes that can never become one, so
+/// that the device has input. Returns its length.
 ///
 /// # Cancel safety
-/// Dropping the future loses nothing: what has been read stays in `received`.
+/// Dropping the future loses nothing: the bytes read stay in `received`.
 pub(super) async fn next_message(
     stream: &mut (impl AsyncRead + Unpin),
     received: &mut BytesMut,
@@ -91,7 +91,7 @@ mod tests {
 
     const LONG: Duration = Duration::from_secs(100);
 
-    /// What comes of a whole message whose bytes come one by one, so far apart.
+    /// Result for a whole message whose bytes arrive one by one, with this pause between them.
     async fn trickled(patience: Patience, pause: Duration) -> Result<usize, StreamEnd> {
         let (mut client, mut stream) = tokio::io::duplex(64);
         let size = u32::try_from(Header::SIZE + 4).expect("small");

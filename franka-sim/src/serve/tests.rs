@@ -12,7 +12,7 @@ use super::*;
 use crate::network::Conditions;
 use crate::robot::Touch;
 
-/// What has not happened within this time never will, on a machine that is busy as well.
+/// Time limit for every event, also on a busy machine.
 pub(super) const SOON: Duration = Duration::from_secs(300);
 
 /// A plain blocking client.
@@ -51,7 +51,7 @@ impl Client {
         let mut buffer = [0; RobotState::MAX_SIZE];
         let received = loop {
             match self.socket.recv(&mut buffer) {
-                // The process has been stopped meanwhile.
+                // The process was stopped meanwhile.
                 Err(error) if error.kind() == ErrorKind::Interrupted => {}
                 received => break received,
             }
@@ -61,7 +61,7 @@ impl Client {
     }
 }
 
-/// Waits for so many milliseconds of the robot's time; returns the state then.
+/// Waits for this many milliseconds of the robot's time; returns the state at that time.
 pub(super) async fn robot_time(sim: &Running, milliseconds: u64) -> RobotState {
     let begun = Instant::now();
     let mut state = sim.state().await.expect("running");
@@ -85,13 +85,13 @@ pub(super) fn runtime() -> tokio::runtime::Runtime {
 #[test]
 fn states_come_every_millisecond_even_while_the_runtime_is_blocked() {
     let runtime = runtime();
-    // It is never further ahead of the client than the client's socket has room for.
+    // The simulator is never further ahead of the client than the client's socket has room for.
     let (read, reads) = std::sync::mpsc::channel();
     (0..10).for_each(|_| read.send(()).expect("a receiver"));
     let mut served = false;
     let sim = Sim::fr3().every_millisecond(move |robot| {
         served |= robot.is_connected();
-        // The test has ended if there is no sender.
+        // Without a sender the test has ended.
         let _ = served.then(|| reads.recv());
     });
     let sim = runtime.block_on(sim.start()).expect("a robot");
@@ -116,7 +116,7 @@ fn states_come_every_millisecond_even_while_the_runtime_is_blocked() {
 fn jobs_before_and_after_each_state_miss_none() {
     let (sender, seen) = std::sync::mpsc::channel();
     let before = sender.clone();
-    // They send nothing once the test has seen enough.
+    // The robots send nothing once the test has seen enough.
     let sim = Sim::fr3().every_millisecond(move |robot| {
         let _ = before.send(("before", robot.state().message_id));
     });
@@ -144,7 +144,7 @@ fn robots_in_step_begin_each_millisecond_together_until_one_stops() {
             apart.fetch_max(own.abs_diff(other), Ordering::SeqCst);
         }
     };
-    // Up to ten times as fast as the second one, if it may.
+    // Up to ten times as fast as the second one, if permitted.
     let fast = Sim::fr3().virtual_time(Duration::from_millis(1));
     let sims = [fast, Sim::fer()];
     let [first, second] = Sim::in_step(sims);
@@ -180,7 +180,7 @@ fn a_second_client_is_refused_by_a_reset_and_the_next_one_served() {
     assert_eq!(kind, ErrorKind::ConnectionReset);
     first.state();
     drop(first);
-    // At once, and again: the old connection is still being taken down.
+    // At once, and again: the old connection is still closing.
     for _ in 0..5 {
         Client::connect(sim.addr()).state();
     }
@@ -215,8 +215,8 @@ fn a_client_that_does_not_read_makes_room_for_the_next() {
     deaf.stream.set_write_timeout(pause).expect("a timeout");
     deaf.socket.set_read_timeout(pause).expect("a timeout");
     deaf.stream.set_nodelay(true).expect("an option");
-    // The description is long: its copies fill every buffer on the way. A few per state, for
-    // a burst would be cut off at once.
+    // The description is long: its copies fill every buffer on the path. A few per state, because a
+    // burst would be disconnected at once.
     let is_connected = || runtime.block_on(sim.with(|robot| robot.is_connected()));
     let (begun, mut room) = (Instant::now(), true);
     while is_connected().expect("running") {
@@ -333,13 +333,14 @@ fn what_clients_hear_passes_the_network() {
     for _ in 0..20 {
         let asked = Instant::now();
         let published = newest();
-        // The question may be answered in mid-cycle: the state after the next is later than it.
+        // The question may be answered in mid-cycle: the next state but one is later than the
+        // answer.
         while client.state().message_id <= published + 1 {}
         assert!(asked.elapsed() >= delay, "{:?}", asked.elapsed());
     }
     let before = newest();
     drop(client);
-    // What was on its way to one client does not reach the next.
+    // Datagrams in transit to one client do not reach the next.
     let next = Client::connect(sim.addr());
     assert!(next.state().message_id > before);
 }
@@ -426,8 +427,8 @@ fn robots_are_realistic_unless_they_are_to_be_ideal() {
     }
 }
 
-/// A program keeps it on a stack that may be a thread's of 2 MiB, and builds without optimisation
-/// copy it from frame to frame.
+/// A program keeps the future on a stack, which may be a thread's of 2 MiB, and builds without
+/// optimisation copy it from frame to frame.
 #[test]
 fn the_future_of_a_start_is_small() {
     let size = size_of_val(&Sim::fr3().start());
@@ -454,7 +455,7 @@ fn a_hand_on_sockets_moves_the_fingers_in_the_scene() {
     use crate::plant::{MujocoArm, Scene};
     use franka_proto::gripper;
 
-    /// Between the fingers, as they are in the scene.
+    /// Distance between the fingers in the scene.
     async fn gap(sim: &Running) -> f64 {
         sim.with(|robot| {
             let plant: &dyn std::any::Any = robot.plant();

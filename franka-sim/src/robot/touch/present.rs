@@ -1,4 +1,4 @@
-//! The touches that act now, and what each does to the arm.
+//! The active touches, and the effect of each on the arm.
 
 use franka_model::{
     AsBuilt, CYCLE, EndEffector, Jacobian, JointVector, MassMatrix, Twist, Wrench, rotation,
@@ -10,7 +10,7 @@ use super::{Effort, FIRM_JOINT, JOINT_INERTIA, Spring, Touch, TouchId};
 use crate::plant::External;
 use crate::signal::{halves, stack};
 
-/// Everything that touches the arm now.
+/// All active touches.
 #[derive(Debug, Default)]
 pub(in crate::robot) struct Touches {
     touches: Vec<Present>,
@@ -22,13 +22,13 @@ struct Present {
     id: TouchId,
     touch: Touch,
     since: u64,
-    /// Of a touch as a function of time, in this millisecond.
+    /// Wrench of a touch as a function of time, in this millisecond.
     wrench: Wrench,
-    /// The wrench in the newest step about its place, base axes, and how much less it is per unit
-    /// of joint acceleration.
+    /// The wrench in the newest step about its place, base axes, and its reduction per unit of
+    /// joint acceleration.
     step: (Wrench, Option<Jacobian>),
-    /// What it has done to the arm in this millisecond: the mean of the last `steps` steps, about
-    /// its place, base axes.
+    /// Effect on the arm in this millisecond: the mean of the last `steps` steps, about its place,
+    /// base axes.
     felt: Wrench,
     steps: u32,
 }
@@ -55,7 +55,7 @@ impl Touches {
         self.touches.len() < count
     }
 
-    /// What a touch has done to the arm in the last millisecond.
+    /// Effect of a touch on the arm in the last millisecond.
     pub(in crate::robot) fn felt(&self, id: TouchId) -> Option<Wrench> {
         let mut touches = self.touches.iter();
         touches.find(|present| present.id == id).map(|p| p.felt)
@@ -65,7 +65,8 @@ impl Touches {
         self.touches.clear();
     }
 
-    /// Begins the millisecond that ends at `now`: what is over ends, functions of time are asked.
+    /// Begins the millisecond that ends at `now`: ends the touches that are over, and calls the
+    /// functions of time.
     pub(in crate::robot) fn advance(&mut self, now: u64) {
         self.touches.retain(|present| {
             let end = present
@@ -94,8 +95,8 @@ impl Touches {
         }
     }
 
-    /// What they do to the joints over the step of `dt` seconds that begins with this state of the
-    /// arm, so many seconds into the millisecond.
+    /// Effect on the joints over the step of `dt` seconds that begins with this state of the arm,
+    /// `into` seconds into the millisecond.
     pub(in crate::robot) fn act(
         &mut self,
         model: &AsBuilt,
@@ -110,7 +111,7 @@ impl Touches {
         touches.map(acts).fold(none, |sum, one| sum.and(&one))
     }
 
-    /// Takes in with which acceleration the step went by.
+    /// Records the acceleration of the step.
     pub(in crate::robot) fn feel(&mut self, ddq: &JointVector) {
         for present in &mut self.touches {
             present.steps += 1;
@@ -148,7 +149,7 @@ impl Present {
         let (velocity, angular_velocity) = halves(&Twist::from(jacobian * dq));
         let none = Vector3::zeros();
         let slope_of = |spring: &Spring| Matrix3::identity() * spring.slope(dt);
-        // Force, torque, and how much less force and torque there is per unit of acceleration.
+        // Force, torque, and the reduction of both per unit of acceleration.
         let (force, torque, slope) = match &mut self.touch.effort {
             Effort::Wrench(wrench) => {
                 let (force, torque) = halves(wrench);
@@ -197,9 +198,10 @@ impl Present {
                 let across = *normal * normal.transpose();
                 let depth = across * (*point - position);
                 let push = spring.pull(depth, &(across * velocity), dt);
-                // Nothing sticks to a wall: it does not act on what is outside, or goes out faster
-                // than it follows. How the arm accelerates is not known yet: what is torn off the
-                // wall is pulled for one step, with the slope times the acceleration.
+                // Nothing sticks to a wall: it does not act on a place outside, or on one that
+                // leaves faster than it follows. The arm's acceleration is not known yet. A place
+                // that is pulled off the wall is therefore pulled for one step, with the slope
+                // times the acceleration.
                 let is_behind = (depth - across * velocity * dt).dot(normal) > 0.0;
                 if !is_behind || push.dot(normal) <= 0.0 {
                     (none, none, None)
@@ -237,7 +239,7 @@ fn block(index: usize, ahead: f64, dq: f64, dt: f64) -> External {
     }
 }
 
-/// The Jacobian of a place at `arm` from the one that a Jacobian is of.
+/// The Jacobian of a place displaced by `arm` from the place of the given Jacobian.
 fn displaced(mut jacobian: Jacobian, arm: &Vector3<f64>) -> Jacobian {
     for mut joint in jacobian.column_iter_mut() {
         let turning = joint.fixed_rows::<3>(3).cross(arm);
@@ -280,9 +282,9 @@ mod tests {
             let mut touches = Touches::default();
             let id = touches.add(touch.offset(offset), 0);
             let mut most = 0.0_f64;
-            // Ends before the end stops do something, too.
+            // Releases the joint before the end stops act, too.
             for step in 1..=100 {
-                // Each step is a millisecond to them, so that what is felt is that of the step.
+                // Each step counts as a millisecond, so that the felt wrench belongs to the step.
                 touches.advance(step);
                 let (q, dq) = (*plant.q(), *plant.dq());
                 let external = touches.act(&as_built, &frames, (&q, &dq), 0.0, STEP);
