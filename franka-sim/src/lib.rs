@@ -54,16 +54,16 @@
 //!
 //! # What it does not do
 //!
-//! - - The robot: the user must provide its model library (protocol 5). For self-collision it knows
+//! - The robot: the user must provide its model library (protocol 5). For self-collision it knows
 //!   the shape of the Franka Hand and of no other tool.
-//! - - Errors that never occur automatically: errors of the force controller, of Desk's own motions
+//! - Errors that never occur automatically: errors of the force controller, of Desk's own motions
 //!   and of the base's acceleration. [`Robot::trip`] raises any.
-//! - - Physics: links do not bend, and joints only if the [`Arm`] has elasticity. The rigid-body
+//! - Physics: links do not bend, and joints only if the [`Arm`] has elasticity. The rigid-body
 //!   plant has no surroundings except a [`Touch`], and no contact with itself. The plant of MuJoCo
 //!   (feature `mujoco`) has a scene.
-//! - - The end effectors: kinematics, unless the plant has fingers. Without fingers in the plant,
+//! - The end effectors: kinematics, unless the plant has fingers. Without fingers in the plant,
 //!   arm and end effectors are independent, and held objects have neither mass nor pose.
-//! - - Unpublished values of a robot have values chosen here, which are options: [`Unpublished`].
+//! - Unpublished values of a robot have values chosen here, which are options: [`Unpublished`].
 //!   They are tolerances, default thresholds and gains, the gain of the force estimate, and the
 //!   criterion for instability. None has been measured on a robot.
 

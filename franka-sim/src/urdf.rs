@@ -8,7 +8,7 @@
 //!   `position_based_velocity_limits` as direct children; no other joint whose name contains one
 //!   of these (fingers do);
 //! - exactly seven movable joints, a link named `link8`, an `axis` for each joint;
-//! - - no fixed link with mass behind link 7: a hand is part of `m_ee`.
+//! - no fixed link with mass behind link 7: a hand is part of `m_ee`.
 //!
 //! Numbers have the fewest digits that read back as the same value.
 

@@ -1,14 +1,14 @@
 //! The steps of `cargo xtask test`, and the parts that the tasks of `xtask-tools` share with them.
 //!
-//! | module | what it has |
+//! | module | content |
 //! |---|---|
 //! | [`peers`] | other clients against the simulator |
 //! | [`python`] | virtual environments |
 //! | [`realtime`] | the right to real-time scheduling |
-//! | [`selection`] | which tests of which packages run |
+//! | [`selection`] | selections of tests by package |
 //! | [`step`] | steps with headers, times and a summary |
 //! | [`suite`] | the steps of `cargo xtask test` |
-//! | [`workspace`] | where things are, and running a program |
+//! | [`workspace`] | directories of the workspace, and running a program |
 
 pub mod peers;
 pub mod python;

@@ -1,5 +1,5 @@
 //! `cargo xtask test` runs the tests of this workspace. Every other task is passed on to the
-//! package `xtask-tools`, which has more dependencies and is built when it is first needed.
+//! package `xtask-tools`, which has more dependencies and is built on first use.
 
 use std::env;
 use std::ffi::OsString;
@@ -55,7 +55,7 @@ fn pass_on(arguments: impl Iterator<Item = OsString>) -> anyhow::Result<ExitCode
         .arg("--manifest-path")
         .arg(workspace.root().join("Cargo.toml"));
     command.arg("--").args(arguments);
-    // Paths among the arguments are relative to it.
+    // Paths among the arguments are relative to the current directory.
     command.current_dir(env::current_dir()?);
     let status = command.status()?;
     Ok(match status.code() {

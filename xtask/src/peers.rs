@@ -1,4 +1,4 @@
-//! Other clients against the simulator: runs each beside a simulator of its own, several at once.
+//! Other clients against the simulator: each runs with a separate simulator, several at once.
 
 use std::env;
 use std::fmt;
@@ -27,11 +27,11 @@ pub enum Set {
     Rest,
 }
 
-/// Runs our client beside another one, and the scripts of `tests/peers` that check something
-/// against a simulator of their own: as many at once as there are processors.
+/// Runs our client together with another one, and the scripts of `tests/peers` that check something
+/// against a separate simulator: as many at once as there are processors.
 ///
 /// # Errors
-/// If a program fails, or the machine lacks what it needs and `CI=true`.
+/// If a program fails, or the machine lacks a requirement and `CI=true`.
 pub fn run(workspace: &Workspace, set: Set) -> anyhow::Result<Outcome> {
     let interpreter = interpreter(workspace)?;
     simulator(workspace)?;
@@ -54,8 +54,8 @@ pub fn run(workspace: &Workspace, set: Set) -> anyhow::Result<Outcome> {
     }
 }
 
-/// Builds the simulator's binary as the tests do, so that what they have built is used again: Cargo
-/// builds the binaries of a package with its integration tests.
+/// Builds the simulator's binary as the tests do, to reuse their build: Cargo builds the binaries
+/// of a package with its integration tests.
 fn simulator(workspace: &Workspace) -> anyhow::Result<()> {
     let mut build = workspace.cargo();
     build.args(["test", "--no-run", "--quiet", "--test=robot"]);
@@ -63,7 +63,7 @@ fn simulator(workspace: &Workspace) -> anyhow::Result<()> {
     workspace.run(&mut build)
 }
 
-/// A program that prints a line per step, and the simulator that it needs beside it, if any.
+/// A program that prints a line per step, and the simulator that it needs, if any.
 struct Program {
     name: &'static str,
     command: Command,
@@ -92,7 +92,7 @@ fn script(
 }
 
 /// The vendor's client against a cassette that it has recorded. Simulator, tap and cassette have
-/// addresses of their own, as it knows one port only.
+/// separate addresses, as the client knows only one port.
 fn cassette(workspace: &Workspace, interpreter: &Path) -> Program {
     let name = "cassette_peer";
     let mut command = workspace.program(workspace.target().join("debug").join(name));
@@ -106,8 +106,8 @@ fn cassette(workspace: &Workspace, interpreter: &Path) -> Program {
     }
 }
 
-/// Builds our programs and franka-rs. The program returned holds our target control against that of
-/// franka-rs on the same robots, and with an interpreter against the vendor's client, too.
+/// Builds our programs and franka-rs. The returned program compares our target control with
+/// franka-rs on the same robots. With an interpreter, it also compares it with the vendor's client.
 fn beside_franka_rs(workspace: &Workspace, interpreter: Option<&Path>) -> anyhow::Result<Program> {
     let mut programs = workspace.cargo();
     programs.args(["build", "--quiet", "--package", "franka-bench"]);
@@ -130,7 +130,7 @@ fn beside_franka_rs(workspace: &Workspace, interpreter: Option<&Path>) -> anyhow
     })
 }
 
-/// The build of franka-rs, in a workspace of its own. It uses what the tests have built alike.
+/// The build of franka-rs, in a separate workspace. It reuses the common part of the tests' build.
 fn franka_rs(workspace: &Workspace) -> Command {
     let mut build = workspace.cargo();
     build.args(["build", "--quiet", "--locked", "--manifest-path"]);
@@ -155,7 +155,7 @@ fn side_by_side(programs: Vec<Program>) -> Vec<Summary> {
     })
 }
 
-/// Name of a program, its steps, how long it took, and whether it succeeded.
+/// Name of a program, its steps, its duration, and its result.
 type Summary = (&'static str, ReportedSteps, Duration, anyhow::Result<()>);
 
 impl Program {
@@ -171,8 +171,8 @@ impl Program {
     }
 }
 
-/// Prints what became of each program, and then every failure in a line: the output of a program
-/// may be far above, or cut off. Fails if one did.
+/// Prints the result of each program, and then every failure in a line: the output of a program may
+/// be far above, or cut off. Fails if one program failed.
 fn summarise(summaries: &[Summary]) -> anyhow::Result<()> {
     let mut total = ReportedSteps::default();
     println!();
@@ -211,12 +211,12 @@ struct ReportedSteps {
     passed: u32,
     /// The line of each step that failed.
     failures: Vec<String>,
-    /// The last line that says anything.
+    /// The last line with any text.
     last: String,
 }
 
 impl ReportedSteps {
-    /// Takes in a line that a program printed.
+    /// Reads a line that a program printed.
     fn note(&mut self, line: &str) {
         if line.starts_with("ok    ") {
             self.passed += 1;
@@ -236,8 +236,8 @@ impl fmt::Display for ReportedSteps {
     }
 }
 
-/// Runs a program to its end and counts the steps that it reports; its output is passed on, each
-/// line behind its name.
+/// Runs a program to its end and counts the steps that it reports. Prints its output, each line
+/// behind its name.
 fn count(name: &str, command: Command, time_max: Duration) -> (ReportedSteps, anyhow::Result<()>) {
     let mut steps = ReportedSteps::default();
     let result = thread::scope(|scope| {
@@ -268,7 +268,7 @@ fn spawn(mut command: Command) -> anyhow::Result<(Child, PipeReader)> {
     ))
 }
 
-/// A Python interpreter that has the vendor's client, or why there is none.
+/// A Python interpreter with the vendor's client, or the reason why none is available.
 ///
 /// # Errors
 /// If the client cannot be installed.
@@ -284,12 +284,12 @@ pub fn interpreter(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, Stri
     }
 }
 
-/// Where the scripts are.
+/// Directory of the scripts.
 pub fn directory(workspace: &Workspace) -> PathBuf {
     workspace.root().join("tests").join("peers")
 }
 
-/// Whether the vendor's wheels exist for this machine at all.
+/// Checks that the vendor's wheels exist for this machine.
 fn supported() -> Result<(), String> {
     match (env::consts::OS, env::consts::ARCH) {
         ("linux", "x86_64") => Ok(()),
@@ -299,20 +299,20 @@ fn supported() -> Result<(), String> {
     }
 }
 
-/// The address of the simulator of script `n`. The vendor's client knows one port only, so that
-/// simulators side by side need addresses of their own.
+/// The address of the simulator of script `n`. The vendor's client knows only one port, so
+/// simulators that run at the same time need separate addresses.
 fn loopback_address(process: u32, n: usize) -> String {
-    // 127.1.x.y and above: away from 127.0.0.1, where a simulator of the user may listen; y is
-    // never 0 or 255. The networks between are for the relays of the scripts.
+    // Addresses from 127.1.x.y on: 127.0.0.1 may have a simulator of the user; y is never 0 or 255.
+    // The scripts use the networks between for relays.
     let (high, low) = ((process / 254) % 256, process % 254 + 1);
     format!("127.{}.{high}.{low}", 2 * n + 1)
 }
 
-/// A simulator that is ready to serve; it ends with this value.
+/// A simulator that is ready to serve; dropping this value ends it.
 struct Running(Child);
 
 impl Running {
-    /// Starts the simulator of a script and waits for the line that says that it listens.
+    /// Starts the simulator of a script and waits for the line with its address.
     fn start(script: &'static str, command: Command) -> anyhow::Result<Self> {
         let (child, output) = spawn(command)?;
         let running = Self(child);
@@ -322,7 +322,7 @@ impl Running {
             for line in BufReader::new(output).lines().map_while(Result::ok) {
                 println!("{script}: [franka-sim] {line}");
                 if line.starts_with("listening on ") {
-                    // Gone if this came too late.
+                    // The receiver is gone if this came too late.
                     let _ = sender.send(());
                 }
             }
@@ -345,8 +345,8 @@ impl Drop for Running {
     }
 }
 
-/// Waits for the end of a program; one that takes longer than `time_max` is killed and counts as
-/// failed.
+/// Waits for the end of a program. A program that takes longer than `time_max` is killed and counts
+/// as failed.
 fn finish(mut child: Child, time_max: Duration) -> anyhow::Result<()> {
     let deadline = Instant::now() + time_max;
     loop {
@@ -362,21 +362,21 @@ fn finish(mut child: Child, time_max: Duration) -> anyhow::Result<()> {
     }
 }
 
-/// Ends a child; it may have ended by itself, which is as good.
+/// Ends a child, which may also have ended already.
 fn kill(child: &mut Child) {
     if child.kill().is_err() || child.wait().is_err() {
         eprintln!("could not end process {}", child.id());
     }
 }
 
-/// The program that runs our client beside franka-rs.
+/// The program that runs our client together with franka-rs.
 const BESIDE: &str = "beside_franka_rs";
 
-/// The script that it gives orders to.
+/// The script that this program controls.
 const POSITIONS: &str = "pylibfranka_positions.py";
 
-/// The scripts, and the options of their simulators: in virtual time, in which no answer is late,
-/// unless the pace of the robot is part of what is shown.
+/// The scripts, and the options of their simulators. They run in virtual time, in which no answer
+/// is late, unless the script depends on the robot's clock.
 const SCRIPTS: [(&str, &[&str]); 12] = [
     (
         "pylibfranka_hand.py",
@@ -391,7 +391,7 @@ const SCRIPTS: [(&str, &[&str]); 12] = [
     ("pylibfranka_active.py", &[VIRTUAL]),
     ("pylibfranka_reflexes.py", &[VIRTUAL]),
     ("pylibfranka_late.py", &[]),
-    // The Jacobian of the end effector all but loses a rank there.
+    // The Jacobian of the end effector nearly loses a rank there.
     (
         "pylibfranka_singular.py",
         &[VIRTUAL, "--q", "0,1.28,0,-0.5415,0,2.74,0"],
@@ -410,16 +410,17 @@ const SMOKE: [&str; 5] = [
 
 const VIRTUAL: &str = "--virtual-time";
 
-/// Versions of Python that the vendor builds wheels for.
+/// Versions of Python with wheels of the vendor.
 const PYTHON: RangeInclusive<Version> = (3, 9)..=(3, 12);
 
-/// The port of every FCI server; the vendor's client takes no other.
+/// The port of every FCI server; the vendor's client uses no other.
 const PORT: &str = "1337";
 
-/// A simulator listens within milliseconds; on a machine that is busy building it may take seconds.
+/// A simulator listens within milliseconds. On a machine that is busy with a build it may take
+/// seconds.
 const READY_TIME_MAX: Duration = Duration::from_secs(20);
 
-/// What takes longer than this hangs, on a busy machine too.
+/// A program that takes longer hangs, on a busy machine too.
 const PROGRAM_TIME_MAX: Duration = Duration::from_secs(300);
 
 const POLL: Duration = Duration::from_millis(50);

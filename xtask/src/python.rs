@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 use crate::workspace::Workspace;
 
-/// An interpreter that knows the modules that make virtual environments.
+/// An interpreter with the modules that make virtual environments.
 #[derive(Debug)]
 pub struct Python {
     program: &'static str,
@@ -19,11 +19,11 @@ pub struct Python {
 pub type Version = (u32, u32);
 
 impl Python {
-    /// The first interpreter of this machine that will do and has one of these versions, or why
-    /// there is none.
+    /// The first suitable interpreter of this machine with one of these versions, or the reason why
+    /// none is available.
     ///
     /// # Errors
-    /// Why no interpreter will do.
+    /// The reason why no interpreter is suitable.
     pub fn find(versions: RangeInclusive<Version>) -> Result<Self, String> {
         let mut unfit = Vec::new();
         for program in PROGRAMS {
@@ -62,7 +62,7 @@ impl Python {
     }
 
     /// Makes the virtual environment `name` in the build directory, installs `requirements` in it
-    /// and returns its interpreter. Does nothing but the last if both are as before.
+    /// and returns its interpreter. Only returns the interpreter if both are unchanged.
     ///
     /// # Errors
     /// If the requirements cannot be read or installed.
@@ -92,12 +92,12 @@ impl Python {
             .arg("--requirement")
             .arg(requirements);
         workspace.run(&mut install)?;
-        // Written last: an installation that broke off is made anew.
+        // Written last, so that an interrupted installation is repeated.
         fs::write(&installed, wanted)?;
         Ok(interpreter)
     }
 
-    /// Makes an empty virtual environment in `directory`, in place of what is there, and returns
+    /// Makes an empty virtual environment in `directory`, in place of an earlier one, and returns
     /// its interpreter.
     ///
     /// # Errors
@@ -119,7 +119,7 @@ fn interpreter_of(directory: &Path) -> PathBuf {
     directory.join("bin").join("python")
 }
 
-/// A range as one says it; one up to [`NEWEST`] has no end.
+/// Text of a range; a range up to [`NEWEST`] has no end.
 fn text(versions: &RangeInclusive<Version>) -> String {
     let ((major, minor), newest) = (*versions.start(), *versions.end());
     match newest {
@@ -128,13 +128,13 @@ fn text(versions: &RangeInclusive<Version>) -> String {
     }
 }
 
-/// The oldest Python that the wheel and the tools of the steps are for.
+/// The oldest Python that the wheel and the tools of the steps support.
 pub const OLDEST: Version = (3, 10);
 
 /// Newer than any Python 3.
 pub const NEWEST: Version = (3, u32::MAX);
 
-/// Version of an interpreter that is there and can make virtual environments.
+/// Version of an interpreter that exists and can make virtual environments.
 fn probe(program: &str) -> Option<Version> {
     let output = Command::new(program)
         .args(["-c", PROBE])
@@ -156,7 +156,7 @@ fn parse_version(text: &str) -> Option<Version> {
 const PROBE: &str =
     "import ensurepip, sys, venv; print(f'{sys.version_info[0]}.{sys.version_info[1]}')";
 
-/// Interpreters to try: the one that `python3` names first, then older ones beside it.
+/// Interpreters to try: `python3` first, then older ones.
 const PROGRAMS: &[&str] = &[
     "python3",
     "python3.14",

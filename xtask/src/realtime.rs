@@ -1,13 +1,12 @@
-//! The right to real-time scheduling, which some tests check more with.
+//! The right to real-time scheduling, with which some tests check more.
 
 use std::process::{self, Command, Stdio};
 
-/// Whether what this process starts may ask for `SCHED_FIFO`. Where it may not, the limit is raised
-/// if this user may do that: with `CI=true` also by way of sudo without a password. The error says
-/// that the right cannot be had.
+/// Returns Ok if child processes may request `SCHED_FIFO`. Otherwise it raises the limit, if this
+/// user may do that; with `CI=true` also by sudo without a password. An error means that the right
+/// cannot be obtained.
 ///
 /// # Errors
-/// See above.
 pub fn obtain() -> Result<(), String> {
     let limit = |program: &[&str]| {
         let process = process::id().to_string();
@@ -24,7 +23,7 @@ pub fn obtain() -> Result<(), String> {
     Err("SCHED_FIFO is not granted here and cannot be: threads had no priority".to_owned())
 }
 
-/// Set for the tests where the right is there: the control thread then has to have its priority.
+/// Set for the tests if the right is available: the control thread must then have its priority.
 pub const GRANTED: &str = "FRANKA_REALTIME_GRANTED";
 
 /// True if a program can be run without input, and succeeds.

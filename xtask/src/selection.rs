@@ -7,8 +7,7 @@ use crate::step::Outcome;
 use crate::workspace::Workspace;
 
 /// Runs the tests of these targets of these packages that the filter of cargo-nextest selects.
-/// Where cargo-nextest is not installed, `cargo test` runs all tests of the targets, one binary
-/// after the other.
+/// Without cargo-nextest, `cargo test` runs all tests of the targets, one binary after the other.
 ///
 /// # Errors
 /// If a test fails or cannot be built.
@@ -50,8 +49,8 @@ pub fn packages(names: &[&str]) -> Vec<String> {
         .collect()
 }
 
-/// Driver and simulator, without what few programs need: recordings as tables, dashboard, command
-/// line, Python.
+/// Driver and simulator, without the parts that few programs need: recordings as tables, dashboard,
+/// command line, Python.
 pub const PACKAGES: [&str; 8] = [
     "franka-proto",
     "franka-model",

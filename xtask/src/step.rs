@@ -1,4 +1,4 @@
-//! Steps: a header, what they do, how long it took; at the end one line for all of them.
+//! Steps, each with a header, work and a duration, and one line at the end for all of them.
 
 use std::env;
 use std::fmt;
@@ -7,22 +7,22 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context as _, bail};
 
-/// How a step that did not fail ended.
+/// Result of a step that did not fail.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// All of it ran and succeeded.
     Passed,
-    /// What ran succeeded, and this is what could not be checked.
+    /// Everything that ran succeeded; the text names the parts that could not be checked.
     Partly(String),
-    /// Nothing was checked, for this reason.
+    /// Nothing was checked; the text is the reason.
     Skipped(String),
 }
 
 impl Outcome {
-    /// What a step comes to for which something is missing: skipped, and with `CI=true` failed.
+    /// Result of a step with a missing requirement: skipped, or with `CI=true` failed.
     ///
     /// # Errors
-    /// With `CI=true`.
+    /// If `CI=true`.
     pub fn without(why: String) -> anyhow::Result<Self> {
         if is_ci() {
             bail!("{why}; with CI=true this step has to run");
@@ -31,16 +31,17 @@ impl Outcome {
     }
 }
 
-/// True if nothing that can be checked may be left out: the variable `CI`, as services set it.
+/// True if nothing that can be checked may be left out: the variable `CI` is set, as services set
+/// it.
 pub fn is_ci() -> bool {
     env::var("CI").is_ok_and(|value| value == "true" || value == "1")
 }
 
-/// The time that a step took, by the clock and by the processors.
+/// The duration of a step, in wall-clock time and processor time.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cost {
     elapsed: Duration,
-    /// User and system time of the programs that the step ran; known on Linux.
+    /// User and system time of the programs that the step ran; available on Linux.
     processor: Option<f64>,
 }
 
@@ -57,8 +58,8 @@ impl fmt::Display for Cost {
 /// Processor time of all programs that this process has run to their end, in seconds.
 fn processor_time() -> Option<f64> {
     let stat = fs::read_to_string("/proc/self/stat").ok()?;
-    // Behind the name of the program, which may contain spaces, fields 16 and 17 of proc(5) are
-    // the 14th and 15th, in ticks of a hundredth of a second.
+    // The name of the program may contain spaces. After it, fields 16 and 17 of proc(5) are the
+    // 14th and 15th, in ticks of a hundredth of a second.
     let (_, fields) = stat.rsplit_once(')')?;
     let mut ticks = fields.split_whitespace().skip(13);
     let user: f64 = ticks.next()?.parse().ok()?;
@@ -73,10 +74,10 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// Takes a step: header, work, time.
+    /// Runs a step: header, work, time.
     ///
     /// # Errors
-    /// Those of the work.
+    /// The errors of the work.
     pub fn take(
         &mut self,
         name: &'static str,
@@ -107,7 +108,7 @@ impl Steps {
         Ok(())
     }
 
-    /// One line: what passed in what time, and what was skipped and why.
+    /// One line: the passed steps and their time, and the skipped steps with their reasons.
     pub fn summary(&self) -> String {
         let costs = self.taken.iter().map(|(_, _, cost)| cost);
         let total = Cost {

@@ -1,5 +1,5 @@
-//! The steps of `cargo xtask test`: the tests that prove the product, in the order in which they
-//! are likely to fail.
+//! The steps of `cargo xtask test`: the tests of the product, in the order in which they are likely
+//! to fail.
 //!
 //! Tests that need more time or dependencies are steps of `cargo xtask check`, or of
 //! `cargo xtask nightly`.
@@ -28,7 +28,7 @@ impl Step {
     /// All steps, in their order.
     pub const ALL: [Self; 3] = [Self::Tests, Self::Doctests, Self::Client];
 
-    /// The name that `--only` takes.
+    /// The name of the step for `--only`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tests => "tests",
@@ -37,7 +37,7 @@ impl Step {
         }
     }
 
-    /// One line about it.
+    /// One line of description.
     pub fn about(self) -> &'static str {
         match self {
             Self::Tests => "unit, golden, lockstep, conformance and live tests",
@@ -80,7 +80,7 @@ impl FromStr for Step {
 /// Runs the chosen steps, or all if none is chosen, up to the first failure.
 ///
 /// # Errors
-/// Those of the first step that fails.
+/// The error of the first step that fails.
 pub fn run(workspace: &Workspace, only: &[Step]) -> anyhow::Result<()> {
     let mut steps = Steps::default();
     for step in Step::ALL {
@@ -92,8 +92,8 @@ pub fn run(workspace: &Workspace, only: &[Step]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Their test binaries: libraries and integration tests by name. Each further one links driver and
-/// simulator again.
+/// Test binaries of these packages: libraries and integration tests by name. Each further one links
+/// driver and simulator again.
 const TARGETS: [&str; 10] = [
     "--lib",
     "--test=conformance",

@@ -1,4 +1,4 @@
-//! Where the workspace and its build directory are, and how a program is run in it.
+//! The directories of the workspace and of its build, and running programs in it.
 
 use std::env;
 use std::ffi::OsStr;
@@ -7,7 +7,7 @@ use std::process::Command;
 
 use anyhow::{Context as _, bail};
 
-/// The workspace that this program belongs to.
+/// The workspace of this program.
 #[derive(Debug)]
 pub struct Workspace {
     root: PathBuf,
@@ -53,7 +53,7 @@ impl Workspace {
         command
     }
 
-    /// Shows the command, runs it to its end and fails if it does.
+    /// Prints the command, runs it to its end and fails if it fails.
     ///
     /// # Errors
     /// If the command cannot be started or fails.
@@ -70,7 +70,7 @@ impl Workspace {
     }
 }
 
-/// The command as one would type it: variables that differ from this program's, program, arguments.
+/// The command as typed by a user: changed variables, program, arguments.
 fn line(command: &Command) -> String {
     let mut words = Vec::new();
     for (name, value) in command.get_envs() {
@@ -92,8 +92,8 @@ fn line(command: &Command) -> String {
     words.join(" ")
 }
 
-/// The Cargo that runs this program, so that a toolchain chosen by `cargo +name` or by a variable
-/// stays chosen.
+/// The Cargo that runs this program, so that the toolchain of `cargo +name` or of a variable stays
+/// in use.
 fn cargo_in(root: &Path) -> Command {
     let cargo = env::var_os("CARGO").unwrap_or("cargo".into());
     let mut command = Command::new(cargo);

@@ -11,7 +11,7 @@ use super::{Mechanism, towards};
 /// All figures are choices made here; none has been measured. The four profiles of the device make
 /// no difference.
 ///
-/// * A vacuum requires an object and reachesat most [`Suction::MAX_VACUUM`]; the request is
+/// * A vacuum requires an object and reaches at most [`Suction::MAX_VACUUM`]; the request is
 ///   unsuccessful when its time is up.
 /// * A vacuum that was reached is held. A stop turns the pump off, after which it leaks away.
 /// * An object that is lost takes the vacuum with it.

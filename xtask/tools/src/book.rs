@@ -1,5 +1,5 @@
-//! The book: built with the programs and links in it checked, and served with the references of
-//! Rust and Python beside it.
+//! The book: built with checks of its programs and links, and served together with the references
+//! of Rust and Python.
 //!
 //! ```text
 //! docs/src ── mdBook ──> target/book ── lychee: links
@@ -22,8 +22,8 @@ use xtask::python::{NEWEST, OLDEST, Python};
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
 
-/// The step of `cargo xtask test`: every page is in the summary, every Rust program is compiled by
-/// a test, and no link leads nowhere.
+/// The book's step: every page is in the summary, every Rust program is compiled by a test, and no
+/// link is broken.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let pages = names::pages(&sources(workspace))?;
     let mut found = unlisted(workspace, &pages)?;
@@ -40,8 +40,8 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     links(workspace, &tools, &book, &REFERENCES)
 }
 
-/// Builds the book with its references, and serves it on this computer until Ctrl-C, unless it is
-/// to be built only.
+/// Builds the book with its references. Serves it on this computer until Ctrl-C, unless only a
+/// build is requested.
 pub(crate) fn serve(workspace: &Workspace, port: Option<u16>) -> anyhow::Result<()> {
     let tools = match Tools::find(workspace)? {
         Ok(tools) => tools,
@@ -49,7 +49,7 @@ pub(crate) fn serve(workspace: &Workspace, port: Option<u16>) -> anyhow::Result<
     };
     let book = build(workspace, &tools)?;
     playground::add(workspace, &book)?;
-    // Cargo leaves pages of names that no longer exist.
+    // Cargo keeps pages of names that no longer exist.
     remove(&workspace.target().join("doc"))?;
     let mut rust = workspace.cargo();
     rust.args(["doc", "--no-deps", "--features"]);
@@ -102,7 +102,7 @@ struct Tools {
 }
 
 impl Tools {
-    /// Installs them, or says what is missing for that.
+    /// Installs the tools, or returns the missing requirement.
     fn find(workspace: &Workspace) -> anyhow::Result<Result<Self, String>> {
         let python = match Python::find(OLDEST..=NEWEST) {
             Ok(python) => python,
@@ -119,7 +119,7 @@ impl Tools {
     }
 }
 
-/// Builds the pages, in place of all that an earlier build left, and returns where they are.
+/// Builds the pages, in place of an earlier build, and returns their directory.
 fn build(workspace: &Workspace, tools: &Tools) -> anyhow::Result<PathBuf> {
     let book = workspace.target().join("book");
     remove(&book)?;
@@ -129,8 +129,8 @@ fn build(workspace: &Workspace, tools: &Tools) -> anyhow::Result<PathBuf> {
     Ok(book)
 }
 
-/// Follows the links of the built pages, and of the pages that the repository shows, to files and
-/// to places in them, but those to references that are `missing`.
+/// Checks the links of the built pages, and of the repository's pages, to files and to anchors in
+/// them, except links to references that are `missing`.
 fn links(
     workspace: &Workspace,
     tools: &Tools,
@@ -160,7 +160,7 @@ fn links(
     Ok(Outcome::Passed)
 }
 
-/// Pages that no chapter of the summary leads to.
+/// Pages that are in no chapter of the summary.
 fn unlisted(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<String>> {
     let sources = sources(workspace);
     let summary = fs::read_to_string(sources.join("SUMMARY.md"))?;
@@ -174,7 +174,7 @@ fn unlisted(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<Stri
     Ok(found)
 }
 
-/// Pages with Rust programs that are in none of the tests.
+/// Pages with Rust programs that no test compiles.
 fn untested(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<String>> {
     let tests = fs::read_to_string(workspace.root().join(DOCTESTS)).context(DOCTESTS)?;
     let mut found = Vec::new();
@@ -188,8 +188,7 @@ fn untested(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<Stri
     Ok(found)
 }
 
-/// Commands of Cargo with examples that are not there, and tasks of this program that it does not
-/// know.
+/// Commands of Cargo with missing examples, and unknown tasks of this program.
 fn unknown(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<String>> {
     let manifest = fs::read_to_string(workspace.root().join("examples/Cargo.toml"))?;
     let mut found = Vec::new();
@@ -222,12 +221,12 @@ fn unknown(workspace: &Workspace, pages: &[PathBuf]) -> anyhow::Result<Vec<Strin
     Ok(found)
 }
 
-/// True if a page has a Rust program of its own that is not to be ignored.
+/// True if a page contains a Rust program that must not be ignored.
 fn programs(page: &str) -> bool {
     let mut lines = page.lines();
     while let Some(line) = lines.next() {
         if line.starts_with("```rust") && !line.contains("ignore") {
-            // What is included is a file that builds.
+            // An included program is a file that builds.
             if !lines.next().is_some_and(|line| line.starts_with("{{#")) {
                 return true;
             }
@@ -240,7 +239,7 @@ fn sources(workspace: &Workspace) -> PathBuf {
     workspace.root().join("docs").join("src")
 }
 
-/// Removes a directory, if it is there.
+/// Removes a directory if it exists.
 fn remove(directory: &Path) -> anyhow::Result<()> {
     match fs::remove_dir_all(directory) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => {
@@ -250,13 +249,13 @@ fn remove(directory: &Path) -> anyhow::Result<()> {
     }
 }
 
-/// Where the references are, which are built by `cargo xtask book` only.
+/// Directories of the references, which only `cargo xtask book` builds.
 const REFERENCES: [&str; 2] = ["book/rust/", "book/python/"];
 
-/// Where the programs of the pages are compiled.
+/// File that compiles the programs of the pages.
 const DOCTESTS: &str = "tests/src/lib.rs";
 
-/// Pages outside the book that people read first.
+/// Pages outside the book that users read first.
 pub(crate) const REPOSITORY_PAGES: [&str; 3] =
     ["README.md", "examples/README.md", "franka-py/README.md"];
 

@@ -40,7 +40,7 @@ pub(crate) enum Check {
     Schemas,
     /// The book: its pages, programs and links.
     Book,
-    /// The files of the dashboard's page are those that its sources make.
+    /// The files of the dashboard's page match its sources.
     Assets,
     /// Lints, warnings denied.
     Clippy,
@@ -50,7 +50,7 @@ pub(crate) enum Check {
     Quickstart,
     /// The tests that `cargo xtask test` leaves out.
     Rest,
-    /// What is there without features, and without the standard library.
+    /// The parts without features, and without the standard library.
     Bare,
     /// The other clients against the simulator.
     Peers,
@@ -71,13 +71,13 @@ pub(crate) enum Nightly {
     Dashboard,
     /// The book's playground in a real browser.
     Playground,
-    /// What is portable, for other systems and machines.
+    /// The portable parts, for other systems and machines.
     Targets,
 }
 
-/// The steps of a command: what `--only` takes.
+/// The steps of a command, for `--only`.
 pub(crate) trait StepOf: ValueEnum + PartialEq {
-    /// Name, and one line about it.
+    /// Name, and one line of description.
     fn describe(&self) -> (&'static str, &'static str);
 
     fn run(&self, workspace: &Workspace) -> anyhow::Result<Outcome>;
@@ -216,7 +216,7 @@ impl StepOf for Check {
 }
 
 /// The tests that `cargo xtask test` leaves out: first of the same packages, whose libraries are
-/// built already, then of the others.
+/// already built, then of the others.
 fn rest(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let filter = format!("not ({})", LIVE);
     let outcome = selection::tests(workspace, &PACKAGES, &TARGETS, &filter)?;
@@ -255,11 +255,11 @@ fn without_features(workspace: &Workspace) -> anyhow::Result<()> {
     clippy(workspace, &arguments)
 }
 
-/// Checks protocol, model and generator for this machine, where the standard library exists and
-/// must not be used, and for one where it does not.
+/// Checks protocol, model and generator without the standard library, for this machine and for one
+/// that has no standard library.
 fn no_std(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let package = workspace.root().join("tests").join("no_std");
-    // The package resolves by itself, to the versions that the workspace has.
+    // The package resolves alone, to the versions that the workspace has.
     fs::copy(
         workspace.root().join("Cargo.lock"),
         package.join("Cargo.lock"),
@@ -295,7 +295,7 @@ fn installed(target: &str) -> bool {
     })
 }
 
-/// Test binaries of the driver's packages that `cargo xtask test` does not run, or not whole.
+/// Test binaries of the driver's packages that `cargo xtask test` runs in part or not at all.
 const TARGETS: [&str; 6] = [
     "--test=cassettes",
     "--test=live",
@@ -305,7 +305,7 @@ const TARGETS: [&str; 6] = [
     "--test=syscalls",
 ];
 
-/// Features that lints and documentation have beside the default ones.
+/// Features for lints and documentation besides the default ones.
 const FEATURES: &str =
     "franka-cli/full,franka-tests/book,franka-tests/cycle-phases,franka-examples/all";
 
@@ -320,7 +320,7 @@ const MUJOCO: [&str; 4] = [
 const MUJOCO_FEATURES: &str =
     "franka-bench/mujoco,franka-examples/all,franka-examples/mujoco,franka-tests/mujoco";
 
-/// The workspace, and the packages that are workspaces of their own.
+/// The workspace, and the packages that are separate workspaces.
 const MANIFESTS: [&str; 3] = ["Cargo.toml", "fuzz/Cargo.toml", "tests/no_std/Cargo.toml"];
 
 /// Targets without a standard library, the preferred one first.

@@ -5,8 +5,8 @@
 //! ```
 //!
 //! A module that cannot be read without another one, which cannot be read without the first, is one
-//! module in two places. What the root of a crate exports counts as the module that it comes from.
-//! Unit tests do not count: they may look at whatever they like.
+//! module in two places. An export at the root of a crate counts as the module where it is
+//! declared. Unit tests do not count: they may use any module.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fs;
@@ -19,7 +19,7 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 use crate::metadata;
 use xtask::workspace::Workspace;
 
-/// Fails with each circle, and where each of its imports is.
+/// Fails with each circle, and the places of its imports.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
     let crates = metadata::crates(workspace)?;
     let mut found = Vec::new();
@@ -35,23 +35,23 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Where an import is.
+/// Position of an import.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Place {
     file: PathBuf,
     line: usize,
 }
 
-/// Modules that all import each other, directly or by way of others of them.
+/// Modules that all import each other, directly or through other modules of the circle.
 #[derive(Debug, PartialEq, Eq)]
 struct Circle {
     modules: BTreeSet<String>,
-    /// The shortest way around: each module imports the next one, the last one the first.
+    /// The shortest circle: each module imports the next one, the last one the first.
     way: Vec<(String, Place)>,
 }
 
 impl Circle {
-    /// Its modules, and a line per import of the way around.
+    /// Its modules, and a line per import of the circle.
     fn tell(&self, root: &Path) -> String {
         let modules: Vec<&str> = self.modules.iter().map(String::as_str).collect();
         let mut text = modules.join(", ");
@@ -68,13 +68,13 @@ impl Circle {
     }
 }
 
-/// What a crate's modules import, as it is read.
+/// Imports of a crate's modules, as they are read.
 #[derive(Debug, Default)]
 struct Imports {
     modules: BTreeSet<String>,
-    /// Names at the root of the crate, and the top-level modules that they come from.
+    /// Names at the root of the crate, and their top-level modules.
     exported: BTreeMap<String, String>,
-    /// The top-level module that imports, the name at the root of the crate that it imports, where.
+    /// The importing top-level module, the imported name at the root of the crate, and the place.
     found: Vec<(String, String, Place)>,
 }
 
@@ -86,8 +86,8 @@ impl Imports {
         Ok(imports)
     }
 
-    /// Reads a file as the module `path`. Modules of a `root`, and of a `mod.rs`, are beside it;
-    /// those of another file are in a directory of its name.
+    /// Reads a file as the module `path`. Modules of a `root`, and of a `mod.rs`, are in the same
+    /// directory; modules of another file are in a directory of its name.
     fn read(&mut self, file: &Path, path: &[String], is_root: bool) -> anyhow::Result<()> {
         let text = fs::read_to_string(file)
             .with_context(|| format!("module {} has no {}", path.join("::"), file.display()))?;
@@ -110,7 +110,7 @@ impl Imports {
     ) -> anyhow::Result<()> {
         let tokens: Vec<TokenTree> = tokens.into_iter().collect();
         let mut rest = &tokens[..];
-        // By an attribute of the module that follows.
+        // From an attribute of the next module.
         let mut located = None;
         while let Some((token, after)) = rest.split_first() {
             rest = after;
@@ -145,7 +145,7 @@ impl Imports {
                     }
                 }
                 (TokenTree::Ident(word), after) if word == "use" && path.is_empty() => {
-                    // The root imports from everywhere, which is its purpose.
+                    // The purpose of the root is to import from everywhere.
                     self.export(after, None);
                     rest = after_item(after);
                 }
@@ -172,8 +172,8 @@ impl Imports {
         Ok(())
     }
 
-    /// Notes the names that a `use` at the root of the crate brings there. `module` is the
-    /// top-level module that the path began with, once it has begun.
+    /// Records the names that a `use` at the root of the crate imports. `module` is the first
+    /// top-level module of the path, once it is known.
     fn export(&mut self, tokens: &[TokenTree], module: Option<&str>) {
         let mut module = module.map(str::to_owned);
         let mut last = None;
@@ -251,8 +251,8 @@ impl Imports {
     }
 }
 
-/// The shortest way from one module to another, of one import at least: each module on it but the
-/// last, and where it imports the next one.
+/// The shortest path from one module to another, with at least one import: each module on it except
+/// the last, and the place where it imports the next one.
 fn shortest_way(
     edges: &BTreeMap<&str, BTreeMap<&str, &Place>>,
     from: &str,
@@ -275,8 +275,8 @@ fn shortest_way(
     None
 }
 
-/// How many modules `super::` goes up, `from_super` being one of them already, and what follows the
-/// last `::`; nothing if no `::` does.
+/// Number of modules that `super::` goes up, including `from_super`, and the tokens after the last
+/// `::`; `None` without any `::`.
 fn climb(from_super: bool, mut rest: &[TokenTree]) -> (usize, Option<&[TokenTree]>) {
     let mut up = usize::from(from_super);
     loop {
@@ -296,7 +296,7 @@ fn climb(from_super: bool, mut rest: &[TokenTree]) -> (usize, Option<&[TokenTree
     }
 }
 
-/// The names with which a path goes on: one, or those of a list in braces.
+/// The next names of a path: one name, or the names of a list in braces.
 fn first_names(tokens: &[TokenTree]) -> Vec<String> {
     match tokens.first() {
         Some(TokenTree::Ident(name)) => vec![name.to_string()],
@@ -321,7 +321,7 @@ fn is_for_tests(attribute: TokenStream) -> bool {
         && !has("any")
 }
 
-/// The file that an attribute `path` names.
+/// The file in an attribute `path`.
 fn path_of(attribute: TokenStream) -> Option<String> {
     let tokens: Vec<TokenTree> = attribute.into_iter().collect();
     match &tokens[..] {
@@ -332,7 +332,7 @@ fn path_of(attribute: TokenStream) -> Option<String> {
     }
 }
 
-/// All identifiers, also those in groups.
+/// All identifiers, including those in groups.
 fn words(tokens: TokenStream) -> Vec<String> {
     let of = |token| match token {
         TokenTree::Ident(word) => vec![word.to_string()],
@@ -342,7 +342,7 @@ fn words(tokens: TokenStream) -> Vec<String> {
     tokens.into_iter().flat_map(of).collect()
 }
 
-/// What follows the item that begins here: after its semicolon or its braces. `use` has braces
+/// The tokens after the item that begins here: after its semicolon or its braces. `use` has braces
 /// before its semicolon.
 fn after_item(tokens: &[TokenTree]) -> &[TokenTree] {
     let is_use = tokens
@@ -364,7 +364,7 @@ fn after_item(tokens: &[TokenTree]) -> &[TokenTree] {
 mod tests {
     use super::*;
 
-    /// The circles of a crate of these files, each by its modules and its way.
+    /// The circles of a crate of these files, each with its modules and its shortest circle.
     fn circles(files: &[(&str, &str)]) -> Vec<(Vec<String>, Vec<String>)> {
         static NEXT: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
         let next = NEXT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);

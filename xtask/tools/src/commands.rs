@@ -1,8 +1,8 @@
-//! The commands of Cargo that the book and the READMEs name: their tasks, steps, packages,
-//! examples, programs and tests have to be there.
+//! The commands of Cargo that the book and the READMEs name. Their tasks, steps, packages,
+//! examples, programs and tests must exist.
 //!
-//! Figures stand beside the command that printed them, so a command that is gone is a figure that
-//! cannot be had again.
+//! Figures are next to the command that printed them. Without the command, nobody can measure the
+//! figure again.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,8 +15,8 @@ use crate::names;
 use crate::page::{blocks, prose};
 use xtask::workspace::Workspace;
 
-/// Fails with every command that cannot be run. `tasks` are those of `cargo xtask`, each with its
-/// flags; `steps` those of `cargo xtask test --only`.
+/// Fails with every command that cannot be run. `tasks` are the tasks of `cargo xtask`, each with
+/// its flags; `steps` are the steps of `cargo xtask test --only`.
 pub(crate) fn check(
     workspace: &Workspace,
     tasks: &[(String, Vec<String>)],
@@ -67,14 +67,14 @@ fn commands(page: &str) -> Vec<String> {
         .collect()
 }
 
-/// Something that Cargo builds.
+/// A target that Cargo builds.
 struct Target {
     package: String,
     kind: String,
     name: String,
     /// The file of its root.
     file: PathBuf,
-    /// The features without which it is not built.
+    /// The features that it requires.
     features: Vec<String>,
 }
 
@@ -101,7 +101,7 @@ fn targets(workspace: &Workspace) -> anyhow::Result<Vec<Target>> {
     Ok(targets)
 }
 
-/// What there is.
+/// All existing targets, tasks and steps.
 struct Known<'a> {
     targets: &'a [Target],
     tasks: &'a [(String, Vec<String>)],
@@ -109,7 +109,7 @@ struct Known<'a> {
 }
 
 impl Known<'_> {
-    /// What a command names that is not there.
+    /// The missing object of a command, if any.
     fn fault(&self, command: &str) -> Option<String> {
         let command = command.split(" -- ").next().unwrap_or(command);
         let words: Vec<&str> = command.split(' ').skip(1).collect();
@@ -123,7 +123,7 @@ impl Known<'_> {
         let Some((_, flags)) = self.tasks.iter().find(|(name, _)| name == task) else {
             return Some(format!("no task {task}"));
         };
-        // What is passed on to another program is its own.
+        // Arguments after `--` belong to another program.
         let flags = (!flags.is_empty()).then_some(flags);
         for (index, word) in rest.iter().enumerate() {
             let flag = word.strip_prefix("--");
@@ -189,8 +189,8 @@ impl Known<'_> {
     }
 }
 
-/// Whether a file beside the root of the tests, or below it, has the last part of the filter in it
-/// or in its name.
+/// True if a file in the directory of the tests' root, or below it, contains the last part of the
+/// filter or has it in its name.
 fn names_a_test(root: &Path, filter: &str) -> bool {
     let name = filter.rsplit("::").next().unwrap_or(filter);
     root.parent()

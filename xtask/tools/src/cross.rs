@@ -1,4 +1,4 @@
-//! Building for other machines, and running what was built for them.
+//! Builds for other machines, and runs the results.
 
 use std::env;
 use std::ffi::OsString;
@@ -12,7 +12,7 @@ use xtask::python::{NEWEST, OLDEST, Python};
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
 
-/// The directory that the compiler's libraries are in.
+/// The directory of the compiler's libraries.
 pub(crate) fn sysroot() -> anyhow::Result<PathBuf> {
     let output = Command::new("rustc")
         .args(["--print", "sysroot"])
@@ -21,7 +21,7 @@ pub(crate) fn sysroot() -> anyhow::Result<PathBuf> {
     Ok(String::from_utf8(output.stdout)?.trim().into())
 }
 
-/// What the sysroot of a toolchain lacks to build for a target, if anything.
+/// The part of a toolchain's sysroot that is missing to build for a target, if any.
 pub(crate) fn lacks(target: &str, sysroot: &Path) -> Option<String> {
     let libraries = sysroot.join("lib/rustlib").join(target).join("lib");
     let is_std = |entry: fs::DirEntry| {
@@ -35,8 +35,8 @@ pub(crate) fn lacks(target: &str, sysroot: &Path) -> Option<String> {
     })
 }
 
-/// Of the step `targets`: checks what is portable for other systems and machines, as far as the
-/// toolchain has their standard library.
+/// The step `targets`: checks the portable parts for other systems and machines, if the toolchain
+/// has their standard library.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let sysroot = sysroot()?;
     let (there, missing): (Vec<_>, Vec<_>) = TARGETS
@@ -52,7 +52,7 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
         Err(why) => return Outcome::without(why),
     };
     for (target, what) in &there {
-        // What is in C is compiled by zig.
+        // zig compiles the parts in C.
         let mut check = workspace.program("cargo-zigbuild");
         check
             .args(["check", "--locked", "--target", target])
@@ -65,8 +65,8 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     })
 }
 
-/// Other systems that programs are developed on, and other machines that they run on, with what is
-/// for them.
+/// Other systems for development, and other machines for running programs, with the packages for
+/// each.
 const TARGETS: [(&str, &[&str]); 4] = [
     ("aarch64-apple-darwin", UNIX),
     ("aarch64-unknown-linux-gnu", UNIX),
@@ -85,7 +85,7 @@ const UNIX: &[&str] = &[
     "--example=quickstart",
 ];
 
-/// What needs no Unix: the driver does.
+/// Packages that need no Unix, unlike the driver.
 const ANYWHERE: &[&str] = &[
     "--package=franka-proto",
     "--package=franka-model",
@@ -97,8 +97,8 @@ pub(crate) fn architecture(target: &str) -> &str {
     target.split('-').next().unwrap_or_default()
 }
 
-/// The emulator that runs programs of an architecture here, or what is missing; `has` tells whether
-/// a program is installed.
+/// The emulator that runs programs of an architecture here, or the missing requirement; `has`
+/// returns true for an installed program.
 pub(crate) fn emulator(architecture: &str, has: impl Fn(&str) -> bool) -> Result<String, String> {
     let emulators = [
         format!("qemu-{architecture}-static"),
@@ -108,7 +108,7 @@ pub(crate) fn emulator(architecture: &str, has: impl Fn(&str) -> bool) -> Result
     found.ok_or_else(|| format!("{} is not installed", emulators[0]))
 }
 
-/// True if a program is there.
+/// True if a program is installed.
 pub(crate) fn is_installed(program: &str) -> bool {
     let mut command = Command::new(program);
     command
@@ -118,8 +118,8 @@ pub(crate) fn is_installed(program: &str) -> bool {
     command.status().is_ok_and(|status| status.success())
 }
 
-/// The value of `PATH` with which Cargo finds zig and what builds by it, or what is missing to
-/// install them.
+/// The value of `PATH` with which Cargo finds zig and the programs that build with it, or the
+/// missing requirement.
 pub(crate) fn zig(workspace: &Workspace) -> anyhow::Result<Result<OsString, String>> {
     let python = match Python::find(OLDEST..=NEWEST) {
         Ok(python) => python,
@@ -130,8 +130,8 @@ pub(crate) fn zig(workspace: &Workspace) -> anyhow::Result<Result<OsString, Stri
     path_with(&interpreter).map(Ok)
 }
 
-/// The value of `PATH` with which the programs of a virtual environment go first: what builds by
-/// zig looks for it as a module of the first Python.
+/// The value of `PATH` with which the programs of a virtual environment come first. Programs that
+/// build with zig look for it as a module of the first Python.
 pub(crate) fn path_with(interpreter: &Path) -> anyhow::Result<OsString> {
     let first = interpreter
         .parent()

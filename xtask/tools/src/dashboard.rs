@@ -1,4 +1,4 @@
-//! The dashboard's page: its files made from pinned packages, and pages in a real browser.
+//! The dashboard's page: its files made from pinned packages, and its tests in a real browser.
 
 use std::env;
 use std::ffi::OsStr;
@@ -16,13 +16,13 @@ use xtask::realtime::succeeds;
 use xtask::step::{Outcome, is_ci};
 use xtask::workspace::Workspace;
 
-/// Makes the files in `franka-dash/page/dist` anew.
+/// Rebuilds the files in `franka-dash/page/dist`.
 pub(crate) fn assets(workspace: &Workspace) -> anyhow::Result<()> {
     make(workspace, &page(workspace).join("dist"))
 }
 
 /// Runs the tests of the page's modules in Node, and fails if the files in `franka-dash/page/dist`
-/// are not those that [`assets`] makes.
+/// differ from those that [`assets`] makes.
 pub(crate) fn check_assets(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let page = page(workspace);
     if !has_npm() {
@@ -58,10 +58,10 @@ pub(crate) fn page(workspace: &Workspace) -> PathBuf {
     workspace.root().join("franka-dash").join("page")
 }
 
-/// What is made.
+/// Generated files.
 const MADE: [&str; 3] = ["dash.js.gz", "dash.css", "licenses.txt"];
 
-/// The content of a file, expanded if it is compressed.
+/// The content of a file, decompressed if necessary.
 pub(crate) fn expanded(content: Vec<u8>) -> anyhow::Result<Vec<u8>> {
     if !content.starts_with(&[0x1f, 0x8b]) {
         return Ok(content);
@@ -83,7 +83,7 @@ fn make(workspace: &Workspace, dist: &Path) -> anyhow::Result<()> {
     Ok(fs::write(dist.join("licenses.txt"), licences(workspace)?)?)
 }
 
-/// Puts a module, all that it imports, and their styles beside it, in one file each. Needs npm,
+/// Bundles a module with all its imports in one file, and their styles in another. It needs npm,
 /// which checks the packages against the hashes of the lock file; none of their scripts runs.
 pub(crate) fn bundle(
     workspace: &Workspace,
@@ -102,7 +102,7 @@ pub(crate) fn bundle(
     workspace.run(esbuild.env("NODE_PATH", packages))
 }
 
-/// Installs the packages of the lock file in `from` in `work`, unless they are there.
+/// Installs the packages of the lock file in `from` in `work`, unless they are already installed.
 pub(crate) fn install_packages(
     workspace: &Workspace,
     from: &Path,
@@ -119,11 +119,11 @@ pub(crate) fn install_packages(
     npm.args(["ci", "--ignore-scripts", "--no-audit", "--no-fund"]);
     npm.arg("--prefer-offline");
     workspace.run(npm.current_dir(work))?;
-    // Written last: an installation that broke off is made anew.
+    // Written last, so that an interrupted installation is repeated.
     copy(&lock, &installed)
 }
 
-/// The licences of what [`bundle`] adds, and of the meshes.
+/// The licences of the packages that [`bundle`] adds, and of the meshes.
 pub(crate) fn licences(workspace: &Workspace) -> anyhow::Result<String> {
     let packages = work(workspace).join("node_modules");
     let meshes = page(workspace).join("meshes");
@@ -139,7 +139,7 @@ pub(crate) fn licences(workspace: &Workspace) -> anyhow::Result<String> {
     Ok(licences)
 }
 
-/// Where the packages are installed.
+/// Directory of the installed packages.
 fn work(workspace: &Workspace) -> PathBuf {
     workspace.target().join("dashboard-page")
 }
@@ -151,7 +151,7 @@ fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Runs the tests of the page in a browser; with `FRANKA_THOROUGH=1` its film is recorded, too.
+/// Runs the tests of the page in a browser; with `FRANKA_THOROUGH=1` it also records its film.
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let film = workspace.target().join("dashboard").join("film.png");
     let all = ["the_page", "the_film"];
@@ -166,7 +166,7 @@ pub(crate) fn film(workspace: &Workspace) -> anyhow::Result<Outcome> {
     browse(workspace, &["the_film"], &[("FRANKA_FILM", &file)])
 }
 
-/// Runs those tests in a browser whose names have one of `which`, with variables for them.
+/// Runs the browser tests whose names contain one of `which`, with variables for them.
 pub(crate) fn browse(
     workspace: &Workspace,
     which: &[&str],
@@ -192,8 +192,8 @@ pub(crate) fn browse(
     Ok(Outcome::Passed)
 }
 
-/// With `CI=true`, tries to install the browser from Debian's packages, which takes root. The
-/// caller checks whether it is there afterwards.
+/// With `CI=true`, tries to install the browser from Debian's packages, which requires root. The
+/// caller must check if it exists afterwards.
 fn install() {
     if is_ci() {
         println!("no browser is found; installing Debian's chromium and chromium-driver");
@@ -205,7 +205,7 @@ fn install() {
     }
 }
 
-/// The first of these programs that there is.
+/// The first of these programs that exists.
 fn find(names: &[impl AsRef<OsStr>]) -> Option<PathBuf> {
     let path = env::var_os("PATH")?;
     let places: Vec<_> = env::split_paths(&path).collect();

@@ -1,4 +1,4 @@
-//! Archives that depend on their content only: no time but a given one, no user, entries in order.
+//! Archives that depend only on their content: a given time, no user, and ordered entries.
 
 use std::collections::BTreeSet;
 use std::io::Write as _;
@@ -9,14 +9,14 @@ use flate2::{Compression, GzBuilder};
 /// A file of an archive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Entry {
-    /// Relative to the root of the archive.
+    /// Path relative to the root of the archive.
     pub(super) path: String,
     pub(super) mode: u32,
     pub(super) content: Vec<u8>,
 }
 
 impl Entry {
-    /// A file that everybody may read.
+    /// A file that all users may read.
     pub(super) fn text(path: impl Into<String>, content: impl Into<Vec<u8>>) -> Self {
         Self {
             path: path.into(),
@@ -34,8 +34,8 @@ impl Entry {
     }
 }
 
-/// A tar archive of the entries and the directories above them, all with the time `epoch` in
-/// seconds since 1970.
+/// A tar archive of the entries and their parent directories, all with the time `epoch` in seconds
+/// since 1970.
 pub(super) fn tar(entries: &[Entry], epoch: u64) -> anyhow::Result<Vec<u8>> {
     let mut archive = tar::Builder::new(Vec::new());
     let mut sorted: Vec<&Entry> = entries.iter().collect();

@@ -1,5 +1,5 @@
 //! The bill of materials of a program: every crate that is part of it, with version, licence and
-//! hash, as CycloneDX 1.5; and the texts of their licences.
+//! hash, as CycloneDX 1.5. Also the texts of their licences.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -21,12 +21,12 @@ type Id = (String, String);
 struct Part {
     license: String,
     sources: PathBuf,
-    /// SHA-256 of the package, for those of a registry.
+    /// SHA-256 of the package, for packages of a registry.
     hash: Option<String>,
     needs: BTreeSet<Id>,
 }
 
-/// Everything that the program for one target is made of.
+/// All parts of the program for one target.
 #[derive(Debug)]
 pub(super) struct Bill {
     parts: BTreeMap<Id, Part>,
@@ -36,7 +36,7 @@ pub(super) struct Bill {
 }
 
 impl Bill {
-    /// Asks Cargo what is part of the program for `target`.
+    /// Queries Cargo for the parts of the program for `target`.
     pub(super) fn of(workspace: &Workspace, target: &str, version: &str) -> anyhow::Result<Self> {
         let mut tree = workspace.cargo();
         tree.args(["tree", "--locked", "--package", ROOT, "--target", target]);
@@ -90,7 +90,7 @@ impl Bill {
         Ok(serde_json::to_string_pretty(&bill)? + "\n")
     }
 
-    /// The licence texts of what is not ours, each text once.
+    /// The licence texts of external packages, each text once.
     pub(super) fn licences(&self) -> anyhow::Result<String> {
         let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for ((name, version), part) in &self.parts {
@@ -127,7 +127,7 @@ impl Bill {
         ))
     }
 
-    /// How many crates there are.
+    /// Number of crates.
     pub(super) fn count(&self) -> usize {
         self.parts.len()
     }
@@ -138,7 +138,7 @@ impl Part {
         let mut component = json!({"type": "library", "bom-ref": purl("cargo", id), "name": id.0,
             "version": id.1, "purl": purl("cargo", id)});
         if !self.license.is_empty() {
-            // An old way to write OR.
+            // An old form of OR.
             let expression = self.license.replace('/', " OR ");
             component["licenses"] = json!([{"expression": expression}]);
         }
@@ -154,7 +154,7 @@ fn purl(kind: &str, (name, version): &Id) -> String {
     format!("pkg:{kind}/{name}@{version}")
 }
 
-/// What a command prints.
+/// Output of a command.
 fn output(command: &mut std::process::Command) -> anyhow::Result<String> {
     let output = command.stderr(std::process::Stdio::inherit()).output()?;
     ensure!(output.status.success(), "{command:?} failed");
@@ -184,7 +184,7 @@ fn hashes(lock: &str) -> anyhow::Result<BTreeMap<Id, String>> {
     Ok(packages.iter().filter_map(hash).collect())
 }
 
-/// What Cargo's description says of the chosen crates.
+/// Details of the chosen crates from Cargo's description.
 fn details(
     chosen: &BTreeSet<Id>,
     metadata: &Value,
@@ -231,12 +231,12 @@ fn details(
     Ok(parts)
 }
 
-/// The elements of an array; none of what is no array.
+/// The elements of an array; none if the value is no array.
 fn array(value: &Value) -> &[Value] {
     value.as_array().map_or(&[], Vec::as_slice)
 }
 
-/// What the page is made of: the dependencies of its manifest, whose versions are exact.
+/// Packages of the page: the dependencies of its manifest, whose versions are exact.
 fn of_page(manifest: &str) -> anyhow::Result<Vec<Id>> {
     let manifest: Value = serde_json::from_str(manifest)?;
     let packages = manifest["dependencies"]

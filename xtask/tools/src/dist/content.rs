@@ -1,4 +1,4 @@
-//! What is given to people beside the program: licences, man pages, completions, examples.
+//! Files delivered with the program: licences, man pages, completions, examples.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use super::archive::Entry;
 use super::program::Program;
 use xtask::workspace::Workspace;
 
-/// A program and what belongs to it.
+/// A program and its files.
 #[derive(Debug)]
 pub(super) struct Content {
     pub(super) program: Vec<u8>,
@@ -26,7 +26,7 @@ pub(super) struct Content {
 }
 
 impl Content {
-    /// Reads the files of the workspace, and has the program write the others; `work` is a
+    /// Reads the files of the workspace, and makes the program write the others; `work` is a
     /// directory that does not exist yet.
     pub(super) fn collect(
         workspace: &Workspace,
@@ -62,7 +62,7 @@ impl Content {
         })
     }
 
-    /// The entries of an archive that is unpacked anywhere, below one directory.
+    /// The entries of a portable archive, below one directory.
     pub(super) fn portable(&self, directory: &str) -> Vec<Entry> {
         let at = |path: &str| format!("{directory}/{path}");
         let mut entries = vec![

@@ -1,6 +1,6 @@
-//! The package for Debian and what is made of it: program, man pages, completions, examples. It
-//! changes nothing on a host: what a real-time host takes is an example, and `franka doctor` says
-//! what is missing.
+//! The package for Debian and its content: program, man pages, completions, examples. It changes
+//! nothing on a host. The configuration of a real-time host is an example, and `franka doctor`
+//! reports what is missing.
 //!
 //! ```text
 //! ar: debian-binary, control.tar.gz (control, md5sums), data.tar.gz (files)
@@ -20,16 +20,16 @@ use xtask::workspace::Workspace;
 /// The name of the package.
 pub(super) const NAME: &str = "franka-cli";
 
-/// Who answers for a package that was built without a release's maintainer: nobody can be reached
-/// below `.invalid` (RFC 2606).
+/// Maintainer of a package that was built without a release's maintainer: no address below
+/// `.invalid` exists (RFC 2606).
 const NOBODY: &str = "Unreleased build <nobody@franka-async.invalid>";
 
-/// What a package is for.
+/// Target of a package.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Target<'a> {
     /// `amd64`, `arm64`.
     pub(super) architecture: &'a str,
-    /// The oldest C library that will do; without one the program is static.
+    /// The oldest supported C library; `None` for a static program.
     pub(super) glibc: Option<&'a str>,
 }
 
@@ -149,7 +149,7 @@ fn data(release: &Release, target: Target<'_>, content: &Content) -> anyhow::Res
     Ok(files)
 }
 
-/// What `lintian` is not to complain of, and why.
+/// Warnings that `lintian` must ignore, with reasons.
 fn overrides(target: Target<'_>) -> String {
     let mut text =
         format!("# Not for Debian's own archive.\n{NAME}: initial-upload-closes-no-bugs [*]\n");
@@ -204,7 +204,7 @@ fn changelog(release: &Release) -> anyhow::Result<String> {
     ))
 }
 
-/// Has `lintian` check the package where it is installed; returns what it came to.
+/// Makes `lintian` check the package if it is installed; returns the result.
 pub(super) fn check(workspace: &Workspace, package: &Path) -> anyhow::Result<String> {
     if !is_installed("lintian") {
         return Ok("NOT CHECKED: lintian is not installed".to_owned());
@@ -290,7 +290,7 @@ mod tests {
         assert!(copyright.ends_with(notice), "{copyright}");
     }
 
-    /// Skipped where there is no dpkg: then nothing but the test above reads the package.
+    /// Skipped without dpkg: then only the test above reads the package.
     #[test]
     fn dpkg_lists_the_package() {
         if !is_installed("dpkg-deb") {

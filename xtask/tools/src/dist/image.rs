@@ -17,7 +17,7 @@ use super::archive::{Entry, gzip, tar};
 use crate::cross::is_installed;
 use xtask::workspace::Workspace;
 
-/// What runs in the container: nobody of the host.
+/// User of the program in the container, without a counterpart on the host.
 const USER: &str = "65532:65532";
 
 /// Ports of the simulated robot, its hand and vacuum gripper, and of the page.
@@ -28,8 +28,7 @@ const MANIFEST: &str = "application/vnd.oci.image.manifest.v1+json";
 const CONFIG: &str = "application/vnd.oci.image.config.v1+json";
 const LAYER: &str = "application/vnd.oci.image.layer.v1.tar+gzip";
 
-/// A static program and the papers that go with it, for one architecture by its name in Go:
-/// `amd64`, `arm64`.
+/// A static program and its papers, for one architecture by its name in Go: `amd64`, `arm64`.
 #[derive(Debug)]
 pub(super) struct Part {
     pub(super) architecture: &'static str,
@@ -46,7 +45,7 @@ pub(super) fn image(release: &Release, parts: &[Part]) -> anyhow::Result<Vec<u8>
     }
     let index = json!({"schemaVersion": 2, "mediaType": INDEX, "manifests": manifests});
     let mut image = blobs.add_json(INDEX, &index)?;
-    // A version alone is taken for the name of the image by podman.
+    // podman would interpret a version alone as the name of the image.
     let name = format!("franka:{}", release.version);
     image["annotations"] = json!({"org.opencontainers.image.ref.name": name});
     let top = json!({"schemaVersion": 2, "mediaType": INDEX, "manifests": [image]});
@@ -60,7 +59,7 @@ pub(super) fn image(release: &Release, parts: &[Part]) -> anyhow::Result<Vec<u8>
     tar(&blobs.entries, release.epoch)
 }
 
-/// The manifest of an architecture, described as an index wants it.
+/// The manifest of an architecture, with the description for an index.
 fn manifest(release: &Release, part: &Part, blobs: &mut Blobs) -> anyhow::Result<Value> {
     let mut files = vec![Entry::program("usr/bin/franka", part.program.clone())];
     for (name, paper) in &part.papers {
@@ -142,8 +141,8 @@ fn digest(content: &[u8]) -> String {
     format!("sha256:{:x}", Sha256::digest(content))
 }
 
-/// Has `skopeo` copy the image, which reads all of it, where it is installed; returns what it came
-/// to. `work` is a directory that does not exist yet.
+/// Makes `skopeo` copy the image, which reads all of it, if it is installed; returns the result.
+/// `work` is a directory that does not exist yet.
 pub(super) fn check(workspace: &Workspace, image: &Path, work: &Path) -> anyhow::Result<String> {
     if !is_installed("skopeo") {
         return Ok("NOT CHECKED: skopeo is not installed".to_owned());
@@ -185,7 +184,7 @@ mod tests {
         content
     }
 
-    /// The blob that a description names, if hash and size are right.
+    /// The blob of a description, if hash and size are correct.
     fn blob(image: &[u8], description: &Value) -> Vec<u8> {
         let name = description["digest"].as_str().unwrap();
         let content = read(image, &format!("blobs/{}", name.replace(':', "/")));
@@ -219,7 +218,7 @@ mod tests {
         }
     }
 
-    /// Skipped where skopeo is not installed: then nothing but the test above reads the image.
+    /// Skipped without skopeo: then only the test above reads the image.
     #[test]
     fn skopeo_copies_the_image() {
         let workspace = Workspace::find().unwrap();

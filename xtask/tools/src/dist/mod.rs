@@ -1,5 +1,5 @@
-//! `cargo xtask dist`: the program `franka` for machines that have nothing else, checked where it
-//! can run, and packed: what a release gives to people.
+//! `cargo xtask dist` builds the program `franka` for machines without any other software. It
+//! checks the program where it can run, and packs it for a release.
 //!
 //! ```text
 //! standard library of the target? ── cargo zigbuild ──> franka ── static? size, time of --help
@@ -11,15 +11,15 @@
 //! |---|---|
 //! | this | machines, and building for them |
 //! | `archive` | archives that depend on their content only |
-//! | `bill` | what the program is made of, and its licences |
-//! | `content` | what goes with the program |
+//! | `bill` | parts of the program, and their licences |
+//! | `content` | files delivered with the program |
 //! | `debian` | the package for Debian |
 //! | `image` | the container image |
-//! | `program` | checking what was built |
-//! | `trial` | what was packed, used outside the repository |
+//! | `program` | checking a built program |
+//! | `trial` | packed artefacts, used outside the repository |
 //!
-//! Two builds of one commit are the same, byte for byte: `--twice` builds twice and compares. Time
-//! is that of the commit, and paths of this machine are no part of what is built.
+//! Two builds of one commit are the same, byte for byte: `--twice` builds twice and compares. All
+//! times are the commit's, and the build contains no paths of this machine.
 
 mod archive;
 mod bill;
@@ -50,7 +50,7 @@ use xtask::workspace::Workspace;
 /// A machine to build for.
 struct Machine {
     target: &'static str,
-    /// The oldest C library that will do; none is needed where it is part of the program.
+    /// The oldest supported C library; empty if the program contains it.
     glibc: &'static str,
 }
 
@@ -69,17 +69,17 @@ const MACHINES: [Machine; 3] = [
     },
 ];
 
-/// What all files of a release say.
+/// Common data of all files of a release.
 #[derive(Debug)]
 struct Release {
     version: String,
-    /// Of the commit, in seconds since 1970.
+    /// Time of the commit, in seconds since 1970.
     epoch: u64,
     /// The commit.
     revision: String,
-    /// Empty as long as there is none.
+    /// Address of the repository; empty without one.
     repository: String,
-    /// Who answers for the package, `Name <address>`; empty as long as nobody does.
+    /// Maintainer of the package, `Name <address>`; empty without one.
     maintainer: String,
 }
 
@@ -121,7 +121,7 @@ impl Release {
     }
 }
 
-/// What to check beside each program.
+/// Checks besides those of each program.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Depth {
     /// Build everything twice: differences are failures.
@@ -130,9 +130,9 @@ pub(crate) struct Depth {
     pub(crate) trial: bool,
 }
 
-/// Builds for every machine that this one can build for, checks what can run here, packs it, and
-/// says of each what became of it. Fails if a check fails, or if none was built, and with `CI=true`
-/// if one was not.
+/// Builds for every machine that this one can build for, checks the programs that can run here,
+/// packs them, and reports the result of each. Fails if a check fails or if no program was built;
+/// with `CI=true`, fails if any was not built.
 pub(crate) fn run(workspace: &Workspace, only: &[String], depth: Depth) -> anyhow::Result<()> {
     let is_chosen =
         |machine: &&Machine| only.is_empty() || only.iter().any(|it| it == machine.target);
@@ -197,8 +197,8 @@ pub(crate) fn run(workspace: &Workspace, only: &[String], depth: Depth) -> anyho
 }
 
 impl Machine {
-    /// The program, or what this machine lacks to build it. What is built goes to the build
-    /// directory, or to one in it.
+    /// The program, or the missing requirement to build it. The output goes to the build directory,
+    /// or to a directory in it.
     fn build(
         &self,
         workspace: &Workspace,
@@ -227,8 +227,8 @@ impl Machine {
         build.env("PATH", path);
         build.env("CARGO_TARGET_DIR", &target);
         build.env("SOURCE_DATE_EPOCH", release.epoch.to_string());
-        // Panics and debug information name files as they are in the repository. The last one that
-        // fits counts, and the build directory is inside the workspace.
+        // Panics and debug information use the file names of the repository. The last match counts,
+        // and the build directory is inside the workspace.
         let places = [
             (&cargo_home()?, "/cargo"),
             (&sysroot, "/rust"),
@@ -248,7 +248,7 @@ impl Machine {
         self.glibc.is_empty()
     }
 
-    /// The name of its archive and of the directory in that.
+    /// The name of its archive and of the directory in the archive.
     fn name(&self, release: &Release) -> String {
         format!("franka-{}-{}", release.version, self.target)
     }
@@ -265,8 +265,8 @@ impl Machine {
         })
     }
 
-    /// Packs a program; adds to the parts of the image if it can run in one. Returns a line about
-    /// it.
+    /// Packs a program; adds it to the parts of the image if it can run in one. Returns a line
+    /// about it.
     fn pack(
         &self,
         workspace: &Workspace,
@@ -286,7 +286,7 @@ impl Machine {
         let archive = archive::tar(&content.portable(&name), release.epoch)?;
         artefacts.add(&format!("{name}.tar.gz"), &gzip(&archive)?)?;
         let for_debian = self.for_debian()?;
-        // One per architecture: of the static program, which is built first, if that is there.
+        // One package per architecture, of the static program, which is built first if possible.
         let package = artefacts.add_first(&debian::file_name(release, for_debian), || {
             debian::package(release, for_debian, &content)
         })?;
@@ -305,7 +305,7 @@ impl Machine {
         Ok(format!("{count} crates in its bill; package {package}"))
     }
 
-    /// Builds once more, in another directory, and compares.
+    /// Builds again, in another directory, and compares.
     fn compare(
         &self,
         workspace: &Workspace,
@@ -324,14 +324,14 @@ impl Machine {
     }
 }
 
-/// The files that are given to people, and their checksums.
+/// The delivered files and their checksums.
 struct Artefacts {
     directory: PathBuf,
     sums: Vec<(String, String)>,
 }
 
 impl Artefacts {
-    /// In place of those of an earlier run.
+    /// Replaces the artefacts of an earlier run.
     fn begin(workspace: &Workspace) -> anyhow::Result<Self> {
         let directory = workspace.target().join("artefacts");
         if directory.exists() {
@@ -356,7 +356,7 @@ impl Artefacts {
         Ok(file)
     }
 
-    /// Adds what is made, unless there is a file of this name.
+    /// Adds an artefact, unless a file of this name exists.
     fn add_first(
         &mut self,
         name: &str,
@@ -368,7 +368,7 @@ impl Artefacts {
         self.add(name, &make()?).map(Some)
     }
 
-    /// Writes the checksums, as `sha256sum --check` reads them; returns where all of it is.
+    /// Writes the checksums, as `sha256sum --check` reads them; returns the directory.
     fn end(mut self) -> anyhow::Result<PathBuf> {
         self.sums.sort();
         let lines = self
@@ -387,7 +387,7 @@ fn hash(content: &[u8]) -> String {
     format!("{:x}", Sha256::digest(content))
 }
 
-/// Where Cargo keeps the sources of dependencies.
+/// Cargo's directory with the sources of dependencies.
 fn cargo_home() -> anyhow::Result<PathBuf> {
     if let Some(home) = env::var_os("CARGO_HOME") {
         return Ok(home.into());

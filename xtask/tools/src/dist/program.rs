@@ -1,5 +1,5 @@
-//! Checking a program that was built: what it needs, how large and how fast it is, and that it
-//! moves a simulated robot.
+//! Checks of a built program: its requirements, its size and speed, and a motion of a simulated
+//! robot.
 
 use std::env;
 use std::fs;
@@ -16,12 +16,12 @@ use crate::cross::{emulator, is_installed};
 #[derive(Debug)]
 pub(super) struct Program {
     pub(super) path: PathBuf,
-    /// What runs it, if this machine does not.
+    /// Emulator that runs it, if this machine cannot.
     emulator: Option<String>,
 }
 
 impl Program {
-    /// The program, or what this machine lacks to run one of `architecture`.
+    /// The program, or the missing requirement to run one of `architecture`.
     pub(super) fn new(path: PathBuf, architecture: &str) -> Result<Self, String> {
         let emulator = match architecture == env::consts::ARCH {
             true => None,
@@ -46,7 +46,7 @@ impl Program {
         }
     }
 
-    /// Checks that it is static or not, as expected, and runs it; returns a line about it.
+    /// Checks that it is static or dynamic, as expected, and runs it; returns a line about it.
     pub(super) fn check(&self, is_static: bool) -> anyhow::Result<String> {
         let bytes = fs::read(&self.path)?;
         let needs = needs_a_loader(&bytes);
@@ -71,8 +71,8 @@ impl Program {
     }
 }
 
-/// True if a program (64-bit ELF, little-endian) asks for a loader of shared libraries: it then has
-/// a program header of the type `PT_INTERP`.
+/// True if a program (64-bit ELF, little-endian) requires a loader of shared libraries, with a
+/// program header of the type `PT_INTERP`.
 fn needs_a_loader(program: &[u8]) -> bool {
     let at = |from: usize, bytes: usize| {
         let field = program.get(from..from + bytes).unwrap_or_default();
@@ -118,7 +118,7 @@ pub(super) fn moves(mut franka: Command, address: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A program that says where it listens; killed at the end.
+/// A program that prints its address; killed at the end.
 #[derive(Debug)]
 pub(super) struct Running {
     program: Child,
@@ -135,7 +135,7 @@ impl Running {
         Ok(Self { program, output })
     }
 
-    /// What follows `before` in the next line that has it.
+    /// The text after `before` in the next line that contains it.
     pub(super) fn address(&mut self, before: &str) -> anyhow::Result<String> {
         for line in (&mut self.output).lines() {
             if let Some((_, address)) = line?.split_once(before) {
@@ -148,7 +148,7 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // The program may have ended already.
         let _ = self.program.kill();
         let _ = self.program.wait();
     }
@@ -163,7 +163,7 @@ mod tests {
         let this = fs::read(env::current_exe().unwrap()).unwrap();
         let is_dynamic = cfg!(target_env = "gnu");
         assert_eq!(needs_a_loader(&this), is_dynamic);
-        // As many program headers as before, without their types.
+        // The same number of program headers, without their types.
         let mut without = this;
         let headers = usize::from(without[32]);
         without[headers..headers + 56 * 16].fill(0);

@@ -1,5 +1,5 @@
-//! `cargo xtask dist --try`: what a release gives to people, used as they would, in a directory
-//! outside the repository. Nothing but the artefacts, and programs that the book shows, goes there.
+//! `cargo xtask dist --try`: uses the artefacts of a release as users would, in a directory outside
+//! the repository. That directory contains only the artefacts, and programs of the book.
 //!
 //! ```text
 //! archive ────────────> franka sim --dash, no variables, PATH empty <── page, socket, motion
@@ -27,8 +27,8 @@ use crate::package::wheels;
 use xtask::python::{NEWEST, OLDEST, Python};
 use xtask::workspace::Workspace;
 
-/// Tries archive and package of a program for this machine, which are in `artefacts`, and crates
-/// and wheel as they are packed now; returns a line about each. The directory stays if it fails.
+/// Tries archive and package of a program for this machine, from `artefacts`, and crates and wheel
+/// as packed now; returns a line about each. The directory stays after a failure.
 pub(super) fn run(
     workspace: &Workspace,
     release: &Release,
@@ -84,8 +84,8 @@ impl Outside {
         self.directory.join(name)
     }
 
-    /// A program in the directory, with no variables and no other program to be found: there is no
-    /// compiler.
+    /// A program in the directory, without variables and without any other program: no compiler is
+    /// available.
     fn alone(&self, program: &Path) -> Command {
         let mut command = Command::new(program);
         command.current_dir(&self.directory);
@@ -93,7 +93,8 @@ impl Outside {
         command
     }
 
-    /// Cargo or Python, with the variables of this process but those that lead into the repository.
+    /// Cargo or Python, with the variables of this process except those that refer to the
+    /// repository.
     fn beside(&self, program: Command) -> Command {
         let mut command = program;
         command.current_dir(self.at("service"));
@@ -101,7 +102,7 @@ impl Outside {
         command
     }
 
-    /// A simulator in virtual time, and where it listens.
+    /// A simulator in virtual time, and its address.
     fn simulator(&self, franka: &Path) -> anyhow::Result<(Running, String)> {
         let mut sim = self.alone(franka);
         sim.args(["sim", "--port", "0", "--virtual-time=60"]);
@@ -130,8 +131,8 @@ impl Outside {
         ))
     }
 
-    /// A service on the packaged crates, which moves a robot of the packaged simulator when it is
-    /// asked to, and tests of a program on the library of the simulator.
+    /// A service on the packaged crates, which moves a robot of the packaged simulator on request,
+    /// and tests of a program that uses the simulator's library.
     fn serves(
         &self,
         workspace: &Workspace,
@@ -147,7 +148,7 @@ impl Outside {
         }
         let names = packages.iter().filter_map(|it| it.file_stem()?.to_str());
         fs::write(project.join("Cargo.toml"), manifest(names, version))?;
-        // The versions of others that this release was tested with.
+        // The versions of dependencies that this release was tested with.
         let dash = format!("crates/franka-dash-{version}/Cargo.lock");
         fs::copy(self.at(&dash), project.join("Cargo.lock"))?;
         let mut build = self.beside(workspace.cargo());
@@ -202,7 +203,7 @@ impl Outside {
     }
 }
 
-/// A line about something that was tried, and how long it took.
+/// A line about a trial, and its duration.
 fn timed(what: &str, attempt: impl FnOnce() -> anyhow::Result<String>) -> anyhow::Result<String> {
     let begin = Instant::now();
     let about = attempt().with_context(|| what.to_owned())?;
@@ -215,7 +216,7 @@ fn unpack(archive: &Path, directory: &Path) -> anyhow::Result<()> {
     Ok(tar::Archive::new(GzDecoder::new(file)).unpack(directory)?)
 }
 
-/// The manifest of a program that finds these packages where others find a registry's.
+/// The manifest of a program that finds these packages instead of a registry's packages.
 fn manifest<'a>(packages: impl Iterator<Item = &'a str>, version: &str) -> String {
     let mut text = format!(
         "[package]\nname = \"service\"\nedition = \"2024\"\n\n\
@@ -231,7 +232,7 @@ fn manifest<'a>(packages: impl Iterator<Item = &'a str>, version: &str) -> Strin
     text
 }
 
-/// What a server on this computer answers: head and body, or the first line of the head if the
+/// Response of a server on this computer: head and body, or the first line of the head if the
 /// connection stays open.
 fn ask(address: &str, head: &str, body: &str) -> anyhow::Result<String> {
     let mut stream = TcpStream::connect(address)?;
@@ -250,15 +251,15 @@ fn ask(address: &str, head: &str, body: &str) -> anyhow::Result<String> {
     Ok(String::from_utf8_lossy(&answer).into_owned())
 }
 
-/// Begins a WebSocket, RFC 6455; the key is that of its example.
+/// Begins a WebSocket, RFC 6455, with the key of its example.
 const SOCKET: &str = "GET /ws HTTP/1.1\r\nconnection: upgrade\r\nupgrade: websocket\r\n\
     sec-websocket-version: 13\r\nsec-websocket-key: dGhlIHNhbXBsZSBub25jZQ==\r\n\
     sec-websocket-protocol: franka-dash";
 
-/// What has not been answered within this time never will.
+/// Time limit for every answer.
 const SOON: Duration = Duration::from_secs(60);
 
-/// Programs that the book shows, and asks people to copy.
+/// Programs of the book, which users copy.
 const SERVICE: &str = include_str!("../../../../examples/24_job_queue.rs");
 const TESTS: &str = include_str!("../../../../examples/tests/template.rs");
 const SCRIPT: &str = include_str!("../../../../franka-py/examples/quickstart.py");
