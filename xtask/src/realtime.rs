@@ -2,11 +2,11 @@
 
 use std::process::{self, Command, Stdio};
 
-/// Returns Ok if child processes may request `SCHED_FIFO`. Otherwise it raises the limit, if this
-/// user may do that; with `CI=true` also by sudo without a password. An error means that the right
-/// cannot be obtained.
+/// Obtains the right to `SCHED_FIFO` for child processes. If it is missing, raises the limit if
+/// this user may do that; with `CI=true` also by sudo without a password.
 ///
 /// # Errors
+/// If the right cannot be obtained.
 pub fn obtain() -> Result<(), String> {
     let limit = |program: &[&str]| {
         let process = process::id().to_string();

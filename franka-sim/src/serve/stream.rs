@@ -13,11 +13,11 @@ use crate::connection::Framing;
 /// middle must not block other clients, and one on a slow network must not be interrupted.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Patience {
-    /// Until the first byte of a message; no limit if absent.
+    /// Longest time to the first byte of a message; no limit if absent.
     pub(super) first: Option<Duration>,
-    /// From one byte to the next.
+    /// Longest time from one byte to the next.
     pub(super) gap: Duration,
-    /// From the first byte to the last.
+    /// Longest time from the first byte to the last.
     pub(super) total: Duration,
 }
 

@@ -13,7 +13,7 @@ use anyhow::{Context as _, bail, ensure};
 use xtask::workspace::Workspace;
 
 /// Runs each target for `runs` executions, as many targets at a time as there are processors. A
-/// finding ends its target and not the others.
+/// finding ends its target, but not the others.
 pub(crate) fn run(workspace: &Workspace, runs: u64) -> anyhow::Result<()> {
     supported().map_err(anyhow::Error::msg)?;
     let fuzz = Fuzz::build(workspace)?;
@@ -43,8 +43,8 @@ pub(crate) fn run(workspace: &Workspace, runs: u64) -> anyhow::Result<()> {
     }
 }
 
-/// Whether this machine can build the targets at all: libFuzzer is C++, and the sanitizer has its
-/// platforms.
+/// Checks that this machine can build the targets: libFuzzer is C++, and the sanitizer supports
+/// only some platforms.
 fn supported() -> Result<(), String> {
     if !cfg!(any(target_os = "linux", target_os = "macos")) {
         return Err("the address sanitizer is there on Linux and macOS only".to_owned());
@@ -66,14 +66,14 @@ fn supported() -> Result<(), String> {
 struct Fuzz {
     /// The package of the targets.
     package: PathBuf,
-    /// What is built, found and collected.
+    /// Directory of builds, findings and corpora.
     output: PathBuf,
-    /// Where the programs are.
+    /// Directory of the programs.
     programs: PathBuf,
 }
 
 impl Fuzz {
-    /// Builds the targets, in a directory of their own: they are compiled with a sanitizer.
+    /// Builds the targets, in a separate directory, because they are compiled with a sanitizer.
     fn build(workspace: &Workspace) -> anyhow::Result<Self> {
         let package = workspace.root().join("fuzz");
         let output = workspace.target().join("fuzz");
@@ -90,7 +90,8 @@ impl Fuzz {
         build.arg("--manifest-path").arg(package.join("Cargo.toml"));
         build.arg("--target-dir").arg(output.join("build"));
         build.env("RUSTFLAGS", FLAGS.join(" "));
-        // The sanitizer's options are for nightly compilers, and a stable one takes them with this.
+        // The sanitizer's options require a nightly compiler; with this variable a stable one
+        // accepts them.
         build.env("RUSTC_BOOTSTRAP", "1");
         workspace.run(&mut build)?;
 
@@ -104,7 +105,7 @@ impl Fuzz {
         })
     }
 
-    /// The names of the targets: those of their sources.
+    /// The names of the targets: the names of their sources.
     fn targets(&self) -> anyhow::Result<Vec<String>> {
         let directory = self.package.join("fuzz_targets");
         let mut names = Vec::new();
@@ -118,7 +119,7 @@ impl Fuzz {
         Ok(names)
     }
 
-    /// One target. What it learns stays in the corpus, from which the next run goes on.
+    /// Runs one target. Its new inputs stay in the corpus, from which the next run continues.
     fn run(&self, target: &str, runs: u64) -> anyhow::Result<Report> {
         let directory = |kind: &str| self.output.join(kind).join(target);
         let (corpus, findings) = (directory("corpus"), directory("findings"));
@@ -134,7 +135,7 @@ impl Fuzz {
             .arg(format!("-malloc_limit_mb={ALLOCATION_MAX_MB}"))
             .arg("-print_final_stats=1")
             .args([&corpus, &directory("seeds")])
-            // Finding leaks needs rights that containers lack.
+            // Finding leaks requires rights that containers lack.
             .env("ASAN_OPTIONS", "detect_leaks=0")
             .output()
             .with_context(|| format!("cannot run {target}"))?;
@@ -156,13 +157,13 @@ impl Fuzz {
     }
 }
 
-/// What came of one target.
+/// Result of one target.
 struct Report {
     target: String,
-    /// `None` if the target did not get as far as to count them.
+    /// `None` if the target ended before it counted them.
     executions: Option<u64>,
     seconds: f64,
-    /// Where the input is that broke something.
+    /// Path of the input that caused a failure.
     finding: Option<PathBuf>,
 }
 
@@ -183,7 +184,7 @@ impl Report {
     }
 }
 
-/// How often libFuzzer has called the target, by the statistics at the end of its log.
+/// Number of calls of the target by libFuzzer, from the statistics at the end of its log.
 fn executions(log: &str) -> Option<u64> {
     let line = log
         .lines()
@@ -191,8 +192,8 @@ fn executions(log: &str) -> Option<u64> {
     line.trim().parse().ok()
 }
 
-/// The platform that the compiler builds for by itself. Named, it keeps build scripts and macros
-/// free of the sanitizer.
+/// The default platform of the compiler. Naming it keeps build scripts and macros free of the
+/// sanitizer.
 fn host() -> anyhow::Result<String> {
     let output = Command::new("rustc").arg("-vV").output()?;
     let text = String::from_utf8_lossy(&output.stdout);
@@ -200,8 +201,8 @@ fn host() -> anyhow::Result<String> {
     Ok(host.context("rustc names no host")?.to_owned())
 }
 
-/// The flags of cargo-fuzz 0.13 with `--strip-dead-code`: what libFuzzer needs to see of a program,
-/// and the sanitizer.
+/// The flags of cargo-fuzz 0.13 with `--strip-dead-code`: the instrumentation for libFuzzer, and
+/// the sanitizer.
 const FLAGS: &[&str] = &[
     "--cfg=fuzzing",
     "-Cpasses=sancov-module",
@@ -216,8 +217,8 @@ const FLAGS: &[&str] = &[
 /// Longest input in bytes: beyond the longest datagram, and a stream of some messages.
 const INPUT_MAX: usize = 4096;
 
-/// Most that a target may allocate at once. The largest honest result of [`INPUT_MAX`] bytes is
-/// 1 MB, by decompression: more is a length of the input that was believed.
+/// Largest single allocation of a target. The largest correct result of [`INPUT_MAX`] bytes is 1
+/// MB, by decompression. A larger allocation means that the target trusted a length in the input.
 const ALLOCATION_MAX_MB: usize = 16;
 
 #[cfg(test)]

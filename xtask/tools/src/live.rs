@@ -1,4 +1,4 @@
-//! Clients against the simulator over real sockets, and the simulator itself, measured.
+//! Measurements of clients against the simulator over real sockets, and of the simulator.
 
 use std::process::Command;
 
@@ -39,8 +39,8 @@ pub(crate) fn run_simulator(workspace: &Workspace, seconds: u32) -> anyhow::Resu
     workspace.run(&mut measure)
 }
 
-/// Measures what a recorder or a dashboard costs the control thread, for `seconds` with one and as
-/// long without.
+/// Measures the cost of a recorder or a dashboard for the control thread, for `seconds` with one
+/// and as long without.
 pub(crate) fn run_beside(workspace: &Workspace, what: &str, seconds: u32) -> anyhow::Result<()> {
     build(workspace, &[])?;
     let target = workspace.target();
@@ -52,7 +52,7 @@ pub(crate) fn run_beside(workspace: &Workspace, what: &str, seconds: u32) -> any
     workspace.run(measure.args(["--seconds", &seconds.to_string()]))
 }
 
-/// Measures the package for Python beside others and writes `target/bench_python.json`.
+/// Measures the package for Python together with others and writes `target/bench_python.json`.
 pub(crate) fn run_python(workspace: &Workspace) -> anyhow::Result<()> {
     let mut build = workspace.cargo();
     build.args([
@@ -78,7 +78,7 @@ pub(crate) fn run_python(workspace: &Workspace) -> anyhow::Result<()> {
     workspace.run(&mut measure)
 }
 
-/// Builds the simulator and what measures it.
+/// Builds the simulator and the measuring program.
 fn build(workspace: &Workspace, features: &[&str]) -> anyhow::Result<()> {
     let mut build = workspace.cargo();
     build.args(["build", "--profile", "dist", "--package", "franka-sim"]);
@@ -86,7 +86,7 @@ fn build(workspace: &Workspace, features: &[&str]) -> anyhow::Result<()> {
     workspace.run(build.args(features))
 }
 
-/// The program that measures, told what, where to write it and how long.
+/// The measuring program, with the subject, the output file and the duration.
 fn measure(workspace: &Workspace, what: &str, output: &str, seconds: u32) -> Command {
     let target = workspace.target();
     let mut measure = workspace.program(target.join("dist").join("live"));

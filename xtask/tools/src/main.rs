@@ -1,7 +1,7 @@
-//! The tasks of this workspace but its tests: `cargo xtask check`, `cargo xtask vectors [DIR]`,
-//! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask arms`, `cargo xtask wheels`,
-//! `cargo xtask assets`, `cargo xtask dist`, `cargo xtask book`, `cargo xtask mujoco`,
-//! `cargo xtask release-check`, `cargo xtask version X.Y.Z`.
+//! The tasks of this workspace except its tests: `cargo xtask check`, `cargo xtask vectors [DIR]`,
+//! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask arms`, `cargo xtask wheels`, `cargo xtask
+//! assets`, `cargo xtask dist`, `cargo xtask book`, `cargo xtask mujoco`, `cargo xtask
+//! release-check`, `cargo xtask version X.Y.Z`.
 //!
 //! | module | task |
 //! |---|---|
@@ -9,12 +9,12 @@
 //! | [`checks`] | the steps of `cargo xtask check` and `cargo xtask nightly` |
 //! | [`circles`] | the step that finds imports in a circle between modules |
 //! | [`commands`] | the commands that the book names |
-//! | [`cross`] | building for other machines, and running that |
+//! | [`cross`] | building for other machines, and running the results |
 //! | [`dashboard`] | the files of the dashboard's page, and the page in a browser |
 //! | [`dist`] | the program `franka` for other machines, packed |
 //! | [`fuzz`] | the fuzz targets |
 //! | [`live`] | clients against the simulator over real sockets, and the simulator itself, measured |
-//! | [`members`] | what the types of sources have |
+//! | [`members`] | the members of types in Rust sources |
 //! | [`metadata`] | the packages of the workspace |
 //! | [`mujoco`] | the native library of the simulator's MuJoCo plant |
 //! | [`names`] | the step that counts the names of the driver's root |
@@ -22,10 +22,10 @@
 //! | [`ours`] | our public names in Rust |
 //! | [`package`] | the step that builds and tests the Python package, and its wheels |
 //! | [`page`] | tables and anchors of pages of the book |
-//! | [`peer_pages`] | the chapters for those who come from other packages |
+//! | [`peer_pages`] | the chapters for users of other packages |
 //! | [`prose`] | plain English in comments, texts and the book |
-//! | [`reference_pages`] | what the reference chapters have to name |
-//! | [`release`] | what a release takes: crates, version, change log |
+//! | [`reference_pages`] | names that the reference chapters must contain |
+//! | [`release`] | requirements of a release: crates, version, change log |
 //! | [`schemas`] | the code of recordings, from definitions |
 //! | [`texts`] | the steps that check spelling, workflows and dependencies |
 //! | [`tidy`] | the width of comments |
@@ -77,15 +77,16 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Task {
-    /// Run the checks that a change has to pass beside the tests, and stop at the first failure.
+    /// Run the checks that a change must pass in addition to the tests, and stop at the first
+    /// failure.
     Check {
-        /// Run these steps only (may be repeated or separated by commas).
+        /// Run only these steps (may be repeated or separated by commas).
         #[arg(long, value_enum, value_delimiter = ',')]
         only: Vec<Check>,
     },
     /// Run the slow checks, and stop at the first failure.
     Nightly {
-        /// Run these steps only (may be repeated or separated by commas).
+        /// Run only these steps (may be repeated or separated by commas).
         #[arg(long, value_enum, value_delimiter = ',')]
         only: Vec<Nightly>,
     },
@@ -93,15 +94,15 @@ enum Task {
     Prose {
         /// Files and folders; everything by default.
         paths: Vec<PathBuf>,
-        /// Lower the numbers in the baseline to the present ones.
+        /// Lower the numbers in the baseline to the current ones.
         #[arg(long, conflicts_with = "paths")]
         lower: bool,
     },
-    /// Write the Rust code of the messages of recordings anew.
+    /// Rewrite the Rust code of the messages of recordings.
     Schemas,
     /// Check the crates against golden vectors and print a line per file.
     Vectors {
-        /// Directory of the vectors; without it the project's own.
+        /// Directory of the vectors [default: the project's].
         dir: Option<PathBuf>,
     },
     /// Run the fuzz targets and print a line per target.
@@ -113,9 +114,9 @@ enum Task {
     /// Measure the work of one control cycle and write `target/bench.json`.
     ///
     /// With --live: measure clients against the simulator over real sockets, and write
-    /// `target/bench_live.json`. With --sim: measure what one simulated arm costs, and write
-    /// `target/bench_sim.json`. With --python: measure the package for Python beside others, and
-    /// write `target/bench_python.json`.
+    /// `target/bench_live.json`. With --sim: measure the cost of one simulated arm, and write
+    /// `target/bench_sim.json`. With --python: measure the package for Python together with others,
+    /// and write `target/bench_python.json`.
     Bench {
         /// Rounds; each runs every benchmark once.
         #[arg(long, default_value_t = 15)]
@@ -123,64 +124,65 @@ enum Task {
         /// Count the instructions of the model's calls instead; needs valgrind.
         #[arg(long, conflicts_with = "live")]
         instructions: bool,
-        /// Measure over real sockets instead: nothing else should run meanwhile.
+        /// Measure over real sockets instead; nothing else should run meanwhile.
         #[arg(long, group = "sockets")]
         live: bool,
-        /// Measure what a busy program costs the control thread, and a task in the thread's place.
+        /// Measure the cost of a busy program for the control thread, and for a task in its place.
         #[arg(long, conflicts_with_all = ["live", "instructions"])]
         starvation: bool,
-        /// Measure time to start, processor time, memory and punctuality of the simulator: nothing
+        /// Measure start-up time, processor time, memory and punctuality of the simulator; nothing
         /// else should run meanwhile.
         #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
         sim: bool,
-        /// Measure the package for Python and others against the simulator: nothing else should run
+        /// Measure the package for Python and others against the simulator; nothing else should run
         /// meanwhile.
         #[arg(long, conflicts_with_all = ["sockets", "instructions", "starvation"])]
         python: bool,
-        /// Measure what a recorder costs the control thread, in turns with and without one: nothing
-        /// else should run meanwhile.
+        /// Measure the cost of a recorder for the control thread, alternately with and without one;
+        /// nothing else should run meanwhile.
         #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
         recorder: bool,
-        /// Measure what a dashboard with ten viewers, and one that never reads, costs the control
-        /// thread, in turns with and without viewers: nothing else should run meanwhile.
+        /// Measure the cost of a dashboard for the control thread, with ten viewers and with a
+        /// viewer that never reads, alternately with and without viewers; nothing else should run
+        /// meanwhile.
         #[arg(long, group = "sockets", conflicts_with_all = ["instructions", "starvation"])]
         dash: bool,
-        /// How long to measure each case of --live, --sim, --recorder and --dash.
+        /// Duration of each case of --live, --sim, --recorder and --dash, in seconds.
         #[arg(long, default_value_t = 30, requires = "sockets")]
         seconds: u32,
     },
-    /// Measure target control on simulated arms like real ones, and write `target/arms.json`.
+    /// Measure target control on realistic simulated arms, and write `target/arms.json`.
     ///
     /// Arguments: --family ideal|nominal|realistic|bad|FILE.json, --arms N, --seed S, --robot
-    /// fr3|fer; --help has the others.
+    /// fr3|fer; --help lists the others.
     #[command(disable_help_flag = true)]
     Arms {
-        /// Passed on.
+        /// Arguments of the measuring program.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
     /// Build the wheels of the Python package for every platform that this machine can build for,
-    /// with the C library's oldest version that will do, and import those that can run here.
+    /// with the oldest supported C library, and import those that can run here.
     Wheels {
-        /// Build for these targets only (may be repeated or separated by commas).
+        /// Build only for these targets (may be repeated or separated by commas).
         #[arg(long, value_delimiter = ',')]
         only: Vec<String>,
     },
-    /// Make the files of the dashboard's page anew, from npm packages that are pinned by hash.
+    /// Rebuild the files of the dashboard's page, from npm packages that are pinned by hash.
     Assets {
-        /// Only say whether the files are those that would be made.
+        /// Only check that the files are up to date.
         #[arg(long)]
         check: bool,
     },
-    /// Build the program `franka` for machines that have nothing else: static for x86-64 and 64-bit
-    /// Arm, and for C libraries from 2.17 on. Measures what was built, moves a simulated robot with
-    /// it, under qemu if need be, and packs it in `target/artefacts`: archives, packages for
+    /// Build the program `franka` for machines without other software: static for x86-64 and 64-bit
+    /// Arm, and for C libraries from 2.17 on. Measures the builds, moves a simulated robot with
+    /// each, under qemu if necessary, and packs them in `target/artefacts`: archives, packages for
     /// Debian, a container image, bills of materials, checksums.
     Dist {
-        /// Build for these targets only (may be repeated or separated by commas).
+        /// Build only for these targets (may be repeated or separated by commas).
         #[arg(long, value_delimiter = ',')]
         only: Vec<String>,
-        /// Build everything twice, and compare.
+        /// Build everything twice, and compare the results.
         #[arg(long)]
         twice: bool,
         /// Use the program for this machine, the packages of the crates and the wheel, outside the
@@ -188,45 +190,45 @@ enum Task {
         #[arg(long = "try")]
         trial: bool,
     },
-    /// Build the book with the references of Rust and Python beside it and its playground, and
-    /// serve it.
+    /// Build the book with the references of Rust and Python and its playground, and serve it.
     Book {
         /// Port on this computer.
         #[arg(long, default_value_t = 3000)]
         port: u16,
-        /// Build it below `target/book` and end.
+        /// Build the book in `target/book`, and do not serve it.
         #[arg(long, conflicts_with = "port")]
         build_only: bool,
     },
-    /// Draw the pictures of the book and the README anew, from this code and simulated motions; the
-    /// README's is a film of the dashboard, which takes a browser.
+    /// Redraw the pictures of the book and the README, from this code and simulated motions; the
+    /// README's is a film of the dashboard, which requires a browser.
     Pictures,
     /// Fetch the native library that the simulator's feature `mujoco` links to.
     Mujoco,
-    /// Check what a release takes: what the crates say of themselves, their packages, one version
+    /// Check the requirements of a release: the crates' metadata, their packages, one version
     /// everywhere, the change log. Nothing is published.
     ReleaseCheck {
-        /// Build every crate from its package, beside the packages of the others.
+        /// Build every crate from its package, against the packages of the others.
         #[arg(long)]
         verify: bool,
-        /// Say what is still missing to publish this very version.
+        /// Report what is still missing to publish this version.
         #[arg(long = "final")]
         last: bool,
     },
-    /// Print what the change log tells of the version of the workspace.
+    /// Print the change log's section of the workspace's version.
     ReleaseNotes,
-    /// Set the version of all crates, of the citation and of what is unreleased in the change log.
+    /// Set the version of all crates, of the citation and of the unreleased section of the change
+    /// log.
     Version {
-        /// X.Y.Z; without it, the version is printed.
+        /// X.Y.Z; prints the version if absent.
         version: Option<String>,
-        /// The day of the release, YYYY-MM-DD; without it, today.
+        /// The day of the release, YYYY-MM-DD [default: today].
         #[arg(long, requires = "version")]
         date: Option<String>,
     },
 }
 
-/// The tasks, each with the names of its options; none of a task that passes its arguments on.
-/// `test` is a task of the package `xtask` itself.
+/// The tasks, each with the names of its options; no options for a task that passes its arguments
+/// on. `test` is a task of the package `xtask` itself.
 fn tasks() -> Vec<(String, Vec<String>)> {
     let options = |task: &clap::Command| {
         let passes_on = task.get_arguments().any(clap::Arg::is_trailing_var_arg_set);
@@ -262,8 +264,8 @@ fn run(task: Task) -> anyhow::Result<()> {
         Task::Prose { paths, lower } => prose::run(&workspace, &paths, lower),
         Task::Schemas => schemas::write(&workspace),
         Task::Vectors { dir } => {
-            // The program runs in the root of the workspace, the argument was written somewhere
-            // else.
+            // The program runs in the root of the workspace, but the argument is relative to the
+            // user's directory.
             let dir = dir.map(std::path::absolute).transpose()?;
             workspace.run(measuring_program(&workspace, &[], "vectors").args(dir))
         }

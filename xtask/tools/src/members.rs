@@ -1,5 +1,5 @@
-//! What the types of Rust sources have: methods, fields, variants and constants, by the name of the
-//! type.
+//! Members of the types in Rust sources: methods, fields, variants and constants, by the name of
+//! the type.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -9,13 +9,13 @@ use anyhow::Context as _;
 use proc_macro2::{TokenStream, TokenTree};
 use syn::{ImplItem, Item, TraitItem, Type, Visibility};
 
-/// Members by the name of their type. Types of one name in several modules are not told apart.
+/// Members by the name of their type. Types of the same name in several modules are merged.
 #[derive(Debug, Default)]
 pub(crate) struct Members {
     of: BTreeMap<String, BTreeSet<String>>,
     fields: BTreeMap<String, BTreeSet<String>>,
     variants: BTreeMap<String, BTreeSet<String>>,
-    /// Functions that a macro writes; which types get them is not known.
+    /// Functions that a macro writes; their types are unknown.
     in_macros: BTreeSet<String>,
     /// Functions and constants outside types.
     free: BTreeSet<String>,
@@ -40,7 +40,7 @@ impl Members {
         Ok(())
     }
 
-    /// The members of a type, if there is one of that name.
+    /// The members of the type with this name, if any.
     pub(crate) fn of(&self, name: &str) -> Option<&BTreeSet<String>> {
         self.of.get(name)
     }
@@ -70,7 +70,7 @@ impl Members {
             .is_some_and(|members| members.contains(member) || self.in_macros.contains(member))
     }
 
-    /// True if there is a type, a function or a constant of this name.
+    /// True if a type, a function or a constant has this name.
     pub(crate) fn declares(&self, name: &str) -> bool {
         self.of.contains_key(name) || self.free.contains(name)
     }
@@ -168,7 +168,7 @@ fn is_public(visibility: &Visibility) -> bool {
     matches!(visibility, Visibility::Public(_))
 }
 
-/// The names behind each `fn` in the tokens of a macro.
+/// The names after each `fn` in the tokens of a macro.
 fn functions(tokens: TokenStream) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut is_function = false;

@@ -1,4 +1,4 @@
-//! The packages of the workspace, and files.
+//! Metadata of the workspace's packages, and copying of files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -42,13 +42,13 @@ fn libraries_and_programs(packages: &[Value]) -> Vec<(String, PathBuf)> {
     crates
 }
 
-/// The elements of an array; none of what is no array.
+/// The elements of an array; none if the value is no array.
 fn list(value: &Value) -> Vec<Value> {
     value.as_array().cloned().unwrap_or_default()
 }
 
-/// The command that builds and runs a benchmark or measuring program, in the profile of what is
-/// given to others; arguments appended are the program's own.
+/// The command that builds and runs a benchmark or measuring program, in the release profile;
+/// appended arguments go to the program.
 pub(crate) fn measuring_program(workspace: &Workspace, features: &[&str], name: &str) -> Command {
     let mut command = workspace.cargo();
     command.args(["run", "--profile", "dist", "--package", "franka-bench"]);
@@ -56,7 +56,7 @@ pub(crate) fn measuring_program(workspace: &Workspace, features: &[&str], name: 
     command
 }
 
-/// Copies a directory and all that is in it.
+/// Copies a directory with its content.
 pub(crate) fn copy_directory(from: &Path, to: &Path) -> anyhow::Result<()> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {

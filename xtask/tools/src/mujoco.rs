@@ -7,9 +7,9 @@
 //! .cargo/config.toml: MUJOCO_DYNAMIC_LINK_DIR, unless set ──────┘
 //! ```
 //!
-//! The directory is not below the build directory: Cargo adds only the output directories of build
-//! scripts to the search path of what it runs, and the build script of `franka-sim` puts the
-//! library into its own.
+//! The directory is not below the build directory, because Cargo adds only the output directories
+//! of build scripts to the search path of programs. The build script of `franka-sim` copies the
+//! library into its output directory.
 
 use std::env;
 use std::ffi::OsStr;
@@ -23,7 +23,7 @@ use anyhow::{Context as _, bail};
 use xtask::python::{NEWEST, Python, Version};
 use xtask::workspace::Workspace;
 
-/// Makes the library available, and says where from.
+/// Makes the library available, and prints its source.
 pub(crate) fn provide(workspace: &Workspace) -> anyhow::Result<()> {
     match fetch(workspace)? {
         Ok(()) => Ok(()),
@@ -31,8 +31,8 @@ pub(crate) fn provide(workspace: &Workspace) -> anyhow::Result<()> {
     }
 }
 
-/// Makes the library available to be built with. The inner error says what this machine lacks for
-/// it.
+/// Makes the library available for builds. The inner error names the missing requirement of this
+/// machine.
 pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<(), String>> {
     match rust() {
         Some(version) if version < RUST => Ok(Err(format!(
@@ -43,8 +43,8 @@ pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<(), String
     }
 }
 
-/// Does nothing if the user names a library of their own or the right one is there. The inner error
-/// says why this machine cannot have one.
+/// Does nothing if the user names another library or the right one exists. The inner error gives
+/// the reason why this machine cannot have one.
 fn fetch(workspace: &Workspace) -> anyhow::Result<Result<(), String>> {
     if let Some(variable) = named_by_user(workspace) {
         println!("{variable} is set: its library is used");
@@ -81,17 +81,17 @@ fn fetch(workspace: &Workspace) -> anyhow::Result<Result<(), String>> {
                 Err(why) => return Ok(Err(format!("MuJoCo is fetched with pip: {why}"))),
             };
             wheel.unpack(workspace, &python, &directory)?;
-            // What links looks for the plain name, what runs for the one with the version.
+            // Linkers look for the plain name, programs for the name with the version.
             link(Path::new(VERSIONED), &library)?;
         }
     }
-    // Written last: what broke off is done anew.
+    // Written last, so that an interrupted installation is repeated.
     fs::write(&stamp, origin)?;
     println!("{} is there", library.display());
     Ok(Ok(()))
 }
 
-/// Where the library comes from.
+/// Source of the library.
 enum Source {
     /// Installed on this machine.
     Own(PathBuf),
@@ -157,12 +157,12 @@ impl Wheel {
     }
 }
 
-/// Where everything is kept; what `.cargo/config.toml` names.
+/// Directory of the library, as in `.cargo/config.toml`.
 fn directory(workspace: &Workspace) -> PathBuf {
     workspace.root().join(".mujoco")
 }
 
-/// The variable by which the user names a library. Cargo sets one of them itself, from its
+/// The variable with which the user names a library. Cargo sets one of them itself, from its
 /// configuration.
 fn named_by_user(workspace: &Workspace) -> Option<&'static str> {
     ["MUJOCO_STATIC_LINK_DIR", "MUJOCO_DYNAMIC_LINK_DIR"]
@@ -170,7 +170,7 @@ fn named_by_user(workspace: &Workspace) -> Option<&'static str> {
         .find(|name| env::var_os(name).is_some_and(|value| !is_in(workspace.root(), &value)))
 }
 
-/// True if this is the value that the configuration in `root` gives.
+/// True if the configuration in `root` sets this value.
 fn is_in(root: &Path, value: &OsStr) -> bool {
     let real = |path: &Path| fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let same = |own: &Path| real(own) == real(root);
@@ -179,7 +179,7 @@ fn is_in(root: &Path, value: &OsStr) -> bool {
         && path.ancestors().nth(2).is_some_and(same)
 }
 
-/// Major and minor number of the compiler; `None` if it does not say.
+/// Major and minor number of the compiler; `None` if unknown.
 fn rust() -> Option<(u32, u32)> {
     let output = Command::new("rustc").arg("--version").output().ok()?;
     parse_rust(&String::from_utf8_lossy(&output.stdout))
@@ -190,7 +190,7 @@ fn parse_rust(text: &str) -> Option<(u32, u32)> {
     Some((numbers.next()?.parse().ok()?, numbers.next()?.parse().ok()?))
 }
 
-/// The library of exactly this version, if one is installed where pkg-config looks.
+/// The library of exactly this version, if pkg-config finds one.
 fn pkg_config() -> Option<PathBuf> {
     let output = Command::new("pkg-config")
         .arg(format!("mujoco = {VERSION}"))
@@ -208,7 +208,7 @@ fn link(target: &Path, link: &Path) -> std::io::Result<()> {
     std::os::unix::fs::symlink(target, link)
 }
 
-/// Elsewhere nothing is fetched.
+/// Other systems fetch nothing.
 #[cfg(not(unix))]
 fn link(target: &Path, link: &Path) -> std::io::Result<()> {
     fs::copy(target, link).map(|_| ())
@@ -217,25 +217,25 @@ fn link(target: &Path, link: &Path) -> std::io::Result<()> {
 /// The oldest compiler of the crate `mujoco-rs`.
 const RUST: (u32, u32) = (1, 95);
 
-/// The version that the crate `mujoco-rs` is made for.
+/// The MuJoCo version for the crate `mujoco-rs`.
 const VERSION: &str = "3.17.0";
 
-/// The directory of the library. Where it does not exist, the build script of `mujoco-rs` fails
-/// with its path, and so says what to do about it.
+/// The directory of the library. If it does not exist, the build script of `mujoco-rs` fails with
+/// its path, which names the remedy.
 const LIBRARIES: &str = "by-cargo-xtask-mujoco";
 
-/// What a linker looks for, and what a program asks the loader for.
+/// File name for linkers, and for the loader of programs.
 const LIBRARY: &str = "libmujoco.so";
 const VERSIONED: &str = "libmujoco.so.3.17.0";
 
-/// Version and ABI of the Python that the wheels are for. They need not be those of the Python that
-/// fetches them: the library is the same in all of them.
+/// Version and ABI of the Python for which the wheels are made. The Python that fetches them may be
+/// another: all wheels contain the same library.
 const PYTHON: (&str, &str) = ("3.12", "cp312");
 
-/// Versions of the Python that fetches: all that have pip as it is used here.
+/// Versions of the Python that fetches: all versions whose pip has the options used here.
 const FETCHING: RangeInclusive<Version> = (3, 9)..=NEWEST;
 
-/// The wheels, as PyPI lists them.
+/// The wheels on PyPI.
 const WHEELS: &[Wheel] = &[
     Wheel {
         system: "linux",

@@ -1,14 +1,14 @@
-//! The names of `franka-async`: few at the root, none in two places, each with its name in Python
-//! or the reason why it has none, and no other crate of ours named by the examples, the book and
-//! the README.
+//! Rules for the names of `franka-async`: few at the root, and none in two places. Each has its
+//! name in Python, or the reason why it has none. Examples, book and README name no other crate of
+//! ours.
 //!
 //! ```text
 //! lib.rs ── pub mod x; ──> files ── pub use a::B, pub struct C ──> module, name, path of the item
 //! ```
 //!
-//! An item is told by the path that a `pub use` has, or by the module that declares it. Two paths
-//! may lead to the same item without this being seen, so a name that two modules have for different
-//! items has to be in [`NAMESAKES`].
+//! An item is identified by the path of a `pub use`, or by the module that declares it. The check
+//! cannot see that two paths lead to the same item, so a name for different items in two modules
+//! must be in [`NAMESAKES`].
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -20,10 +20,10 @@ use syn::{Item, UseTree, Visibility};
 use crate::metadata;
 use xtask::workspace::Workspace;
 
-/// Public names at the root: below this.
+/// Number of public names at the root must be below this.
 const ROOT_MAX: usize = 40;
 
-/// The module whose names are in other places too.
+/// The module whose names are also in other modules.
 const PRELUDE: &str = "prelude";
 
 /// Names of different items in different modules.
@@ -39,11 +39,11 @@ const NAMESAKES: [&str; 9] = [
     "collision",
 ];
 
-/// What each name is in Python: `name = franka_async.Name`, or `name: why it is not there`. The
-/// tests of the package look the former up.
+/// Python name of each name: `name = franka_async.Name`, or `name: reason for its absence`. The
+/// tests of the package look the names up.
 const IN_PYTHON: &str = "franka-py/tests/rust_names.txt";
 
-/// Crates of ours that programs depend on.
+/// Crates of ours on which programs depend.
 const FOR_PROGRAMS: [&str; 4] = [
     "franka-async",
     "franka-sim",
@@ -51,7 +51,7 @@ const FOR_PROGRAMS: [&str; 4] = [
     "franka-examples",
 ];
 
-/// Fails with every name that is out of place.
+/// Fails with every name that breaks a rule.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
     let is_face = |(name, _): &&(String, _)| name == "franka_async";
     let crates = metadata::crates(workspace)?;
@@ -79,11 +79,11 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What each public module offers: names, and what they stand for. The root is the module "".
+/// Names that each public module offers, and the items behind them. The root is the module "".
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     pub(crate) modules: BTreeMap<String, BTreeMap<String, String>>,
-    /// Modules that are names themselves, whatever is in them.
+    /// Modules that count as names themselves, without their content.
     opaque: &'static [&'static str],
 }
 
@@ -93,7 +93,7 @@ impl Names {
         Self::with_opaque(root, &[])
     }
 
-    /// The same, and what is in some of its modules is left out.
+    /// The same, without the content of some of its modules.
     pub(crate) fn with_opaque(
         root: &Path,
         opaque: &'static [&'static str],
@@ -106,7 +106,7 @@ impl Names {
         Ok(names)
     }
 
-    /// Where a name of a public module is declared, as far as public modules lead there.
+    /// Place of declaration of a name of a public module, through public modules only.
     pub(crate) fn declared_at(&self, module: &str, name: &str) -> String {
         let place = join(module, name);
         let Some(path) = self.modules.get(module).and_then(|names| names.get(name)) else {
@@ -189,7 +189,7 @@ impl Names {
     fn export(&mut self, tree: &UseTree, module: &str, path: Vec<String>) -> anyhow::Result<()> {
         let under = |name: &syn::Ident| {
             let mut path = path.clone();
-            // What a path begins with that is of this crate.
+            // The first segment of a path in this crate.
             if !["crate", "self"].iter().any(|own| name == own) {
                 path.push(name.to_string());
             }
@@ -221,7 +221,8 @@ impl Names {
         names.insert(name, path);
     }
 
-    /// A line for each name that the table does not have, and for each one that is not there.
+    /// A line for each name that is missing in the table, and for each name in the table that does
+    /// not exist.
     fn untold(&self, table: &str) -> Vec<String> {
         let told = |line: &str| {
             let end = line.find(" = ").or_else(|| line.find(": "))?;
@@ -246,7 +247,7 @@ impl Names {
         missing.chain(gone).collect()
     }
 
-    /// A line for each rule that is not kept.
+    /// A line for each broken rule.
     fn faults(&self) -> Vec<String> {
         let mut faults = Vec::new();
         let root = &self.modules[""];
@@ -268,7 +269,7 @@ impl Names {
         }
         for (index, &(module, name, path)) in items.iter().enumerate() {
             for &(other, namesake, elsewhere) in &items[index + 1..] {
-                // The names in a module of a module begin with its own.
+                // The names in a submodule begin with the module's name.
                 let is_in = |inner: &str, outer: &str| {
                     inner.starts_with(&format!("{outer}::"))
                         && outer.contains("::")
@@ -309,7 +310,7 @@ pub(crate) fn join(module: &str, name: &str) -> String {
     }
 }
 
-/// The pages in a directory and in those within; there are pictures, too.
+/// The pages in a directory and its subdirectories, which also contain pictures.
 pub(crate) fn pages(directory: &Path) -> anyhow::Result<Vec<std::path::PathBuf>> {
     let mut found = Vec::new();
     for entry in fs::read_dir(directory)? {
@@ -339,7 +340,7 @@ fn programs(page: &str) -> String {
     programs
 }
 
-/// The crates of ours in a text that programs do without.
+/// Crates of ours in a text that programs must not need.
 fn others(text: &str) -> impl Iterator<Item = &str> {
     let words = text.split(|c: char| !c.is_alphanumeric() && c != '-');
     let is_other = |word: &&str| word.starts_with("franka-") && !FOR_PROGRAMS.contains(word);

@@ -5,8 +5,8 @@ use std::process::Command;
 use xtask::selection::packages;
 use xtask::workspace::Workspace;
 
-/// Builds and runs one test binary of the other packages, with the features of the step `rest`, so
-/// that what that has built is used again.
+/// Builds and runs one test binary of the other packages, with the features of the step `rest`, to
+/// reuse its build.
 pub(crate) fn other_test(workspace: &Workspace, name: &str) -> Command {
     let mut test = workspace.cargo();
     test.args(["test", "--features=franka-cli/full,franka-examples/all"]);
@@ -15,7 +15,7 @@ pub(crate) fn other_test(workspace: &Workspace, name: &str) -> Command {
     test
 }
 
-/// The packages with tests but the driver's and the simulator's.
+/// The packages with tests, except the driver's and the simulator's.
 pub(crate) const OTHERS: [&str; 10] = [
     "franka-bench",
     "franka-cli",

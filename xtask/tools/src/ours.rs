@@ -38,7 +38,7 @@ impl Ours {
         self.members.variants(name).collect()
     }
 
-    /// The enumerations that say what went wrong: `MotionError`, and those of the module `error`.
+    /// The enumerations of errors: `MotionError`, and the enumerations of the module `error`.
     pub(crate) fn errors(&self) -> Vec<String> {
         const ENDINGS: [&str; 5] = ["Error", "Fault", "Lapse", "Reason", "Unready"];
         let names = self.face.modules.get("error").into_iter().flatten();
@@ -50,7 +50,7 @@ impl Ours {
     }
 
     /// True if a program can write this: `module::Type::method`, `Type`, `module::function(..)`,
-    /// `.method(..)` of whatever has it, `franka_sim::Sim::fr3`.
+    /// `.method(..)` of any type, `franka_sim::Sim::fr3`.
     pub(crate) fn has(&self, span: &str) -> bool {
         let path = span.split(['(', '<', ' ']).next().unwrap_or_default();
         if let Some(member) = path.strip_prefix('.') {
@@ -72,11 +72,11 @@ impl Ours {
         let (module, of) = outer.rsplit_once("::").unwrap_or(("", outer));
         let names = self.face.modules.get(module);
         if let Some(item) = names.and_then(|names| names.get(of)) {
-            // It may have another name where it is declared.
+            // The item may have another name where it is declared.
             let of = item.rsplit("::").next().unwrap_or(of);
             return self.members.has(of, last) || self.members.declares(last);
         }
-        // Inside a module of another crate that is exported as a whole.
+        // An item in a module of another crate that is exported as a whole.
         let first = outer.split("::").next().unwrap_or_default();
         let is_module = first.starts_with(char::is_lowercase) && is_item("", first);
         is_module && (self.members.has(of, last) || self.members.declares(last))

@@ -65,12 +65,12 @@ impl<'a> Row<'a> {
     }
 }
 
-/// What is between backticks.
+/// Text between backticks.
 fn spans(text: &str) -> Vec<&str> {
     text.split('`').skip(1).step_by(2).collect()
 }
 
-/// The tables of a page, those of its programs left out.
+/// The tables of a page, except tables in its programs.
 pub(crate) fn tables(page: &str) -> Vec<Table<'_>> {
     let mut tables: Vec<Table<'_>> = Vec::new();
     let mut before = None;
@@ -118,7 +118,7 @@ pub(crate) fn blocks(page: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The anchors of a page: those of its headings, as mdBook makes them, and those written as `id`.
+/// The anchors of a page: anchors of headings, as mdBook makes them, and attributes `id`.
 pub(crate) fn anchors(page: &str) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let mut headings: BTreeMap<String, usize> = BTreeMap::new();

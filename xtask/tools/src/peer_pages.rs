@@ -1,15 +1,15 @@
-//! The chapters for those who come from another package: every public name of it has a row, no row
-//! names what is not there, and what a row names of ours exists.
+//! The chapters for users of other packages. Every public name of a package has a row, no row names
+//! an item that does not exist, and our items in a row exist.
 //!
 //! ```text
 //! tests/peers/names/x.txt ── the names of the package ──┐
 //! docs/src/from-x.md ── tables: its name, ours ─────────┴─ the same ── ours: the face's sources
 //! ```
 //!
-//! A table counts if its header has a column `Rust` or `Python`. Where its first header cell has
-//! names in code, the names below are members of each of them. `*`, or `Type.*`, stands for the
-//! members that have no row. A cell that begins with `same: ` names a type of ours that has members
-//! of the same names. Names in the column `Python` are held against the package by its own tests
+//! A table counts if its header has a column `Rust` or `Python`. If its first header cell has names
+//! in code, the names below are members of each of them. `*`, or `Type.*`, stands for the members
+//! that have no row. A cell that begins with `same: ` names a type of ours that has members of the
+//! same names. Names in the column `Python` are checked by the package's own tests
 //! (`franka-py/tests/test_names.py`).
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -30,7 +30,7 @@ struct Peer {
     list: &'static str,
     /// Its chapter, in `docs/src`.
     page: &'static str,
-    /// What stands between a type and its member.
+    /// Separator between a type and its member.
     separator: &'static str,
 }
 
@@ -67,7 +67,7 @@ const PEERS: [Peer; 6] = [
     },
 ];
 
-/// Fails with every row that is missing, and every name that is not there.
+/// Fails with every missing row, and every name that does not exist.
 pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
     let mut found = Vec::new();
     let mut rows = 0;
@@ -104,13 +104,13 @@ pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Fails unless the list of franka-rs has the public names of its sources. Nothing is checked where
+/// Fails unless the list of franka-rs has the public names of its sources. Nothing is checked if
 /// they have not been fetched.
 fn check_franka_rs(workspace: &Workspace, list: &BTreeSet<String>) -> anyhow::Result<()> {
     let manifest = "tests/peers/franka_rs/Cargo.toml";
     let mut metadata = workspace.cargo();
     metadata.args(["metadata", "--format-version=1", "--offline", "--locked"]);
-    // Those for other systems need not be here.
+    // The packages for other systems may be absent.
     metadata.args(["--filter-platform", "x86_64-unknown-linux-gnu"]);
     metadata.args(["--manifest-path", manifest]);
     let output = metadata.output().context("cannot run cargo")?;
@@ -168,7 +168,7 @@ fn listing(source: &Path) -> anyhow::Result<BTreeSet<String>> {
     Ok(found)
 }
 
-/// Modules of franka-rs that are its own inside: bytes, sockets, the connection behind `Robot`.
+/// Internal modules of franka-rs: bytes, sockets, the connection behind `Robot`.
 const FRANKA_RS_OPAQUE: [&str; 4] = ["network", "wire", "robot::robot_impl", "robot::commands"];
 
 /// True if a table maps names to ours.
@@ -202,7 +202,7 @@ fn named(table: &Table<'_>, separator: &str) -> Vec<String> {
     names.collect()
 }
 
-/// The members of a type that no row of the page spells out; `star` is the type, and `*`.
+/// The members of a type without a row on the page; `star` is the type, and `*`.
 fn others<'a>(
     names: &'a BTreeSet<String>,
     maps: &[Table<'_>],
@@ -254,8 +254,8 @@ fn differences(names: &BTreeSet<String>, maps: &[Table<'_>], separator: &str) ->
     faults
 }
 
-/// A line for each name in the column `Rust` that is not ours. Behind `same: ` there is a type that
-/// has members of the names of the row.
+/// A line for each name in the column `Rust` that is not ours. After `same: ` a type follows whose
+/// members have the names of the row.
 fn strange(
     table: &Table<'_>,
     maps: &[Table<'_>],
@@ -294,10 +294,10 @@ fn strange(
         .collect()
 }
 
-/// The name of a row for all members that have no row of their own.
+/// The name of a row for all members without a separate row.
 const ALL_OTHERS: &str = "*";
 
-/// The begin of a cell whose type has members of the names of the row.
+/// Prefix of a cell whose type has members with the names of the row.
 const SAME: &str = "same: ";
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use crate::dashboard;
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
 
-/// Adds the playground to a built book, or a page in its place that says what it takes.
+/// Adds the playground to a built book, or in its place a page with the requirements.
 pub(crate) fn add(workspace: &Workspace, book: &Path) -> anyhow::Result<()> {
     match lacks()? {
         None => build(workspace, &book.join("playground")),
@@ -25,7 +25,7 @@ pub(crate) fn add(workspace: &Workspace, book: &Path) -> anyhow::Result<()> {
     }
 }
 
-/// Has the built book say why the playground is not in it.
+/// Writes the reason for the missing playground into the built book.
 pub(crate) fn leave_out(book: &Path, why: &str) -> anyhow::Result<()> {
     let folder = book.join("playground");
     fs::create_dir_all(&folder)?;
@@ -40,7 +40,7 @@ pub(crate) fn leave_out(book: &Path, why: &str) -> anyhow::Result<()> {
     )?)
 }
 
-/// The step `playground`: built, and used in a real browser.
+/// The step `playground`: builds it, and uses it in a real browser.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     if let Some(why) = lacks()? {
         return Ok(Outcome::Skipped(why));
@@ -54,7 +54,7 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     )
 }
 
-/// What is missing here to build it, if anything.
+/// The missing requirement to build it, if any.
 fn lacks() -> anyhow::Result<Option<String>> {
     if !dashboard::has_npm() {
         return Ok(Some("there was no npm".to_owned()));
@@ -71,7 +71,7 @@ fn build(workspace: &Workspace, folder: &Path) -> anyhow::Result<()> {
     let dashboard = dashboard::page(workspace);
     fs::create_dir_all(folder)?;
     let entry = sources.join("playground.js");
-    // Not a module: those are not loaded from a file, and the page could not say so.
+    // Not a module: modules cannot be loaded from a file, and the page could not report that.
     dashboard::bundle(workspace, &entry, &folder.join("playground.js"), "iife")?;
     expand_directory(&dashboard.join("meshes"), &folder.join("meshes"))?;
     let wasm = workspace.target().join(TARGET).join("dist");
@@ -86,8 +86,8 @@ fn build(workspace: &Workspace, folder: &Path) -> anyhow::Result<()> {
     Ok(fs::write(folder.join("licenses.txt"), licences)?)
 }
 
-/// Copies a directory, its compressed files expanded: no server tells the browser how they are
-/// compressed.
+/// Copies a directory and decompresses its files, because no server informs the browser of the
+/// compression.
 fn expand_directory(from: &Path, to: &Path) -> anyhow::Result<()> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from)? {

@@ -5,8 +5,8 @@ use xtask::python::{NEWEST, OLDEST, Python};
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
 
-/// Installs the readers in a virtual environment of their own, and has them decode recordings of
-/// both robots and a dataset. LeRobot's own loader, which is large, reads the dataset too if
+/// Installs the readers in a separate virtual environment, and decodes recordings of both robots
+/// and a dataset with them. LeRobot's own loader, which is large, also reads the dataset if
 /// `FRANKA_LEROBOT_PYTHON` names an interpreter that has it.
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let python = match Python::find(OLDEST..=NEWEST) {

@@ -1,7 +1,6 @@
-//! What the reference chapters have to name: every field of a state, every error of the robot,
-//! every variant of the errors of `franka-async`, and a place for each link of an error to lead to;
-//! and the figures that a chapter copies, which have to be those of the chapter where they were
-//! measured.
+//! Required content of the reference chapters: every field of a state, every error of the robot,
+//! every variant of the errors of `franka-async`, and a target for each link of an error. Figures
+//! that a chapter copies must be equal to those of the chapter where they were measured.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -14,7 +13,7 @@ use crate::ours::Ours;
 use crate::page::{Table, anchors, tables};
 use xtask::workspace::Workspace;
 
-/// Fails with every name that a chapter lacks, or has and is not there.
+/// Fails with every name that a chapter lacks, or that does not exist.
 pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
     let page = |name: &str| {
         let path = workspace.root().join("docs/src").join(name);
@@ -45,7 +44,7 @@ pub(crate) fn check(workspace: &Workspace, ours: &Ours) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The fields of the robot's state, and of what is computed from it.
+/// The fields of the robot's state, and of values computed from it.
 fn states(page: &str, state: &Members) -> Vec<String> {
     let tables = tables(page);
     let of_robot = tables.iter().filter(|table| table.first() == "field");
@@ -81,7 +80,7 @@ fn variants(page: &str, ours: &Ours) -> Vec<String> {
     found
 }
 
-/// The errors that a state can carry, each with a place of its name.
+/// The errors that a state can carry, each with an anchor.
 fn robot_errors(page: &str, workspace: &Workspace) -> anyhow::Result<Vec<String>> {
     let source = workspace
         .root()
@@ -103,7 +102,7 @@ fn robot_errors(page: &str, workspace: &Workspace) -> anyhow::Result<Vec<String>
         .collect())
 }
 
-/// Keys of benchmarks that no benchmark writes: no source has them as a text.
+/// Keys of benchmarks that no benchmark writes, because no source has them as a text.
 fn keys(page: &str, sources: &Path) -> anyhow::Result<Vec<String>> {
     let mut texts = String::new();
     read_all(sources, &mut texts)?;
@@ -128,8 +127,8 @@ fn read_all(directory: &Path, texts: &mut String) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Rows with figures that are not those of the chapters where they were measured. The last table
-/// of the page says what each package has.
+/// Rows with figures that differ from the chapters where they were measured. The last table of the
+/// page lists the features of each package.
 fn copies(page: &str, measured: &[String]) -> Vec<String> {
     let there = measured.iter().flat_map(|page| tables(page));
     let there: BTreeSet<String> = there.flat_map(|table| table.texts()).collect();

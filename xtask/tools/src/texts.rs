@@ -1,4 +1,5 @@
-//! What is not Rust: the spelling of everything, the workflows, what dependencies may be.
+//! Checks of files other than Rust: the spelling of everything, the workflows, and the rules for
+//! dependencies.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +12,7 @@ use xtask::realtime::succeeds;
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
 
-/// Of the step `texts`: names of files, spelling by typos, and workflows by zizmor and, where it is
+/// The step `texts`: names of files, spelling by typos, and workflows by zizmor and, if it is
 /// installed, actionlint.
 pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     check_paths(&git(workspace, &["ls-files", "-z"])?)?;
@@ -23,7 +24,7 @@ pub(crate) fn check(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let interpreter = python.environment(workspace, "python-texts", &requirements)?;
     let tool = |name| workspace.program(interpreter.with_file_name(name));
     workspace.run(tool("typos").args(["--format", "brief"]))?;
-    // Without the network: what it would ask for there are the hashes behind tags.
+    // Without the network, in which it would only look up the hashes behind tags.
     let mut workflows = tool("zizmor");
     workflows.args(["--offline", "--quiet", "--no-progress", ".github"]);
     workspace.run(&mut workflows)?;
@@ -53,8 +54,8 @@ fn check_paths(paths: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// True for the name of a file or folder that Windows refuses: by its characters, its end, or as
-/// that of a device. Source: Microsoft, "Naming Files, Paths, and Namespaces".
+/// True for the name of a file or folder that Windows refuses: by its characters, by its end, or
+/// because it names a device. Source: Microsoft, "Naming Files, Paths, and Namespaces".
 fn is_forbidden(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or(name).to_lowercase();
     let numbered = stem.strip_suffix(|it: char| it.is_ascii_digit());
@@ -65,8 +66,8 @@ fn is_forbidden(name: &str) -> bool {
         || name.contains(|it: char| it.is_control() || "<>:\"|?*\\".contains(it))
 }
 
-/// Of the step `dependencies`: licences, sources and bans by cargo-deny, where it is installed. It
-/// is built from many crates, for longer than this step may take, so it is not installed here.
+/// The step `dependencies`: licences, sources and bans by cargo-deny, if it is installed. Its build
+/// takes longer than this step may take, so it is not installed here.
 pub(crate) fn dependencies(workspace: &Workspace) -> anyhow::Result<Outcome> {
     if !succeeds(&["cargo", "deny", "--version"]) {
         let why = "cargo-deny is not installed; `cargo install --locked cargo-deny` does it";

@@ -1,5 +1,5 @@
-//! Comments as rustfmt leaves them: within the width of the code, and with tables and examples that
-//! were not wrapped like prose.
+//! Checks comments as rustfmt leaves them: within the width of the code, without tables and
+//! examples that were wrapped like prose.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -57,8 +57,8 @@ fn collect(directory: &Path, sources: &mut Vec<PathBuf>) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Number and width of each comment line that is too wide. Tables, fenced blocks and words that
-/// cannot be broken, such as addresses, may be as wide as they are.
+/// Number and width of each comment line that is too wide. Tables, fenced blocks and unbreakable
+/// words, such as addresses, may exceed the width.
 fn wide_comments(text: &str) -> Vec<(usize, usize)> {
     let mut found = Vec::new();
     for line in comments(text) {
@@ -73,8 +73,8 @@ fn wide_comments(text: &str) -> Vec<(usize, usize)> {
     found
 }
 
-/// Number and fault of each line that a tool has wrapped like prose: a row of a table that goes on
-/// in the next line, or several statements of an example in one.
+/// Number and fault of each line that a tool has wrapped like prose: a row of a table that
+/// continues in the next line, or several statements of an example in one.
 fn wrapped(text: &str) -> Vec<(usize, &'static str)> {
     let mut found = Vec::new();
     for line in comments(text) {
@@ -94,13 +94,13 @@ fn wrapped(text: &str) -> Vec<(usize, &'static str)> {
 
 /// A line of a comment.
 struct CommentLine<'a> {
-    /// From 1.
+    /// Line number, from 1.
     number: usize,
     whole: &'a str,
-    /// Without the marks of the comment and the blanks around it.
+    /// Content without the marks of the comment and the blanks around it.
     content: &'a str,
     is_doc: bool,
-    /// The language of the fenced block that it is in.
+    /// The language of its fenced block.
     block: Option<&'a str>,
 }
 
@@ -130,7 +130,7 @@ fn comments(text: &str) -> impl Iterator<Item = CommentLine<'_>> {
     })
 }
 
-/// True if rustdoc takes a block of this language for Rust.
+/// True if rustdoc treats a block of this language as Rust.
 fn is_rust(language: &str) -> bool {
     const ATTRIBUTES: [&str; 6] = [
         "",
@@ -144,7 +144,7 @@ fn is_rust(language: &str) -> bool {
     ATTRIBUTES.contains(&first)
 }
 
-/// True if code goes on after the end of a statement, outside brackets, strings and comments.
+/// True if code continues after the end of a statement, outside brackets, strings and comments.
 fn has_several_statements(code: &str) -> bool {
     let mut depth = 0_i32;
     let mut is_text = false;

@@ -1,5 +1,5 @@
-//! The Python package: builds its wheel, installs it into a virtual environment of its own, and
-//! runs its tests and the checks of its types and of its [`wheels`].
+//! The Python package: builds its wheel, installs it into a separate virtual environment, and runs
+//! its tests and the checks of its types and of its [`wheels`].
 
 pub(crate) mod wheels;
 
@@ -12,10 +12,10 @@ use xtask::python::{NEWEST, OLDEST, Python, Version};
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
 
-/// Builds and installs the package and what its tests need; returns the interpreter that has them,
-/// or why there is none.
+/// Builds and installs the package and the requirements of its tests. Returns the interpreter that
+/// has them, or the reason why none is available.
 pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
-    // The profile of the tests: what computes in a cycle is optimised in it.
+    // The profile of the tests, in which the computations of a cycle are optimised.
     let [environment, profile] = ["python-package", "dev"];
     match Python::find(OLDEST..=NEWEST) {
         Ok(python) => install(workspace, &python, environment, "tests", profile).map(Ok),
@@ -23,10 +23,10 @@ pub(crate) fn prepare(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, S
     }
 }
 
-/// Builds the package optimised and installs it beside the packages that it is measured with;
-/// returns the interpreter that has them, or why there is none.
+/// Builds the package optimised and installs it together with the packages for comparison. Returns
+/// the interpreter that has them, or the reason why none is available.
 pub(crate) fn prepare_bench(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
-    // Some have no wheels for newer versions, but ours does.
+    // Some packages have no wheels for newer versions, but ours does.
     let python = Python::find(OLDEST..=NEWEST_OF_ALL).or_else(|_| Python::find(OLDEST..=NEWEST));
     match python {
         Ok(python) => install(workspace, &python, "python-bench", "bench", "dist").map(Ok),
@@ -49,7 +49,7 @@ fn install(
     let interpreter = python.environment(workspace, environment, &requirements)?;
     let wheels = built(workspace, profile);
     if wheels.exists() {
-        // What an earlier version left is not taken for this one.
+        // A wheel of an earlier version must not be mistaken for this one.
         fs::remove_dir_all(&wheels)?;
     }
     let mut build = module(workspace, &interpreter, "maturin");
@@ -66,7 +66,7 @@ fn install(
     Ok(interpreter)
 }
 
-/// Runs the tests beside the checks of the types.
+/// Runs the tests and the checks of the types at the same time.
 pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let interpreter = match prepare(workspace)? {
         Ok(interpreter) => interpreter,
@@ -79,7 +79,7 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
             wheels::check(workspace, &wheel)
         });
         let mut tests = module(workspace, &interpreter, "pytest");
-        // Most of them mostly wait. Who is done with his share takes over from others.
+        // Most tests mostly wait. A finished worker takes over tests of the others.
         tests.args(["--quiet", "-n", "4", "--dist", "worksteal"]);
         tests.arg("franka-py/tests");
         workspace.run(&mut tests)?;
@@ -87,7 +87,7 @@ pub(crate) fn run(workspace: &Workspace) -> anyhow::Result<Outcome> {
     })
 }
 
-/// Where the wheel for this machine is built.
+/// Directory of the wheel for this machine.
 fn built(workspace: &Workspace, profile: &str) -> PathBuf {
     workspace.target().join("wheels").join(profile)
 }
@@ -101,21 +101,21 @@ fn types(workspace: &Workspace, interpreter: &Path) -> anyhow::Result<()> {
     let mut stubs = module(workspace, interpreter, "mypy.stubtest");
     stubs.args(["--mypy-config-file", "franka-py/pyproject.toml"]);
     stubs.args(["--allowlist", "franka-py/tests/stubs.allowed"]);
-    // The other modules have their types in themselves.
+    // The other modules contain their types.
     workspace.run(stubs.args(["franka_async._native", "franka_async.sync"]))
 }
 
-/// A module of the virtual environment as a program.
+/// Runs a module of the virtual environment as a program.
 pub(crate) fn module(workspace: &Workspace, interpreter: &Path, name: &str) -> Command {
     let mut command = workspace.program(interpreter);
     command.args(["-m", name]);
     command
 }
 
-/// Where the package is.
+/// Directory of the package.
 pub(crate) fn directory(workspace: &Workspace) -> PathBuf {
     workspace.root().join("franka-py")
 }
 
-/// The newest Python that all packages have wheels for which the package is measured with.
+/// The newest Python for which all compared packages have wheels.
 const NEWEST_OF_ALL: Version = (3, 12);

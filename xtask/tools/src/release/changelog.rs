@@ -1,4 +1,4 @@
-//! The form of `CHANGELOG.md`: that of Keep a Changelog 1.1.0, with what is unreleased first.
+//! The form of `CHANGELOG.md`: Keep a Changelog 1.1.0, with the unreleased changes first.
 //!
 //! ```text
 //! # Changelog ... ## [Unreleased] ... ### Added ... ## [0.2.0] - 2026-12-24 ... ### Fixed
@@ -27,11 +27,11 @@ const KINDS: [&str; 6] = [
 /// The change log, section by section.
 #[derive(Debug, Default)]
 pub(crate) struct Changelog {
-    /// What the next release will tell.
+    /// Changes for the next release.
     pub(crate) unreleased: String,
     /// Title and text of each release, as in the file.
     releases: Vec<(String, String)>,
-    /// Whether there is a first section, and it is of what is unreleased.
+    /// True if the first section has the unreleased changes.
     begins: bool,
 }
 
@@ -59,14 +59,14 @@ impl Changelog {
         log
     }
 
-    /// When a version was released, if it was: `YYYY-MM-DD`.
+    /// Release date of a version, if it was released: `YYYY-MM-DD`.
     pub(crate) fn date_of(&self, version: &str) -> Option<&str> {
         let prefix = format!("[{version}] - ");
         let mut titles = self.releases.iter().map(|(title, _)| title.as_str());
         titles.find_map(|title| title.strip_prefix(&prefix))
     }
 
-    /// What a version's section tells, if there is one.
+    /// The section of a version, if any.
     pub(crate) fn notes_of(&self, version: &str) -> Option<&str> {
         let prefix = format!("[{version}]");
         let mut releases = self.releases.iter();
@@ -74,7 +74,7 @@ impl Changelog {
         release.map(|(_, text)| text.trim())
     }
 
-    /// What departs from the form.
+    /// Deviations from the form.
     pub(crate) fn faults(&self) -> Vec<String> {
         let mut found = Vec::new();
         if !self.begins {
@@ -131,7 +131,8 @@ pub(crate) fn is_date(text: &str) -> bool {
     year >= 2026 && (1..=12).contains(&month) && (1..=31).contains(&day) && parts.next().is_none()
 }
 
-/// The text of a change log in which what was unreleased is a version's, and nothing is unreleased.
+/// The text of a change log in which the unreleased changes become a version's, and nothing is
+/// unreleased.
 pub(crate) fn released(text: &str, version: &str, date: &str) -> String {
     let title = "\n## [Unreleased]\n";
     text.replacen(title, &format!("{title}\n## [{version}] - {date}\n"), 1)

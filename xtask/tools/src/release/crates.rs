@@ -1,4 +1,4 @@
-//! Crates that are published: what their manifests say, their order, and what is in their packages.
+//! Published crates: their manifests, their order, and the content of their packages.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -12,17 +12,17 @@ use serde_json::Value;
 use crate::metadata;
 use xtask::workspace::Workspace;
 
-/// The largest package that a registry takes, in bytes: 10 MB. Ours are far smaller: above this,
-/// something was packed that nobody needs.
+/// The largest package that a registry takes, in bytes: 10 MB. Ours are far smaller; a larger one
+/// contains files that no user needs.
 const SIZE_MAX: u64 = 1_000_000;
 
-/// What every package has.
+/// Files that every package must have.
 const FILES: [&str; 4] = ["Cargo.toml", "LICENSE", "NOTICE", "README.md"];
 
 /// Directories that belong to the workspace.
 const LEFT_OUT: [&str; 2] = ["tests/", "target/"];
 
-/// What a package of the workspace says of itself.
+/// Data of a workspace package's manifest.
 #[derive(Debug, Default)]
 pub(crate) struct Manifest {
     pub(crate) name: String,
@@ -40,7 +40,7 @@ pub(crate) struct Manifest {
 }
 
 impl Manifest {
-    /// Those of all packages of the workspace.
+    /// Reads the manifests of all packages of the workspace.
     pub(crate) fn all(workspace: &Workspace) -> anyhow::Result<Vec<Self>> {
         let packages = metadata::packages(workspace)?;
         let all: Vec<_> = packages.iter().map(Self::of).collect();
@@ -79,13 +79,13 @@ impl Manifest {
         format!("{}-{}", self.name, self.version)
     }
 
-    /// Where its package is, once it is packed.
+    /// Path of its package, once it is packed.
     pub(super) fn package(&self, workspace: &Workspace) -> PathBuf {
         let name = format!("{}.crate", self.root());
         workspace.target().join("package").join(name)
     }
 
-    /// What a registry would refuse, or a reader miss.
+    /// Defects that a registry would refuse, or that readers would miss.
     pub(crate) fn faults(&self) -> Vec<String> {
         let mut found = Vec::new();
         let mut expect = |holds: bool, what: String| {
@@ -126,7 +126,7 @@ impl Manifest {
     }
 }
 
-/// Those that are published, each after what it needs. Fails where they need each other.
+/// The published crates, each after its dependencies. Fails if they depend on each other.
 pub(crate) fn order(manifests: &[Manifest]) -> anyhow::Result<Vec<&Manifest>> {
     let mut waiting: Vec<&Manifest> = manifests.iter().filter(|it| it.is_published).collect();
     let mut ordered: Vec<&Manifest> = Vec::new();
@@ -152,8 +152,8 @@ pub(crate) fn order(manifests: &[Manifest]) -> anyhow::Result<Vec<&Manifest>> {
     Ok(ordered)
 }
 
-/// Packs the crates, with `verify` also builds each from its package, and returns what is wrong
-/// with the packages.
+/// Packs the crates, with `verify` also builds each from its package, and returns the defects of
+/// the packages.
 pub(crate) fn pack(
     workspace: &Workspace,
     published: &[&Manifest],

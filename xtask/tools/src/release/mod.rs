@@ -1,4 +1,4 @@
-//! What a release takes: crates that can be published, one version everywhere, a change log.
+//! Requirements of a release: publishable crates, one version everywhere, a change log.
 //!
 //! ```text
 //! cargo xtask version X.Y.Z ──> manifests, lock file, CITATION.cff, CHANGELOG.md
@@ -29,16 +29,16 @@ use xtask::realtime::succeeds;
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
 
-/// What to check beside the form.
+/// Checks besides the form.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Depth {
     /// Build each crate from its package; takes minutes.
     pub(crate) verify: bool,
-    /// Everything that has to be there before a version is published.
+    /// Check everything that must exist before a version is published.
     pub(crate) last: bool,
 }
 
-/// Checks crates and texts; fails with everything that is amiss.
+/// Checks crates and texts; fails with all defects.
 pub(crate) fn check(workspace: &Workspace, depth: Depth) -> anyhow::Result<Outcome> {
     let manifests = Manifest::all(workspace)?;
     let published = crates::order(&manifests)?;
@@ -59,7 +59,7 @@ pub(crate) fn check(workspace: &Workspace, depth: Depth) -> anyhow::Result<Outco
     compare_with_last_release(workspace)
 }
 
-/// Packs the crates that are published, and returns where the packages are.
+/// Packs the published crates, and returns the paths of the packages.
 pub(crate) fn packages(workspace: &Workspace) -> anyhow::Result<Vec<PathBuf>> {
     let manifests = Manifest::all(workspace)?;
     let published = crates::order(&manifests)?;
@@ -69,7 +69,7 @@ pub(crate) fn packages(workspace: &Workspace) -> anyhow::Result<Vec<PathBuf>> {
     Ok(packages.collect())
 }
 
-/// What is missing for the very version to be published now.
+/// Missing requirements for publishing this version now.
 fn last_faults(
     workspace: &Workspace,
     published: &[&Manifest],
@@ -110,7 +110,7 @@ fn last_faults(
     Ok(found)
 }
 
-/// Compares the public names with those of the last release, where there is one.
+/// Compares the public names with the last release, if any.
 fn compare_with_last_release(workspace: &Workspace) -> anyhow::Result<Outcome> {
     let tags = git(workspace, &["tag", "--list", "v*", "--sort=-v:refname"])?;
     let head = git(workspace, &["tag", "--points-at", "HEAD"])?;
@@ -131,7 +131,7 @@ fn compare_with_last_release(workspace: &Workspace) -> anyhow::Result<Outcome> {
     Ok(Outcome::Passed)
 }
 
-/// What git says.
+/// Output of git.
 pub(crate) fn git(workspace: &Workspace, arguments: &[&str]) -> anyhow::Result<String> {
     let mut git = workspace.program("git");
     let output = git.args(arguments).stderr(Stdio::inherit()).output();

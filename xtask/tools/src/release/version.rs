@@ -24,7 +24,7 @@ pub(crate) fn of(workspace: &Workspace) -> anyhow::Result<String> {
     Ok(version.context("the workspace has no version")?.to_owned())
 }
 
-/// Who answers for the package for Debian; empty until somebody does.
+/// Maintainer of the package for Debian; empty if undecided.
 pub(crate) fn maintainer(workspace: &Workspace) -> anyhow::Result<String> {
     let manifest = read(workspace, MANIFEST)?.parse::<DocumentMut>()?;
     let maintainer = manifest["workspace"]["metadata"]["maintainer"].as_str();
@@ -33,7 +33,7 @@ pub(crate) fn maintainer(workspace: &Workspace) -> anyhow::Result<String> {
         .to_owned())
 }
 
-/// Where another version stands than in the workspace.
+/// Places with another version than the workspace.
 pub(crate) fn faults(workspace: &Workspace, version: &str) -> anyhow::Result<Vec<String>> {
     let mut found = Vec::new();
     let manifest = read(workspace, MANIFEST)?.parse::<DocumentMut>()?;
@@ -61,12 +61,12 @@ pub(crate) fn faults(workspace: &Workspace, version: &str) -> anyhow::Result<Vec
     Ok(found)
 }
 
-/// When the version was released that the citation names, if it says so: `YYYY-MM-DD`.
+/// Release date of the version in the citation, if present: `YYYY-MM-DD`.
 pub(crate) fn citation_date(workspace: &Workspace) -> anyhow::Result<Option<String>> {
     Ok(field(&read(workspace, CITATION)?, "date-released").map(str::to_owned))
 }
 
-/// Sets the version everywhere, and has the change log tell what was unreleased as its.
+/// Sets the version everywhere, and moves the unreleased changes of the change log to it.
 pub(crate) fn set(
     workspace: &Workspace,
     version: &str,
@@ -117,7 +117,7 @@ pub(crate) fn set(
     Ok(())
 }
 
-/// Puts a text in the place of another one, with the blanks and comments around it.
+/// Replaces a text and keeps the blanks and comments around it.
 fn replace(item: &mut Item, text: &str) {
     let decor = item.as_value().map(|it| it.decor().clone());
     *item = value(text);
@@ -126,7 +126,7 @@ fn replace(item: &mut Item, text: &str) {
     }
 }
 
-/// The crates of the workspace that others take by version, with what is asked of it.
+/// The workspace's crates that others depend on by version, with the required version.
 fn own(manifest: &DocumentMut) -> anyhow::Result<Vec<(String, String)>> {
     let dependencies = manifest["workspace"]["dependencies"].as_table_like();
     let dependencies = dependencies.context("no dependencies of the workspace")?;
@@ -149,7 +149,7 @@ fn field<'a>(text: &'a str, name: &str) -> Option<&'a str> {
     Some(line.trim().trim_matches('"'))
 }
 
-/// The file with another value of the field, which goes to the end if there is none.
+/// The file with another value of the field, which is appended if it is missing.
 fn with_field(text: &str, name: &str, value: &str) -> String {
     let prefix = format!("{name}:");
     let new = format!("{name}: \"{value}\"");

@@ -11,12 +11,12 @@ use crate::package::{directory, module};
 use xtask::python::{NEWEST, OLDEST, Python};
 use xtask::workspace::Workspace;
 
-/// What became of importing a wheel.
+/// Result of importing a wheel.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Imported {
-    /// With these.
+    /// Imported by these interpreters.
     By(String),
-    /// For this reason.
+    /// Not imported, for this reason.
     Not(String),
 }
 
@@ -63,8 +63,8 @@ pub(super) fn import(
     Ok(Imported::By(emulator))
 }
 
-/// Installs a wheel into an environment of each Python that is on this machine, and imports it
-/// there; returns which these were.
+/// Installs a wheel into an environment of each Python of this machine, and imports it there.
+/// Returns their versions.
 pub(super) fn import_here(workspace: &Workspace, wheel: &Path) -> anyhow::Result<String> {
     let pythons = Python::all(OLDEST..=NEWEST);
     ensure!(!pythons.is_empty(), "there is no Python to import it with");
@@ -99,7 +99,8 @@ impl Platform {
         )
     }
 
-    /// The emulator and the root directory with which its programs run here, or what is missing.
+    /// The emulator and the root directory with which its programs run here, or the missing
+    /// requirement.
     fn emulated(
         &self,
         has: impl Fn(&str) -> bool,
@@ -120,13 +121,13 @@ impl Platform {
     }
 }
 
-/// In a root directory.
+/// Path of Python in a root directory.
 const PYTHON: &str = "usr/bin/python3";
 
-/// Where Debian has packages for it; elsewhere they are where its Python looks.
+/// Debian's directory of packages for it; other systems have them on Python's default path.
 const DIST_PACKAGES: &str = "usr/lib/python3/dist-packages";
 
-/// Calls into the native module, with arrays both ways.
+/// Calls into the native module, with arrays in both directions.
 const PROGRAM: &str =
     "import franka_async as f; assert f.Model.fr3().pose('flange', f.READY).shape == (4, 4)";
 

@@ -27,17 +27,17 @@ use xtask::python::{NEWEST, OLDEST, Python};
 use xtask::step::Outcome;
 use xtask::workspace::Workspace;
 
-/// What a wheel is for.
+/// Platform of a wheel.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Platform {
     target: &'static str,
-    /// What maturin is asked for: the oldest C library that will do.
+    /// Compatibility for maturin: the oldest supported C library.
     compatibility: &'static str,
-    /// What the name of the wheel ends with.
+    /// End of the wheel's name.
     tag: &'static str,
 }
 
-/// The platforms, that of most computers first.
+/// The platforms, the most common first.
 pub(crate) const PLATFORMS: [Platform; 4] = [
     Platform {
         target: "x86_64-unknown-linux-gnu",
@@ -61,8 +61,8 @@ pub(crate) const PLATFORMS: [Platform; 4] = [
     },
 ];
 
-/// Builds the optimised wheels of all platforms, or of the chosen ones, and says of each what
-/// became of it. Fails if none was built, and with `CI=true` if one was not.
+/// Builds the optimised wheels of all platforms, or of the chosen ones, and reports the result of
+/// each. Fails if no wheel was built; with `CI=true`, fails if any was not built.
 pub(crate) fn run(workspace: &Workspace, only: &[String]) -> anyhow::Result<()> {
     let is_chosen = |platform: &&Platform| {
         only.is_empty() || only.iter().any(|target| target == platform.target)
@@ -91,7 +91,7 @@ pub(crate) fn run(workspace: &Workspace, only: &[String]) -> anyhow::Result<()> 
     Ok(())
 }
 
-/// The optimised wheel for this machine, or what is missing to build it.
+/// The optimised wheel for this machine, or the missing requirement to build it.
 pub(crate) fn for_this_machine(workspace: &Workspace) -> anyhow::Result<Result<PathBuf, String>> {
     match PLATFORMS.iter().find(|it| it.is_of_this_machine()) {
         Some(platform) => build(workspace, platform, "dist"),
@@ -99,8 +99,8 @@ pub(crate) fn for_this_machine(workspace: &Workspace) -> anyhow::Result<Result<P
     }
 }
 
-/// Of the step `python`: imports the wheel of this machine, which is built already, with every
-/// Python that is installed, and builds those for other machines where that is possible.
+/// The step `python`: imports the wheel of this machine, which is already built, with every
+/// installed Python, and builds the wheels for other machines if possible.
 pub(crate) fn check(workspace: &Workspace, wheel: &Path) -> anyhow::Result<Outcome> {
     let mut unchecked = Vec::new();
     for platform in &PLATFORMS {
@@ -137,7 +137,7 @@ impl Platform {
         architecture(self.target) == env::consts::ARCH && self.target.ends_with(libc)
     }
 
-    /// Fails unless the name says that the wheel is for this platform, and for every Python.
+    /// Fails unless the name declares this platform, and every Python.
     fn check_name(&self, name: &str) -> anyhow::Result<()> {
         let (major, minor) = OLDEST;
         let expected = format!("-cp{major}{minor}-abi3-{}.whl", self.tag);
@@ -149,7 +149,7 @@ impl Platform {
     }
 }
 
-/// The wheel for a platform, or what this machine lacks to build it.
+/// The wheel for a platform, or the missing requirement to build it.
 fn build(
     workspace: &Workspace,
     platform: &Platform,
@@ -169,7 +169,7 @@ fn build(
         .join("wheels")
         .join(platform.target)
         .join(profile);
-    // What an earlier version left is not taken for this one.
+    // A wheel of an earlier version must not be mistaken for this one.
     if out.exists() {
         fs::remove_dir_all(&out)?;
     }
@@ -197,7 +197,7 @@ fn build(
     Ok(Ok(wheel))
 }
 
-/// The one wheel in a directory.
+/// The only wheel in a directory.
 pub(crate) fn only_wheel(directory: &Path) -> anyhow::Result<PathBuf> {
     let mut wheels = Vec::new();
     for entry in fs::read_dir(directory)? {
