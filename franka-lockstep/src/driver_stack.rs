@@ -22,7 +22,7 @@ pub struct DriverStack {
     pub driver: Driver,
     /// The motion state machine.
     pub lifecycle: Lifecycle,
-    /// What the driver did in its last cycle.
+    /// Record of the driver's last cycle.
     pub record: Record,
     /// The newest state that arrived.
     pub state: RobotState,
@@ -30,7 +30,7 @@ pub struct DriverStack {
     step: u64,
     /// The time since any fixed moment.
     pub now: Duration,
-    /// When the newest state came.
+    /// Arrival time of the newest state.
     pub(crate) heard: Duration,
     /// The time from a state to its answer. The client is then ready for the next state.
     pub turnaround: Duration,
@@ -43,7 +43,7 @@ pub struct DriverStack {
     to_robot: VecDeque<Vec<u8>>,
     from_robot: Vec<u8>,
     outcomes: BTreeMap<GoalId, Outcome>,
-    /// How many goals were named so far.
+    /// Number of goals named so far.
     pub(super) goals: u64,
     /// Answers to requests to recover, the oldest first.
     pub(super) recoveries: VecDeque<RecoveryStatus>,
@@ -176,9 +176,9 @@ impl DriverStack {
         }
     }
 
-    /// What the control thread does between a state and its command: decodes the datagram, and
-    /// returns the size of the command that answers it, if there is one. Never inlined:
-    /// instructions are counted by its name.
+    /// The control thread's work between a state and its command: decodes the datagram, and returns
+    /// the size of the command that answers it, if any. Never inlined: instructions are counted by
+    /// its name.
     ///
     /// # Panics
     /// If the datagram is not a state.
@@ -193,7 +193,7 @@ impl DriverStack {
         answer.map(|answer| answer.encode(version, command).expect("it fits"))
     }
 
-    /// What the control thread does after [`Self::answer`], if states arrive when they are due and
+    /// The control thread's work after [`Self::answer`], if states arrive when they are due and
     /// answers take no time.
     pub fn conclude(&mut self, answered: bool) {
         let state = &self.state;
@@ -210,17 +210,17 @@ impl DriverStack {
         }
     }
 
-    /// Prepares the next state, as the control thread does before it comes. Never inlined, as
+    /// Prepares the next state, as the control thread does before it comes. Never inlined, like
     /// [`Self::answer`].
     #[inline(never)]
     pub fn prepare(&mut self) {
         self.driver.prepare();
-        // Something to come back to: what ends in a jump is not counted.
+        // Keeps a return to this function: a tail call would not be counted.
         core::hint::black_box(&self.step);
     }
 
     /// Passes on the driver's events, checks deadlines, and carries out the lifecycle's outputs.
-    /// Returns whether there were any: the driver may then have more events.
+    /// Returns true if there were any: the driver may then have more events.
     pub fn settle(&mut self) -> bool {
         while !self.lifecycle_is_paused
             && let Some(event) = self.driver.take_event()
@@ -258,7 +258,7 @@ impl DriverStack {
         })
     }
 
-    /// Begins a motion, to a pose on the way that is planned for it, and returns its name.
+    /// Begins a motion, to a pose on the path that is planned for it, and returns its name.
     ///
     /// # Errors
     /// As [`Goal::plan_line`] and the lifecycle.
@@ -366,7 +366,7 @@ impl DriverStack {
         }
     }
 
-    /// Carries out the lifecycle's outputs in their order. Returns whether there were any.
+    /// Carries out the lifecycle's outputs in their order. Returns true if there were any.
     pub(super) fn carry_out(&mut self) -> bool {
         let mut any = false;
         while let Some(output) = self.lifecycle.poll() {
@@ -398,7 +398,7 @@ impl DriverStack {
     }
 }
 
-/// A peer that has left the protocol for good.
+/// A peer that has violated the protocol.
 fn violated(violation: &impl ToString) -> CloseReason {
     CloseReason::Protocol {
         text: violation.to_string(),

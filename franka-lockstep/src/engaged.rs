@@ -53,8 +53,7 @@ impl Lockstep {
         })
     }
 
-    /// Submits a goal to the session `engaged`: one that is awaited, or one that is held until the
-    /// next.
+    /// Submits a goal to the session `engaged`: a goal to await, or a goal to hold until the next.
     ///
     /// # Errors
     /// As the lifecycle.
@@ -81,7 +80,7 @@ impl Lockstep {
         })
     }
 
-    /// Goes through `waypoints`, in a motion of its own or within the session `engaged`.
+    /// Moves through `waypoints`, in a separate motion or within the session `engaged`.
     ///
     /// # Errors
     /// As the lifecycle.

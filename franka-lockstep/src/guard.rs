@@ -50,8 +50,8 @@ impl CommandGuard {
                 tau.is_finite() && tau.abs() <= limits.torque[i],
                 "{at}: joint {joint} gets {tau} N m"
             );
-            // The robot compares a command with the last one that it received, which an FR3 echoes
-            // as `f32`.
+            // The robot compares a command with the last received one, which an FR3 echoes as
+            // `f32`.
             let rate = (tau - state.tau_J_d[i]).abs() / CYCLE;
             assert!(
                 rate <= limits.torque_rate[i] + 0.01,

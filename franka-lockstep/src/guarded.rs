@@ -68,8 +68,8 @@ pub struct Guarded {
     pub bound: HashSet<Guard>,
     /// The fates of the chunks so far.
     pub fates: Vec<Fate>,
-    /// How often the robot has stopped the arm, since a hard push can drive it to a limit. The arm
-    /// then starts again from the ready pose.
+    /// Number of times that the robot has stopped the arm, since a hard push can drive it to a
+    /// limit. The arm then starts again from the ready pose.
     pub stops: u32,
     workload: Workload,
     backend: Backend,

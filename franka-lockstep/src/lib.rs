@@ -50,7 +50,7 @@ use guard::CommandGuard;
 /// A part of the control cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// From the datagram of a state to that of the command.
+    /// From the datagram of a state to the datagram of the command.
     Answer,
     /// The driver's work after the command has left.
     Aftermath,
@@ -239,7 +239,7 @@ impl Lockstep {
         Duration::from_millis(self.milliseconds + 1)
     }
 
-    /// Lets so many milliseconds pass without a state; the robot's own time stands still.
+    /// Lets `milliseconds` pass without a state; the robot's own time does not advance.
     pub fn silence(&mut self, milliseconds: u64) {
         for _ in 0..milliseconds {
             self.milliseconds += 1;
@@ -315,7 +315,7 @@ impl Lockstep {
         self.link.send(sent, command, finishing);
     }
 
-    /// Advances by so many milliseconds.
+    /// Advances by `milliseconds`.
     pub fn run(&mut self, milliseconds: u64) {
         for _ in 0..milliseconds {
             self.tick();

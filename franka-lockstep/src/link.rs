@@ -1,4 +1,4 @@
-//! What is between client and robot: the simulator's network, and faults for tests only.
+//! The link between client and robot: the simulator's network, and faults for tests only.
 
 use std::time::Duration;
 

@@ -25,7 +25,7 @@ impl Lockstep {
         self.client.begin(NewMotion::to(goal))
     }
 
-    /// Submits a goal that begins together with those of other robots.
+    /// Submits a goal that begins together with the goals of other robots.
     ///
     /// # Errors
     /// As the lifecycle.
@@ -86,8 +86,8 @@ impl Lockstep {
         self.client.control(program, request)
     }
 
-    /// Starts a control function, beside the robot's joint impedance controller where it commands
-    /// no torques. As [`Self::control`].
+    /// Starts a control function, with the robot's joint impedance controller if it commands no
+    /// torques. See [`Self::control`].
     ///
     /// # Errors
     /// As the lifecycle.
@@ -135,8 +135,8 @@ impl Lockstep {
         );
     }
 
-    /// Moves to `target` in a motion of its own. Returns the greatest distance on the way between
-    /// the end effector and its reference, `[m]`.
+    /// Moves to `target` in a separate motion. Returns the greatest distance between the end
+    /// effector and its reference during the motion, `[m]`.
     ///
     /// # Panics
     /// If the goal is refused or not reached.

@@ -1,4 +1,4 @@
-//! Where the arm and its reference are.
+//! Poses of the arm and of its reference.
 
 use franka_model::collision::Shape;
 use franka_model::{EndEffector, Frame, JointVector, Model, Twist, transform};
@@ -39,8 +39,8 @@ pub fn pose_of(q: &JointVector, ee: &EndEffector) -> Isometry3<f64> {
     transform::isometry(&pose).expect("a rigid end effector")
 }
 
-/// The force on the flange that these joint torques stand for, in the axes of the base, `[N]`: with
-/// the least wrench that they can be told from.
+/// The force on the flange for these joint torques, in the axes of the base, `[N]`, from the least
+/// wrench that explains them.
 ///
 /// # Panics
 /// At a singularity.

@@ -6,7 +6,7 @@ use franka_rt::session::{GoalId, Target};
 
 use super::Lockstep;
 
-/// How one goal of each robot has ended, without the reports; `None` while one is unresolved.
+/// The outcome of one goal of each robot, without the reports; `None` while one is unresolved.
 pub fn outcomes_of<const N: usize>(
     robots: [&Lockstep; N],
     goals: [GoalId; N],

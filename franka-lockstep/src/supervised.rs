@@ -1,7 +1,7 @@
 //! A supervised robot in one thread on virtual time: the decisions of `franka_rt::supervision`, and
-//! connections that end and are made again.
+//! connections that end and are established again.
 //!
-//! It stands for what `franka-async` has around them: tasks, sockets and futures.
+//! It replaces the parts of `franka-async` around them: tasks, sockets and futures.
 
 mod setting;
 
@@ -28,7 +28,7 @@ pub use setting::shows;
 /// A supervised robot, one millisecond at a time.
 pub struct Supervised {
     lockstep: Lockstep,
-    /// Of the robot, when it is started again.
+    /// Configuration of the robot for a restart.
     pub config: Config,
     supervision: Supervision,
     sender: Sender,
@@ -41,30 +41,30 @@ pub struct Supervised {
     under_way: BTreeSet<GoalId>,
     waiting: Option<NewMotion>,
     goals: u64,
-    /// What was told since it was taken.
+    /// Events reported since they were taken.
     pub events: Vec<Event>,
-    /// What was asked for since it was taken.
+    /// Requests since they were taken.
     pub requests: Vec<Asked>,
-    /// What the program has set, and the answers, since they were taken.
+    /// Settings of the program and their answers, since they were taken.
     pub answers: Vec<(Request, Answer)>,
-    /// How each motion that was submitted has ended.
+    /// Outcome of each motion that was submitted.
     pub outcomes: BTreeMap<GoalId, Outcome>,
 }
 
-/// What a supervision has asked for.
+/// A request of the supervision.
 #[derive(Debug)]
 pub enum Asked {
     /// To connect.
     Connect,
     /// To recover from the reflex of this number, of a robot that shows this mode and these errors.
     Recover(u64, RobotMode, Errors),
-    /// Somebody, to agree.
+    /// A person's agreement.
     Agreement(Reflex),
     /// To begin a motion that waited.
     Begin(GoalId),
 }
 
-/// Where the connection stands, for the harness.
+/// State of the connection, for the harness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Connection {
     Up,
@@ -73,7 +73,7 @@ enum Connection {
         until: u64,
     },
     None,
-    /// Until then the robot has to have answered.
+    /// The robot must answer by then.
     Connecting {
         until: u64,
     },
@@ -142,12 +142,12 @@ impl Supervised {
         &self.lockstep.client.state
     }
 
-    /// Whether a motion is with the connection, or was and has not ended.
+    /// True if a motion is with the connection, or was and has not ended.
     pub fn is_under_way(&self, goal: GoalId) -> bool {
         self.under_way.contains(&goal)
     }
 
-    /// How the supervision takes the robot to be.
+    /// The robot's health in the view of the supervision.
     pub fn health(&self) -> Health {
         self.supervision.health()
     }
@@ -168,7 +168,7 @@ impl Supervised {
         self.carry_out();
     }
 
-    /// What has come of the connection in this millisecond.
+    /// Processes the changes of the connection in this millisecond.
     fn look(&mut self) {
         let now = self.time();
         match self.connection {
@@ -178,7 +178,7 @@ impl Supervised {
                 if state.message_id != self.seen {
                     self.seen = state.message_id;
                     self.supervision.on_state(&state, now);
-                    // Before the outcomes: nothing may depend on their being there.
+                    // Before the outcomes: nothing may depend on them.
                     self.carry_out();
                 } else if silence == LINK_TIMEOUT {
                     self.supervision.on_silence(silence, now);
@@ -331,8 +331,7 @@ impl Supervised {
         self.lockstep.link.drop_commands(u64::MAX);
     }
 
-    /// Mends the network, after so long that both ends have given the command connection up if
-    /// `gave_up`.
+    /// Mends the network. If `gave_up`, both ends have given the command connection up meanwhile.
     pub fn mend(&mut self, gave_up: bool) {
         self.lockstep.link = Link::perfect();
         if gave_up {
@@ -348,7 +347,7 @@ impl Supervised {
         self.lockstep.robot.trip(error);
     }
 
-    /// Has the robot recover, as its program or a person does.
+    /// Makes the robot recover, as its program or a person does.
     pub fn recover(&mut self) {
         if self.connection == Connection::Up {
             self.lockstep.request(&Request::AutomaticErrorRecovery);

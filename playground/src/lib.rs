@@ -1,12 +1,12 @@
-//! The driver and a simulated robot for a web page: what JavaScript calls.
+//! The driver and a simulated robot for a web page: the functions that JavaScript calls.
 //!
 //! ```text
 //! page --> start, advance, target, push, block, recover --> Playground: driver <~bytes~> robot
 //!      <-- view, message, guard_name
 //! ```
 //!
-//! One module of WebAssembly is one arm. There is no thread, no socket and no clock: the page says
-//! how much time passes.
+//! One module of WebAssembly is one arm. The module has no thread, no socket and no clock: the page
+//! decides how much time passes.
 
 mod playground;
 
@@ -19,10 +19,10 @@ use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
 pub use playground::{Playground, State};
 
-/// What the page reads, as numbers.
+/// Size of the view for the page, in numbers.
 const NUMBERS: usize = 36;
 
-/// An arm, and what the page reads of it.
+/// An arm, and its view for the page.
 struct Shown {
     playground: Playground,
     view: [f64; NUMBERS],
@@ -34,9 +34,9 @@ thread_local! {
     static GUARDS: Vec<CString> = Guard::ALL.iter().map(guard_text).collect();
 }
 
-/// Begins with a new arm at rest in the ready pose, in place of the one before: a Franka Research 3
-/// or, if `kind` is 1, a Franka Emika Robot; an ideal one or, if `realistic` is not 0, one like
-/// real ones, drawn from `seed`.
+/// Begins with a new arm at rest in the ready pose, in place of the previous one. The arm is a
+/// Franka Research 3 or, if `kind` is 1, a Franka Emika Robot. It is ideal or, if `realistic` is
+/// not 0, drawn from `seed`.
 #[unsafe(no_mangle)]
 pub extern "C" fn start(kind: u32, realistic: u32, seed: u32) {
     let kind = match kind {
@@ -57,8 +57,8 @@ pub extern "C" fn advance(milliseconds: u32) {
     with(|shown| shown.playground.advance(milliseconds));
 }
 
-/// Where the end effector is to go, in the base frame: metres, and a quaternion, which need not be
-/// of length 1. What is no pose is no target, and changes nothing.
+/// Sets the target of the end effector in the base frame: metres, and a quaternion, which need not
+/// have length 1. An invalid pose changes nothing.
 #[unsafe(no_mangle)]
 pub extern "C" fn target(x: f64, y: f64, z: f64, qx: f64, qy: f64, qz: f64, qw: f64) {
     let turn = UnitQuaternion::try_new(Quaternion::new(qw, qx, qy, qz), 1e-6);
@@ -76,13 +76,13 @@ pub extern "C" fn push(x: f64, y: f64, z: f64) {
     with(|shown| shown.playground.push(Vector3::new(x, y, z)));
 }
 
-/// Grips the end effector where it is, or lets it go.
+/// Grips the end effector in its position, or releases it.
 #[unsafe(no_mangle)]
 pub extern "C" fn block(on: u32) {
     with(|shown| shown.playground.block(on != 0));
 }
 
-/// Has the robot recover from what stopped it, and goes on.
+/// Makes the robot recover from its stop, and continues.
 #[unsafe(no_mangle)]
 pub extern "C" fn recover() {
     with(|shown| shown.playground.recover());
@@ -97,7 +97,7 @@ pub extern "C" fn recover() {
 /// | 2 to 8 | measured joint positions, `[rad]` |
 /// | 9 to 15 | the reference's, `[rad]` |
 /// | 16 to 22 | target, as `x y z qx qy qz qw`, base frame, `[m]` |
-/// | 23 to 29 | the end effector where it is measured, likewise |
+/// | 23 to 29 | measured pose of the end effector, likewise |
 /// | 30 to 32 | force on it as the robot estimates it, base frame, `[N]` |
 /// | 33 | speed of the fastest point of the arm, `[m/s]` |
 /// | 34 | guards that bound the newest command, a bit each in the order of [`guard_name`] |
@@ -132,8 +132,8 @@ pub extern "C" fn view() -> *const f64 {
     .unwrap_or(std::ptr::null())
 }
 
-/// The newest thing to tell, as UTF-8 that ends with a zero; empty while there is nothing. Its
-/// address holds until the next call of this module.
+/// The newest message, as UTF-8 that ends with a zero; empty without one. Its address holds until
+/// the next call of this module.
 #[unsafe(no_mangle)]
 pub extern "C" fn message() -> *const u8 {
     with(|shown| {
@@ -143,7 +143,7 @@ pub extern "C" fn message() -> *const u8 {
     .unwrap_or(std::ptr::null())
 }
 
-/// What people call a guard, as UTF-8 that ends with a zero; null past the last one.
+/// Name of a guard for users, as UTF-8 that ends with a zero; null past the last one.
 #[unsafe(no_mangle)]
 pub extern "C" fn guard_name(index: u32) -> *const u8 {
     GUARDS.with(|guards| {

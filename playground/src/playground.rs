@@ -12,7 +12,7 @@ use nalgebra::{Isometry3, Vector3};
 /// The speed of manual reduced speed, `[m/s]`.
 const SPEED_CAP: f64 = 0.25;
 
-/// The most that a person pushes with, `[N]`.
+/// Largest force of a person's push, `[N]`.
 const PUSH_MAX: f64 = 200.0;
 
 /// An arm that goes to a target, and can be pushed, stopped and recovered.
@@ -21,7 +21,7 @@ pub struct Playground {
     seconds: f64,
     phase: Phase,
     target: Isometry3<f64>,
-    /// True if the session has not been told of the target yet.
+    /// True if the session has not received the target yet.
     is_new: bool,
     goal: Option<GoalId>,
     push: Option<TouchId>,
@@ -29,7 +29,7 @@ pub struct Playground {
     message: String,
 }
 
-/// What the arm does.
+/// Activity of the arm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum State {
@@ -41,7 +41,7 @@ pub enum State {
     Stopped,
 }
 
-/// Where a session is.
+/// Phase of a session.
 #[derive(Clone, Copy)]
 enum Phase {
     Starting(GoalId),
@@ -54,17 +54,17 @@ enum Phase {
 pub struct View {
     /// Time since the start.
     pub seconds: f64,
-    /// What the arm does.
+    /// Activity of the arm.
     pub state: State,
     /// Measured joint positions.
     pub q: [f64; 7],
     /// Joint positions of the reference; of the arm where nothing controls it.
     pub q_ref: [f64; 7],
-    /// Where the end effector is to go.
+    /// Target pose of the end effector.
     pub target: Isometry3<f64>,
-    /// Where it is measured.
+    /// Measured pose of the end effector.
     pub end_effector: Isometry3<f64>,
-    /// The force that the robot estimates on it, as one that pushes it.
+    /// Estimated force on the end effector, positive in the direction of the push.
     pub force: Vector3<f64>,
     /// Speed of the fastest point of the arm.
     pub speed: f64,
@@ -110,7 +110,7 @@ impl Playground {
         }
     }
 
-    /// Where the end effector is to go.
+    /// Sets the target pose of the end effector.
     pub fn target(&mut self, pose: Isometry3<f64>) {
         (self.target, self.is_new) = (pose, true);
     }
@@ -127,7 +127,7 @@ impl Playground {
         }
     }
 
-    /// Grips the end effector where it is, or lets it go.
+    /// Grips the end effector in its position, or releases it.
     pub fn block(&mut self, on: bool) {
         let robot = &mut self.lockstep.robot;
         self.obstacle.take().map(|obstacle| robot.release(obstacle));
@@ -178,14 +178,14 @@ impl Playground {
             },
             target: self.target,
             end_effector: self.lockstep.pose_at(&q),
-            // The estimate is what the arm presses with.
+            // The estimate is the force that the arm exerts.
             force: -Vector3::new(x, y, z),
             speed: Model::fr3().fastest_point(&q, &dq, &end_effector),
             guards: record.bindings,
         }
     }
 
-    /// What follows from the last millisecond.
+    /// Handles the results of the last millisecond.
     fn proceed(&mut self) {
         match self.phase {
             Phase::Starting(session) | Phase::Following(session) => {
@@ -212,7 +212,7 @@ impl Playground {
         }
     }
 
-    /// Passes a new target on, and tells of one that was given up.
+    /// Passes a new target on, and reports a target that was given up.
     fn follow(&mut self, session: GoalId) {
         let ended = self
             .goal

@@ -1,4 +1,4 @@
-//! What a visitor of the page does.
+//! Actions of a visitor of the page.
 
 use franka_model::RobotKind;
 use franka_playground::{Playground, State};

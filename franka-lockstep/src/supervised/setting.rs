@@ -1,4 +1,4 @@
-//! What a supervised robot's program sets at it, one setting at a time.
+//! Settings of a supervised robot's program, one at a time.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -13,14 +13,14 @@ const ANSWER: u64 = 5000;
 /// Number of states that are looked through for a setting, as in `franka-async`.
 const SHOWN: u64 = 200;
 
-/// Settings that are with the robot, or are to be sent.
+/// Settings that are with the robot, or must be sent.
 #[derive(Debug, Default)]
 pub(super) struct Sender {
     queue: VecDeque<Request>,
-    /// True if the supervision wants its settings sent again.
+    /// True if the supervision requires that its settings are sent again.
     is_due: bool,
     sent: Option<Sent>,
-    /// What counts of each kind: the newest that the robot has not refused.
+    /// The valid setting of each kind: the newest that the robot has not refused.
     wanted: BTreeMap<&'static str, Request>,
 }
 
@@ -30,13 +30,13 @@ struct Sent {
     request: Request,
     /// True if the program has sent it.
     is_program: bool,
-    /// When it was sent, `[ms]`.
+    /// Time at which it was sent, `[ms]`.
     at: u64,
     /// `message_id` of the newest state when the robot had taken it.
     taken: Option<u64>,
 }
 
-/// True if a state shows what was set. Of what no state shows: yes.
+/// True if a state shows the setting, or if states never show this kind.
 pub fn shows(request: &Request, state: &RobotState) -> bool {
     match request {
         Request::SetLoad(load) => (state.m_load - load.m_load).abs() < 1e-5,
@@ -159,12 +159,13 @@ impl Supervised {
         self.mend(true);
     }
 
-    /// Has the robot answer no request any more, until it is connected anew.
+    /// Makes the robot answer no more requests, until it is connected again.
     pub fn lose_replies(&mut self) {
         self.lockstep.link.replies = false;
     }
 
-    /// Whether the robot has everything that the program has set, other than what is with it now.
+    /// Checks that the robot has everything that the program has set, except the setting in
+    /// transit.
     pub(super) fn check_settings(&mut self) {
         let with_robot = self.sender.sent.as_ref().map(|sent| sent.request.command());
         let state = self.lockstep.robot.state();

@@ -1,4 +1,4 @@
-//! Arms that are not ideal: what a client sees of them.
+//! Arms that are not ideal, as a client sees them.
 
 use franka_model::{JointVector, READY};
 use franka_proto::{RobotCommand, RobotState};
@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use crate::pair::*;
 
-/// A robot with an ideal arm but for a change.
+/// A robot with an ideal arm except for a change.
 fn pair(change: impl Fn(&mut Arm)) -> Pair {
     let mut arm = Arm::ideal(RobotKind::Fr3);
     change(&mut arm);
@@ -18,7 +18,7 @@ fn pair(change: impl Fn(&mut Arm)) -> Pair {
     })
 }
 
-/// Commands a torque on joint 1 that grows to `most`, for so many milliseconds.
+/// Commands a torque on joint 1 that grows to `most`, for this many milliseconds.
 fn lean(pair: &mut Pair, most: f64, milliseconds: u32) -> RobotState {
     for cycle in 0..milliseconds {
         let torque = most * (f64::from(cycle) * 1e-3).min(1.0);
@@ -100,7 +100,7 @@ fn a_torque_acts_after_the_delay_and_then_with_the_lag() {
         // The first command answers a state that the motion has begun with already.
         let immediate = delay as usize - 1;
         assert_eq!(first, immediate, "{delay} cycles, {lag} s");
-        // What is missing of the constant acceleration is the lag's.
+        // The lag causes the deviation from constant acceleration.
         let missing: f64 = gain[first..].iter().map(|gain| 1.0 - gain / settled).sum();
         assert!(
             (missing * 1e-3 - lag).abs() < 3e-4,

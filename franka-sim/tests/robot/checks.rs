@@ -1,4 +1,4 @@
-//! Which commands a robot refuses, and by which names.
+//! Commands that a robot refuses, and the names of the errors.
 
 use franka_model::READY;
 use franka_proto::RobotError as E;
@@ -269,7 +269,7 @@ fn a_leftover_finish_of_the_last_motion_does_not_end_the_next() {
         MoveControllerMode::ExternalController,
         MoveGeneratorMode::None,
     );
-    // The arm comes to rest within the cycle, so the motion begins before the datagram arrives.
+    // The arm stops within the cycle, so the motion begins before the datagram arrives.
     pair.tick(None);
     let id = pair.request(&Request::Move(request));
     pair.datagram(&RobotCommand {

@@ -147,7 +147,7 @@ fn of_two_asynchronous_targets_in_one_millisecond_the_newer_counts() {
     }
     pair.idle(1000);
     assert!((pair.q()[0] - 0.1).abs() < 1e-3, "{}", pair.q());
-    // What comes behind the finish belongs to nothing any more.
+    // Commands after the finish belong to no motion.
     for command in [finished(at(0.1)), at(-0.1)] {
         pair.datagram(&RobotCommand {
             message_id: pair.state.message_id,

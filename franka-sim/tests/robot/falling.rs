@@ -15,12 +15,12 @@ use franka_sim::plant::RigidArm;
 
 const HIGH: f64 = 1e4;
 
-/// Which thresholds are set, the others being out of reach.
+/// Threshold that is set, the others being out of reach.
 #[derive(Debug, Clone, Copy)]
 enum Threshold {
-    /// Of the wrench at the stiffness frame, `[N, N·m]`.
+    /// Threshold of the wrench at the stiffness frame, `[N, N·m]`.
     Force(f64),
-    /// Of the joints, `[N·m]`.
+    /// Threshold of the joints, `[N·m]`.
     Torque(f64),
 }
 
@@ -66,7 +66,7 @@ fn above_the_table() -> Config {
     }
 }
 
-/// How it comes down.
+/// Kind of descent.
 #[derive(Debug, Clone, Copy)]
 enum Descent {
     /// The client commands 0.1 m/s, 3 cm further than it is to the table.
@@ -75,7 +75,7 @@ enum Descent {
     Free,
 }
 
-/// What came of it.
+/// Result of a descent.
 struct Landing {
     /// The most that was felt until the motion ended, and before the table was reached.
     most: f64,
@@ -85,8 +85,7 @@ struct Landing {
     state: RobotState,
 }
 
-/// Comes down on the table: that of the scene, or where there is no scene, one that only the
-/// fingertips meet.
+/// Comes down on the scene's table, or without a scene on a table that only the fingertips meet.
 fn come_down(pair: &mut Pair, descent: Descent, threshold: Threshold) -> Landing {
     pair.request(&Request::SetCollisionBehavior(threshold.behavior()));
     let plant: &dyn Any = pair.robot.plant();

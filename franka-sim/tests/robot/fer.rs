@@ -231,8 +231,8 @@ fn states_carry_what_is_commanded_to_the_last_digit() {
     assert_eq!(pair.outcome(id), MoveStatus::Success);
 }
 
-/// Accelerates joint `joint` of an arm of `kind` at `ddq`, reached within its jerk limit, and tells
-/// what that raises within 50 ms.
+/// Accelerates joint `joint` of an arm of `kind` at `ddq`, reached within its jerk limit, and
+/// returns the errors within 50 ms.
 fn accelerate(kind: RobotKind, joint: usize, ddq: f64) -> Errors {
     let mut pair = Pair::of(kind);
     pair.start_joints();

@@ -1,4 +1,4 @@
-//! Firm touches on every family of arms, on every plant: what is still stays still.
+//! Firm touches on every family of arms, on every plant: an arm at rest stays at rest.
 
 use franka_model::{Frame, READY, Wrench};
 use nalgebra::Vector3;
@@ -9,8 +9,8 @@ use franka_sim::arm::Family;
 use franka_sim::config::Tool;
 use franka_sim::{Arm, Touch};
 
-/// The ideal arm, the middle of each family whose joints flex, and some of each, with and without a
-/// Hand; every one in the next pose. What the arm is, too.
+/// Tests the ideal arm, the middle of each family whose joints flex, and some arms of each, with
+/// and without a Hand, every one in the next pose. Passes the arm's description, too.
 fn for_each_arm(seeds: u64, test: impl Fn(&str, &mut Pair)) {
     let families = [("realistic", Family::realistic()), ("bad", Family::bad())];
     let mut poses = poses().into_iter().cycle();
@@ -52,7 +52,7 @@ fn poses() -> [(&'static str, JointVector); 5] {
     ]
 }
 
-/// A while in which nothing happens: what is unstable is so within milliseconds.
+/// Waits without any event: an instability shows within milliseconds.
 fn assert_still(name: &str, pair: &mut Pair) {
     let before = *pair.robot.q();
     let (mut fastest, mut farthest) = (0.0_f64, 0.0_f64);
@@ -141,7 +141,7 @@ fn a_grip_gives_way_by_force_over_stiffness_and_lets_the_robot_serve_again() {
     });
 }
 
-/// Moves joint 1 a little, and says that it is done.
+/// Moves joint 1 a little, and reports that it is done.
 fn assert_serves(name: &str, pair: &mut Pair) {
     let id = pair.start_joints();
     let mut q_c = pair.q_d();

@@ -1,4 +1,4 @@
-//! Commands that do not come: what the robot makes up for them, and what comes of it.
+//! Commands that do not come: the robot's extrapolation, and its consequences.
 
 use franka_model::CYCLE;
 
@@ -12,7 +12,7 @@ struct Channel {
     command: fn(&RobotState, f64) -> RobotCommand,
     /// The commanded value, its velocity and its acceleration.
     told: fn(&RobotState) -> [f64; 3],
-    /// How far it is from the start after 0.6 s, or how fast.
+    /// Distance from the start after 0.6 s, or the speed.
     way: f64,
     /// True if the command is a velocity.
     is_rate: bool,
@@ -117,7 +117,7 @@ fn what_is_lost_goes_on_with_the_acceleration_that_it_had() {
                 value += rate * CYCLE;
                 let [told, told_rate, told_acceleration] = (channel.told)(&pair.state);
                 let off = [
-                    // A pose that a velocity leads to is told as it is reached.
+                    // A velocity channel publishes the pose that it has reached.
                     if channel.is_rate { 0.0 } else { told - value },
                     told_rate - rate,
                     (told_acceleration - acceleration) * CYCLE,

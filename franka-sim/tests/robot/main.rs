@@ -1,5 +1,5 @@
 //! The simulated robot in virtual time, through the sessions of both sides and the bytes between
-//! them. What the simulators before this one left open has a test here, too.
+//! them. Gaps of earlier simulators have a test here, too.
 //!
 //! | module | content |
 //! |---|---|

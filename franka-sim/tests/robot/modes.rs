@@ -368,7 +368,7 @@ fn a_push_on_any_link_moves_the_arm_and_a_grip_holds_it() {
     pair.idle(800);
     let held = Vector3::from(pair.position()) - before;
     assert!(held.norm() < 5e-3, "{held}");
-    // The elbow gives way all the same.
+    // The elbow still yields.
     assert!((pair.q() - READY).amax() > 0.05, "{}", pair.q() - READY);
     pair.robot.release(grip);
     assert!(!pair.robot.release(grip));

@@ -1,4 +1,4 @@
-//! What the vendor has not published: for each question, the default that is documented and another
+//! Unpublished behaviour of the robot: for each question, the documented default and another
 //! choice.
 
 use franka_model::{JointVector, READY, RobotKind, Twist};

@@ -191,14 +191,14 @@ impl Pair {
         self.start(MoveControllerMode::ExternalController, generator)
     }
 
-    /// What a `Move` of torques is answered.
+    /// Returns the answer to a `Move` of torques.
     pub(crate) fn ask_to_move(&mut self) -> Status {
         let generator = self.client.version().torque_generator();
         let controller = MoveControllerMode::ExternalController;
         self.ask(&Request::Move(MoveRequest::new(controller, generator)))
     }
 
-    /// How a motion ended.
+    /// Returns the final status of a motion.
     pub(crate) fn outcome(&self, id: CommandId) -> MoveStatus {
         match self.statuses(id)[..] {
             [
@@ -209,7 +209,7 @@ impl Pair {
         }
     }
 
-    /// Repeats a command until the motion has ended, which takes at most so many cycles.
+    /// Repeats a command until the motion has ended, which takes at most `cycles` cycles.
     pub(crate) fn run_out(&mut self, command: RobotCommand, cycles: usize) {
         for _ in 0..cycles {
             self.tick(Some(command));
@@ -302,7 +302,7 @@ pub(crate) fn torques(tau: &JointVector) -> RobotCommand {
     }
 }
 
-/// A command to go on with what is commanded already.
+/// A command that continues the commanded values.
 pub(crate) fn stay(state: &RobotState) -> RobotCommand {
     RobotCommand {
         q_c: state.q_d,

@@ -1,4 +1,4 @@
-//! What a person beside the robot does to it, on every plant.
+//! Actions of a person next to the robot, on every plant.
 
 use franka_model::{Frame, Load, Wrench};
 use nalgebra::{Matrix3, Vector3};
@@ -65,7 +65,7 @@ fn a_spring_pulls_to_its_point_a_wall_is_in_the_way_and_a_blocked_joint_does_not
             .touch(Touch::force(Vector3::new(0.0, 0.0, -10.0)));
         pair.idle(4000);
         let deep = ground.z - hand(pair).z;
-        // 10 N into something that gives way by a millimetre under 20 N.
+        // 10 N on a wall that yields by a millimetre under 20 N.
         assert!((deep - 0.5e-3).abs() < 0.2e-3, "{name}: {deep} m deep");
         pair.robot.let_go();
 
@@ -153,7 +153,7 @@ fn a_payload_comes_and_goes_while_the_robot_stands_and_is_felt_until_it_is_decla
             );
         };
         pair.robot.attach(load);
-        // It holds the load up.
+        // The hand supports the load.
         expect(pair, weight);
         let mut inertia = [0.0; 9];
         inertia.copy_from_slice(load.inertia.as_slice());
@@ -192,7 +192,7 @@ fn another_arm_stands_where_the_one_before_stood_and_carries_its_load() {
         pair.idle(1500);
         assert_eq!(pair.outcome(motion), MoveStatus::Preempted, "{name}");
         assert_eq!(pair.state.robot_mode, RobotMode::Idle, "{name}");
-        // What is not declared of a bad arm.
+        // The undeclared part of a bad arm's load.
         let more = felt(pair) - before;
         assert!(more.abs() > 0.3, "{name}: {more} N");
         pair.robot.fit(Arm::ideal(kind));

@@ -1,4 +1,4 @@
-//! The robots that tests of physics run on: of every kind, on every plant.
+//! The robots for tests of physics: every kind, on every plant.
 
 #[cfg(feature = "mujoco")]
 use franka_sim::plant::{MujocoArm, Scene};

@@ -1,4 +1,4 @@
-//! What a push on the flange reads, and how far it moves an impedance, on every plant.
+//! Readings of a push on the flange, and the displacement of an impedance, on every plant.
 
 use franka_model::{Frame, Twist, rotation, transform};
 use nalgebra::{Isometry3, Vector3};
@@ -7,13 +7,13 @@ use crate::pair::*;
 use crate::plants::{robots, robots_with_and_without_hand};
 use franka_sim::Touch;
 
-/// How hard a hand pushes, `[N]`.
+/// Force of a hand, `[N]`.
 const PUSH: f64 = 5.0;
 
-/// Stiffness of the impedances that give way, `[N/m]`.
+/// Stiffness of the yielding impedances, `[N/m]`.
 const STIFFNESS: f64 = 750.0;
 
-/// How long an impedance takes to give way, or to come back, to a hundredth, in cycles.
+/// Time in which an impedance yields to a hand, or returns, to a hundredth, in cycles.
 const SETTLING: usize = 1500;
 
 /// Directions that a hand may push in.
@@ -33,7 +33,7 @@ fn push(pair: &mut Pair, direction: &Vector3<f64>) -> franka_sim::TouchId {
     pair.robot.touch(push)
 }
 
-/// What the hand does to the robot: the state has the opposite.
+/// Action of the hand on the robot: the state has the opposite sign.
 fn felt(pair: &Pair) -> Vector3<f64> {
     let [x, y, z, ..] = pair.state.O_F_ext_hat_K;
     -Vector3::new(x, y, z)
@@ -108,8 +108,7 @@ fn a_clients_impedance_of_750_newton_per_metre_gives_way_by_force_over_stiffness
     }
 }
 
-/// Pushes in every direction, one after the other, until the arm has gone as far as it does, and
-/// back.
+/// Pushes in every direction, one after the other, until the arm has settled, and back.
 fn gives_way(name: &str, pair: &mut Pair, mut command: impl FnMut(&Pair) -> RobotCommand) {
     let mut run = |pair: &mut Pair, cycles, watch: &mut dyn FnMut(&Pair, usize)| {
         for cycle in 0..cycles {
@@ -124,7 +123,7 @@ fn gives_way(name: &str, pair: &mut Pair, mut command: impl FnMut(&Pair) -> Robo
         let start = end_effector(pair).translation.vector;
         let push = push(pair, &direction);
         run(pair, SETTLING, &mut |pair, cycle| {
-            // It reads right while the arm gives way, too.
+            // The reading is correct while the arm yields, too.
             if (100..500).contains(&cycle) {
                 misread = misread.max((felt(pair).norm() - PUSH).abs());
             }

@@ -11,7 +11,7 @@ use franka_sim::end_effector::{Fingers, Hand};
 use franka_sim::plant::{MujocoArm, Scene};
 use franka_sim::{Config, Tool};
 
-/// Where the fingertips are in the ready pose: x and z, `[m]`.
+/// Position of the fingertips in the ready pose: x and z, `[m]`.
 const TCP: (f64, f64) = (0.306_89, 0.486_88);
 
 /// A robot with a hand, and the client of both; time is one counter.
@@ -63,7 +63,7 @@ impl Cell {
         cell
     }
 
-    /// What the hand has answered by now.
+    /// The hand's answers so far.
     fn replies(&mut self) -> Vec<(CommandId, HandStatus)> {
         let mut answers = Vec::new();
         while let Some(reply) = self.hand.take_reply() {
@@ -90,7 +90,7 @@ impl Cell {
         self.replies()
     }
 
-    /// Lets the hand do something, and says how it ended.
+    /// Makes the hand execute a request, and returns its result.
     fn ask(&mut self, request: &HandRequest) -> HandStatus {
         let message = self.grip.request(request).expect("a session");
         self.hand.receive(message.as_bytes()).expect("a request");
@@ -149,7 +149,7 @@ impl Cell {
         self.pose(name).translation.z
     }
 
-    /// Where the box is in the hand, `[m]`.
+    /// Position of the box in the hand, `[m]`.
     fn in_hand(&self) -> Vector3<f64> {
         let inside = self.pose("franka_hand").inverse() * self.pose("box");
         inside.translation.vector
@@ -179,7 +179,7 @@ fn a_box_of_40_millimetres_and_200_grams_is_grasped_lifted_and_felt() {
         let felt = cell.weight() - before;
         println!("{kind:?}: lifted by {lifted} m, slipped by {slipped} m, weighs {felt} N");
         assert!((felt - 0.2 * 9.81).abs() < 0.1, "{kind:?}: {felt} N");
-        // Let go, it is no longer there.
+        // After the release, it is no longer there.
         let open = gripper::Move {
             width: 0.07,
             speed: 0.1,

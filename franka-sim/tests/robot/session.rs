@@ -180,7 +180,7 @@ fn the_first_state_of_a_motion_that_waited_for_the_brake_can_be_answered() {
     pair.begin(request);
     pair.tick(Some(positions(&home.add_scalar(0.2))));
     pair.idle(200);
-    // Finished in mid-motion: the arm brakes by itself, and the next motion waits for that.
+    // Finished in mid-motion: the arm brakes, and the next motion waits for its end.
     pair.tick(Some(RobotCommand {
         motion_generation_finished: true,
         ..RobotCommand::default()

@@ -94,7 +94,7 @@ fn a_state_waits_for_no_command_and_lateness_counts_by_the_state() {
     pair.start_joints();
     pair.tick(Some(positions(&READY)));
     let before = pair.state.message_id;
-    // No command is there, and each call gives its state all the same.
+    // Without commands, each call still returns its state.
     pair.idle(19);
     assert_eq!(pair.state.message_id, before + 19);
     assert_eq!(pair.state.robot_mode, RobotMode::Move);
@@ -111,7 +111,7 @@ fn a_late_command_is_dropped_and_the_first_one_begins_the_count() {
     for first in [Some(positions(&READY)), None] {
         let mut pair = Pair::fr3();
         let id = pair.start_joints();
-        // Nobody counts before a command comes.
+        // No cycle counts before a command comes.
         pair.idle(50);
         pair.tick(first);
         for _ in 0..20 {

@@ -13,13 +13,13 @@ use franka_proto::{
 use crate::binary::Binary;
 use crate::port::{Connection, SOON, receive};
 
-/// A client that answers every state until it is told otherwise.
+/// A client that answers every state until a test changes that.
 pub(crate) struct Client {
     pub(crate) connection: Connection,
     udp: UdpSocket,
     session: Session,
     version: Version,
-    /// Where the states come from.
+    /// Source address of the states.
     robot: SocketAddr,
     /// The newest state.
     pub(crate) state: RobotState,
@@ -49,7 +49,7 @@ impl Client {
         client
     }
 
-    /// Where commands go, and where they come from.
+    /// Destination and source address of commands.
     pub(crate) fn addresses(&self) -> (SocketAddr, SocketAddr) {
         (self.robot, self.udp.local_addr().expect("bound"))
     }

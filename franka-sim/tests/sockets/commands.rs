@@ -67,7 +67,7 @@ fn non_finite_numbers_end_the_motion_and_disturb_no_other_client() {
         for trial in &BAD_COMMANDS {
             for place in 0..trial.places {
                 let bad = BAD[place % BAD.len()];
-                // Torques alone: what then runs beside them differs between the versions.
+                // Torques alone: the controller that runs with them differs between the versions.
                 let generator = match trial.controller {
                     MoveControllerMode::ExternalController => binary.version().torque_generator(),
                     _ => trial.generator,

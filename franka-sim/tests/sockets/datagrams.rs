@@ -42,7 +42,7 @@ fn only_the_socket_that_the_client_announced_commands() {
     });
 }
 
-/// Lengths about those of commands and states, and the longest that UDP carries.
+/// Lengths near the lengths of commands and states, and the longest for UDP.
 const LENGTHS: [usize; 9] = [0, 1, 8, 369, 370, 371, 1377, 2373, 65_507];
 
 #[test]

@@ -12,8 +12,8 @@ use tokio::runtime::{Builder, Runtime};
 
 use crate::binary::Binary;
 
-/// How often a good client may be refused, each time after the moment (50 ms) that a server gives
-/// the client before to be gone.
+/// Number of times that a good client may be refused, each time after the time (50 ms) that a
+/// server waits for the previous client to disconnect.
 const REFUSALS: usize = 20;
 
 fn runtime() -> Runtime {
@@ -28,7 +28,7 @@ pub(crate) fn assert_served(binary: &Binary) {
     runtime().block_on(async {
         let robot = connect(binary).await;
         assert!(robot.state().message_id > 0);
-        // It says what holds anyway: the robot is the same for the next client.
+        // Every good client sets this value, so the robot is the same for the next client.
         let stiffness = [3000.0; 7];
         let set = robot.set_joint_impedance(stiffness).await;
         set.expect("a setter");

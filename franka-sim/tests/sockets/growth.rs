@@ -1,4 +1,4 @@
-//! What the process takes, and what abuse leaves behind in it: nothing.
+//! Memory of the process, which abuse must not increase.
 
 use std::net::UdpSocket;
 use std::time::{Duration, Instant};
@@ -90,6 +90,5 @@ fn a_robot_that_has_served_takes_less_than_fifty_megabytes() {
     });
 }
 
-/// What an allocator may keep for itself `[KiB]`: a leak of 1 KiB per connection would show as
-/// 2000.
+/// Memory that an allocator may keep, `[KiB]`: a leak of 1 KiB per connection would show as 2000.
 const GROWTH: usize = 512;

@@ -7,7 +7,7 @@ use crate::each_robot;
 use crate::good::assert_served;
 use crate::port::{Connection, Port, SOON};
 
-/// What each port of a binary goes through, with a good client after it.
+/// Runs `abuse` on each port of a binary, with a good client after it.
 fn each_port(binary: &Binary, abuse: impl Fn(&Port)) {
     for port in binary.ports() {
         abuse(port);
@@ -114,7 +114,7 @@ fn a_handshake_may_come_byte_by_byte_and_name_any_port() {
             let answer = slow.read(port.header() + 1).expect("an answer");
             assert_eq!(answer[port.header()], 0, "kSuccess");
             drop(slow);
-            // No states can go to port 0, nor to one that is closed.
+            // No states can be sent to port 0, nor to a closed port.
             for udp_port in [0, 1, 9] {
                 let begun = Instant::now();
                 loop {

@@ -2,7 +2,7 @@
 //! the middle of a motion; robot time that the client's answers make.
 //!
 //! After each abuse a good client is served, by the same process, which has not grown. The robots
-//! wait for answers, so that a machine that holds up a client makes it slow and no more.
+//! wait for answers, so a machine that delays a client only makes it slow.
 //!
 //! | module | content |
 //! |---|---|
@@ -32,10 +32,10 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use binary::Binary;
 
-/// Held by each test: two cores carry only so many robots.
+/// Held by each test: two cores support only a few robots.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-/// Held across every await of a test, which is its purpose: each test blocks a runtime of its own.
+/// Held across every await of a test, which is its purpose: each test blocks a separate runtime.
 struct Alone {
     _guard: MutexGuard<'static, ()>,
 }

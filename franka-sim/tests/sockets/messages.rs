@@ -46,7 +46,7 @@ fn a_message_that_breaks_off_ends_the_session() {
         for port in binary.ports() {
             let setter = port.message(port.setter, 1, &[0; 400]);
             for length in [1, port.header() + 1] {
-                // Silence: the session goes on, and then it does not.
+                // Silence: the session continues for some time, and then ends.
                 let (mut connection, udp) = port.shake_hands();
                 connection.send(&setter[..length]);
                 receive(&udp, &mut []);

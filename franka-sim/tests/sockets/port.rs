@@ -8,7 +8,7 @@ use franka_proto::framing::Header;
 use franka_proto::{Command, Version, gripper, vacuum};
 use socket2::SockRef;
 
-/// Time for whatever happens at once, on a loaded machine too.
+/// Time limit for immediate events, on a loaded machine too.
 pub(crate) const SOON: Duration = Duration::from_secs(300);
 
 /// The robot's port, the hand's or the vacuum gripper's.
@@ -144,7 +144,7 @@ impl Connection {
         }
     }
 
-    /// Writes a byte at a time, each in a segment of its own, for half a second in all.
+    /// Writes a byte at a time, each in a separate segment, for half a second in total.
     pub(crate) fn trickle(&mut self, bytes: &[u8]) {
         let pause = Duration::from_millis(500) / bytes.len() as u32;
         for byte in bytes {
@@ -174,7 +174,7 @@ impl Connection {
         bytes
     }
 
-    /// Waits for the reset, which some clients understand where they wait for ever beyond an
+    /// Waits for the reset. Some clients understand it, but would wait indefinitely after an
     /// orderly end.
     pub(crate) fn expect_reset(&mut self) {
         let end = self.stream.read_exact(&mut [0; 1]);

@@ -79,7 +79,7 @@ fn the_host_of_an_idle_client_is_asked_whether_it_is_there() {
                 .map(|line| line.split_whitespace().collect::<Vec<_>>())
                 .find(|words| words[1..3] == ends)
                 .expect("the simulator's end of the connection");
-            // The timer of keepalive is the only one that runs on an idle connection.
+            // An idle connection has only the keepalive timer.
             assert!(socket[5].starts_with("02:"), "{}: {socket:?}", port.name);
         }
     });
@@ -92,7 +92,7 @@ fn a_client_that_leaves_makes_room_at_once() {
             for end in [drop, Connection::reset] {
                 for _ in 0..5 {
                     let (connection, udp) = port.shake_hands();
-                    // The states go on for a moment, to a port that is closed.
+                    // The states continue for a moment, to a closed port.
                     drop(udp);
                     end(connection);
                 }

@@ -1,6 +1,6 @@
-//! The simulator's process stopped and continued in the middle of a motion: what a busy host does
-//! to it, made worse. A robot's clock does not stand still, so no client's motion suffers. The
-//! robots wait for commands that come late, so what the host does to the client decides nothing.
+//! The simulator's process, stopped and continued in the middle of a motion: a busy host does this,
+//! to a smaller extent. A robot's clock never stops, so the client's motion must not suffer. The
+//! robots wait for late commands, so the host's delays of the client do not matter.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -42,12 +42,12 @@ impl Drop for EndOnDrop<'_> {
     }
 }
 
-/// A way of half a cosine there and back within a second: from 0 to 1 to 0.
+/// A cosine path to 1 and back to 0 within a second.
 fn there_and_back(time: f64) -> f64 {
     0.5 - 0.5 * (2.0 * PI * time.min(DURATION) / DURATION).cos()
 }
 
-/// Of a motion by a generator, `[s]`.
+/// Duration of a motion by a generator, `[s]`.
 const DURATION: f64 = 1.5;
 
 async fn joint_positions(robot: &Robot) -> Result<MotionReport, MotionError> {

@@ -56,7 +56,7 @@ async fn states_follow_faster_than_on_the_wall_and_are_as_many_every_time() {
             }
             println!("{moved:?} of motion in {:?}", begun.elapsed());
             assert!(moved > Duration::from_secs(10), "{moved:?}");
-            // A busy machine may be slow on the whole; most states follow fast all the same.
+            // A busy machine may be slow on the whole; most states still follow fast.
             assert!(typical < Duration::from_millis(1), "{typical:?}");
             runs.push(moved);
             robot.shutdown().await;
@@ -137,7 +137,7 @@ async fn a_client_that_falls_silent_is_noticed_when_patience_is_over() {
     );
     let errors = sim.state().await.expect("running").errors;
     assert_eq!(errors, RobotError::CommunicationConstraintsViolation.into());
-    // What it takes to recover does not wait for answers.
+    // The steps of a recovery do not wait for answers.
     robot.recover().await.expect("a recovery");
     sim.stop().await;
 }

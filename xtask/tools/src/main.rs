@@ -1,7 +1,7 @@
 //! The tasks of this workspace except its tests: `cargo xtask check`, `cargo xtask vectors [DIR]`,
-//! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask arms`, `cargo xtask wheels`, `cargo xtask
-//! assets`, `cargo xtask dist`, `cargo xtask book`, `cargo xtask mujoco`, `cargo xtask
-//! release-check`, `cargo xtask version X.Y.Z`.
+//! `cargo xtask fuzz`, `cargo xtask bench`, `cargo xtask arms`, `cargo xtask wheels`,
+//! `cargo xtask assets`, `cargo xtask dist`, `cargo xtask book`, `cargo xtask mujoco`,
+//! `cargo xtask release-check`, `cargo xtask version X.Y.Z`.
 //!
 //! | module | task |
 //! |---|---|

@@ -10,8 +10,8 @@ use franka_sim::arm::Arm;
 
 use crate::pair::*;
 
-/// Springs `[N·m/rad]` and dampers `[N·m·s/rad]` of all joints, and what the real arm made of them:
-/// the way of each joint from end to end over that of its target.
+/// Springs `[N·m/rad]` and dampers `[N·m·s/rad]` of all joints, and the response of the real arm:
+/// the range of motion of each joint over the range of its target.
 const RECORDED: [(f64, f64, [f64; 7]); 4] = [
     (
         120.0,
@@ -31,11 +31,11 @@ const RECORDED: [(f64, f64, [f64; 7]); 4] = [
     ),
 ];
 
-/// Where the arm was led to before each run, `[rad]`, with 80 N·m/rad and 4 N·m·s/rad.
+/// Position of the arm before each run, `[rad]`, with 80 N·m/rad and 4 N·m·s/rad.
 const HOME: [f64; 7] = [0.0, 0.0, 0.3, -1.57079, 0.0, 1.57079, -0.7853];
 
-/// By what part a ratio may be off. Of the 28, the middle of the family has 26 within 0.05: joint 4
-/// under 60 N·m/rad and joint 2 under 40 N·m/rad swing 0.053 less.
+/// Largest deviation of a ratio. Of the 28 ratios, the middle of the family has 26 within 0.05.
+/// Joint 4 under 60 N·m/rad and joint 2 under 40 N·m/rad swing 0.053 less.
 const OFF_MAX: f64 = 0.06;
 
 /// An arm under springs that a client computes in every cycle.
@@ -64,13 +64,13 @@ impl Sprung {
         for _ in 0..20 {
             let dq = JointVector::from(self.pair.state.dq);
             let wanted = spring * (target - self.pair.q()) - damper * dq;
-            let most = JointVector::repeat(0.99); // What a robot lets a torque change by.
+            let most = JointVector::repeat(0.99); // the rate limit of a robot for torques
             self.torque += (wanted - self.torque).sup(&-most).inf(&most);
             self.pair.tick(Some(torques(&self.torque)));
         }
     }
 
-    /// One run: the way of each joint over that of its target.
+    /// One run: the range of motion of each joint over the range of its target.
     fn ratios(&mut self, spring: f64, damper: f64) -> JointVector {
         for _ in 0..150 {
             self.towards(&HOME.into(), 80.0, 4.0);

@@ -14,7 +14,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use rows::{AT_REST, MOVING, Reported, SAMPLES, TORQUE};
 
-/// Distances of reported positions from those of the model, `[m]`, and the largest of the angles
+/// Distances between the reported positions and the model's, `[m]`, and the largest of the angles
 /// between the orientations, `[rad]`.
 fn deviations<'a>(lengths: Lengths, rows: impl Iterator<Item = &'a Reported>) -> (Vec<f64>, f64) {
     let model = Model::physically_consistent(RobotKind::Fr3)
@@ -46,7 +46,7 @@ fn median(sorted: &[f64]) -> f64 {
 fn reported_poses_are_those_of_the_model_with_the_recorded_lengths() {
     let (rest, angle) = deviations(Lengths::RECORDED_FR3, AT_REST.iter());
     assert!(median(&rest) < 1e-7, "{rest:?}");
-    // What joints that turn at 5 mrad/s move in 1.3 ms.
+    // Motion of joints that turn at 5 mrad/s, in 1.3 ms.
     let most = rest[rest.len() - 1];
     assert!(most < 1e-5 && angle < 3e-5, "{rest:?} {angle}");
     let (moving, _) = deviations(Lengths::RECORDED_FR3, MOVING.iter());
