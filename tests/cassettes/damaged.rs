@@ -1,4 +1,4 @@
-//! The reader of cassettes on damaged files; `fuzz/fuzz_targets/cassette.rs` goes on from here.
+//! The reader of cassettes on damaged files; `fuzz/fuzz_targets/cassette.rs` continues from here.
 
 use std::time::Duration;
 
@@ -9,7 +9,8 @@ use rand::{Rng as _, SeedableRng as _};
 
 use crate::playing::committed;
 
-/// A damaged file is an error or a cassette, and that plays as far as it goes or says why not.
+/// A damaged file is an error or a cassette. A cassette plays to its end, or returns the reason why
+/// not.
 #[test]
 fn any_damage_of_a_file_is_an_error_or_a_cassette() {
     let mut rng = SmallRng::seed_from_u64(SEED);

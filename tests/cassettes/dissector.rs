@@ -13,11 +13,11 @@ use crate::playing::committed;
 use crate::recorded::{moves, tapped};
 use crate::tables::dissector;
 
-/// What tshark says of each frame: names of fields with their values.
+/// tshark's output for each frame: names of fields with their values.
 type Frames = Vec<BTreeMap<String, Vec<String>>>;
 
-/// What tshark prints of a capture with the dissector; `None` where tshark is not installed, or
-/// loads no dissector.
+/// Output of tshark for a capture with the dissector; `None` if tshark is not installed, or loads
+/// no dissector.
 fn tshark(cassette: &Cassette, name: &str, arguments: &[&str]) -> Option<String> {
     let path = std::env::temp_dir().join(format!("franka-{name}-{}.pcap", std::process::id()));
     std::fs::write(&path, pcap::to_capture(cassette)).expect("a writable folder");
@@ -225,7 +225,7 @@ async fn the_dissector_shows_what_franka_proto_decodes() {
     }
 }
 
-/// How many states come after a gap, and how many commands after the state that follows theirs.
+/// Number of states after a gap, and of commands after the next state.
 fn lost_and_late(connection: &Connection) -> (usize, usize) {
     let (mut gaps, mut late) = (0, 0);
     let mut newest: Option<u64> = None;

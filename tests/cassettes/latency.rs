@@ -1,4 +1,4 @@
-//! What a tap adds to the time from a state to its command.
+//! Delay that a tap adds to the time from a state to its command.
 
 use std::io::{Read as _, Write as _};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream, UdpSocket};

@@ -1,5 +1,5 @@
-//! Wire cassettes: what a tap records of sessions with the simulator, played back to the same
-//! client; the same as captures of the network, and before Wireshark's dissector.
+//! Wire cassettes: a tap's recordings of sessions with the simulator, played back to the same
+//! client. The same as captures of the network, and with Wireshark's dissector.
 
 mod damaged;
 mod dissector;

@@ -13,7 +13,7 @@ use crate::recorded::{
     Addresses, anywhere, connect, ends_in_a_reflex, moves, reflex, simulated, tap, tapped,
 };
 
-/// What takes longer hangs, on a busy machine too.
+/// Time limit; longer means a hang, on a busy machine too.
 const LIMIT: Duration = Duration::from_secs(20);
 
 /// Plays a cassette to a client; returns what that returns.

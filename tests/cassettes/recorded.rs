@@ -17,7 +17,7 @@ pub(crate) fn anywhere(_: Device) -> SocketAddr {
     (Ipv4Addr::LOCALHOST, 0).into()
 }
 
-/// The addresses of an arm and its hand, whatever answers there.
+/// The addresses of an arm and its hand, for any server.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Addresses {
     pub(crate) robot: SocketAddr,
@@ -108,7 +108,7 @@ pub(crate) async fn ends_in_a_reflex(addresses: Addresses, trip: impl AsyncFnOnc
     let robot = connect(addresses).await;
     let mut q = robot.state().q;
     q[6] += 0.5;
-    // Before the motion: what is played may be over before this task goes on.
+    // Before the motion, because the cassette may end before this task continues.
     let mut states = robot.state_stream();
     let motion = robot.move_joints(q).speed(0.1).into_future();
     let motion = tokio::spawn(motion);

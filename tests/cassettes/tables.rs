@@ -115,7 +115,7 @@ fn protocol(lua: &mut String, layouts: &Value, name: &str, prefix: &str) {
         if !used.contains(&text(one, "name")) {
             continue;
         }
-        // What follows a struct with a length of its own is not part of the table.
+        // The data after a struct with a separate length is not part of the table.
         let fields = list(one, "fields").filter(|field| field["count"].is_u64());
         let fields = fields.map(|field| {
             let (name, kind, count) = (text(field, "name"), text(field, "type"), &field["count"]);

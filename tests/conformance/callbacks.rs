@@ -27,8 +27,8 @@ fn one_command(version: Version) -> (Program, MoveRequest) {
     torques(version, |_, _| Torques([0.0; 7]).finish())
 }
 
-/// Asserts that a function that failed in the previous cycle gets no more states, that the robot is
-/// told to stop, that the motion resolves when it has stopped, and that the next motion runs.
+/// Asserts that a function that failed in the previous cycle gets no more states, and that the
+/// robot is stopped. The motion must resolve when it has stopped, and the next motion must run.
 fn assert_stopped(pair: &mut Pair, motion: &Running) -> MotionError {
     assert_eq!(pair.client.record.activity, Activity::Silent);
     assert_eq!(pair.step(), None);

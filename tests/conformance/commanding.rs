@@ -194,7 +194,7 @@ fn scenario_6_torques_alone_are_beside_a_standing_generator_in_protocol_5() {
     pair.succeed(&motion);
 }
 
-/// Whether a connected session of this version sends `request`.
+/// Returns Ok if a connected session of this version sends `request`.
 fn sent_by_a_session(version: Version, request: MoveRequest) -> Result<(), RequestError> {
     let mut session = client::Session::new(version);
     let hello = session.connect(40_000);

@@ -14,7 +14,7 @@ use crate::pair::Pair;
 const DQ: JointVelocities = JointVelocities([0.125; 7]);
 const TAU: Torques = Torques([0.5; 7]);
 
-/// A motion at a constant velocity, with or without our own torques, for so many cycles.
+/// A motion at a constant velocity, with or without our own torques, for this many cycles.
 fn moving(version: Version, external: bool, cycles: u32) -> (Program, MoveRequest) {
     let mut cycle = 0;
     let callback = Callback::motion::<JointVelocities, _>(version, move |_, _| {

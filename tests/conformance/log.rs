@@ -8,8 +8,8 @@ use franka_rt::lifecycle::ControlError;
 use crate::for_each_version;
 use crate::pair::Pair;
 
-/// Runs a motion of so many cycles whose commands all differ, and which a reflex ends in the last.
-/// Returns the error, and the commands as the robot received them.
+/// Runs a motion of this many cycles whose commands all differ, and which a reflex ends in the last
+/// cycle. Returns the error, and the commands as the robot received them.
 fn reflex_after(
     pair: &mut Pair,
     version: Version,
@@ -81,7 +81,7 @@ fn scenario_14_the_log_has_one_motion_only() {
     });
 }
 
-/// The success rate is that of the last but one, so it needs two.
+/// The success rate is from the last entry but one, so it needs two entries.
 #[test]
 fn scenario_14_a_log_may_be_short_or_absent() {
     let text = "libfranka: Move command aborted: motion aborted by reflex! \

@@ -16,8 +16,8 @@
 //!
 //! Client and robot share one thread and a counted clock, see [`pair::Pair`]. They exchange bytes
 //! only: messages go through the sessions of both sides, datagrams over loopback through the socket
-//! code of the control thread. Where this driver differs from libfranka on purpose, the test says
-//! so.
+//! code of the control thread. Tests state the intended differences between this driver and
+//! libfranka.
 
 mod callbacks;
 mod commanding;

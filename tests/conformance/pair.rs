@@ -18,8 +18,8 @@ use crate::robot::ScriptedRobot;
 
 /// The client, the robot, and the sockets between.
 ///
-/// A datagram sent over loopback is there when the call that sends it returns, so nothing here
-/// waits: time is what [`Pair::cycle`] and [`Pair::silence`] count.
+/// A datagram over loopback has arrived when the call that sends it returns, so nothing here waits.
+/// [`Pair::cycle`] and [`Pair::silence`] count the time.
 pub(crate) struct Pair {
     pub(crate) client: DriverStack,
     pub(crate) robot: ScriptedRobot,
@@ -43,7 +43,7 @@ impl Pair {
         Self::with_log_size(version, ControlLog::DEFAULT_CAPACITY)
     }
 
-    /// Like [`Self::connected`], with so many cycles in the log of a motion.
+    /// Like [`Self::connected`], with this many cycles in the log of a motion.
     pub(crate) fn with_log_size(version: Version, cycles: usize) -> Self {
         let robot = IpAddr::from(Ipv4Addr::LOCALHOST);
         let socket = exchange::bind(robot).expect("a free port");
@@ -112,7 +112,7 @@ impl Pair {
         }
     }
 
-    /// Lets so many milliseconds pass without a state.
+    /// Lets these milliseconds pass without a state.
     pub(crate) fn silence(&mut self, milliseconds: std::ops::RangeInclusive<u64>) {
         for silent in milliseconds {
             self.client.now += Duration::from_millis(1);

@@ -1,4 +1,4 @@
-//! Which state counts, and what happens without one.
+//! The state that counts, and the behaviour without a state.
 
 use std::time::Duration;
 

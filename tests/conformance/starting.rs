@@ -40,7 +40,7 @@ fn active() -> Program {
     Program::Active(ActiveControl)
 }
 
-/// A motion that stands still, for so many cycles.
+/// A motion at rest, for this many cycles.
 fn standing(version: Version, cycles: u32) -> (Program, MoveRequest) {
     let mut cycle = 0;
     let callback = Callback::motion::<JointVelocities, _>(version, move |_, _| {

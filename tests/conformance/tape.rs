@@ -9,7 +9,7 @@ use franka_record::cassette::{
     Cassette, Connection, Device, Event, Matching, Output, Pace, Payload, PlayOptions, Player, Side,
 };
 
-/// What becomes of connections that a scenario opens.
+/// Treatment of connections that a scenario opens.
 enum Studio {
     /// They are recorded, in the order in which they were opened.
     Recording(Vec<Option<Connection>>),
@@ -108,7 +108,8 @@ impl Tape {
         }
     }
 
-    /// What reaches the client of bytes that the robot sends: these, or those of the cassette.
+    /// Returns the bytes that reach the client when the robot sends these: the same, or the
+    /// cassette's.
     pub(crate) fn reply(&mut self, bytes: Vec<u8>) -> Vec<u8> {
         match &mut self.0 {
             Way::Recorded { connection, .. } => {
@@ -125,7 +126,8 @@ impl Tape {
         }
     }
 
-    /// What reaches the client of a datagram that the robot sends: this, or that of the cassette.
+    /// Returns the datagram that reaches the client when the robot sends this one: the same, or the
+    /// cassette's.
     pub(crate) fn send_state(&mut self, bytes: &[u8]) -> Vec<u8> {
         match &mut self.0 {
             Way::Recorded { connection, .. } => {
@@ -164,7 +166,7 @@ impl Drop for Tape {
     }
 }
 
-/// Notes an event; its time is its number, as scenarios have no clock of their own.
+/// Records an event; its time is its number, as scenarios have no clock.
 fn note(connection: &mut Connection, from: Side, what: Payload) {
     let at = Duration::from_micros(connection.events.len() as u64);
     connection.events.push(Event { at, from, what });

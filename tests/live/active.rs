@@ -12,7 +12,7 @@ use franka_rt::driver::LinkTimeout;
 use crate::control::each;
 use crate::{SOON, alone, simulated, under_way};
 
-/// Runs `work` on a thread of its own, as active control wants, and returns what it does.
+/// Runs `work` on a separate thread, as active control requires, and returns its result.
 async fn on_a_thread<C: Send + 'static, T: Send + 'static>(
     control: Active<C>,
     work: impl FnOnce(Active<C>) -> T + Send + 'static,
@@ -21,7 +21,7 @@ async fn on_a_thread<C: Send + 'static, T: Send + 'static>(
     thread.await.expect("no panic")
 }
 
-/// Holds the arm with a damped spring for so many cycles, and then ends the motion.
+/// Holds the arm with a damped spring for this many cycles, and then ends the motion.
 fn hold(mut control: Active<Torques>, cycles: u64) -> Result<u64, ActiveError> {
     let mut start = None;
     let mut time = Duration::ZERO;
@@ -245,7 +245,7 @@ async fn a_thread_that_hangs_is_reported_and_gives_the_connection_back_when_it_g
     let mut states = robot.states();
     let rests = states.wait_for(|state| state.robot_mode != RobotMode::Move);
     rests.await.expect("it is connected");
-    // The robot may have stopped itself before it was told to.
+    // The robot may have stopped before the request.
     if robot.state().robot_mode == RobotMode::Reflex {
         robot.recover().await.unwrap();
     }

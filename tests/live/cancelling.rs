@@ -1,5 +1,5 @@
-//! Every future of a motion, dropped after each of its polls in turn: the arm comes to rest without
-//! a reflex, and takes the next motion.
+//! Every future of a motion, dropped after each of its polls in turn. The arm stops without a
+//! reflex, and accepts the next motion.
 
 use std::future::poll_fn;
 use std::pin::{Pin, pin};
@@ -17,7 +17,8 @@ const POLLS_MAX: u32 = 60;
 
 type Boxed<'a> = Pin<Box<dyn Future<Output = Result<(), MotionError>> + Send + 'a>>;
 
-/// True if a future has come to its end, well, within so many polls. It is dropped where it is.
+/// True if a future completes without an error within this many polls. It is dropped in its last
+/// state.
 async fn ends_within(future: impl Future<Output = Result<(), MotionError>>, polls: u32) -> bool {
     let mut future = pin!(future);
     let mut left = polls;
@@ -164,7 +165,7 @@ async fn goals_of_an_engaged_arm_may_be_dropped_at_every_poll() {
         }),
     ] {
         drop_at_every_poll(&robot, what, of(make)).await;
-        // Whatever was dropped, the session goes on.
+        // The session continues after any drop.
         arm.hold().await.unwrap();
     }
     arm.move_joints(q).await.unwrap();

@@ -83,7 +83,7 @@ async fn a_host_that_does_not_exist_is_not_found() {
 #[tokio::test(flavor = "multi_thread")]
 async fn a_host_that_does_not_answer_times_out() {
     let _alone = alone();
-    // A listener whose queue is full drops whatever else comes, as a host without a route would.
+    // A listener whose queue is full drops all other packets, as a host without a route would.
     let socket = socket2::Socket::new(socket2::Domain::IPV4, socket2::Type::STREAM, None).unwrap();
     socket
         .bind(&SocketAddr::from(([127, 0, 0, 1], 0)).into())
@@ -124,7 +124,7 @@ async fn another_version_is_named() {
          Franka Research 3 with system image 5.7.2: update the robot's system to 5.9.0 or later (Desk, Settings, \
          System)"
     );
-    // The robot keeps to its protocol: nothing is to be reported.
+    // The robot keeps to its protocol, so there is nothing to report.
     assert_eq!(error.party(), Party::Robot);
     let error: &dyn std::error::Error = &error;
     assert!(error.source().is_none());

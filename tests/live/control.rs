@@ -196,7 +196,7 @@ async fn a_panic_or_a_bad_number_stops_the_motion_and_the_thread_lives_on() {
     }
 }
 
-/// What a function has captured, and cannot be freed without a panic.
+/// A captured value whose drop panics.
 struct Bad;
 
 impl Drop for Bad {
@@ -217,7 +217,7 @@ async fn captured_values_that_panic_where_they_are_freed_end_nothing_else() {
         });
         let held = tokio::spawn(held.into_future());
         under_way(&robot).await;
-        // One that is refused is freed, too.
+        // A refused function is freed, too.
         let bad = Bad;
         let refused = robot.control_torques(move |_, _| {
             let _ = &bad;
@@ -346,7 +346,7 @@ async fn a_reflex_comes_back_with_the_cycles_that_led_to_it() {
     }
 }
 
-/// As the book's page for programs of libfranka says of a simulated arm that is not ideal.
+/// The book's page for programs of libfranka states this of a simulated arm that is not ideal.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_motion_begins_where_the_robot_was_told_to_be_and_not_where_it_is_measured() {
     let _alone = alone();
@@ -504,7 +504,7 @@ async fn a_function_that_does_not_return_is_named_and_not_the_link() {
         assert!(matches!(error, MotionError::Hung { .. }), "{error:?}");
     }
     drop(release);
-    // The robot has recovered, as it was told to. States of before may be dropped unread.
+    // The robot has recovered, as requested. Older states may be dropped unread.
     until(&robot, |state| state.robot_mode == RobotMode::Idle).await;
     robot.recover().await.unwrap();
     robot.move_to(robot.pose()).await.unwrap();

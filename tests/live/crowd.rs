@@ -1,9 +1,9 @@
 //! Ten simulators and ten driven robots in one process: none gets what belongs to another, and
 //! everything resolves.
 //!
-//! The arms keep to lanes of their own, have loads and tools of their own, and go from goal to
-//! goal. What reaches the wrong robot shows: a state in the lane, the load or the tool of a
-//! neighbour, a command in an arm that leaves its lane.
+//! The arms keep to separate lanes, have different loads and tools, and move from goal to goal.
+//! Data for the wrong robot is visible: a state in the lane, the load or the tool of a neighbour,
+//! or a command in an arm that leaves its lane.
 //!
 //! The test takes [`SECONDS`]. To run it longer, with more in the report:
 //!
@@ -31,17 +31,17 @@ use crate::{alone, connect, robot_time, until};
 
 type Outcome = Result<MotionReport, MotionError>;
 
-/// What one of them has been through.
+/// Events of one robot.
 #[derive(Debug, Default)]
 struct Counts {
     arrived: u32,
     superseded: u32,
     stopped: u32,
-    /// Motions that the robot ended for want of commands.
+    /// Motions that the robot ended because commands were missing.
     starved: u32,
     /// States that were held against what is this robot's own.
     states: u64,
-    /// Of the motions that arrived.
+    /// Smallest success rate of the motions that arrived.
     success_rate_min: f64,
 }
 
@@ -60,12 +60,12 @@ fn home(number: usize) -> [f64; 7] {
     q
 }
 
-/// What is on the flange, `[kg]`.
+/// Load on the flange, `[kg]`.
 fn mass(number: usize) -> f64 {
     0.05 * (number + 1) as f64
 }
 
-/// How far the tool of its own reaches beyond the Hand, `[m]`.
+/// Distance of the individual tool beyond the Hand, `[m]`.
 fn reach(number: usize) -> f64 {
     0.01 * (number + 1) as f64
 }
@@ -154,7 +154,7 @@ impl Member {
         outcome.unwrap_or_else(|_| panic!("robot {number}: a future is lost"))
     }
 
-    /// Notes how a motion ended that was to end as `expected` says. A robot that lacked commands is
+    /// Records the result of a motion that must end as `expected`. A robot that lacked commands is
     /// recovered.
     async fn note(
         &mut self,
@@ -179,7 +179,7 @@ impl Member {
         false
     }
 
-    /// The arm of this robot's own simulator is where its driver was told to go.
+    /// The arm of this robot's own simulator is at the driver's goal.
     async fn assert_there(&self, goal: &[f64; 7]) {
         let truth = self.sim.state().await.expect("it runs");
         for (whose, state) in [("driver", self.robot.state()), ("simulator", truth)] {
@@ -250,7 +250,7 @@ impl Member {
         }
     }
 
-    /// Round after round until `end`; says goodbye, and tells.
+    /// Runs rounds until `end`; then disconnects, and reports.
     async fn run(mut self, end: Instant) -> (usize, Counts) {
         // States from before what was set have arrived.
         robot_time(&self.robot, 100).await;
@@ -309,14 +309,14 @@ async fn ten_robots_in_one_process_mind_their_own_business() {
 
 const ROBOTS: usize = 10;
 
-/// How long, unless told otherwise.
+/// Default duration, in seconds.
 const SECONDS: u64 = 6;
 
-/// From the base joint of one robot's home to that of the next, `[rad]`.
+/// Distance between the base joints of neighbouring homes, `[rad]`.
 const LANE: f64 = 0.3;
 
-/// What has not begun by then has ended already.
+/// A motion that has not begun by then has already ended.
 const HEAD_START: Duration = Duration::from_secs(5);
 
-/// What resolves later than this is lost.
+/// A motion that resolves later than this is lost.
 const LONGEST: Duration = Duration::from_secs(60);

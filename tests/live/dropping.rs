@@ -65,7 +65,7 @@ async fn a_future_may_be_dropped_at_any_poll() {
             ),
         }
     }
-    // Whatever was left behind: the arm can be stopped, moves again, and takes parameters.
+    // In every case the arm can be stopped, moves again, and accepts parameters.
     let done = timeout(SOON, async {
         robot.stop().await.unwrap();
         assert!(!robot.state().motion_running());

@@ -1,4 +1,4 @@
-//! Ends: of a robot, a client, a token, a runtime, in whatever phase a motion is.
+//! Ends of a robot, a client, a token, or a runtime, in every phase of a motion.
 
 use std::time::{Duration, Instant};
 

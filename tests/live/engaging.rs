@@ -1,4 +1,4 @@
-//! Engaged sessions over sockets: what a program sees of them.
+//! Engaged sessions over sockets, as a program sees them.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -116,7 +116,7 @@ async fn tuning_is_kept_field_by_field_for_goals_to_come() {
     robot.shutdown().await;
 }
 
-/// The task that takes goals is held up for a second of the robot's time, with the thread that it
+/// The task that accepts goals is delayed for a second of the robot's time, with the thread that it
 /// shares with this test.
 #[test]
 fn at_rest_waits_for_a_goal_that_is_not_taken_yet() {

@@ -143,7 +143,7 @@ async fn the_last_handle_dropped_in_mid_motion_brakes_and_closes() {
     robot.shutdown().await;
 }
 
-/// A frozen computer, as its network is: the connection stands, nothing is said.
+/// A frozen computer, as the network shows it: the connection is open, and nothing is sent.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_recovery_of_a_silent_robot_is_given_up_before_the_brakes_time() {
     let _alone = alone();
@@ -190,7 +190,7 @@ async fn a_recovery_that_no_state_confirms_is_no_success() {
     robot.shutdown().await;
 }
 
-/// The robot says over TCP that it has ended the motion, long before.
+/// The robot has reported over TCP long before that it has ended the motion.
 #[tokio::test(flavor = "multi_thread")]
 async fn an_end_that_no_state_confirms_waits_for_the_link_timeout() {
     let _alone = alone();

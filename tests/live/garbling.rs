@@ -56,7 +56,7 @@ async fn replies_may_come_byte_by_byte_under_any_command_number_and_padded() {
     let _alone = alone();
     let peer = Peer::start(Manners {
         reply: |mut reply| {
-            // The id alone says what is answered.
+            // Only the id names the request.
             reply[..4].copy_from_slice(&77_u32.to_le_bytes());
             if reply.len() == Header::SIZE + 1 {
                 reply.extend([0xff; 3]);
@@ -106,7 +106,7 @@ async fn half_a_message_leaves_requests_without_an_answer_and_is_no_hang() {
     let _alone = alone();
     let peer = Peer::start(Manners::default());
     let robot = peer.connect().await;
-    // Whatever follows is taken for the rest of it.
+    // Any following bytes count as its rest.
     let header = Header {
         command: 1,
         command_id: 99,

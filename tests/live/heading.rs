@@ -1,4 +1,4 @@
-//! What a program is told of a motion under way, and goals relative to it.
+//! Information for a program about a motion under way, and goals relative to it.
 
 use std::time::Duration;
 
@@ -28,7 +28,7 @@ async fn offsets_add_up_from_target_to_target() {
     let arm = robot.engage(Engage::default()).await.unwrap();
     arm.set(start).await.unwrap();
     assert_eq!(arm.target(), Some(Target::Pose(start)));
-    // Each of them at once, while the arm has not followed the one before.
+    // Each of them at once, while the arm has not followed the previous one.
     let step = Translation3::new(0.0, 0.01, 0.0);
     for _ in 0..5 {
         arm.set(Offset::base(step)).await.unwrap();
@@ -192,6 +192,6 @@ async fn stands(robot: &Robot) {
     }
 }
 
-/// Of a motion that takes longer than [`SOON`] by the clock: whatever is done to it
-/// meets it on its way.
+/// Speed of a motion that takes longer than [`SOON`] by the clock, so that every event meets it
+/// under way.
 const SLOW: f64 = 0.002;

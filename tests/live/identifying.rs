@@ -1,5 +1,5 @@
-//! Plans to identify an arm that come to nothing, and knowledge that is refused. What is found of
-//! arms is tested in lockstep, a run to its end with the examples.
+//! Plans to identify an arm that fail, and knowledge that is refused. Lockstep tests cover the
+//! results of identification; the examples run it to its end.
 
 use franka_async::error::{ConnectError, IdentifyError, KnownError, Party};
 use franka_async::identify::{Estimate, Identified, IdentifiedJoint, IdentifiedLoad};

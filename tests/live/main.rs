@@ -1,10 +1,10 @@
-//! The driver and the simulator over real sockets on this machine, where the socket or the clock is
-//! what is tested.
+//! The driver and the simulator over real sockets on this machine, for tests of the socket or the
+//! clock.
 //!
-//! One test at a time, as two cores carry only so many robots. Most robots run at the pace of the
-//! client's answers, [`simulated`], or [`by_the_clock`] where readers have to keep up with them: a
-//! busy machine makes them slow, and loses nothing. What a test waits for is shown by states; how
-//! long it took decides nothing.
+//! One test runs at a time, as two cores support only a few robots. Most robots run at the pace of
+//! the client's answers, [`simulated`], or [`by_the_clock`] if readers have to keep up with them. A
+//! busy machine makes them slow, and loses nothing. Tests wait for states; durations decide
+//! nothing.
 
 mod active;
 mod addresses;
@@ -55,7 +55,7 @@ use tokio::time::timeout;
 /// Held by each test, so that they do not disturb each other's clocks.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-/// Held across every await of a test, which is its purpose: each test blocks a runtime of its own.
+/// Held across every await of a test, which is its purpose: each test blocks a separate runtime.
 struct Alone {
     _guard: MutexGuard<'static, ()>,
 }
@@ -132,7 +132,7 @@ async fn shown<T>(robot: &Robot, mut look: impl FnMut() -> Option<T>) -> T {
     found.expect("it was found")
 }
 
-/// Waits for so many milliseconds of the robot's time.
+/// Waits for this many milliseconds of the robot's time.
 async fn robot_time(robot: &Robot, milliseconds: u64) {
     let end = robot.state().message_id + milliseconds;
     until(robot, |state| state.message_id >= end).await;
@@ -144,7 +144,7 @@ async fn under_way(robot: &Robot) {
     robot_time(robot, 200).await;
 }
 
-/// Has the arm follow ten steps of 4 mm at 10 Hz to the end; returns the last target.
+/// Makes the arm follow ten steps of 4 mm at 10 Hz to the end; returns the last target.
 async fn follow_steps(robot: &Robot) -> Pose {
     let start = robot.pose();
     let (sender, targets) = watch::channel(start);
@@ -161,5 +161,5 @@ async fn follow_steps(robot: &Robot) -> Pose {
     last
 }
 
-/// What has not happened within this time never will, on a machine that is busy as well.
+/// Time limit for every event, also on a busy machine.
 const SOON: Duration = Duration::from_secs(300);

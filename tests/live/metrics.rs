@@ -1,5 +1,5 @@
-//! The metrics of connections: their text keeps to the format, line by line, and its numbers are
-//! those of the handles.
+//! The metrics of connections: each line of their text keeps to the format, and its numbers match
+//! the handles.
 
 use std::collections::{BTreeMap, HashSet};
 use std::time::Duration;

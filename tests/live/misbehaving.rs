@@ -1,5 +1,5 @@
-//! A robot that leaves the protocol, or says nothing: errors that name it, motions that resolve,
-//! and a next connection.
+//! A robot that violates the protocol, or sends nothing: errors that name the violation, motions
+//! that resolve, and a next connection.
 
 use std::net::UdpSocket;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -125,7 +125,7 @@ async fn a_status_that_does_not_exist_is_named_and_the_connection_lives() {
         error.to_string(),
         "libfranka: Unexpected response while handling Set Load command!"
     );
-    // Again and again: what is given up takes no place for ever.
+    // Again and again: an abandoned attempt must not occupy a place indefinitely.
     for _ in 0..40 {
         let error = robot.move_to(robot.pose()).await.unwrap_err();
         assert_eq!(

@@ -1,5 +1,5 @@
-//! Each thing that a network does to datagrams, between the simulator's sockets and the driver's: a
-//! motion arrives all the same, and the driver's counters show what happened.
+//! Each effect of a network on datagrams, between the simulator's sockets and the driver's: a
+//! motion still arrives, and the driver's counters show the effect.
 //!
 //! The networks delay by the robots' time, which waits for the client's answer to each state that
 //! reaches it. How much of it there is, and up to where it is bridged: `tests/lockstep/mishaps.rs`.
@@ -17,7 +17,7 @@ use tokio::time::timeout;
 
 use crate::{SOON, alone, at_the_clients_pace, long_way, until};
 
-/// What the driver saw while it was connected over such a network.
+/// Counters of the driver while it was connected over such a network.
 #[derive(Debug)]
 struct Seen {
     /// States that never came.
@@ -134,7 +134,7 @@ async fn states_are_as_old_as_the_network_makes_them() {
     robot.shutdown().await;
 }
 
-/// A network that is cut for so long, once in three seconds.
+/// A network that is cut for this long, once in three seconds.
 fn cuts(milliseconds: u64) -> Network {
     let mut network = Network::perfect();
     for begin in (3..60).step_by(3).map(Duration::from_secs) {
@@ -145,7 +145,7 @@ fn cuts(milliseconds: u64) -> Network {
     network
 }
 
-/// Where the robot minds no missing command.
+/// The robot of this test ignores missing commands.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_cut_is_bridged() {
     let _alone = alone();
@@ -175,8 +175,8 @@ async fn a_load_that_is_answered_and_never_shown_is_a_lost_link() {
     robot.shutdown().await;
 }
 
-/// The newest state that the client has is of the time before the motion: it has nothing to answer,
-/// and virtual time goes on.
+/// The client's newest state is from before the motion: it has nothing to answer, and virtual time
+/// continues.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_motion_whose_first_states_are_lost_begins_after_the_cut() {
     let _alone = alone();
@@ -194,7 +194,7 @@ async fn a_motion_whose_first_states_are_lost_begins_after_the_cut() {
     robot.shutdown().await;
 }
 
-/// Of a motion that lasts beyond the cut, on a robot that minds.
+/// The motion lasts beyond the cut, on a robot that counts missing commands.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn a_cut_of_too_many_commands_is_a_reflex_to_recover_from() {
     let _alone = alone();

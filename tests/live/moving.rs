@@ -1,4 +1,4 @@
-//! Motions over sockets: what a program sees of them.
+//! Motions over sockets, as a program sees them.
 
 use std::future::IntoFuture;
 use std::time::Duration;

@@ -12,7 +12,7 @@ use franka_proto::framing::{Header, next_message};
 use franka_proto::{Command, RobotCommand};
 use franka_sim::Config;
 
-/// What becomes of a request.
+/// Treatment of a request.
 pub(crate) enum Treatment {
     /// The robot gets it.
     Pass,
@@ -22,7 +22,7 @@ pub(crate) enum Treatment {
     Answer(u8),
 }
 
-/// How requests are treated, and what becomes of the robot's replies.
+/// Treatment of requests, and of the robot's replies.
 pub(crate) struct Manners {
     pub(crate) request: fn(Option<Command>) -> Treatment,
     pub(crate) reply: fn(Vec<u8>) -> Vec<u8>,
@@ -40,10 +40,10 @@ impl Default for Manners {
     }
 }
 
-/// What a test asks for in mid-session.
+/// A fault in mid-session.
 enum Mischief {
     Bytes(Vec<u8>),
-    /// The stream ends; states go on until the client no longer answers them.
+    /// The stream ends; states continue until the client no longer answers them.
     Close,
 }
 
@@ -135,7 +135,7 @@ impl Peer {
         self.shared.deaf.store(true, Ordering::Relaxed);
     }
 
-    /// Where the client receives states.
+    /// Address at which the client receives states.
     pub(crate) fn client_udp(&self) -> SocketAddr {
         let port = self.shared.udp_port.load(Ordering::Relaxed);
         (Ipv4Addr::LOCALHOST, port).into()

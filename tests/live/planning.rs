@@ -1,5 +1,5 @@
-//! Paths are planned beside the task that serves stops. A plan is held up in here, as the only
-//! thread for work that blocks waits for the test.
+//! Paths are planned in parallel with the task that serves stops. These tests delay a plan: the
+//! only thread for blocking work waits for the test.
 
 use std::future::IntoFuture;
 use std::sync::mpsc;
@@ -107,7 +107,7 @@ fn stop_and_cancel_are_served_while_a_path_is_planned() {
     });
 }
 
-/// What is refused, or taken back before it begins, has superseded nothing.
+/// A path that is refused, or cancelled before it begins, has superseded nothing.
 #[test]
 fn path_that_is_planned_begins_after_newer_ones_that_do_not() {
     let _alone = alone();

@@ -1,4 +1,4 @@
-//! What the kernel says of the threads of this process while a robot is controlled.
+//! Data of the kernel about the threads of this process while a robot is controlled.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use franka_tests::PATIENCE;
 
 use crate::alone;
 
-/// What the kernel says of one thread.
+/// Data of the kernel about one thread.
 #[derive(Debug)]
 struct Scheduled {
     name: String,
@@ -29,7 +29,7 @@ fn threads() -> BTreeMap<u32, Scheduled> {
     let mut threads = BTreeMap::new();
     for task in tasks.flatten() {
         let read = |file| std::fs::read_to_string(task.path().join(file));
-        // One that has just ended has neither.
+        // A thread that has just ended has neither.
         let (Ok(stat), Ok(status)) = (read("stat"), read("status")) else {
             continue;
         };
@@ -72,7 +72,7 @@ async fn nothing_but_the_control_threads_is_raised_or_pinned() {
         sims.push(sim);
         robots.push(robot);
     }
-    // Whatever else the driver starts is there once something has moved: tasks, blocking threads.
+    // Everything else that the driver starts exists once an arm has moved: tasks, blocking threads.
     for robot in &robots {
         let up = Pose::translation(0.0, 0.0, 0.005) * robot.pose();
         robot.move_to(up).await.expect("it arrives");

@@ -1,5 +1,5 @@
-//! Motions that go on until a condition is true, over sockets. tests/lockstep/reactions has the
-//! cycles.
+//! Motions that continue until a condition is true, over sockets. tests/lockstep/reactions tests
+//! their cycles.
 
 use std::future::IntoFuture;
 use std::time::Duration;

@@ -1,4 +1,4 @@
-//! Reading every state, whatever moves.
+//! Reading every state, at rest and in every motion.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -45,7 +45,7 @@ fn records(robot: &Robot) -> JoinHandle<BTreeMap<u64, u64>> {
     })
 }
 
-/// Torques of zero for so many milliseconds.
+/// Torques of zero for this many milliseconds.
 async fn float(robot: &Robot, milliseconds: u64) -> Result<(), MotionError> {
     let mut time = Duration::ZERO;
     let control = robot.control_torques(move |_, step| {
@@ -183,7 +183,7 @@ async fn reading_ends_with_an_error_when_the_robot_falls_silent_or_the_connectio
     let _alone = alone();
     let (robot, sim) = patient().await;
     let (release, held) = std::sync::mpsc::channel::<()>();
-    // Both the one that was there before the robot fell silent, and one that comes when it is.
+    // A reader from before the robot's silence, and a reader that begins during it.
     let readings = async {
         for _ in 0..2 {
             let silent = timeout(SOON, forever(&robot)).await.expect("no hang");

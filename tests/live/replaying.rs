@@ -113,7 +113,7 @@ async fn a_replay_that_is_dropped_or_superseded_brakes_and_does_not_go_on() {
         robot_time(&robot, 5000).await;
         assert!((robot.state().q[0] - held).abs() < 2e-3);
     }
-    // The session goes on.
+    // The session continues.
     arm.move_joints(plan.start()).await.unwrap();
     arm.disengage().await.unwrap();
     robot.shutdown().await;

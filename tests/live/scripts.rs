@@ -164,7 +164,7 @@ fn goals_are_set_without_waiting_and_the_newest_counts() {
     for step in 0..=2000 {
         arm.try_set(at(step)).unwrap();
     }
-    // Taken in order with what waits: the ones before have been taken by then.
+    // This goal is accepted in order, so the earlier ones have been accepted by then.
     arm.set(Offset::base(Translation3::identity()))
         .wait()
         .unwrap();

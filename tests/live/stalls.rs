@@ -1,12 +1,13 @@
-//! An FER's transmit stalls over sockets, for the driver as it is. What they come to is exact in
-//! virtual time, `tests/lockstep/stalls.rs`; here they are seen, and measured:
+//! An FER's transmit stalls over sockets, for the driver as it is. `tests/lockstep/stalls.rs` has
+//! their exact effect in virtual time. These tests detect them, and this command measures them for
+//! the duration of the measurements on robots:
 //!
 //! ```text
 //! FRANKA_STALLS_SECONDS=30 cargo test --package franka-tests --test live stalls -- --nocapture
 //! ```
 //!
-//! measures for as long as robots were measured. More states give way to a newer one here than
-//! there: a burst leaves the simulator faster than the driver's thread wakes up.
+//! Here a newer state replaces more states than on robots: a burst leaves the simulator faster than
+//! the driver's thread wakes up.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -18,7 +19,7 @@ use franka_tests::cycle_counts::CycleCounts;
 
 use crate::{ahead_of_the_client, alone, by_the_clock};
 
-/// A state that has waited out a stall is answered late, whatever the client: some 14 of 1000
+/// Every client answers late the states that have waited for the end of a stall: some 14 of 1000
 /// cycles.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn the_stalls_of_an_fer_are_bridged_and_make_commands_late() {
@@ -65,7 +66,7 @@ async fn no_command_is_lost_behind_a_cable_where_commands_are_waited_for() {
     let motion = robot.control_torques(move |state, _| {
         cycles += 1;
         std::thread::sleep(Duration::from_micros(100) * (cycles % 12));
-        // The first commands may have been late; the rate is that of the last 100 ms.
+        // The first commands may have been late; the rate covers the last 100 ms.
         if cycles > 200 {
             let mut least = noted.lock().expect("no panic");
             *least = least.min(state.control_command_success_rate);
@@ -78,5 +79,5 @@ async fn no_command_is_lost_behind_a_cable_where_commands_are_waited_for() {
     assert_eq!(least, 1.0);
 }
 
-/// How long, unless told otherwise.
+/// Default duration, in seconds.
 const SECONDS: u64 = 4;

@@ -31,7 +31,7 @@ fn runtime(workers: usize) -> Runtime {
     builder.expect("a runtime")
 }
 
-/// A program on a runtime of its own, and a robot elsewhere.
+/// A program on one runtime, and a robot elsewhere.
 struct Setting {
     runtime: Runtime,
     elsewhere: Runtime,
@@ -40,8 +40,8 @@ struct Setting {
 }
 
 impl Setting {
-    /// A robot that waits for every command for as long as a test may take: a thread that does not
-    /// run by itself stops it.
+    /// A robot that waits for every command for the longest time of a test. Only a thread that runs
+    /// independently stops it.
     fn patient() -> Self {
         let (runtime, elsewhere) = (runtime(WORKERS), runtime(1));
         let sim = Sim::fr3().ideal().tool(Tool::hand()).virtual_time(SOON);
@@ -61,7 +61,7 @@ impl Setting {
         state.expect("the simulator runs").message_id
     }
 
-    /// Waits for so many milliseconds of the robot's time.
+    /// Waits for this many milliseconds of the robot's time.
     fn wait(&self, milliseconds: u64) {
         let (begun, end) = (Instant::now(), self.time() + milliseconds);
         while self.time() < end {
@@ -189,10 +189,11 @@ fn a_full_load_on_every_processor_loses_no_cycle_of_a_motion() {
     assert_every_state_was_answered(&report);
 }
 
-/// While the workers are blocked no target is passed on, and the control thread notices by itself.
+/// While the workers are blocked no target is passed on, and the control thread detects that
+/// without them.
 #[test]
 fn a_session_whose_stream_blocked_workers_hold_up_is_braked_in_time() {
-    /// So long by the robot's clock, which runs faster than that on the wall.
+    /// Duration on the robot's clock, which runs faster than the wall clock.
     const SILENCE: Duration = Duration::from_secs(5);
     const NEVER: u64 = 0;
 
@@ -228,7 +229,7 @@ fn a_session_whose_stream_blocked_workers_hold_up_is_braked_in_time() {
     assert_eq!(time(1), NEVER, "targets come");
 
     let release = setting.block_workers();
-    // No target is passed on from here on, whatever the stream does.
+    // No target is passed on from here, even if the stream yields one.
     let blocked = time(0);
     let begun = Instant::now();
     // Within reach, however long it takes: the last target may be taken up.

@@ -57,7 +57,7 @@ async fn latched_stop_admits_nothing_until_it_is_released() {
     assert_eq!(arm.move_to(target).await, latched());
     let chunk = Chunk::joints([(Duration::from_millis(300), rests)]).expect("a point");
     assert_eq!(arm.chunk(chunk).await, latched());
-    // What moves nothing goes on, and neither does it release the stop.
+    // Calls without motion still work, and do not release the stop.
     robot.stop().await.expect("it rests");
     robot.recover().await.expect("nothing to recover from");
     robot
@@ -80,7 +80,7 @@ async fn latched_stop_admits_nothing_until_it_is_released() {
     robot.shutdown().await;
 }
 
-/// Of a goal that follows a stream, whose targets go on while the arm brakes.
+/// The goal follows a stream, whose targets continue while the arm brakes.
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn latched_stop_ends_a_goal_whose_targets_go_on() {
     let _alone = alone();
@@ -177,7 +177,7 @@ async fn stop_waits_for_the_next_connection_and_a_latch_outlives_it() {
         .await
         .expect("motions are admitted again");
 
-    // One that is lost for good is not waited for.
+    // A robot that is lost for good does not delay the stop.
     drop(robot);
     let robot = supervised(&sim, policy().without_reconnecting()).await;
     sim.stop().await;

@@ -35,7 +35,7 @@ async fn pull(sim: &Running, force: Vector3<f64>) {
 async fn a_tare_takes_off_what_an_untouched_arm_shows() {
     let _alone = alone();
     let (robot, sim) = realistic().await;
-    // A kilogram that nobody has declared.
+    // An undeclared kilogram.
     pull(&sim, Vector3::new(0.0, 0.0, -10.0)).await;
     robot_time(&robot, 400).await;
     let tare = robot.tare().await.expect("it rests");
@@ -49,7 +49,7 @@ async fn a_tare_takes_off_what_an_untouched_arm_shows() {
         assert!(left.abs() < 0.3, "{left} N along axis {i}");
     }
     assert!(tare.turned(&robot.state()) < WrenchTare::NEAR);
-    // What comes later shows as what the arm exerts against it, but for what friction takes.
+    // Later loads appear as the force that the arm exerts against them, except for friction.
     pull(&sim, Vector3::new(0.0, 0.0, -15.0)).await;
     robot_time(&robot, 400).await;
     let state = robot.state();
@@ -84,7 +84,7 @@ async fn an_arm_that_moves_is_not_tared() {
     robot.shutdown().await;
 }
 
-/// Why states of an arm that has begun to move make no tare.
+/// Reason why states of an arm that has begun to move make no tare.
 async fn pushed_through(robot: &Robot) -> TareRefused {
     let mut taring = Taring::over(WrenchTare::DURATION).expect("a duration");
     let mut refused = None;

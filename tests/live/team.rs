@@ -87,7 +87,7 @@ async fn joint_motions_have_one_outcome_per_arm_in_their_order() {
         outcome.expect("it arrives");
     }
 
-    // An arm that is only held keeps its place, and the other one begins all the same.
+    // An arm that is only held keeps its place, and the other arm still begins.
     for held in [[true, false], [false, true], [true, true]] {
         let there = two.robots.each_ref().map(|robot| robot.pose());
         let motion = two.team.run(|member, arm| -> MemberMotion {
@@ -155,7 +155,7 @@ async fn a_user_stop_and_a_stopper_brake_both() {
         fault: MemberFault::RobotStopped,
     };
     assert_eq!(stopped, Some(stop));
-    // The arm that is left can be moved by itself.
+    // The remaining arm can be moved alone.
     let back = Offset::base(up(-0.01));
     let alone = two.team.arms()[0].move_by(back).await;
     alone.expect("it arrives");
@@ -194,7 +194,7 @@ async fn joint_motions_may_be_dropped_at_every_poll() {
     }
     // However few polls a motion takes, its first one cannot be the last.
     assert!(polls > 1, "dropped {polls} times on the way");
-    // What was dropped leaves nothing behind.
+    // A dropped motion leaves nothing behind.
     for outcome in two.team.move_to(start).await {
         outcome.expect("it arrives");
     }

@@ -1,4 +1,4 @@
-//! What the statistics tell while a robot is connected, and where they are told.
+//! Content and destination of the statistics while a robot is connected.
 
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -65,7 +65,7 @@ pub(crate) fn listen() {
     TOLD.lock().unwrap_or_else(PoisonError::into_inner).clear();
 }
 
-/// What was told since [`listen`] by events that have this field.
+/// Events since [`listen`] that have this field.
 pub(crate) fn told(field: &str) -> Vec<Told> {
     let told = std::mem::take(&mut *TOLD.lock().unwrap_or_else(PoisonError::into_inner));
     told.into_iter()
@@ -73,8 +73,8 @@ pub(crate) fn told(field: &str) -> Vec<Told> {
         .collect()
 }
 
-/// Floats for 400 ms, and takes 5 ms over each of the cycles at 100 and 110 ms and over that at 300
-/// ms 20 ms, by the wall and by the robot's `time`.
+/// Floats for 400 ms, and takes 5 ms over each of the cycles at 100 and 110 ms. The cycle at 300 ms
+/// takes 20 ms, by the wall clock and by the robot's `time`.
 async fn dawdle(robot: &Robot, time: Arc<AtomicU64>) -> MotionReport {
     let (mut floated, mut dawdled) = (Duration::ZERO, 0);
     let control = robot.control_torques(move |_, step| {
@@ -110,7 +110,7 @@ async fn a_function_that_dawdles_is_told_of_from_outside_the_control_thread() {
         });
     let (robot, _sim) = ahead_of_the_client(sim).await;
     let report = dawdle(&robot, time.clone()).await;
-    // One of those that the function dawdled in, or longer still, if the host held the thread up.
+    // One of the delayed cycles, or a longer one, if the host delayed the thread.
     let worst = report.worst_cycle.expect("commands left");
 
     assert!(report.overruns >= 3, "{report:?}");
@@ -131,7 +131,7 @@ async fn a_function_that_dawdles_is_told_of_from_outside_the_control_thread() {
     let motion = stats.motion().expect("there was one");
     assert_eq!(motion.overruns, report.overruns);
     assert_eq!(motion.success_rate_min, report.success_rate_min);
-    // A warning that is held back is told within a second.
+    // A delayed warning is reported within a second.
     let overruns = stats.overrun.count();
     let mut events = Vec::new();
     let warned = |events: &[Told]| -> u64 {
@@ -328,8 +328,7 @@ async fn thresholds_below_the_force_cap_are_warned_of() {
     }
 }
 
-/// How often it is told that the robot stops itself before the arm gives way, since it was asked
-/// last.
+/// Asserts the number of warnings, since the last call, that the robot stops before the arm yields.
 fn warns(times: usize) {
     let told = told("threshold_newtons");
     assert_eq!(told.len(), times);
@@ -356,7 +355,7 @@ async fn sessions_are_warned_of_thresholds_as_single_motions_are() {
     warns(1);
     arm.disengage().await.expect("it ends as asked");
 
-    // The robot's controller does not give way: there is nothing to be told of.
+    // The robot's controller does not yield: nothing is reported.
     let stiff = Engage::default().backend(Backend::joint_impedance(Setpoints::JointPositions));
     let arm = robot.engage(stiff).await.expect("it is free");
     arm.move_joints(there).await.expect("it is there");

@@ -1,4 +1,4 @@
-//! What a recording holds of robots over real sockets, read back from its file.
+//! Content of a recording of robots over real sockets, read back from its file.
 
 mod connections;
 mod hands;
@@ -74,8 +74,8 @@ fn finish(recorder: Recorder) -> RecordStatus {
     status
 }
 
-/// The cycles, divided where one does not follow the one before it. A robot at rest waits for
-/// nobody: states that came too fast for the control thread are no cycles.
+/// The cycles, divided at gaps. A robot at rest waits for no client: states that came too fast for
+/// the control thread are no cycles.
 fn divided(cycles: &[Cycle]) -> Vec<&[Cycle]> {
     let follows = |before: &Cycle, after: &Cycle| {
         let [before, after] = [before, after].map(|cycle| cycle.record);
@@ -119,7 +119,7 @@ async fn a_motion_is_recorded_with_every_cycle_and_what_was_asked_for() {
         let start = robot.pose();
         let target = Pose::translation(0.0, 0.0, 0.02) * start;
         let report = robot.move_to(target).await.unwrap();
-        // What has happened before this call is in the recording.
+        // All events before this call are in the recording.
         let status = finish(recorder);
         robot.shutdown().await;
         assert_eq!(status.dropped, 0);
@@ -312,7 +312,7 @@ async fn every_cycle_that_is_missing_is_told() {
     robot.shutdown().await;
 
     let (cycles, events) = folder.read("left");
-    // A robot that moves waits for every command: what is missing was dropped by the recorder.
+    // A robot in motion waits for every command, so the recorder has dropped the missing ones.
     let moving: Vec<_> = cycles
         .iter()
         .filter(|cycle| cycle.record.goal > 0)

@@ -164,7 +164,7 @@ async fn what_was_set_holds_at_a_robot_that_was_restarted() {
     );
     small_motion(&robot).await.expect("it begins");
 
-    // One that does not take the load gets no motion until it is told of another one.
+    // A robot that refuses the load gets no motion until it gets another load.
     let mut events = robot.events();
     sim.stop().await;
     let sim = timeout(SOON, async {

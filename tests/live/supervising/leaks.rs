@@ -1,4 +1,4 @@
-//! What mishaps leave behind: no thread, no descriptor, no task, no future.
+//! Leaks after mishaps: no thread, no descriptor, no task, no future.
 
 use std::future::IntoFuture;
 use std::time::Duration;
@@ -15,12 +15,12 @@ use tokio::time::{sleep, timeout};
 use super::{condition, policy, restart, small_motion, start, supervised};
 use crate::{SOON, alone, long_way, under_way};
 
-/// What this process has, the simulator included.
+/// Resources of this process, the simulator included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Resources {
     threads: usize,
     descriptors: usize,
-    /// Of the runtime.
+    /// Tasks of the runtime.
     tasks: usize,
 }
 
@@ -41,7 +41,7 @@ impl Resources {
     }
 }
 
-/// Mishaps before the count begins: whatever the runtime starts for good is there by then.
+/// Mishaps before the count begins: by then everything that the runtime starts permanently exists.
 const WARM_UP: u64 = 10;
 
 /// A motion is under way at each, and ends with an error. One thing that is left behind by the

@@ -1,8 +1,8 @@
 //! A supervised robot over real sockets: a simulator that is killed and started again at the same
 //! port, its user stop, a network that is cut, motions that wait and that are refused.
 //!
-//! What the supervisor decides is tested in lockstep: `tests/lockstep/supervised`. Here it is
-//! whether sockets, threads and futures follow.
+//! The decisions of the supervisor are tested in lockstep: `tests/lockstep/supervised`. These tests
+//! check that sockets, threads and futures follow.
 
 mod connections;
 mod leaks;
@@ -24,7 +24,7 @@ use tokio::time::{sleep, timeout};
 
 use crate::SOON;
 
-/// Soon again, and for ever.
+/// Retries soon, and indefinitely.
 pub(crate) fn policy() -> Policy {
     Policy::default()
         .reconnect(Backoff {
@@ -40,13 +40,13 @@ pub(crate) async fn start(sim: Sim) -> Running {
     sim.start().await.expect("a simulator starts")
 }
 
-/// A simulator in the place of one that was stopped.
+/// A simulator in the place of a stopped one.
 pub(crate) async fn restart(address: SocketAddr) -> Running {
     let sim = || Sim::fr3().ideal().tool(Tool::hand());
     started_at(address, || sim().virtual_time(PATIENCE)).await
 }
 
-/// This simulator in the place of one that was stopped.
+/// This simulator in the place of a stopped one.
 pub(crate) async fn started_at(address: SocketAddr, sim: impl Fn() -> Sim) -> Running {
     timeout(SOON, async {
         loop {

@@ -142,7 +142,7 @@ async fn motion_that_waits_does_not_begin_with_a_robot_that_was_restarted() {
     };
     assert!(what.clock && !what.description && !what.frames, "{what}");
     condition(&robot, Condition::Ready).await;
-    // Whoever asks now takes it as it is.
+    // A request at this time gets the robot in its current state.
     small_motion(&robot).await.expect("motions are admitted");
     robot.shutdown().await;
     sim.stop().await;

@@ -3,7 +3,7 @@
 use super::grasp::{bases, object};
 use super::*;
 
-/// Polls `future` so many times, each time when it was woken; `None` if it has not resolved by
+/// Polls `future` this many times, each time when it was woken; `None` if it has not resolved by
 /// then.
 async fn polled<F: Future + Unpin>(future: &mut F, polls: u32) -> Option<F::Output> {
     let mut left = polls;
@@ -120,7 +120,7 @@ async fn a_motion_that_was_superseded_may_be_dropped_at_every_poll() {
     for (of_older, of_newer) in (0..3).flat_map(|older| (1..4).map(move |newer| (older, newer))) {
         let mut older = grasp.move_with(up(0.1) * object(), |motion| motion.speed(0.2));
         let ended = polled(&mut older, of_older).await;
-        // What wakes it before its end may come as one, and then its second poll is the last.
+        // The wake-ups before its end may merge into one, and then its second poll is the last.
         let may_end = of_older > 1;
         let as_expected = ended
             .as_ref()

@@ -1,5 +1,5 @@
-//! An object that both arms of a team hold. Each arm has a world of its own here, without the
-//! object: tests/lockstep/carrying has both in one.
+//! An object that both arms of a team hold. Each arm has a separate world here, without the object:
+//! tests/lockstep/carrying has both in one.
 
 use franka_async::Motion;
 use franka_async::error::GoalError;
@@ -101,7 +101,7 @@ async fn an_object_on_its_way_stops_with_its_future_and_with_a_stopper() {
     let gap = distance(&between(&two), &begun);
     assert!(gap < 6e-3, "{gap} m");
 
-    // Where one arm is by itself is no pose of the object: the next motion brings both there.
+    // A single arm's position is no pose of the object: the next motion moves both to it.
     for outcome in grasp.move_to(object()).await {
         outcome.expect("nothing hinders it");
     }
